@@ -1,0 +1,1 @@
+"""The contract between solvers and coupler; nothing here knows any solver."""

@@ -1,0 +1,40 @@
+"""Every error that quintet raises on purpose, as one tree.
+
+Each message says where, the rule, the value found, and what to do.
+"""
+
+
+class QuintetError(Exception):
+    """Anything wrong that quintet noticed itself."""
+
+
+class SceneError(QuintetError):
+    """A scene that cannot run; carries all its mistakes, found before anything starts."""
+
+    def __init__(self, mistakes: str | list[str]) -> None:
+        self.mistakes = [mistakes] if isinstance(mistakes, str) else list(mistakes)
+        super().__init__("\n".join(self.mistakes))
+
+
+class PortError(QuintetError):
+    """Fields that do not fit the port they are given to."""
+
+
+class OrderError(QuintetError):
+    """A component was asked for something it may not do at this point."""
+
+
+class StepError(QuintetError):
+    """A component cannot advance: no stable step, or a state that is not finite."""
+
+
+class MessageError(QuintetError):
+    """Bytes that are not a valid message."""
+
+
+class LineError(QuintetError):
+    """A connection broke, lost a message, or stayed silent past its deadline."""
+
+
+class LinkError(QuintetError):
+    """Fields of two components that the link between them cannot carry."""

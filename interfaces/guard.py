@@ -1,0 +1,56 @@
+"""The legal order of a component's orders, as a pure state machine."""
+
+from quintet.interfaces.errors import OrderError
+
+# state -> order -> next state
+LEGAL: dict[str, dict[str, str]] = {
+    "new": {"describe": "described", "finish": "finished"},
+    "described": {"bind": "ready", "finish": "finished"},
+    "ready": {
+        "give": "ready",
+        "prime": "ready",
+        "advance": "ready",
+        "keep": "ready",
+        "rewind": "ready",
+        "save": "ready",
+        "load": "ready",
+        "view": "ready",
+        "finish": "finished",
+    },
+    "finished": {},
+}
+
+
+class Guard:
+    """Follows a component through its life; refuses what may not come next."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.state = "new"
+        self.window = 0  # the next to be advanced
+        self._kept = -1
+
+    def allow(self, order: str, window: int = 0) -> None:
+        """Accept an order, or say what would have been legal."""
+        legal = LEGAL[self.state]
+        if order not in legal:
+            raise OrderError(
+                f"{self.name}: when {self.state}, an order must be one of "
+                f"{', '.join(legal) or 'none'}; found {order!r}."
+            )
+        if order == "advance":
+            if window != self.window:
+                raise OrderError(
+                    f"{self.name}: window {self.window} is next; window {window} was ordered. "
+                    "Windows come in order; rewind repeats one."
+                )
+            self.window += 1
+        elif order == "keep":
+            self._kept = self.window
+        elif order == "load":
+            self.window = window
+        elif order == "rewind":
+            if self._kept < 0:
+                raise OrderError(f"{self.name}: rewind needs a kept state; order keep first.")
+            self.window = self._kept
+        self.state = legal[order]

@@ -1,0 +1,81 @@
+"""What a kind of component publishes about itself, so that a scene is checked without it.
+
+A manifest is light: importing it imports no solver. Kinds are found by name under the
+entry-point group ``quintet.components``, or as ``module:Class``.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import entry_points
+from typing import Any
+
+from quintet.interfaces.component import Component, Port
+from quintet.interfaces.errors import SceneError
+
+Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a run of a component will need, guessed from its parameters alone."""
+
+    items: int  # particles, bodies, elements
+    dt: float  # s, a typical step
+    rate: float  # items stepped per second and thread
+    bytes_per_item: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """A kind: its parameters, its ports, and where its class is.
+
+    ``ports`` and ``plan`` are functions of the checked parameters.
+    """
+
+    kind: str
+    title: str
+    params: type
+    component: str  # "module:Class"
+    ports: Callable[[Any], Ports]
+    plan: Callable[[Any], Plan] | None = None
+
+    def load(self) -> type[Component]:
+        """Import the solver itself; only the process that runs it does so."""
+        found = resolve(self.component)
+        if not (isinstance(found, type) and issubclass(found, Component)):
+            raise SceneError(f"kind {self.kind}: {self.component} is not a Component.")
+        return found
+
+
+def resolve(path: str) -> Any:
+    """Import ``module:name``."""
+    module, _, name = path.partition(":")
+    return getattr(import_module(module), name)
+
+
+def manifest_of(cls: type[Component], path: str) -> Manifest:
+    """Manifest of a class that publishes none: its ``Params`` and its ports."""
+    params = getattr(cls, "Params", None)
+    if params is None:
+        raise SceneError(
+            f"kind {path}: a component class must have a Params dataclass; {cls.__name__} has "
+            "none. Write `@parameters class Params` inside it."
+        )
+    return Manifest(
+        path, (cls.__doc__ or path).splitlines()[0], params, path, lambda _: (cls.takes, cls.gives)
+    )
+
+
+def known_kinds() -> dict[str, str]:
+    """Names under which components are installed, with the paths that they stand for."""
+    return {entry.name: entry.value for entry in entry_points(group="quintet.components")}
+
+
+def find(kind: str) -> Manifest:
+    """Manifest of a kind, given by its installed name or as ``module:Class``."""
+    path = kind if ":" in kind else known_kinds().get(kind, "")
+    if not path:
+        raise KeyError(kind)
+    found = resolve(path)
+    return found if isinstance(found, Manifest) else manifest_of(found, kind)

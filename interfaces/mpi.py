@@ -1,0 +1,79 @@
+"""Lines over MPI: one program per component, started together, never waiting in a library."""
+
+import functools
+import os
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from quintet.interfaces.errors import LineError
+from quintet.interfaces.message import Frame
+from quintet.interfaces.transport import FramedLine, wait
+
+TAG = 17
+SENDING = 600.0  # s that a large message may take until the receiver has asked for it
+
+
+@functools.cache
+def world() -> Any:
+    """Return a communicator of our own, so that a solver's MPI cannot mix with ours."""
+    return MPI.COMM_WORLD.Dup()
+
+
+class MpiLine(FramedLine):
+    """A line to one rank."""
+
+    def __init__(self, run: str, name: str, other: str, rank: int, pid: int = 0) -> None:
+        super().__init__(run, name)
+        self.other = other
+        self.rank = rank
+        self.pid = pid  # of the other side when it runs on this host, else 0
+        self._comm = world()
+
+    def _put(self, frame: bytearray) -> None:
+        request = self._comm.Isend([frame, MPI.BYTE], self.rank, TAG)
+        wait(lambda: request.Test() or None, SENDING, self._broken)
+
+    def _poll(self) -> Frame | None:
+        status = MPI.Status()
+        message = self._comm.Improbe(self.rank, TAG, status)
+        if message is None:
+            return None
+        frame = np.empty(status.Get_count(MPI.BYTE), np.uint8)
+        request = message.Irecv([frame, MPI.BYTE])
+        wait(lambda: request.Test() or None, SENDING, self._broken)
+        return frame
+
+    def _broken(self) -> str:
+        # MPI itself never tells of a dead rank; on the same host the system does.
+        return f"{self.other} is gone" if self.pid and not running(self.pid) else ""
+
+    def close(self) -> None:
+        """See `Line.close`."""
+
+
+def running(pid: int) -> bool:
+    """Tell whether a process of this host runs; one that ended and was not awaited does not."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as file:
+            return file.read().rpartition(b")")[2].split()[0] not in (b"Z", b"X")
+    except OSError:
+        return False
+
+
+def self_check(expected: int) -> None:
+    """Refuse to run when the launcher and the MPI library do not belong together."""
+    size = MPI.COMM_WORLD.size
+    if size != expected:
+        raise LineError(
+            f"MPI started {size} ranks where {expected} were launched: the launcher and the "
+            f"library differ ({MPI.Get_library_version().splitlines()[0]}). Use the mpiexec of "
+            "that library."
+        )
+
+
+def abort(status: int) -> None:
+    """End every rank at once."""
+    MPI.COMM_WORLD.Abort(status)
+    os._exit(status)

@@ -1,0 +1,83 @@
+"""What a component gave over a window, and the sums by which the ledger checks it.
+
+An impulse is the sum of force times step over the steps, so what a link carries is exactly
+what the component did, at every subcycling ratio.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from quintet.interfaces.component import Array, Fields, Port
+from quintet.interfaces.errors import PortError
+
+Sums = dict[str, list[float]]
+
+
+class Outputs:
+    """The outputs of one component over a window.
+
+    ``works`` pairs a given force with the taken velocity (and position) of the same items:
+    their products are the work and the angular impulse done through the port.
+    """
+
+    def __init__(self, gives: Iterable[Port]) -> None:
+        fields = [(f"{port.name}.{f.name}", f) for port in gives for f in port.fields]
+        self.shapes = {key: field.shape for key, field in fields}
+        self.impulses = [key for key, field in fields if field.centring == "impulse"]
+        self.works: list[tuple[str, str, str]] = []  # force, velocity, position or ""
+        self.total: dict[str, Array] = {}
+        self.work: dict[str, float] = {}
+        self.moment: dict[str, Array] = {}
+
+    def begin(self) -> None:
+        """Forget the last window."""
+        self.total, self.work, self.moment = {}, {}, {}
+
+    def add(self, given: Fields, taken: Fields, dt: float) -> None:
+        """Add one step."""
+        for key in self.impulses:
+            part = dt * given[key]
+            self.total[key] = self.total[key] + part if key in self.total else part
+        for force, velocity, position in self.works:
+            done = dt * float(np.vdot(given[force], taken[velocity]))
+            self.work[force] = self.work.get(force, 0.0) + done
+            if position:
+                turned = dt * np.cross(taken[position], given[force]).sum(axis=0)
+                self.moment[force] = self.moment.get(force, np.zeros(3)) + turned
+
+    def collect(self, given: Fields) -> dict[str, Array]:
+        """Return the fields to send: instants as they are now, impulses summed over the window."""
+        for key, array in given.items():
+            if key not in self.shapes or array.shape[1:] != self.shapes[key]:
+                known = self.shapes.get(key)
+                raise PortError(
+                    f"output {key} must have shape (n, *{known}) as its port says; found "
+                    f"{array.shape}. Correct give(), or the port."
+                )
+        missing = [key for key in self.shapes if key not in given]
+        if missing:
+            raise PortError(f"give() must give every field of its ports; {missing[0]} is missing.")
+        return {
+            key: self.total.get(key, np.zeros_like(array)) if key in self.impulses else array
+            for key, array in given.items()
+        }
+
+    def audit(self) -> Sums:
+        """Sum every impulse over the items, with its work and moment where they are known."""
+        sums = {key: column_sums(array) for key, array in self.total.items()}
+        sums |= {f"{key}/size": [size(array)] for key, array in self.total.items()}
+        sums |= {f"{key}/work": [work] for key, work in self.work.items()}
+        return sums | {f"{key}/moment": turn.tolist() for key, turn in self.moment.items()}
+
+
+def column_sums(array: Array) -> list[float]:
+    """Sum over the items; one number per component of the field."""
+    rows = array.reshape(len(array), -1)
+    # A product with ones sums the columns several times faster than a reduction along rows.
+    return (np.ones(len(rows)) @ rows).tolist()
+
+
+def size(array: Array) -> float:
+    """Sum of the magnitudes: what a residual is to be compared with."""
+    return float(np.abs(array).sum())

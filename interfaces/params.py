@@ -1,0 +1,79 @@
+"""Parameters of a component: a frozen dataclass, checked once, before anything starts.
+
+``@parameters`` makes one. Fields are annotated with the constrained types below, so that a
+wrong scene is refused with every mistake at once and no solver imported.
+"""
+
+import dataclasses
+import difflib
+import json
+from collections.abc import Iterable
+from typing import Annotated, Any, dataclass_transform, get_args
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+Count = Annotated[int, Field(ge=1)]
+Vector = tuple[Number, Number, Number]
+PositiveVector = tuple[Positive, Positive, Positive]
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+def parameters(cls: type) -> Any:
+    """Make a class a frozen, validated parameter set; unknown names are refused."""
+    config = ConfigDict(extra="forbid", strict=True)
+    return dataclass(frozen=True, kw_only=True, config=config)(cls)
+
+
+def read(params: type, given: dict[str, Any], where: str) -> tuple[Any, list[str]]:
+    """Check settings against a parameter class; return it filled, or None and every mistake."""
+    try:
+        # Strict checking of JSON takes lists for tuples, but no text for numbers.
+        text = json.dumps(given)
+        return TypeAdapter(params).validate_json(text, strict=True), []
+    except ValidationError as error:
+        return None, [_sentence(params, where, one) for one in error.errors()]
+    except (TypeError, ValueError) as error:
+        return None, [f"{where}: {error}. Use numbers, text, lists and tables only."]
+
+
+def _sentence(params: type, where: str, mistake: Any) -> str:
+    names = [str(part) for part in mistake["loc"]]
+    place = ".".join([where, *names])
+    if mistake["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
+        return unknown(place, names[-1], _names_at(params, names[:-1]))
+    if mistake["type"] in ("missing", "missing_argument"):
+        return f"{place} is needed. Add {names[-1]} to it."
+    if mistake["type"] == "value_error":
+        return f"{where}: {mistake['ctx']['error']}"
+    rule = mistake["msg"].removeprefix("Input ").rstrip(".")
+    return f"{place} {rule}; found {mistake['input']!r}. Correct it."
+
+
+def unknown(place: str, name: str, known: Iterable[str]) -> str:
+    """Say that a name is not known, and which is nearest."""
+    known = sorted(known)
+    near = difflib.get_close_matches(name, known, 1, 0.5)
+    hint = f"Did you mean {near[0]}?" if near else f"Known here: {', '.join(known) or 'nothing'}."
+    return f"{place} is not known. {hint}"
+
+
+def _names_at(params: Any, path: list[str]) -> list[str]:
+    """Names that a nested parameter class knows; lists and tables are stepped through."""
+    found = params
+    for part in path:
+        fields = {f.name: f.type for f in dataclasses.fields(found)}
+        found = _inner(fields[part]) if part in fields else found
+    return [f.name for f in dataclasses.fields(found)] if dataclasses.is_dataclass(found) else []
+
+
+def _inner(annotation: Any) -> Any:
+    """Return the parameter class inside a tuple, a table or an optional, or the annotation."""
+    for part in get_args(annotation):
+        if dataclasses.is_dataclass(_inner(part)):
+            return _inner(part)
+    return annotation

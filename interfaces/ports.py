@@ -1,0 +1,53 @@
+"""The ports that solvers of several kinds share, so that any of them fits any link."""
+
+from quintet.interfaces.component import Field, Port
+
+POSITION = Field("position", (3,), "m", rate="velocity")
+VELOCITY = Field("velocity", (3,), "m/s")
+FORCE = Field("force", (3,), "N", "impulse")
+
+# Moving surface samples, whoever moves them: taken by fluids, which push back with a force on each.
+SURFACE = Port(
+    "surface",
+    fields=(POSITION, VELOCITY),
+    static=(
+        Field("normal", (3,), "1"),  # outward, at the start
+        Field("volume", (), "m3"),  # that the sample stands for
+        Field("body", (), "1"),  # number of the body (or mesh) it belongs to
+    ),
+    states=(Field("spacing", (), "m"), Field("depth", (), "m")),
+)
+SURFACE_LOAD = Port("surface_load", fields=(FORCE,))
+
+# Rigid bodies: given by whatever moves them, loaded by a force and a torque about the centre.
+MOTION = Port(
+    "motion",
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("orientation", (4,), "1"),  # unit quaternion w, x, y, z: body -> world
+        Field("angular_velocity", (3,), "rad/s"),
+    ),
+    static=(
+        Field("shape", (), "1"),  # 0 sphere, 1 box
+        Field("size", (3,), "m"),  # edges of a box; diameter of a sphere, three times
+        Field("mass", (), "kg"),
+    ),
+)
+LOAD = Port("load", fields=(FORCE, Field("torque", (3,), "N m", "impulse")))
+
+# Meshes: faces that move, loaded at their nodes.
+FACES = Port(
+    "faces",
+    fields=(POSITION, VELOCITY),
+    static=(Field("corner", (4,), "1"),),  # nodes of each face; -1 ends a triangle
+)
+NODE_LOAD = Port("node_load", fields=(FORCE,))
+
+# Glue: particles that hang on the nodes of a mesh.
+GLUED = Port("glued", fields=(VELOCITY,))
+GLUED_LOAD = Port(
+    "glued_load",
+    fields=(FORCE,),
+    static=(Field("position", (3,), "m"), Field("mass", (), "kg")),
+)
