@@ -42,10 +42,13 @@ class Port:
 
     ``static`` fields go once, with the port, before the first step (a body's mass);
     ``states`` go once, against it (the spacing at which the taker wants surfaces sampled).
+    ``items`` says whose they are: what several links bring to a component's own items is
+    added up, what they bring as the partner's items stands in rows one after another.
     """
 
     name: str
     fields: tuple[Field, ...]
+    items: Literal["own", "partner"] = "own"
     static: tuple[Field, ...] = ()
     states: tuple[Field, ...] = ()
 

@@ -6,7 +6,7 @@ their rate comes with them; beyond the last known end by their rate. A velocity 
 with a position is given as the mean over the step, so that displacements add up to rounding.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import numpy as np
 
@@ -27,8 +27,8 @@ class Inputs:
         self.end: dict[str, Array] = {}  # and at its end, where known
         self.rate: dict[str, Array] = {}  # impulses / window
 
-    def arrive(self, fields: Fields, at: str, window: float) -> None:
-        """Take what came for this window: instants `at` its "start" or "end", and impulses."""
+    def arrive(self, fields: Fields, ends: Collection[str], window: float) -> None:
+        """Take what came for this window; instants named in `ends` hold at its end."""
         self.start.update(self.end)  # what was an end is now a beginning
         self.end = {}
         for key, array in fields.items():
@@ -38,7 +38,7 @@ class Inputs:
             self._check(key, array)
             if key in self.impulses:
                 self.rate[key] = array / window
-            elif at == "end" and key in self.start:
+            elif key in ends and key in self.start:
                 self.end[key] = array
             else:
                 self.start[key] = array

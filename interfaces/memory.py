@@ -14,15 +14,15 @@ class MemoryLine(FramedLine):
     Messages are packed and checked as on any other line: a scene that runs here runs there.
     """
 
-    def __init__(self, run: str, name: str, handle: Callable[[Message], None]) -> None:
+    def __init__(self, run: str, name: str) -> None:
         super().__init__(run, name)
-        self._handle = handle
+        self.handle: Callable[[Message], object] = lambda message: None  # carries out an order
         self.far = _FarEnd(run, name)
 
     def _put(self, frame: bytearray) -> None:
         self.far.inbox.append(frame)
         self._scratch = None  # the receiver's arrays are views of this frame
-        self._handle(self.far.receive(0.0))
+        self.handle(self.far.receive(0.0))
 
     def _poll(self) -> Frame | None:
         return self.far.outbox.popleft() if self.far.outbox else None

@@ -33,7 +33,7 @@ class MpiLine(FramedLine):
 
     def _put(self, frame: bytearray) -> None:
         request = self._comm.Isend([frame, MPI.BYTE], self.rank, TAG)
-        wait(lambda: request.Test() or None, SENDING, self._broken)
+        wait(lambda: request.Test() or None, SENDING, self._reason)
 
     def _poll(self) -> Frame | None:
         status = MPI.Status()
@@ -42,7 +42,7 @@ class MpiLine(FramedLine):
             return None
         frame = np.empty(status.Get_count(MPI.BYTE), np.uint8)
         request = message.Irecv([frame, MPI.BYTE])
-        wait(lambda: request.Test() or None, SENDING, self._broken)
+        wait(lambda: request.Test() or None, SENDING, self._reason)
         return frame
 
     def _broken(self) -> str:

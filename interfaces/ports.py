@@ -10,6 +10,7 @@ FORCE = Field("force", (3,), "N", "impulse")
 SURFACE = Port(
     "surface",
     fields=(POSITION, VELOCITY),
+    items="partner",
     static=(
         Field("normal", (3,), "1"),  # outward, at the start
         Field("volume", (), "m3"),  # that the sample stands for
@@ -17,7 +18,7 @@ SURFACE = Port(
     ),
     states=(Field("spacing", (), "m"), Field("depth", (), "m")),
 )
-SURFACE_LOAD = Port("surface_load", fields=(FORCE,))
+SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 
 # Rigid bodies: given by whatever moves them, loaded by a force and a torque about the centre.
 MOTION = Port(
@@ -37,15 +38,18 @@ MOTION = Port(
 LOAD = Port("load", fields=(FORCE, Field("torque", (3,), "N m", "impulse")))
 
 # Meshes: faces that move, loaded at their nodes.
-FACES = Port(
-    "faces",
-    fields=(POSITION, VELOCITY),
-    static=(Field("corner", (4,), "1"),),  # nodes of each face; -1 ends a triangle
+MESH = (
+    Field("start", (3,), "m"),  # position of each node at the start
+    Field("corner", (4,), "1"),  # (faces, 4) nodes of each face; -1 ends a triangle
 )
-NODE_LOAD = Port("node_load", fields=(FORCE,))
+FACES = Port("faces", fields=(POSITION, VELOCITY), static=MESH)
+NODE_LOAD = Port("node_load", fields=(FORCE,), static=(Field("added_mass", (), "kg"),))
 
-# Glue: particles that hang on the nodes of a mesh.
-GLUED = Port("glued", fields=(VELOCITY,))
+# Glue: particles that hang on the nodes of a mesh. Velocities cross as impulses, that is as
+# displacements over the window, so that both sides move by the same amount.
+DRIFT = Field("velocity", (3,), "m/s", "impulse")
+NODE_GLUE = Port("node_glue", fields=(DRIFT,), static=MESH)
+GLUED = Port("glued", fields=(DRIFT,))
 GLUED_LOAD = Port(
     "glued_load",
     fields=(FORCE,),

@@ -1,12 +1,15 @@
 """A component as a process of its own: join the coupler, be told the parameters, serve."""
 
 import argparse
+import contextlib
 import os
 import signal
 import sys
 import time
+import traceback
 from typing import Any
 
+from quintet.interfaces.component import Component
 from quintet.interfaces.errors import LineError, QuintetError
 from quintet.interfaces.manifest import Manifest, find
 from quintet.interfaces.params import read
@@ -14,6 +17,7 @@ from quintet.interfaces.serve import Server, failure, serve
 from quintet.interfaces.transport import Line
 
 JOINING = 600.0  # s until every other component has joined
+LINGERING = 10.0  # s
 
 
 def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -> None:
@@ -55,31 +59,39 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
         return 3
     if order.order != "go":
         return 0
+    status = 3
     try:
-        well = serve(Server(build(manifest, order.header), given.name), line)
+        start = time.perf_counter()
+        component = build(manifest, order.header)
+        say(f"built in {time.perf_counter() - start:.1f} s: {component.items()} items")
+        if serve(Server(component, given.name), line):
+            status = 0
     except LineError as error:
         say(f"{given.name}: the coupler: {error}")
-        return 3
     except Exception as error:
+        traceback.print_exc()
         line.send(failure(error), {})
-        raise
-    finally:
-        line.close()
-    say(f"{given.name}: finished" if well else f"{given.name}: stopped")
-    return 0 if well else 3
+    if status:
+        linger(line)
+    line.close()
+    say(f"{given.name}: " + ("stopped" if status else "finished"))
+    return status
 
 
-def build(manifest: Manifest, header: dict[str, Any]) -> Any:
+def linger(line: Line) -> None:
+    """Stay until the coupler has read what went wrong: leaving would end an MPI job at once."""
+    with contextlib.suppress(QuintetError):
+        line.receive(LINGERING)
+
+
+def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     """Check the parameters, then import the solver and make the component."""
     # Before numba is imported: it reads the size of its thread pool once.
     os.environ["NUMBA_NUM_THREADS"] = str(header["threads"])
     params, mistakes = read(manifest.params, header["params"], manifest.kind)
     if mistakes:
         raise QuintetError("\n".join(mistakes))
-    start = time.perf_counter()
-    component = manifest.load()(params)
-    say(f"built in {time.perf_counter() - start:.1f} s: {component.items()} items")
-    return component
+    return manifest.load()(params)
 
 
 def over_zenoh(given: argparse.Namespace) -> Line:

@@ -70,11 +70,11 @@ class Server:
         for force, velocity, position in message.header.get("works", []):
             if force in given and velocity in self.inputs.fields:
                 self.outputs.works.append((force, velocity, position))
-        return {"items": self.component.items()}, {}
+        return {"items": self.component.items(), "limit": self.component.stable_dt()}, {}
 
     def _prime(self, message: Message) -> Answer:
         require_finite(message.fields, "as the run begins")
-        self.inputs.arrive(message.fields, "start", 1.0)
+        self.inputs.arrive(message.fields, (), 1.0)
         return {}, {}
 
     def _give(self, _: Message) -> Answer:
@@ -85,7 +85,7 @@ class Server:
         header, began = message.header, time.perf_counter()
         window = float(header["dt"])
         require_finite(message.fields, f"window {header['window']}, received")
-        self.inputs.arrive(message.fields, header["at"], window)
+        self.inputs.arrive(message.fields, header["ends"], window)
         received = {k: column_sums(v) for k, v in message.fields.items() if self._integral(k)}
         steps, applied, given = self.advance(window)
         fields = self.outputs.collect(given)

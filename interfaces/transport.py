@@ -68,6 +68,7 @@ class FramedLine(ABC):
     def __init__(self, run: str, name: str) -> None:
         self.run = run  # "" until the coupler has told it
         self.name = name  # who sends
+        self.watch: Callable[[], str] = lambda: ""  # why an answer will not come, if known
         self._sent = 0
         self._received = 0
         self._scratch: bytearray | None = None
@@ -81,7 +82,7 @@ class FramedLine(ABC):
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
         """See `Line.receive`."""
-        message = decode(wait(self._poll, seconds, self._broken), expected)
+        message = decode(wait(self._poll, seconds, self._reason), expected)
         seq, run = message.header.get("seq"), message.header.get("run")
         if seq != self._received:
             raise LineError(
@@ -93,6 +94,9 @@ class FramedLine(ABC):
         if run != self.run and run != "":
             raise LineError(f"a message of run {run!r} arrived in run {self.run!r}.")
         return message
+
+    def _reason(self) -> str:
+        return self._broken() or self.watch()
 
     @abstractmethod
     def _put(self, frame: bytearray) -> None:

@@ -1,0 +1,163 @@
+"""Fluid and structure: surface samples move with bodies or faces, and carry forces back.
+
+The fluid takes samples and gives a force on each; it never learns what moves them. The body
+gives its shape or its faces; it never learns how finely they are sampled.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from quintet.coupler.exchange import Leg, Ports, Works, requires
+from quintet.coupler.mapping import RigidMap, ShapeMap, sample_faces
+from quintet.coupler.shapes import fill
+from quintet.interfaces.component import Array, Fields, Port
+from quintet.interfaces.errors import LinkError, SceneError
+from quintet.interfaces.ports import FACES, LOAD, MOTION, NODE_LOAD, SURFACE, SURFACE_LOAD
+
+WORK = ("surface_load.force", "surface.velocity", "surface.position")
+
+
+def join(name: str, between: tuple[str, str], ports: Mapping[str, Ports]) -> "RigidFsi | FaceFsi":
+    """Match two components: one samples a surface, the other moves bodies or faces."""
+    first, second = between
+    for fluid, body in ((first, second), (second, first)):
+        takes = {port.name for port in ports[fluid][0]}
+        gives = {port.name for port in ports[body][1]}
+        if SURFACE.name not in takes or not gives & {MOTION.name, FACES.name}:
+            continue
+        rigid = MOTION.name in gives
+        motion, load = (MOTION, LOAD) if rigid else (FACES, NODE_LOAD)
+        lacks = requires(ports[fluid], fluid, SURFACE, SURFACE_LOAD)
+        lacks += requires(ports[body], body, load, motion)
+        if lacks:
+            raise SceneError(f"link {name}: {'; '.join(lacks)}. Correct the ports.")
+        return (RigidFsi if rigid else FaceFsi)(name, fluid, body)
+    raise SceneError(
+        f"link {name}: fsi needs a component that takes surface and gives surface_load, and one "
+        f"that gives motion and takes load, or gives faces and takes node_load; {first} takes "
+        f"{_names(ports[first][0])} and gives {_names(ports[first][1])}, {second} takes "
+        f"{_names(ports[second][0])} and gives {_names(ports[second][1])}. Link others."
+    )
+
+
+def _names(ports: tuple[Port, ...]) -> str:
+    return ", ".join(port.name for port in ports) or "nothing"
+
+
+class RigidFsi:
+    """Samples ride on rigid bodies; their forces become a force and a torque on each."""
+
+    def __init__(self, name: str, fluid: str, body: str) -> None:
+        self.name, self.fluid, self.body = name, fluid, body
+        self.map: RigidMap
+        # Arms (n, 3) m and centres (bodies, 3) m in the world, at the last two times known.
+        self.memory: tuple[tuple[Array, Array], ...] = ()
+        self.partner = {fluid: SURFACE.name}
+        self.works: dict[str, Works] = {fluid: [WORK]}
+        self.legs = [
+            Leg(body, fluid, self._move),
+            Leg(
+                fluid,
+                body,
+                self._load,
+                forces=(("surface_load.force", "load.force"),),
+                works_on=(
+                    ("load.force", "motion.velocity", "motion.position"),
+                    ("load.torque", "motion.angular_velocity", ""),
+                ),
+                moment=self._moment,
+            ),
+        ]
+
+    def describe(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
+        """Sample every body at the fluid's spacing."""
+        spacing = float(described[self.fluid]["surface.spacing"][0])
+        depth = float(described[self.fluid]["surface.depth"][0])
+        shapes, sizes = described[self.body]["motion.shape"], described[self.body]["motion.size"]
+        self._check(sizes, spacing)
+        parts = [fill(int(s), size, spacing, depth) for s, size in zip(shapes, sizes, strict=True)]
+        owner = np.repeat(np.arange(len(parts)), [len(arm) for arm, _, _ in parts])
+        self.map = RigidMap(np.concatenate([arm for arm, _, _ in parts]), owner, len(parts))
+        return {
+            self.fluid: {
+                "surface.normal": np.concatenate([normal for _, normal, _ in parts]),
+                "surface.volume": np.concatenate([volume for _, _, volume in parts]),
+                "surface.body": owner.astype(np.float64),
+            }
+        }
+
+    def _check(self, sizes: Array, spacing: float) -> None:
+        small = np.flatnonzero(sizes.min(axis=1) < spacing)
+        if len(small):
+            raise LinkError(
+                f"link {self.name}: a body must be at least one fluid spacing ({spacing:g} m) "
+                f"across; body {small[0]} of {self.body} is {sizes[small[0]].min():g} m. Refine "
+                f"the spacing of {self.fluid}, or leave the body out."
+            )
+
+    def _move(self, given: Fields) -> dict[str, Array]:
+        centre, turn = given["motion.position"], given["motion.orientation"]
+        spin, velocity = given["motion.angular_velocity"], given["motion.velocity"]
+        arms = self.map.arms(turn)
+        self.memory = (*self.memory[-1:], (arms, centre))
+        body = self.map.body
+        return {
+            "surface.position": centre[body] + arms,
+            "surface.velocity": velocity[body] + np.cross(spin[body], arms),
+        }
+
+    def _load(self, given: Fields) -> dict[str, Array]:
+        # An impulse was gathered along the way between the last two poses: use their middle.
+        arms = 0.5 * (self.memory[0][0] + self.memory[-1][0])
+        force, torque = self.map.spread(given["surface_load.force"], arms)
+        return {"load.force": force, "load.torque": torque}
+
+    def _moment(self, brought: Fields) -> Array:
+        centre = 0.5 * (self.memory[0][1] + self.memory[-1][1])
+        turn = np.cross(centre, brought["load.force"]) + brought["load.torque"]
+        return np.asarray(turn.sum(axis=0))
+
+
+class FaceFsi:
+    """Samples ride on the faces of a mesh; their forces go to its nodes."""
+
+    def __init__(self, name: str, fluid: str, body: str) -> None:
+        self.name, self.fluid, self.body = name, fluid, body
+        self.map: ShapeMap
+        self.memory = None
+        self.partner = {fluid: SURFACE.name}
+        self.works: dict[str, Works] = {fluid: [WORK]}
+        self.legs = [
+            Leg(body, fluid, self._move),
+            Leg(
+                fluid,
+                body,
+                self._load,
+                forces=(("surface_load.force", "node_load.force"),),
+                works_on=(("node_load.force", "faces.velocity", "faces.position"),),
+            ),
+        ]
+
+    def describe(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
+        """Sample every face at the fluid's spacing."""
+        spacing = float(described[self.fluid]["surface.spacing"][0])
+        mesh = described[self.body]
+        position = mesh["faces.start"]
+        self.map, area, normal = sample_faces(position, mesh["faces.corner"], spacing)
+        return {
+            self.fluid: {
+                "surface.normal": normal,
+                "surface.volume": area * spacing,
+                "surface.body": np.zeros(len(area)),
+            }
+        }
+
+    def _move(self, given: Fields) -> dict[str, Array]:
+        return {
+            "surface.position": self.map.gather(given["faces.position"]),
+            "surface.velocity": self.map.gather(given["faces.velocity"]),
+        }
+
+    def _load(self, given: Fields) -> dict[str, Array]:
+        return {"node_load.force": self.map.spread(given["surface_load.force"])}

@@ -1,0 +1,268 @@
+"""Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
+
+import sys
+import tomllib
+from collections.abc import Iterable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.exchange import Link
+from quintet.coupler.expect import Expectation
+from quintet.coupler.links import KINDS
+from quintet.coupler.scene import ComponentPlan, Scene, SceneFile
+from quintet.interfaces.errors import QuintetError, SceneError
+from quintet.interfaces.manifest import Manifest, find, known_kinds
+from quintet.interfaces.params import read, unknown
+
+TABLES = ("components", "links", "expect", "presets", "stand_ins")
+
+
+def library() -> dict[str, Path]:
+    """Scenes that come with quintet: name and file."""
+    root = Path(str(files("quintet.scenarios")))
+    return {path.parent.name: path for path in sorted(root.glob("*/scene.toml"))}
+
+
+def locate(scene: str) -> Path:
+    """File of a scene given by name or by path."""
+    if scene.endswith(".toml") or "/" in scene:
+        path = Path(scene)
+        path = path / "scene.toml" if path.is_dir() else path
+        if not path.is_file():
+            raise SceneError(f"scene {scene}: there is no such file. Give a name or a path.")
+        return path
+    known = library()
+    if scene not in known:
+        raise SceneError(unknown(f"scene {scene}", scene, known))
+    return known[scene]
+
+
+def load(
+    scene: str,
+    preset: str = "",
+    settings: Iterable[str] = (),
+    swaps: Iterable[str] = (),
+    transport: str = "",
+) -> Scene:
+    """Read a scene and check all of it; nothing is started.
+
+    Parameters
+    ----------
+    scene : str
+        A name from ``quintet list`` or the path of a TOML file.
+    settings : iterable of ``path=value``
+        Set on top of the preset; values are TOML.
+    swaps : iterable of ``NAME=KIND``
+        Components to be replaced by another kind.
+
+    Raises
+    ------
+    SceneError
+        With every mistake found.
+    """
+    path = locate(scene)
+    table = parse(path)
+    mistakes = _preset(table, preset) if preset else []
+    for swap in swaps:
+        mistakes += _swap(table, swap)
+    for setting in settings:
+        mistakes += _set(table, setting)
+    if transport:
+        table["transport"] = transport
+    if mistakes:
+        raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
+    return _check(path, table, preset)
+
+
+def parse(path: Path) -> dict[str, Any]:
+    """Read a TOML file as it stands."""
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"{path.name}: a scene must be valid TOML: {error}.") from error
+
+
+def _preset(table: dict[str, Any], preset: str) -> list[str]:
+    presets = table.get("presets", {})
+    if preset not in presets:
+        return [unknown(f"preset {preset}", preset, presets)]
+    return [m for path, value in presets[preset].items() for m in _place(table, path, value)]
+
+
+def _set(table: dict[str, Any], setting: str) -> list[str]:
+    path, equals, text = setting.partition("=")
+    if not equals:
+        return [f"--set needs PATH=VALUE; found {setting!r}."]
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text  # a word needs no quotes on the command line
+    return _place(table, path, value)
+
+
+def _place(table: dict[str, Any], path: str, value: Any) -> list[str]:
+    """Set a value at a dotted path; new tables are made only for components' own settings."""
+    *heads, last = path.split(".")
+    at: Any = table
+    for number, head in enumerate(heads):
+        place = ".".join(heads[: number + 1])
+        if isinstance(at, list):
+            if not (head.isdigit() and int(head) < len(at)):
+                return [f"{place}: must be a number below {len(at)}; found {head!r}."]
+            at = at[int(head)]
+        elif isinstance(at, dict) and (head in at or place in ("output", "iteration")):
+            at = at.setdefault(head, {})
+        else:
+            return [unknown(place, head, at if isinstance(at, dict) else ())]
+    if not isinstance(at, dict):
+        return [f"{path} cannot be set: {'.'.join(heads)} is not a table."]
+    at[last] = value
+    return []
+
+
+def _swap(table: dict[str, Any], swap: str) -> list[str]:
+    name, _, kind = swap.partition("=")
+    kind, _, source = kind.partition("@")
+    components = table.get("components", {})
+    if name not in components:
+        return [unknown(f"--swap {swap}: component {name}", name, components)]
+    if ":" not in kind and kind not in known_kinds():
+        return [unknown(f"--swap {swap}: kind {kind}", kind, known_kinds())]
+    if kind == "replay":
+        recording = source or f"runs/{table.get('name', '')}"
+        new = {"recording": str(Path(recording).resolve()), "component": name}
+    else:
+        new = table.get("stand_ins", {}).get(name, {}).get(kind, {})
+    components[name] = {"kind": kind, **new}
+    return []
+
+
+def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
+    sys.path[:0] = [p for p in (str(path.parent.resolve()), str(Path.cwd())) if p not in sys.path]
+    own = {key: value for key, value in table.items() if key not in TABLES}
+    file, mistakes = read(SceneFile, own, "scene")
+    mistakes = [_also_tables(mistake) for mistake in mistakes]
+    components = _components(table.get("components"), mistakes)
+    links = _links(table.get("links", []), components, mistakes)
+    expect = _expect(table.get("expect", []), components, path.parent, mistakes)
+    if file is not None:
+        components = _ordered(file, components, mistakes)
+        if file.window != "auto" and file.window > file.end:
+            mistakes.append(
+                f"scene.window must not exceed scene.end ({file.end:g} s); found {file.window:g} s."
+                " Shorten it."
+            )
+        if len(file.tls) not in (0, 3):
+            mistakes.append("scene.tls needs three files: authority, certificate, key.")
+    if mistakes or file is None:
+        raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
+    resolved = {key: value for key, value in table.items() if key != "presets"}
+    return Scene(file, path, preset, components, links, expect, resolved, file.transport)
+
+
+def _also_tables(mistake: str) -> str:
+    """Where a top-level name is unknown, the tables are known names too."""
+    head, known, _ = mistake.partition(" is not known.")
+    name = head.removeprefix("scene.")
+    if known and "." not in name:
+        return unknown(head, name, [*SceneFile.__dataclass_fields__, *TABLES])
+    return mistake
+
+
+def _components(table: Any, mistakes: list[str]) -> dict[str, ComponentPlan]:
+    if not isinstance(table, dict) or not table:
+        mistakes.append("components: a scene needs at least one. Add [components.NAME].")
+        return {}
+    found = {}
+    for name, given in table.items():
+        one = _component(name, dict(given) if isinstance(given, dict) else {}, mistakes)
+        if one:
+            found[name] = one
+    return found
+
+
+def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> ComponentPlan | None:
+    where = f"components.{name}"
+    kind, threads = given.pop("kind", None), given.pop("threads", 1)
+    if not isinstance(kind, str):
+        mistakes.append(f"{where}.kind is needed. Kinds here: {', '.join(sorted(known_kinds()))}.")
+        return None
+    if type(threads) is not int or threads < 1:
+        mistakes.append(f"{where}.threads must be a whole number from 1; found {threads!r}.")
+    manifest = _manifest(where, kind, mistakes)
+    if manifest is None:
+        return None
+    params, wrong = read(manifest.params, given, where)
+    if wrong:
+        mistakes += wrong
+        return None
+    try:
+        takes, gives = manifest.ports(params)
+    except QuintetError as error:
+        mistakes.append(f"{where}: {error}")
+        return None
+    return ComponentPlan(name, kind, manifest, given, params, takes, gives, threads)
+
+
+def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:
+    try:
+        return find(kind)
+    except KeyError:
+        mistakes.append(unknown(f"{where}.kind {kind}", kind, known_kinds()))
+    except (ImportError, AttributeError, ValueError, QuintetError) as error:
+        mistakes.append(f"{where}.kind {kind} cannot be imported: {error}. Name a module:Class.")
+    return None
+
+
+def _links(table: Any, components: dict[str, ComponentPlan], mistakes: list[str]) -> list[Link]:
+    ports = {name: (one.takes, one.gives) for name, one in components.items()}
+    found: list[Link] = []
+    for number, given in enumerate(table):
+        kind = given.get("kind", "")
+        if kind not in KINDS:
+            mistakes.append(unknown(f"links.{number}.kind {kind}", kind, KINDS))
+            continue
+        try:
+            found.append(KINDS[kind](number, given, ports))
+        except SceneError as error:
+            mistakes += error.mistakes
+    return found
+
+
+def _expect(
+    table: Any, components: dict[str, ComponentPlan], folder: Path, mistakes: list[str]
+) -> list[Expectation]:
+    found = []
+    for number, given in enumerate(table):
+        where = f"expect.{given.get('name', number)}"
+        one, wrong = read(Expectation, given, where)
+        mistakes += wrong
+        if one is None:
+            continue
+        found.append(one)
+        if one.component not in components:
+            mistakes.append(unknown(f"{where}: component {one.component}", one.component, components))
+            continue
+        gives = components[one.component].gives
+        known = [f"{port.name}.{field.name}" for port in gives for field in port.fields]
+        if one.field not in known:
+            mistakes.append(unknown(f"{where}: field {one.field}", one.field, known))
+        if one.csv and not (folder / one.csv).is_file():
+            mistakes.append(f"{where}: {one.csv} must lie beside the scene; it does not.")
+    return found
+
+
+def _ordered(
+    file: SceneFile, components: dict[str, ComponentPlan], mistakes: list[str]
+) -> dict[str, ComponentPlan]:
+    if not file.order:
+        return components
+    if sorted(file.order) != sorted(components):
+        mistakes.append(
+            f"scene.order must name every component once ({', '.join(components)}); found "
+            f"{', '.join(file.order)}."
+        )
+        return components
+    return {name: components[name] for name in file.order}

@@ -1,0 +1,165 @@
+"""What happened in a run, told from its results.json alone."""
+
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from quintet.interfaces.errors import SceneError
+
+NAME = "results.json"
+PLAIN_WIDTH = 160  # characters, where no terminal says how wide it is
+Row = list[Any]
+
+
+def results(folder: Path) -> dict[str, Any]:
+    """Read the results of a run; `folder` is the run's, or the file itself."""
+    path = Path(folder) / NAME if Path(folder).is_dir() else Path(folder)
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise SceneError(f"run {folder}: it has no {NAME}. Run a scene into it first.") from error
+    except (OSError, ValueError) as error:
+        raise SceneError(f"run {folder}: {path.name} must be JSON; {error}. Run again.") from error
+    if not isinstance(found, dict):
+        raise SceneError(
+            f"run {folder}: {path.name} must be one table; found a {type(found).__name__}."
+        )
+    return found
+
+
+def show(folder: Path, as_json: bool = False) -> None:
+    """Print what happened: status, expectations, ledger, timing and fault.
+
+    Parameters
+    ----------
+    folder : Path
+        Of a run.
+    as_json : bool
+        Print the results as they are, for a program.
+    """
+    found = results(folder)
+    if as_json:
+        print(json.dumps(found, indent=2))
+        return
+    terminal = sys.stdout.isatty()
+    console = Console(width=None if terminal else PLAIN_WIDTH, highlight=False, markup=False)
+    frame = box.SIMPLE_HEAD if terminal else None
+    console.print(_headline(found))
+    for table in (_expectations(found), _ledger(found), _timing(found)):
+        if table is not None:
+            table.box = frame
+            console.print(table)
+    for line in (_balance(found), _shares(found)):
+        if line:
+            console.print(line)
+    if fault := found.get("fault"):
+        console.print(_fault(fault))
+
+
+def _headline(found: Mapping[str, Any]) -> Text:
+    status = str(found.get("status", "unknown"))
+    text = Text(f"{found.get('scene', '?')}", style="bold")
+    if found.get("preset"):
+        text.append(f" ({found['preset']})", style="")
+    text.append(f": {status}", style="green" if status == "done" else "red")
+    text.append(f", {found.get('windows', 0)} windows to t = {_number(found.get('time'))} s")
+    text.append(f" over {found['transport']}" if found.get("transport") else "")
+    return text
+
+
+def _table(title: str, names: list[str], left: int, rows: list[Row]) -> Table | None:
+    """Lay out rows; the first `left` columns are text, the others numbers."""
+    if not rows:
+        return None
+    table = Table(title=title, title_justify="left", title_style="bold", pad_edge=False)
+    for place, name in enumerate(names):
+        table.add_column(name, justify="left" if place < left else "right", overflow="fold")
+    for row in rows:
+        table.add_row(*(cell if isinstance(cell, Text) else Text(str(cell)) for cell in row))
+    return table
+
+
+def _expectations(found: Mapping[str, Any]) -> Table | None:
+    rows = [
+        [
+            _met(one.get("met")),
+            one.get("name", "?"),
+            one.get("unit", ""),
+            _number(one.get("value")),
+            _number(one.get("reference")),
+            _number(one.get("within")),
+        ]
+        for one in found.get("expect") or []
+    ]
+    names = ["", "expectation", "unit", "value", "reference", "within"]
+    return _table("Expectations", names, 3, rows)
+
+
+def _met(met: Any) -> Text:
+    return Text("met", style="green") if met else Text("not met", style="red")
+
+
+def _ledger(found: Mapping[str, Any]) -> Table | None:
+    """One row for each link; a column for each residual that any of them has."""
+    links = (found.get("ledger") or {}).get("links") or []
+    keys = list(dict.fromkeys(key for link in links for key in link if key != "link"))
+    rows = [[link.get("link", "?"), *(_number(link.get(key)) for key in keys)] for link in links]
+    return _table("Ledger", ["link", *(key.replace("_", " ") for key in keys)], 1, rows)
+
+
+def _balance(found: Mapping[str, Any]) -> str:
+    ledger = found.get("ledger") or {}
+    others = [f"{k.replace('_', ' ')} {_number(v)}" for k, v in ledger.items() if k != "links"]
+    return "Balance: " + ", ".join(others) if others else ""
+
+
+def _timing(found: Mapping[str, Any]) -> Table | None:
+    components = (found.get("timing") or {}).get("components") or {}
+    rows = [
+        [
+            name,
+            _number(one.get("compute")),
+            _number(one.get("wait")),
+            one.get("steps", "-"),
+            one.get("items", "-"),
+            _number(_rate(one)),
+        ]
+        for name, one in components.items()
+    ]
+    names = ["component", "compute [s]", "wait [s]", "steps", "items", "particle-steps/s"]
+    return _table("Timing", names, 1, rows)
+
+
+def _rate(one: Mapping[str, Any]) -> float | None:
+    """Items stepped per second of computing."""
+    compute = one.get("compute")
+    return one.get("steps", 0) * one.get("items", 0) / compute if compute else None
+
+
+def _shares(found: Mapping[str, Any]) -> str:
+    timing = {k: v for k, v in (found.get("timing") or {}).items() if k != "components"}
+    return "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in timing.items()) if timing else ""
+
+
+def _fault(fault: Mapping[str, Any]) -> Text:
+    text = Text("Fault", style="bold red")
+    for key, value in fault.items():
+        if key == "log":
+            lines = value if isinstance(value, list) else str(value).splitlines()
+            text.append("\n  log:" + "".join(f"\n    {line}" for line in lines), style="")
+        else:
+            text.append(f"\n  {key}: {value}", style="")
+    return text
+
+
+def _number(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.4g}" if isinstance(value, (int, float)) else str(value)
