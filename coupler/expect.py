@@ -180,7 +180,7 @@ def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
 def _curve(where: str, rows: list[tuple[int, list[str]]]) -> Curve:
     if len(rows) < 2:
         raise SceneError(f"{where} must have two lines of numbers or more; found {len(rows)}.")
-    numbers = []
+    numbers: list[tuple[float, float]] = []
     for line, texts in rows:
         found = _numbers(texts)
         if found is None:
@@ -277,15 +277,17 @@ def evaluate(expectation: Expectation, recording: Recording, folder: Path) -> Ou
 
 
 def _value(expectation: Expectation, recording: Recording, folder: Path) -> float:
+    if len(recording.times(expectation.component)) < 2:  # no window was finished
+        return math.nan
     computed = curve(expectation, recording)
-    last = float(recording.times(expectation.component)[-1:].sum())  # s; 0 without a row
+    last = float(recording.times(expectation.component)[-1])  # s
     wanted, target = expectation.end, reference_curve(expectation, folder)
     if expectation.measure == "at":
         wanted = expectation.begin
     elif wanted is None and target is not None and expectation.measure != "crossing":
         wanted = float(target.times[-1])
     end = last if wanted is None else wanted
-    if not len(computed.times) or max(end, expectation.begin) > last * (1.0 + ROUNDING):
+    if max(end, expectation.begin) > last * (1.0 + ROUNDING):
         return math.nan
     if expectation.measure != "rms":
         return _measured(expectation, computed, end)

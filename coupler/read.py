@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.exchange import Link
-from quintet.coupler.expect import Expectation
+from quintet.coupler.expect import Expectation, check
 from quintet.coupler.links import KINDS
 from quintet.coupler.scene import ComponentPlan, Scene, SceneFile
 from quintet.interfaces.errors import QuintetError, SceneError
@@ -235,22 +235,13 @@ def _expect(
     table: Any, components: dict[str, ComponentPlan], folder: Path, mistakes: list[str]
 ) -> list[Expectation]:
     found = []
+    gives = {name: one.gives for name, one in components.items()}
     for number, given in enumerate(table):
-        where = f"expect.{given.get('name', number)}"
-        one, wrong = read(Expectation, given, where)
+        one, wrong = read(Expectation, given, f"expect.{given.get('name', number)}")
         mistakes += wrong
-        if one is None:
-            continue
-        found.append(one)
-        if one.component not in components:
-            mistakes.append(unknown(f"{where}: component {one.component}", one.component, components))
-            continue
-        gives = components[one.component].gives
-        known = [f"{port.name}.{field.name}" for port in gives for field in port.fields]
-        if one.field not in known:
-            mistakes.append(unknown(f"{where}: field {one.field}", one.field, known))
-        if one.csv and not (folder / one.csv).is_file():
-            mistakes.append(f"{where}: {one.csv} must lie beside the scene; it does not.")
+        if one is not None:
+            mistakes += check(one, gives, folder)
+            found.append(one)
     return found
 
 

@@ -22,8 +22,8 @@ NAME = "recording.h5"
 BATCH = 64  # rows written at once, at most; a power of two
 BATCH_BYTES = 8 << 20  # of all fields of a component together
 CHUNK_BYTES = 1 << 20
-# Measured on noisy doubles: 250 MB/s, against 70 MB/s of gzip 1 and 1.2 GB/s of none; forces
-# that are mostly zero shrink to 0.4, and what does not move to almost nothing.
+# Measured on noisy doubles: 200 MB/s and 0.97 of the size, against 60 MB/s and 0.89 of gzip 1,
+# and 1.3 GB/s unpacked. Forces of which four in five are zero shrink to 0.43.
 PACKED = {"shuffle": True, "compression": "lzf"}
 
 
@@ -264,7 +264,8 @@ class Recording:
 
 def _port(one: dict[str, Any]) -> Port:
     # By name, so that a port may gain other settings; what is a list is a list of fields.
-    return Port(**{key: _fields(v) if isinstance(v, list) else v for key, v in one.items()})
+    settings: dict[str, Any] = {k: _fields(v) if isinstance(v, list) else v for k, v in one.items()}
+    return Port(**settings)
 
 
 def _fields(listed: Iterable[dict[str, Any]]) -> tuple[Field, ...]:

@@ -1,5 +1,10 @@
 """The ports that solvers of several kinds share, so that any of them fits any link."""
 
+import json
+from collections.abc import Iterable
+from dataclasses import asdict
+from typing import Any
+
 from quintet.interfaces.component import Field, Port
 
 POSITION = Field("position", (3,), "m", rate="velocity")
@@ -55,3 +60,20 @@ GLUED_LOAD = Port(
     fields=(FORCE,),
     static=(Field("position", (3,), "m"), Field("mass", (), "kg")),
 )
+
+
+def to_json(ports: Iterable[Port]) -> str:
+    """Write ports as text, for a recording."""
+    return json.dumps([asdict(port) for port in ports])
+
+
+def from_json(text: str) -> tuple[Port, ...]:
+    """Read ports that were written as text; what is a list is a list of fields."""
+    tables = json.loads(text)
+    return tuple(Port(**{k: _fields(v) for k, v in table.items()}) for table in tables)
+
+
+def _fields(value: Any) -> Any:
+    if not isinstance(value, list):
+        return value
+    return tuple(Field(**{**one, "shape": tuple(one["shape"])}) for one in value)

@@ -1,0 +1,37 @@
+"""Stand-ins: what takes a solver's place in a run.
+
+``replay`` gives again what a recorded component gave; ``prescribed`` moves rigid bodies on a
+given path whatever pushes them; ``echo`` sends back what it was sent, to measure the exchange.
+"""
+
+from quintet.components.stand_ins.params import (
+    EchoParams,
+    PrescribedParams,
+    ReplayParams,
+    recorded_ports,
+)
+from quintet.components.stand_ins.params import echo_ports as _echo_ports
+from quintet.interfaces.manifest import Manifest
+from quintet.interfaces.ports import LOAD, MOTION
+
+REPLAY = Manifest(
+    kind="replay",
+    title="a recorded component, again",
+    params=ReplayParams,
+    component="quintet.components.stand_ins.replay:Replay",
+    ports=recorded_ports,
+)
+PRESCRIBED = Manifest(
+    kind="prescribed",
+    title="rigid bodies on given paths",
+    params=PrescribedParams,
+    component="quintet.components.stand_ins.prescribed:Prescribed",
+    ports=lambda params: ((LOAD,), (MOTION,)),
+)
+ECHO = Manifest(
+    kind="echo",
+    title="gives back what it takes",
+    params=EchoParams,
+    component="quintet.components.stand_ins.echo:Echo",
+    ports=_echo_ports,
+)

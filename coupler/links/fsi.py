@@ -29,10 +29,14 @@ def join(name: str, between: tuple[str, str], ports: Mapping[str, Ports]) -> "Ri
         rigid = MOTION.name in gives
         motion, load = (MOTION, LOAD) if rigid else (FACES, NODE_LOAD)
         lacks = requires(ports[fluid], fluid, SURFACE, SURFACE_LOAD)
-        lacks += requires(ports[body], body, load, motion)
+        # What is moved by a path or a recording takes no load, and is sent none.
+        loaded = load.name in {port.name for port in ports[body][0]}
+        lacks += requires(ports[body], body, load if loaded else None, motion)
         if lacks:
             raise SceneError(f"link {name}: {'; '.join(lacks)}. Correct the ports.")
-        return (RigidFsi if rigid else FaceFsi)(name, fluid, body)
+        found = (RigidFsi if rigid else FaceFsi)(name, fluid, body)
+        found.legs = found.legs if loaded else found.legs[:1]
+        return found
     raise SceneError(
         f"link {name}: fsi needs a component that takes surface and gives surface_load, and one "
         f"that gives motion and takes load, or gives faces and takes node_load; {first} takes "

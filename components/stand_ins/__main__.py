@@ -1,0 +1,5 @@
+"""``python -m quintet.components.stand_ins KIND ...`` runs one of them as a process."""
+
+from quintet.interfaces.process import main
+
+main()

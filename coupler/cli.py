@@ -1,0 +1,174 @@
+"""The command line."""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from quintet.interfaces.errors import QuintetError, SceneError
+
+BAD = 2  # exit status of bad input: nothing was started
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run one command and exit with its status."""
+    given = parser().parse_args(arguments)
+    try:
+        status = given.does(given)
+    except SceneError as error:
+        print("\n".join(f"quintet: {mistake}" for mistake in error.mistakes), file=sys.stderr)
+        status = BAD
+    except QuintetError as error:
+        print(f"quintet: {error}", file=sys.stderr)
+        status = BAD
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 0
+    sys.exit(status)
+
+
+def parser() -> argparse.ArgumentParser:
+    """All commands and their options."""
+    top = argparse.ArgumentParser(
+        prog="quintet", description="Independent solvers, one interface, one coupler."
+    )
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name: str, does: object, text: str) -> argparse.ArgumentParser:
+        one = commands.add_parser(name, help=text, description=text)
+        one.set_defaults(does=does)
+        return one
+
+    one = command("list", list_scenes, "scenes: name, title, components, presets, run times")
+    one.add_argument("--json", action="store_true", help="for programs")
+    one = command("check", check, "read a scene, print its plan; start no solver")
+    _scene(one)
+    one = command("run", run, "run a scene, compare it with what it must reproduce")
+    _scene(one)
+    one.add_argument("--out", type=Path, help="folder of the run (default: runs/SCENE)")
+    one.add_argument("--elsewhere", action="append", default=[], metavar="NAME", help=ELSEWHERE)
+    one.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
+    one = command("join", join, "start one component here and join it to a coupler elsewhere")
+    _scene(one)
+    one.add_argument("name", help="of the component in the scene")
+    one.add_argument("--at", required=True, metavar="ENDPOINT", help="of the coupler")
+    one = command("show", show, "what happened in a run")
+    one.add_argument("folder", type=Path)
+    one.add_argument("--json", action="store_true", help="for programs")
+    one = command("diff", diff, "first difference between two runs; 0 if there is none")
+    one.add_argument("folders", nargs=2, type=Path, metavar="DIR")
+    one = command("bench", bench, "throughput of one component, or of the exchange")
+    one.add_argument("name", help="exchange, or a kind of component")
+    one.add_argument("--threads", type=int, default=1)
+    one.add_argument("--json", type=Path, metavar="FILE")
+    one.add_argument("--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given")
+    one.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
+    return top
+
+
+ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
+
+
+def _scene(one: argparse.ArgumentParser) -> None:
+    one.add_argument("scene", help="a name from quintet list, or a TOML file")
+    one.add_argument("--preset", default="", help="a preset of the scene")
+    one.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", dest="settings")
+    one.add_argument("--swap", action="append", default=[], metavar="NAME=KIND", help=SWAP)
+    one.add_argument("--transport", choices=["memory", "zenoh", "mpi"], default="")
+
+
+SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME=module:Class"
+
+
+def _load(given: argparse.Namespace) -> "Scene":
+    from quintet.coupler.read import load
+
+    return load(given.scene, given.preset, given.settings, given.swap, given.transport)
+
+
+def list_scenes(given: argparse.Namespace) -> int:
+    """List the scenes that come with quintet."""
+    from quintet.coupler.plan import list_all
+
+    list_all(given.json)
+    return 0
+
+
+def check(given: argparse.Namespace) -> int:
+    """Print the plan of a scene."""
+    from quintet.coupler.plan import show_plan
+
+    show_plan(_load(given))
+    return 0
+
+
+def run(given: argparse.Namespace) -> int:
+    """Run a scene."""
+    scene = _load(given)
+    scene.elsewhere = set(given.elsewhere)
+    unknown = scene.elsewhere - set(scene.components)
+    if unknown or (scene.elsewhere and scene.transport != "zenoh"):
+        raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
+    folder = (given.out or Path("runs") / scene.file.name).resolve()
+    if scene.transport == "mpi" and not given.inside_mpi:
+        from quintet.coupler.mpirun import run_under_mpi
+
+        return run_under_mpi(sys.argv[1:], scene, folder)
+    threads = max(one.threads for one in scene.components.values())
+    os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
+    from quintet.coupler.show import show as tell
+    from quintet.coupler.simulate import simulate
+
+    status = simulate(scene, folder)
+    tell(folder)
+    print(f"left in {os.path.relpath(folder)}", flush=True)
+    if given.inside_mpi:
+        from quintet.coupler.mpirun import leave
+
+        leave(folder, status)
+    return status
+
+
+def join(given: argparse.Namespace) -> int:
+    """Start one component of a scene, joined to a coupler elsewhere."""
+    from quintet.interfaces.params import unknown
+    from quintet.interfaces.process import main as component
+
+    scene = _load(given)
+    if given.name not in scene.components:
+        raise SceneError(unknown(f"component {given.name}", given.name, scene.components))
+    one = scene.components[given.name]
+    arguments = ["--name", given.name, "--at", given.at]
+    if scene.tls:
+        arguments += ["--tls", *scene.tls]
+    component(one.manifest, arguments)
+    return 0
+
+
+def show(given: argparse.Namespace) -> int:
+    """Print what happened."""
+    from quintet.coupler.show import show as tell
+
+    tell(given.folder, given.json)
+    return 0
+
+
+def diff(given: argparse.Namespace) -> int:
+    """Compare two runs bit by bit."""
+    from quintet.coupler.diff import compare, sentence
+
+    found = compare(*given.folders)
+    print(sentence(found))
+    return 0 if found is None else 1
+
+
+def bench(given: argparse.Namespace) -> int:
+    """Measure throughput."""
+    from quintet.coupler.bench import run_bench
+
+    return run_bench(given)
+
+
+if __name__ == "__main__":
+    main()

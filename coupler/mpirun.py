@@ -1,0 +1,137 @@
+"""Running under MPI: one mpiexec for the coupler and all components, and its end.
+
+MPI ends badly by itself: a launcher that kills every rank leaves nobody to report, one that
+does not leaves ranks that wait for ever. So the launcher is told to do nothing, the coupler
+watches and reports, and the process that started the launcher cleans up after both.
+"""
+
+import contextlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import FrameType
+
+from quintet.coupler.launch import environment, running
+from quintet.coupler.scene import Scene
+from quintet.interfaces.errors import SceneError
+
+NAME = "mpi.json"  # in the log folder: processes, and the status that the coupler ended with
+LEAVING = 3.0  # s for all ranks to leave after the coupler has its results
+
+
+def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
+    """The MPMD command line: rank 0 couples, the others are components in the scene's order."""
+    launcher = shutil.which("mpiexec", path=_search_path())
+    if launcher is None:
+        raise SceneError(
+            "transport mpi needs an mpiexec; there is none on PATH. Install an MPI library, or "
+            "the extra: pip install 'quintet[mpi]'."
+        )
+    python = [sys.executable, "-m", "mpi4py"]
+    line = [launcher, *_options(launcher), "-n", "1", *python, "-m", "quintet.coupler.cli"]
+    line += [*arguments, "--inside-mpi"]
+    for name, one in scene.components.items():
+        log = str(folder / "log" / f"{name}.log")
+        line += [":", "-n", "1", *python, "-m", "quintet.interfaces.process", one.kind]
+        line += ["--name", name, "--mpi", "--log", log]
+    return line
+
+
+def _search_path() -> str:
+    """Where to look for mpiexec: that of our own environment belongs to our library."""
+    return os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+
+
+def _options(launcher: str) -> list[str]:
+    text = subprocess.run([launcher, "--version"], capture_output=True, text=True).stdout
+    if "HYDRA" in text:
+        return ["-disable-auto-cleanup"]
+    return ["--map-by", ":OVERSUBSCRIBE"] if "Open MPI" in text else []
+
+
+def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
+    """Start the ranks, wait for the coupler among them, clean up; return the exit status."""
+    note = folder / "log" / NAME
+    note.parent.mkdir(parents=True, exist_ok=True)
+    note.unlink(missing_ok=True)
+    threads = max(one.threads for one in scene.components.values())
+    line = command(arguments, scene, folder)
+    env = {**environment(threads, scene.import_folders), "QUINTET_LOCAL": "1"}
+    process = subprocess.Popen(line, start_new_session=True, env=env)
+    asked = _forward_signals(note, process)
+    while process.poll() is None and "status" not in _read(note):
+        time.sleep(0.02)
+    limit = time.monotonic() + LEAVING
+    while process.poll() is None and time.monotonic() < limit:
+        time.sleep(0.02)
+    found = _read(note)
+    _clean(process, found)
+    if "status" in found:
+        return int(found["status"])
+    return 130 if asked else 3
+
+
+def _forward_signals(note: Path, process: "subprocess.Popen[bytes]") -> list[int]:
+    """Pass Ctrl-C and SIGTERM on to the coupler alone, which ends the others in order."""
+    asked: list[int] = []
+
+    def forward(number: int, _: FrameType | None) -> None:
+        asked.append(number)
+        pid = _read(note).get("coupler", 0)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
+
+    for one in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(one, forward)
+    return asked
+
+
+def _read(note: Path) -> dict[str, object]:
+    try:
+        return dict(json.loads(note.read_text()))
+    except (OSError, ValueError):
+        return {}
+
+
+def announce(folder: Path, pids: list[int], shared: list[str]) -> None:
+    """Note which processes and shared files the run has, for who cleans up after it."""
+    _write(folder, {"coupler": os.getpid(), "pids": pids, "shared": shared})
+
+
+def leave(folder: Path, status: int) -> None:
+    """End the coupler's rank: in order when all is well, else the whole job at once."""
+    found = _read(folder / "log" / NAME)
+    _write(folder, {**found, "status": status})
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if status not in (0, 1, 130):
+        from quintet.interfaces.mpi import abort
+
+        abort(status)
+
+
+def _write(folder: Path, content: dict[str, object]) -> None:
+    path = folder / "log" / NAME
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(content))
+    part.replace(path)
+
+
+def _clean(process: "subprocess.Popen[bytes]", found: dict[str, object]) -> None:
+    """End what still runs and remove what killed ranks left in shared memory."""
+    pids = [*found.get("pids", []), found.get("coupler", 0)]  # type: ignore[misc]
+    for pid in pids:
+        if pid and running(pid):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    for path in found.get("shared", []):  # type: ignore[attr-defined]
+        with contextlib.suppress(OSError):
+            os.unlink(path)

@@ -1,0 +1,115 @@
+"""One run from a checked scene to its results, whatever happens on the way."""
+
+import shlex
+import sys
+import traceback
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler import results
+from quintet.coupler.connect import Connection, connect
+from quintet.coupler.exchange import Exchange
+from quintet.coupler.launch import tail
+from quintet.coupler.ledger import Ledger
+from quintet.coupler.part import ComponentFailed, Part
+from quintet.coupler.run import Progress, run
+from quintet.coupler.scene import Scene
+from quintet.coupler.schedule import Coupling
+from quintet.coupler.toml import dumps
+from quintet.coupler.witness import Stop, Writer
+from quintet.interfaces.errors import LinkError, QuintetError, StepError
+
+OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png", "comparison.png")
+
+
+def simulate(scene: Scene, folder: Path) -> int:
+    """Run a scene into a folder; return the exit status."""
+    make_folder(scene, folder)
+    clock, stop = results.Clock(), Stop()
+    exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
+    ledger = Ledger(exchange, folder / "ledger.csv")
+    writer = Writer(scene, folder, stop, folder.name)
+    outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
+    connection: Connection | None = None
+    parts: dict[str, Part] = {}
+    try:
+        with stop.listening():
+            connection = connect(scene, folder, stop)
+            parts = connection.parts
+            coupling = Coupling(parts, exchange, ledger, 0.0, scene.iteration())
+            progress = run(scene, parts, coupling, writer)
+            writer.close()
+            outcome |= progress_of(progress)
+            connection.close(True)
+            connection = None
+    except (ComponentFailed, LinkError, StepError) as error:
+        outcome |= failed(error, scene, folder, writer)
+    except KeyboardInterrupt:
+        outcome["status"] = "interrupted"
+    finally:
+        if connection:
+            connection.close(False)
+        writer.close()
+        ledger.close()
+    if stop.asked:
+        outcome["status"] = "interrupted"
+    return conclude(scene, folder, outcome, ledger, parts, clock())
+
+
+def make_folder(scene: Scene, folder: Path) -> None:
+    """Make an empty place for a run; only what an earlier run left there is removed."""
+    (folder / "log").mkdir(parents=True, exist_ok=True)
+    for path in [*(folder / name for name in OURS), *folder.glob("*.vtkhdf"), *folder.glob("log/*")]:
+        path.unlink(missing_ok=True)
+    (folder / "scene.toml").write_text(dumps(scene.resolved))
+
+
+def progress_of(progress: Progress) -> dict[str, Any]:
+    """Whether a run came to its end."""
+    status = "done" if progress.done == progress.windows else "interrupted"
+    return {"status": status, "windows": progress.done, "time": progress.time}
+
+
+def failed(error: QuintetError, scene: Scene, folder: Path, writer: Writer) -> dict[str, Any]:
+    """Report a failure: who, in which window, why, and the last lines of its log."""
+    if not isinstance(error, ComponentFailed):
+        error = ComponentFailed("coupler", writer.done, str(error), traceback.format_exc())
+    lines = tail(folder / "log" / f"{error.component}.log")
+    found = results.fault(error, folder, lines)
+    print(f"\nquintet: {error}", file=sys.stderr)
+    if error.trace:
+        print(error.trace, file=sys.stderr)
+    if lines:
+        print(f"  last lines of {found['log']}:", file=sys.stderr)
+        print("\n".join(f"    {line}" for line in lines), file=sys.stderr, flush=True)
+    return {"status": "failed", "fault": found, "windows": writer.done, "time": writer.time}
+
+
+def conclude(
+    scene: Scene,
+    folder: Path,
+    outcome: dict[str, Any],
+    ledger: Ledger,
+    parts: dict[str, Part],
+    wall: float,
+) -> int:
+    """Compare with what was expected, write the results, draw, and choose the exit status."""
+    found = results.outcomes(scene, folder) if outcome["status"] != "failed" else []
+    content = {
+        "scene": scene.file.name,
+        "preset": scene.preset,
+        "transport": scene.transport,
+        **outcome,
+        "expect": results.expectations(found),
+        "ledger": ledger.summary(),
+        "timing": results.timing(parts, wall),
+        "machine": results.machine(),
+        "command": shlex.join(["quintet", *sys.argv[1:]]),
+    }
+    results.write(folder, content)
+    if outcome["status"] == "failed":
+        return results.FAILED
+    results.draw(scene, folder, found)
+    if outcome["status"] == "interrupted":
+        return results.INTERRUPTED
+    return results.DONE if all(one.met for one in found) else results.UNMET

@@ -1,0 +1,168 @@
+"""What a run writes while it goes, and how it tells of its progress."""
+
+import contextlib
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from quintet.coupler.schedule import Coupling
+from quintet.coupler.scene import Scene
+from quintet.interfaces.component import Fields
+
+if TYPE_CHECKING:
+    from quintet.coupler.record import Recorder
+    from quintet.coupler.vtkhdf import VtkHdf
+
+EVERY = 5.0  # s between two lines of progress where there is no terminal
+
+
+class Stop:
+    """Whether the user, or the batch system, asked for an end."""
+
+    asked = False
+
+    def __call__(self) -> bool:
+        """Tell whether an end was asked for."""
+        return self.asked
+
+    @contextlib.contextmanager
+    def listening(self) -> Iterator[None]:
+        """Turn Ctrl-C and SIGTERM into a wish, to be granted between windows; twice is an order."""
+
+        def ask(number: int, _: FrameType | None) -> None:
+            if self.asked:
+                raise KeyboardInterrupt
+            self.asked = True
+            print(f"\n{signal.Signals(number).name}: ending after this window", file=sys.stderr)
+
+        old = {one: signal.signal(one, ask) for one in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for one, handler in old.items():
+                signal.signal(one, handler)
+
+
+class Meter:
+    """Progress with speed, time left and the ledger's residual: a bar, or a line now and then."""
+
+    def __init__(self, windows: int, end: float) -> None:
+        self.windows, self.end = windows, end
+        self._began = self._told = time.monotonic()
+        self._bar = self._make_bar() if sys.stdout.isatty() else None
+        if self._bar:
+            self._bar.start()
+            self._task = self._bar.add_task("", total=windows, speed="", residual="")
+
+    def _make_bar(self) -> Progress:
+        columns = (
+            TextColumn("{task.completed}/{task.total}"),
+            BarColumn(),
+            TextColumn("{task.fields[speed]}"),
+            TimeRemainingColumn(),
+            TextColumn("{task.fields[residual]}"),
+        )
+        return Progress(*columns, refresh_per_second=4)
+
+    def show(self, window: int, residual: float) -> None:
+        """Tell how far it is."""
+        now = time.monotonic()
+        speed = window / max(now - self._began, 1e-9)
+        if self._bar:
+            texts = {"speed": f"{speed:.3g} windows/s", "residual": f"momentum {residual:.0e}"}
+            self._bar.update(self._task, completed=window, **texts)  # type: ignore[arg-type]
+        elif now - self._told >= EVERY or window in (1, self.windows):
+            self._told = now
+            left = (self.windows - window) / speed
+            print(
+                f"window {window}/{self.windows}, t = {window * self.end / self.windows:.4g} s, "
+                f"{speed:.3g} windows/s, {left:.0f} s left, momentum residual {residual:.0e}",
+                flush=True,
+            )
+
+    def close(self) -> None:
+        """Leave the terminal as it was."""
+        if self._bar:
+            self._bar.stop()
+
+
+class Writer:
+    """Writes recording, views and ledger of a run, and moves the meter."""
+
+    def __init__(self, scene: Scene, folder: Path, stop: Stop, run: str) -> None:
+        self.scene, self.folder, self.stop, self.run = scene, folder, stop, run
+        self.done, self.time = 0, 0.0  # windows, s
+        self._every = 0  # windows between two views
+        self._recorder: Recorder | None = None
+        self._meter: Meter | None = None
+        self._files: dict[str, VtkHdf] = {}
+
+    def begin(self, coupling: Coupling, described: dict[str, Fields], windows: int) -> None:
+        """See `Witness.begin`."""
+        interval, scene = self.scene.file.output.interval, self.scene
+        self._every = max(1, round(interval / coupling.dt)) if interval else 0
+        if scene.file.output.record:
+            from quintet.coupler.record import Recorder
+
+            text = (self.folder / "scene.toml").read_text()
+            self._recorder = Recorder(self.folder / "recording.h5", self.run, text)
+            for name, one in scene.components.items():
+                self._recorder.component(name, one.gives, described[name])
+        self._record(coupling, 0.0)
+        self._note(coupling, 0.0)
+        self._meter = Meter(windows, scene.file.end)
+
+    def due(self, window: int) -> bool:
+        """See `Witness.due`."""
+        return bool(self._every) and (window + 1) % self._every == 0
+
+    def end_window(self, coupling: Coupling, window: int) -> None:
+        """See `Witness.end_window`."""
+        self.done, self.time = window, window * coupling.dt
+        self._record(coupling, self.time)
+        if self._every and window % self._every == 0:
+            self._note(coupling, self.time)
+        if self._meter:
+            self._meter.show(window, coupling.ledger.worst)
+
+    def wants_end(self) -> bool:
+        """See `Witness.wants_end`."""
+        return self.stop()
+
+    def _record(self, coupling: Coupling, time: float) -> None:
+        if self._recorder:
+            for name, fields in coupling.outputs.items():
+                self._recorder.add(name, time, fields)
+
+    def _note(self, coupling: Coupling, time: float) -> None:
+        """Ask every component for its totals and its picture."""
+        totals = {}
+        for name, part in coupling.parts.items():
+            answer = part.ask("view")
+            totals[name] = answer.header["totals"]
+            if self._every and "points" in answer.fields:
+                self._file(name).append(time, answer.fields)
+        coupling.ledger.note(time, totals)
+
+    def _file(self, name: str) -> "VtkHdf":
+        from quintet.coupler.vtkhdf import VtkHdf
+
+        found = self._files.get(name)
+        if found is None:
+            found = self._files[name] = VtkHdf(self.folder / f"{name}.vtkhdf")
+        return found
+
+    def close(self) -> None:
+        """Finish all files: what was computed is kept, however the run ended."""
+        if self._meter:
+            self._meter.close()
+        if self._recorder:
+            self._recorder.close()
+        for file in self._files.values():
+            file.close()

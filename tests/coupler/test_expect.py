@@ -1,0 +1,189 @@
+"""An expectation measures what it says, and a mistake in it is a sentence."""
+
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+
+from quintet.coupler.expect import Expectation, check, curve, evaluate, reference_curve
+from quintet.coupler.record import Recorder, Recording
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import read
+from quintet.interfaces.ports import LOAD, MOTION
+
+END, WINDOWS = 2.0, 200
+
+
+@pytest.fixture
+def recording(tmp_path):
+    """One body: x = 1 + t, z = sin t, and an impulse of (3, 0, 4) N s per second."""
+    with Recorder(tmp_path / "recording.h5", "", "") as recorder:
+        recorder.component("cubes", (MOTION, LOAD), {})
+        for k in range(WINDOWS + 1):
+            t = k * END / WINDOWS
+            row = {"motion.position": np.array([[0.0, 0.0, 0.0], [1.0 + t, 0.0, np.sin(t)]])}
+            row["load.force"] = np.full((2, 1), min(k, 1) * END / WINDOWS) * [[3.0, 0.0, 4.0]]
+            recorder.add("cubes", t, row)
+    with Recording(tmp_path / "recording.h5") as found:
+        yield found
+
+
+def _expectation(**settings):
+    base = {
+        "name": "top.x", "component": "cubes", "field": "motion.position", "item": 1, "axis": 0,
+        "within": 1e-9, "unit": "m", "source": "by hand",
+    }  # fmt: skip
+    return Expectation(**(base | settings))
+
+
+def _write(folder, text):
+    (folder / "ref.csv").write_text(text)
+
+
+@pytest.mark.parametrize(
+    ("settings", "value"),
+    [
+        ({"measure": "at", "begin": 0.505}, 1.505),
+        ({"measure": "max", "begin": 0.25, "end": 0.755}, 1.755),
+        ({"measure": "min", "begin": 0.255, "end": 0.75}, 1.255),
+        ({"measure": "mean", "begin": 0.255, "end": 0.755}, 1.505),
+        ({"measure": "mean"}, 2.0),
+        ({"measure": "crossing", "level": 1.503, "unit": "s"}, 0.503),
+        ({"measure": "at", "begin": 1.0, "offset": -3.0, "scale": 2.0}, -2.0),
+    ],
+)
+def test_each_measure_of_a_straight_line_is_exact(tmp_path, recording, settings, value):
+    outcome = evaluate(_expectation(value=value, **settings), recording, tmp_path)
+    assert outcome.met and outcome.value == pytest.approx(value, abs=1e-12)
+    off = evaluate(_expectation(value=value + 1e-3, **settings), recording, tmp_path)
+    assert not off.met and off.reference == value + 1e-3
+
+
+def test_rms_is_taken_over_the_times_of_the_reference(tmp_path, recording):
+    _write(tmp_path, "# a source\nt_s,x_m\n0.1,1.1\n0.5,1.8\n0.9,1.5  # off\n1.7,9\n")
+    one = _expectation(measure="rms", csv="ref.csv", end=1.0, within=0.5)
+    outcome = evaluate(one, recording, tmp_path)
+    assert outcome.value == pytest.approx(np.sqrt((0.3**2 + 0.4**2) / 3))
+    assert outcome.met and outcome.reference == 0.0
+
+
+def test_a_reference_curve_is_measured_as_the_computed_one(tmp_path, recording):
+    _write(tmp_path, "t,x\n0,1\n4,3\n")
+    crossing = _expectation(
+        measure="crossing", level=1.5, csv="ref.csv", within=0.5, end=1.8, unit="s"
+    )
+    outcome = evaluate(crossing, recording, tmp_path)
+    assert (outcome.value, outcome.reference) == (pytest.approx(0.5), pytest.approx(1.0))
+    assert outcome.met
+    top = evaluate(_expectation(measure="max", csv="ref.csv", end=2.0), recording, tmp_path)
+    assert (top.value, top.reference, top.met) == (pytest.approx(3.0), 2.0, False)
+
+
+def test_a_vector_without_axis_is_its_magnitude_and_an_impulse_its_mean_rate(tmp_path, recording):
+    one = _expectation(field="load.force", axis=None, measure="mean", value=5.0, unit="N")
+    assert evaluate(one, recording, tmp_path).met
+    found = curve(one, recording)
+    assert len(found.times) == WINDOWS and found.times[0] == pytest.approx(END / WINDOWS / 2)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"measure": "at", "begin": 2.1, "value": 3.1},
+        {"measure": "max", "end": 2.1, "value": 3.0},
+        {"measure": "rms", "csv": "ref.csv"},
+        {"measure": "crossing", "level": 1.5, "value": 0.5, "end": 3.0},
+        {"measure": "crossing", "level": 7.0, "value": 0.5},
+    ],
+)
+def test_a_run_that_ends_too_early_has_no_value_and_does_not_meet(tmp_path, recording, settings):
+    _write(tmp_path, "t,x\n0,1\n2.5,3.5\n")
+    outcome = evaluate(_expectation(**settings), recording, tmp_path)
+    assert asdict(outcome)["value"] is None and not outcome.met
+
+
+@pytest.mark.parametrize("rows", [0, 1])
+def test_a_run_that_finished_no_window_meets_nothing(tmp_path, rows):
+    with Recorder(tmp_path / "recording.h5", "", "") as recorder:
+        recorder.component("cubes", (MOTION,), {})
+        for _ in range(rows):
+            recorder.add("cubes", 0.0, {"motion.position": np.zeros((2, 3))})
+    with Recording(tmp_path) as found:
+        outcome = evaluate(_expectation(measure="max", value=0.0), found, tmp_path)
+    assert outcome.value is None and not outcome.met
+
+
+def test_a_last_window_that_is_rounded_still_reaches_the_end(tmp_path, recording):
+    one = _expectation(measure="max", end=2.0 * (1 + 1e-12), value=3.0)
+    assert evaluate(one, recording, tmp_path).met
+
+
+@pytest.mark.parametrize(
+    ("settings", "word"),
+    [
+        ({"measure": "rms", "value": 1.0}, "rms needs a reference curve; give csv"),
+        ({"measure": "at"}, "give either value or csv"),
+        ({"measure": "max", "value": 1.0, "csv": "a.csv"}, "give either value or csv"),
+        ({"measure": "crossing", "value": 1.0}, "a crossing needs one"),
+        ({"measure": "max", "value": 1.0, "level": 2.0}, "level belongs to a crossing"),
+        ({"measure": "max", "value": 1.0, "begin": 2.0, "end": 1.0}, "end must be later"),
+        ({"measure": "at", "value": 1.0, "end": 1.0}, "one time has no end"),
+        ({"measure": "max", "value": 1.0, "field": "position"}, "must be port.field"),
+        ({"measure": "max", "value": 1.0, "scale": 0.0}, "scale must not be 0"),
+        ({"measure": "max", "value": 1.0, "widthin": 1.0}, "Did you mean within?"),
+        ({"measure": "median", "value": 1.0}, "measure should be 'rms'"),
+        ({"measure": "max", "value": 1.0, "item": -1}, "item should be greater"),
+        ({"measure": "max", "value": "high"}, "value should be a valid number"),
+    ],
+)
+def test_a_wrong_expectation_is_refused_with_a_sentence(settings, word):
+    given = {
+        "name": "top.x", "component": "cubes", "field": "motion.position", "within": 0.1,
+        "unit": "m", "source": "by hand",
+    }  # fmt: skip
+    found, mistakes = read(Expectation, given | settings, "expect[0]")
+    assert found is None
+    assert any(word in mistake for mistake in mistakes), mistakes
+
+
+@pytest.mark.parametrize(
+    ("settings", "word"),
+    [
+        ({"component": "cube"}, "Did you mean cubes?"),
+        ({"field": "motion.postion"}, "Did you mean motion.position?"),
+        ({"axis": 3}, "axis of motion.position must be 0 to 2; found 3"),
+        ({"csv": "nowhere.csv", "value": None}, "must be a text file beside the scene"),
+    ],
+)
+def test_mistakes_against_the_ports_are_found_before_a_run(tmp_path, settings, word):
+    one = _expectation(**({"measure": "max", "value": 1.0} | settings))
+    mistakes = check(one, {"cubes": (MOTION, LOAD)}, tmp_path)
+    assert len(mistakes) == 1 and word in mistakes[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("1,2\n3,4\n", "line 1 must be a header"),
+        ("t,x\n1,2\n", "two lines of numbers or more; found 1"),
+        ("t,x\n1,2\n2,b\n", "line 3 must be two finite numbers"),
+        ("t,x\n1,2,3\n2,3,4\n", "line 2 must be two finite numbers"),
+        ("t,x\n1,2\n2,nan\n", "line 3 must be two finite numbers"),
+        ("# note\nt,x\n2,2\n1,2\n", "times must increase; line 4"),
+    ],
+)
+def test_a_wrong_reference_file_is_refused_by_its_line(tmp_path, text, word):
+    _write(tmp_path, text)
+    with pytest.raises(SceneError, match=word):
+        reference_curve(_expectation(measure="rms", csv="ref.csv"), tmp_path)
+
+
+def test_a_reference_that_cannot_be_measured_is_a_mistake(tmp_path):
+    _write(tmp_path, "t,x\n0,1\n1,2\n")
+    gives = {"cubes": (MOTION, LOAD)}
+    for settings, word in (
+        ({"measure": "crossing", "level": 5.0}, "must pass the level 5.0"),
+        ({"measure": "rms", "begin": 3.0}, "must reach into 3 to inf s; it has 0 to 1 s"),
+    ):
+        mistakes = check(_expectation(csv="ref.csv", **settings), gives, tmp_path)
+        assert len(mistakes) == 1 and word in mistakes[0]

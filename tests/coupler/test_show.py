@@ -1,0 +1,82 @@
+"""What a run left is told in full, in text that a pipe can carry."""
+
+import copy
+import json
+
+import pytest
+
+from quintet.coupler.show import results, show
+from quintet.interfaces.errors import SceneError
+
+RESULTS = {
+    "scene": "dam_break", "preset": "quick", "transport": "zenoh", "status": "done",
+    "windows": 1234, "time": 1.8,
+    "expect": [
+        {"name": "top.x [rms]", "value": 0.0437, "reference": 0.0, "within": 0.05, "unit": "m",
+         "met": True, "source": "Canelas 2016"},
+        {"name": "late", "value": None, "reference": 1.5, "within": 0.1, "unit": "s",
+         "met": False, "source": "Canelas 2016"},
+    ],
+    "ledger": {
+        "links": [{"link": "water-cubes", "momentum_residual": 1e-15, "energy_residual": 2e-14}],
+        "energy_drift": 0.01,
+    },
+    "timing": {
+        "wall": 100.0, "compile": 20.0, "exchange": 0.4, "mapping": 0.3,
+        "components": {"water": {"compute": 80.0, "wait": 5.0, "steps": 9000, "items": 61000}},
+    },
+    "machine": {"cpu": "x", "cores": 2, "versions": {}},
+}  # fmt: skip
+
+
+def _shown(folder, found, capsys, **settings):
+    (folder / "results.json").write_text(json.dumps(found))
+    show(folder, **settings)
+    return capsys.readouterr().out
+
+
+def _line(text, word):
+    return next(line for line in text.splitlines() if word in line).split()
+
+
+def test_show_tells_expectations_ledger_and_timing(tmp_path, capsys):
+    text = _shown(tmp_path, RESULTS, capsys)
+    assert "dam_break (quick): done, 1234 windows to t = 1.8 s over zenoh" in text
+    assert _line(text, "top.x") == ["met", "top.x", "[rms]", "m", "0.0437", "0", "0.05"]
+    assert _line(text, "late") == ["not", "met", "late", "s", "-", "1.5", "0.1"]
+    assert _line(text, "water-cubes") == ["water-cubes", "1e-15", "2e-14"]
+    assert _line(text, "9000") == ["water", "80", "5", "9000", "61000", "6.862e+06"]
+    assert "energy drift 0.01" in text and "exchange 0.4 s" in text
+
+
+def test_show_is_plain_when_piped(tmp_path, capsys):
+    assert _shown(tmp_path, RESULTS, capsys).isascii()
+
+
+def test_show_tells_what_broke(tmp_path, capsys):
+    found = copy.deepcopy(RESULTS) | {"status": "failed", "expect": []}
+    found["fault"] = {
+        "component": "water", "window": 17, "cause": "killed by signal 9",
+        "log": ["step 41", "density [-1] is wrong"],
+    }  # fmt: skip
+    text = _shown(tmp_path, found, capsys)
+    assert "failed" in text and "component: water" in text and "window: 17" in text
+    assert "killed by signal 9" in text and "    density [-1] is wrong" in text
+
+
+def test_show_tells_what_little_an_interrupted_run_left(tmp_path, capsys):
+    text = _shown(tmp_path, {"scene": "s", "status": "interrupted", "windows": 3}, capsys)
+    assert "s: interrupted, 3 windows" in text
+
+
+def test_show_as_json_gives_back_the_results(tmp_path, capsys):
+    assert json.loads(_shown(tmp_path, RESULTS, capsys, as_json=True)) == RESULTS
+
+
+def test_a_folder_without_results_is_refused(tmp_path):
+    with pytest.raises(SceneError, match=r"no results\.json"):
+        results(tmp_path)
+    for text, word in (("{", "must be JSON"), ("[]", "one table; found a list")):
+        (tmp_path / "results.json").write_text(text)
+        with pytest.raises(SceneError, match=word):
+            results(tmp_path)

@@ -1,0 +1,163 @@
+"""The picture files: what goes in comes out, through our reader and through VTK's."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from quintet.coupler.vtkhdf import VtkHdf, read_step, times
+from quintet.interfaces.errors import PortError, SceneError
+
+COUNTS = (5, 7, 7, 5, 0, 30, 6)
+CELLS = np.array([[0, 1, 2, 3], [0, 1, 2, -1]])
+
+
+def _views(counts=COUNTS, cells=None):
+    random = np.random.default_rng(5)
+    views = []
+    for n in counts:
+        view = {"points": random.random((n, 3)), "velocity": random.random((n, 3))}
+        view["pressure"] = random.random(n)
+        views.append(view if cells is None else {**view, "cells": cells})
+    return views
+
+
+def _write(path, views):
+    file = VtkHdf(path)
+    for k, view in enumerate(views):
+        file.append(0.1 * k, view)
+    file.close()
+
+
+@pytest.fixture
+def vtk_steps():
+    hdf = pytest.importorskip("vtkmodules.vtkIOHDF")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    def read(path, order):
+        reader = hdf.vtkHDFReader()
+        reader.SetFileName(str(path))
+        reader.UpdateInformation()
+        found = {}
+        for k in order:
+            reader.SetStep(k)
+            reader.Update()
+            output = reader.GetOutput()
+            data = output.GetPointData()
+            found[k] = {
+                "time": reader.GetTimeValue(),
+                "points": vtk_to_numpy(output.GetPoints().GetData()),
+                "velocity": vtk_to_numpy(data.GetArray("velocity")),
+                "pressure": vtk_to_numpy(data.GetArray("pressure")),
+                "vertices": vtk_to_numpy(output.GetVerts().GetConnectivityArray()),
+                "ends": vtk_to_numpy(output.GetVerts().GetOffsetsArray()),
+                "corners": vtk_to_numpy(output.GetPolys().GetConnectivityArray()),
+                "begins": vtk_to_numpy(output.GetPolys().GetOffsetsArray()),
+            }
+        return reader.GetNumberOfSteps(), found
+
+    return read
+
+
+def test_vtk_reads_each_step_of_a_cloud_whose_number_of_points_changes(tmp_path, vtk_steps):
+    views = _views((5, 7, 7, 5, 30, 6))
+    _write(tmp_path / "a.vtkhdf", views)
+    count, found = vtk_steps(tmp_path / "a.vtkhdf", (3, 0, 5, 4, 2, 1))
+    assert count == len(views)
+    for k, view in enumerate(views):
+        for key in ("points", "velocity", "pressure"):
+            assert np.array_equal(found[k][key], view[key].astype(np.float32))
+        assert found[k]["time"] == 0.1 * k
+        assert np.array_equal(found[k]["vertices"], np.arange(len(view["points"])))
+        assert np.array_equal(found[k]["ends"], np.arange(len(view["points"]) + 1))
+        assert not len(found[k]["corners"])
+
+
+def test_vtk_reads_moving_polygons_with_triangles_among_them(tmp_path, vtk_steps):
+    _write(tmp_path / "b.vtkhdf", _views((4, 4, 6), CELLS))
+    _, found = vtk_steps(tmp_path / "b.vtkhdf", (2, 0, 1))
+    for k in range(3):
+        assert found[k]["corners"].tolist() == [0, 1, 2, 3, 0, 1, 2]
+        assert found[k]["begins"].tolist() == [0, 4, 7]
+        assert not len(found[k]["vertices"])
+
+
+def test_vtk_reads_more_steps_than_one_block_of_the_tables(tmp_path, vtk_steps):
+    views = _views([2 + k % 3 for k in range(1100)])
+    _write(tmp_path / "c.vtkhdf", views)
+    count, found = vtk_steps(tmp_path / "c.vtkhdf", (1099, 1024, 1023))
+    assert count == 1100
+    for k in found:
+        assert np.array_equal(found[k]["points"], views[k]["points"].astype(np.float32))
+
+
+@pytest.mark.parametrize("cells", [None, CELLS])
+def test_a_step_reads_back_as_it_was_appended(tmp_path, cells):
+    views = _views(COUNTS if cells is None else (4, 9, 4), cells)
+    _write(tmp_path / "d.vtkhdf", views)
+    assert np.array_equal(times(tmp_path / "d.vtkhdf"), 0.1 * np.arange(len(views)))
+    for k, view in enumerate(views):
+        time, found = read_step(tmp_path / "d.vtkhdf", k)
+        assert time == 0.1 * k and found.keys() == view.keys()
+        for key, array in view.items():
+            wanted = array if key == "cells" else array.astype(np.float32)
+            assert np.array_equal(found[key], wanted)
+
+
+def test_a_picture_file_may_be_read_while_it_grows(tmp_path):
+    path = tmp_path / "e.vtkhdf"
+    file = VtkHdf(path)
+    file.append(0.0, _views()[0])
+    script = f"from quintet.coupler.vtkhdf import times; print(len(times({str(path)!r})))"
+    read = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    file.close()
+    assert read.stdout.strip() == "1", read.stderr
+
+
+def test_a_killed_writer_leaves_every_appended_step(tmp_path, vtk_steps):
+    path = tmp_path / "f.vtkhdf"
+    script = f"""
+import os, signal, numpy as np
+from quintet.coupler.vtkhdf import VtkHdf
+file = VtkHdf({str(path)!r})
+for k in range(9):
+    ones = np.full((50 + k, 3), float(k))
+    file.append(0.5 * k, dict(points=ones, velocity=ones, pressure=ones[:, 0]))
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+    killed = subprocess.run([sys.executable, "-c", script], env=os.environ, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    count, found = vtk_steps(path, (8, 0))
+    assert count == len(times(path)) == 9
+    assert (found[8]["velocity"] == 8.0).all() and len(found[8]["velocity"]) == 58
+    assert read_step(path, 8)[0] == 4.0
+
+
+def test_a_view_that_changes_its_names_shapes_or_cells_is_refused(tmp_path):
+    file = VtkHdf(tmp_path / "g.vtkhdf")
+    good = _views((4,), CELLS)[0]
+    file.append(0.0, good)
+    for wrong, word in (
+        ({"points": good["points"]}, "is missing"),
+        ({**good, "heat": good["pressure"]}, "heat appeared"),
+        ({**good, "velocity": good["points"][:, :2]}, "velocity must keep"),
+        ({**good, "pressure": np.zeros(3)}, "pressure must have one row"),
+        ({"velocity": good["velocity"]}, "must have points"),
+        ({k: v[:3] for k, v in good.items()}, "cells use 4 points"),
+    ):
+        with pytest.raises(PortError, match=word):
+            file.append(0.1, wrong)
+    file.close()
+    assert len(times(tmp_path / "g.vtkhdf")) == 1
+
+
+def test_a_step_that_is_not_there_is_refused_by_its_number(tmp_path):
+    _write(tmp_path / "h.vtkhdf", _views((3,)))
+    with pytest.raises(SceneError, match="1 steps; there is no step 1"):
+        read_step(tmp_path / "h.vtkhdf", 1)
+    (tmp_path / "text.vtkhdf").write_text("no")
+    with pytest.raises(SceneError, match="must be a VTKHDF file"):
+        times(tmp_path / "text.vtkhdf")
