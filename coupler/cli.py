@@ -111,6 +111,10 @@ def run(given: argparse.Namespace) -> int:
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
     folder = (given.out or Path("runs") / scene.file.name).resolve()
+    from quintet.coupler.simulate import make_folder, simulate
+
+    if not given.inside_mpi:
+        make_folder(scene, folder)
     if scene.transport == "mpi" and not given.inside_mpi:
         from quintet.coupler.mpirun import run_under_mpi
 
@@ -118,7 +122,6 @@ def run(given: argparse.Namespace) -> int:
     threads = max(one.threads for one in scene.components.values())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
     from quintet.coupler.show import show as tell
-    from quintet.coupler.simulate import simulate
 
     status = simulate(scene, folder)
     tell(folder)

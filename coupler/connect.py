@@ -132,12 +132,15 @@ class OverMpi:
     """One rank per component; this process is rank 0."""
 
     def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
+        from quintet.coupler.mpirun import announce
         from quintet.interfaces import mpi
+        from quintet.interfaces.process import shared_files
 
         mpi.self_check(1 + len(scene.components))
         run = secrets.token_hex(4)
         self.parts: dict[str, Part] = {}
         self.watches: dict[str, Watch] = {}
+        announce(folder, [], shared_files())
         for rank, name in enumerate(scene.components, start=1):
             line = mpi.MpiLine(run, "coupler", name, rank)
             line.watch = lambda: "the run was interrupted" if interrupted() else ""
@@ -150,6 +153,9 @@ class OverMpi:
             if watch:
                 self.watches[name] = watch
             welcome(scene, name, line, hello, watch, self.parts)
+        watches = self.watches.values()
+        shared = [path for watch in watches for path in watch.shared]
+        announce(folder, [watch.pid for watch in watches], [*shared_files(), *shared])
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""

@@ -23,8 +23,7 @@ OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png",
 
 
 def simulate(scene: Scene, folder: Path) -> int:
-    """Run a scene into a folder; return the exit status."""
-    make_folder(scene, folder)
+    """Run a scene into a folder that is ready for it; return the exit status."""
     clock, stop = results.Clock(), Stop()
     exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
     ledger = Ledger(exchange, folder / "ledger.csv")

@@ -74,12 +74,16 @@ class Inputs:
             return first + time * self.start[rate] if hermite else first.view()
         if time in (0.0, window):  # exactly the ends, whatever rounding does between
             return (first if time == 0.0 else self.end[key]).view()
-        last, s = self.end[key], time / window
-        if not hermite or rate not in self.end:
-            return first + s * (last - first)
-        bow = window * ((1.0 - s) * self.start[rate] - s * self.end[rate])
-        # The Hermite basis, written as a correction of the straight line between the ends.
-        return first + s * (last - first) + s * (1.0 - s) * (bow - (1.0 - 2.0 * s) * (last - first))
+        s = time / window
+        straight = self.end[key] - first
+        if hermite and rate in self.end:
+            # The Hermite basis, written as a correction of the straight line between the ends.
+            bow = window * ((1.0 - s) * self.start[rate] - s * self.end[rate])
+            bow -= (1.0 - 2.0 * s) * straight
+            straight += (1.0 - s) * bow
+        straight *= s  # in place: fields may be large
+        straight += first
+        return straight
 
     def save(self) -> dict[str, Array]:
         """What must come back with a component's state."""

@@ -1,0 +1,87 @@
+"""Sorting points into cubic cells, x fastest, so that near points are near in memory."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from quintet.interfaces.errors import StepError
+
+REACH = 2  # cells that the search looks in each direction: cells are half as wide as it reaches
+MOST = 50_000_000  # cells
+
+Points = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+
+class Grid(NamedTuple):
+    """Cells of one width around the points that are searched for."""
+
+    x: float  # m, the lowest corner
+    y: float
+    z: float
+    per_metre: float
+    nx: int
+    ny: int
+    nz: int
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return self.nx * self.ny * self.nz
+
+
+def grid_around(points: Points, reach: float) -> Grid:
+    """Cells around points (n, 3) m, wide enough to hold all that is nearer to one than `reach` [m]."""
+    width = reach / REACH
+    low = points.min(axis=0) - 1.001 * reach
+    extent = points.max(axis=0) + 1.001 * reach - low
+    nx, ny, nz = (math.floor(edge / width) + 1 for edge in extent.tolist())
+    if nx * ny * nz > MOST:
+        raise StepError(
+            f"particles must stay together; they spread over {extent.round(3).tolist()} m, "
+            f"{nx * ny * nz} cells of {width:.3g} m. Add walls, or end the run earlier."
+        )
+    return Grid(*low.tolist(), 1.0 / width, nx, ny, nz)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def number_cells(points: Points, grid: Grid, cell: Whole) -> None:
+    """Write the cell of each point (n, 3); one past the last cell for points outside."""
+    outside = grid.nx * grid.ny * grid.nz
+    for i in range(points.shape[0]):
+        x = (points[i, 0] - grid.x) * grid.per_metre
+        y = (points[i, 1] - grid.y) * grid.per_metre
+        z = (points[i, 2] - grid.z) * grid.per_metre
+        # Compared before they are rounded: a far point's cell need not fit an integer.
+        inside = 0.0 <= x < grid.nx and 0.0 <= y < grid.ny and 0.0 <= z < grid.nz
+        cell[i] = int(x) + grid.nx * (int(y) + grid.ny * int(z)) if inside else outside
+
+
+@njit(cache=True, nogil=True)
+def sort_cells(cell: Whole, start: Whole, order: Whole) -> None:
+    """Write the stable order that sorts points by cell, and where each cell starts in it."""
+    start[:] = 0
+    for i in range(cell.shape[0]):
+        start[cell[i] + 1] += 1
+    for c in range(1, start.shape[0]):
+        start[c] += start[c - 1]
+    for i in range(cell.shape[0]):
+        order[start[cell[i]]] = i
+        start[cell[i]] += 1
+    # Each start has moved on to the next one's place.
+    for c in range(start.shape[0] - 1, 0, -1):
+        start[c] = start[c - 1]
+    start[0] = 0
+
+
+def sorted_into(points: Points, grid: Grid) -> tuple[Whole, Whole, Whole]:
+    """Cell of each point (n,), start of each cell (cells + 2,), and the sorting order (n,)."""
+    cell = np.empty(len(points), np.int64)
+    order = np.empty(len(points), np.int64)
+    start = np.empty(grid.cells + 2, np.int64)
+    number_cells(points, grid, cell)
+    sort_cells(cell, start, order)
+    return cell, start, order

@@ -1,0 +1,30 @@
+"""The cubic-spline smoothing kernel of Monaghan (Annu. Rev. Astron. Astrophys. 30, 1992), free of branches.
+
+W(r) = (α/4)[(2-q)₊³ - 4(1-q)₊³] with q = r/h, and α = 10/(7πh²) in two, 1/(πh³) in three
+dimensions; W = 0 for q ≥ 2.
+"""
+
+import math
+
+from numba import njit
+
+SUPPORT = 2.0  # radius of the kernel over the smoothing length
+
+
+def normalisation(dimensions: int, smoothing: float) -> float:
+    """Return α for a smoothing length h [m], so that ∫W dV = 1."""
+    return {2: 10.0 / (7.0 * math.pi), 3: 1.0 / math.pi}[dimensions] / smoothing**dimensions
+
+
+@njit(inline="always")
+def shape(q):  # type: ignore[no-untyped-def]
+    """W over α/4."""
+    outer, inner = max(2.0 - q, 0.0), max(1.0 - q, 0.0)
+    return outer * outer * outer - 4.0 * inner * inner * inner
+
+
+@njit(inline="always")
+def slope(q):  # type: ignore[no-untyped-def]
+    """dW/dr over -3α/(4h)."""
+    outer, inner = max(2.0 - q, 0.0), max(1.0 - q, 0.0)
+    return outer * outer - 4.0 * inner * inner

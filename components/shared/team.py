@@ -1,0 +1,39 @@
+"""Threads that share the rows of a kernel out among them.
+
+Each row is computed wholly by one thread and results are combined by the caller, so the
+number of threads changes no bit. Kernels release Python's lock; unlike numba's own pool, several
+components of one process may run at once, and kernels compile in a fraction of the time.
+"""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+FEWEST = 1000  # rows that are worth handing to another thread
+SHARES = 6  # of each thread, for rows differ in cost
+
+
+def threads_wanted() -> int:
+    """Threads that this process was told to use; one, if it was told nothing."""
+    return max(1, int(os.environ.get("NUMBA_NUM_THREADS", "1")))
+
+
+class Team:
+    """A fixed number of threads."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self._pool = ThreadPoolExecutor(size) if size > 1 else None
+
+    def run(self, kernel: Callable[..., Any], rows: int, *arguments: Any) -> list[Any]:
+        """Call ``kernel(first, last, *arguments)`` on shares of the rows; return all it returned."""
+        shares = min(SHARES * self.size, rows // FEWEST)
+        if self._pool is None or shares < 2:
+            return [kernel(0, rows, *arguments)]
+        ends = [rows * share // shares for share in range(shares + 1)]
+        calls = [
+            self._pool.submit(kernel, first, last, *arguments)
+            for first, last in zip(ends[:-1], ends[1:], strict=True)
+        ]
+        return [call.result() for call in calls]
