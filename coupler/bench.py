@@ -77,8 +77,9 @@ def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str,
 
 def inside_mpi(folder: Path) -> int:
     """Measure as rank 0."""
-    from quintet.coupler.mpirun import leave
+    from quintet.coupler.mpirun import enter, leave
 
+    enter(folder / "run")
     exchange(load(str(folder / "scene.toml")), folder, int((folder / "windows").read_text()))
     leave(folder / "run", 0)
     return 0

@@ -5,8 +5,12 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from quintet.interfaces.errors import QuintetError, SceneError
+
+if TYPE_CHECKING:
+    from quintet.coupler.scene import Scene
 
 BAD = 2  # exit status of bad input: nothing was started
 
@@ -119,6 +123,10 @@ def run(given: argparse.Namespace) -> int:
         from quintet.coupler.mpirun import run_under_mpi
 
         return run_under_mpi(sys.argv[1:], scene, folder)
+    if given.inside_mpi:
+        from quintet.coupler.mpirun import enter
+
+        enter(folder)
     threads = max(one.threads for one in scene.components.values())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
     from quintet.coupler.show import show as tell

@@ -2,7 +2,9 @@
 
 MPI ends badly by itself: a launcher that kills every rank leaves nobody to report, one that
 does not leaves ranks that wait for ever. So the launcher is told to do nothing, the coupler
-watches and reports, and the process that started the launcher cleans up after both.
+steps out of its reach, watches and reports, and the process that started the launcher cleans
+up after both. What the coupler prints goes through files: a launcher that ends its job forgets
+the output that it has not passed on yet.
 """
 
 import contextlib
@@ -15,12 +17,15 @@ import sys
 import time
 from pathlib import Path
 from types import FrameType
+from typing import IO
 
-from quintet.coupler.launch import environment, running
+from quintet.coupler.launch import environment, running, tail
 from quintet.coupler.scene import Scene
 from quintet.interfaces.errors import SceneError
 
 NAME = "mpi.json"  # in the log folder: processes, and the status that the coupler ended with
+SAID = ("coupler.out", "coupler.err")  # there too: what the coupler printed
+LAUNCHER = "mpiexec.log"  # and what the launcher did
 LEAVING = 3.0  # s for all ranks to leave after the coupler has its results
 
 
@@ -33,8 +38,9 @@ def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
             "the extra: pip install 'quintet[mpi]'."
         )
     python = [sys.executable, "-m", "mpi4py"]
-    line = [launcher, *_options(launcher), "-n", "1", *python, "-m", "quintet.coupler.cli"]
-    line += [*arguments, "--inside-mpi"]
+    apart = [sys.executable, "-m", "quintet.coupler.apart"]
+    line = [launcher, *_options(launcher), "-n", "1", *apart, *python]
+    line += ["-m", "quintet.coupler.cli", *arguments, "--inside-mpi"]
     for name, one in scene.components.items():
         log = str(folder / "log" / f"{name}.log")
         line += [":", "-n", "1", *python, "-m", "quintet.interfaces.process", one.kind]
@@ -61,19 +67,50 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
     note.unlink(missing_ok=True)
     threads = max(one.threads for one in scene.components.values())
     line = command(arguments, scene, folder)
-    env = {**environment(threads, scene.import_folders), "QUINTET_LOCAL": "1"}
-    process = subprocess.Popen(line, start_new_session=True, env=env)
-    asked = _forward_signals(note, process)
-    while process.poll() is None and "status" not in _read(note):
-        time.sleep(0.02)
-    limit = time.monotonic() + LEAVING
-    while process.poll() is None and time.monotonic() < limit:
-        time.sleep(0.02)
-    found = _read(note)
-    _clean(process, found)
+    env = {**environment(threads, scene.import_folders), "QUINTET_LOCAL": str(os.getpid())}
+    log = note.with_name(LAUNCHER)
+    with open(log, "wb") as file:
+        process = subprocess.Popen(
+            line,
+            stdin=subprocess.DEVNULL,
+            stdout=file,
+            stderr=file,
+            start_new_session=True,
+            env=env,
+        )
+    with contextlib.ExitStack() as stack:
+        said = [stack.enter_context(open(note.with_name(name), "w+b")) for name in SAID]
+        asked = _forward_signals(note, process)
+        _await(process, note, said)
+        found = _read(note)
+        _clean(process, found)
+        _pass_on(said)
     if "status" in found:
-        return int(found["status"])
+        return int(str(found["status"]))
+    if not asked:
+        print("quintet: the MPI job ended, and left no results", file=sys.stderr)
+        print("\n".join(f"    {one}" for one in tail(log)), file=sys.stderr)
     return 130 if asked else 3
+
+
+def _await(process: "subprocess.Popen[bytes]", note: Path, said: list[IO[bytes]]) -> None:
+    """Pass on what the coupler prints, until it has its results and the ranks have left."""
+    limit = float("inf")
+    while time.monotonic() < limit:
+        _pass_on(said)
+        found, ended = _read(note), process.poll() is not None
+        if ended and ("status" in found or not running(int(str(found.get("coupler", 0))))):
+            return
+        if limit == float("inf") and "status" in found:
+            limit = time.monotonic() + LEAVING
+        time.sleep(0.02)
+
+
+def _pass_on(said: list[IO[bytes]]) -> None:
+    for file, stream in zip(said, (sys.stdout, sys.stderr), strict=True):
+        if text := file.read():
+            stream.write(text.decode(errors="replace"))
+            stream.flush()
 
 
 def _forward_signals(note: Path, process: "subprocess.Popen[bytes]") -> list[int]:
@@ -96,6 +133,15 @@ def _read(note: Path) -> dict[str, object]:
         return dict(json.loads(note.read_text()))
     except (OSError, ValueError):
         return {}
+
+
+def enter(folder: Path) -> None:
+    """Begin as the coupler's rank: tell who it is, print into files."""
+    for name, stream in zip(SAID, (sys.stdout, sys.stderr), strict=True):
+        stream.flush()
+        with open(folder / "log" / name, "ab") as file:
+            os.dup2(file.fileno(), stream.fileno())
+    announce(folder, [], [])
 
 
 def announce(folder: Path, pids: list[int], shared: list[str]) -> None:

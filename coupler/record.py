@@ -4,9 +4,6 @@ Row 0 of a field is the output at the start; row k is its value at the end of wi
 for an impulse, its integral over that window. Nothing in the file is pickled.
 """
 
-import json
-from collections.abc import Iterable
-from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -14,9 +11,10 @@ from typing import Any, Self
 import h5py
 import numpy as np
 
-from quintet.interfaces.component import Array, Field, Fields, Port
+from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import PortError, SceneError
 from quintet.interfaces.params import unknown
+from quintet.interfaces.ports import from_json, to_json
 
 NAME = "recording.h5"
 BATCH = 64  # rows written at once, at most; a power of two
@@ -40,7 +38,7 @@ class Recorder:
     def component(self, name: str, ports: tuple[Port, ...], static: Fields) -> None:
         """Announce a component: the ports it gives, and what it described once."""
         group = self._file["components"].create_group(name)
-        group.attrs["ports"] = json.dumps([asdict(port) for port in ports])
+        group.attrs["ports"] = to_json(ports)
         group.create_group("fields", track_order=True)
         for key, array in static.items():
             group[f"static/{key}"] = np.asarray(array)
@@ -191,7 +189,7 @@ class Recording:
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the ports that a component gives."""
-        return tuple(_port(one) for one in json.loads(self._group(name).attrs["ports"]))
+        return from_json(str(self._group(name).attrs["ports"]))
 
     def static(self, name: str) -> dict[str, Array]:
         """Return what a component described once."""
@@ -260,13 +258,3 @@ class Recording:
         if name not in among:
             raise SceneError(unknown(f"recording {self.path}: {place}", name, among))
         return among[name]
-
-
-def _port(one: dict[str, Any]) -> Port:
-    # By name, so that a port may gain other settings; what is a list is a list of fields.
-    settings: dict[str, Any] = {k: _fields(v) if isinstance(v, list) else v for k, v in one.items()}
-    return Port(**settings)
-
-
-def _fields(listed: Iterable[dict[str, Any]]) -> tuple[Field, ...]:
-    return tuple(Field(**(one | {"shape": tuple(one["shape"])})) for one in listed)

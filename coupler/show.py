@@ -149,13 +149,13 @@ def _shares(found: Mapping[str, Any]) -> str:
 
 
 def _fault(fault: Mapping[str, Any]) -> Text:
-    text = Text("Fault", style="bold red")
+    text = Text("Fault\n", style="bold red")
     for key, value in fault.items():
-        if key == "log":
-            lines = value if isinstance(value, list) else str(value).splitlines()
-            text.append("\n  log:" + "".join(f"\n    {line}" for line in lines), style="")
-        else:
-            text.append(f"\n  {key}: {value}", style="")
+        said = value if isinstance(value, list) else str(value).splitlines()
+        if len(said) > 1:
+            text.append(f"  {key}:\n" + "".join(f"    {line}\n" for line in said), style="")
+        elif said:
+            text.append(f"  {key}: {said[0]}\n", style="")
     return text
 
 

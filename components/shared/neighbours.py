@@ -1,7 +1,8 @@
 """Verlet lists: for each point, those nearer than a reach, kept until points have moved.
 
-Points come sorted by cell, so the cells of a row along x are one contiguous range. A list
-is written row after row (compressed rows): first counted, then filled.
+Points come in two groups, each sorted by cell, so that the cells of a row along x are one
+contiguous range. The first group (fluid) looks for both, the second (walls) for the first
+only. Lists are written row after row: first counted, then filled.
 """
 
 from dataclasses import dataclass, field
@@ -10,71 +11,102 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from quintet.components.shared.cells import REACH, Grid, Points, Whole, sorted_into
+from quintet.components.shared.cells import REACH, Grid, Points, Whole, grid_around, sorted_into
 from quintet.components.shared.team import Team
 
 FAST = {"fastmath": True, "error_model": "numpy", "cache": True, "nogil": True}
-Rows = NDArray[np.int32]
 
 
 @dataclass(slots=True)
 class Neighbours:
-    """Rows `begin[i]:end[i]` of `list` are i's neighbours; from `middle[i]` on, of the second group."""
+    """Lists of indices: of the first group in begin[i]:middle[i], of the second in middle[i]:end[i].
 
-    list: Rows = field(default_factory=lambda: np.zeros(0, np.int32))
+    A point of the first group is its own neighbour: at no distance, it feels no force.
+    """
+
+    list: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
     begin: Whole = field(default_factory=lambda: np.zeros(0, np.int64))  # (n,)
     middle: Whole = field(default_factory=lambda: np.zeros(0, np.int64))  # (n,)
     end: Whole = field(default_factory=lambda: np.zeros(0, np.int64))  # (n,)
 
+    @property
+    def arrays(self) -> tuple[Whole, Whole, Whole, NDArray[np.int32]]:
+        """What kernels take."""
+        return self.begin, self.middle, self.end, self.list
+
 
 @njit(**FAST)
 def count(
-    first: int, last: int, base: int, points: Points, cell: Whole, start: Whole,
-    offset: int, grid: Grid, reach2: float, number: Whole,
+    first: int, last: int, split: int, points: Points, cell: Whole,
+    start_one: Whole, start_two: Whole, grid: Grid, reach2: float, number: Whole,
 ) -> None:  # fmt: skip
-    """Count the neighbours of points base + [first, last) in a group that begins at `offset`."""
+    """Count the neighbours of points [first, last)."""
     nx, ny, nz = grid.nx, grid.ny, grid.nz
-    for i in range(base + first, base + last):
+    for i in range(first, last):
         c = cell[i]
         found = 0
         if c < nx * ny * nz:
             cx, cy, cz = c % nx, (c // nx) % ny, c // (nx * ny)
             low, high = max(cx - REACH, 0), min(cx + REACH, nx - 1)
-            for kz in range(max(cz - REACH, 0), min(cz + REACH, nz - 1) + 1):
-                for ky in range(max(cy - REACH, 0), min(cy + REACH, ny - 1) + 1):
-                    row = nx * (ky + ny * kz)
-                    begin, end = offset + start[row + low], offset + start[row + high + 1]
-                    for j in range(np.uint64(begin), np.uint64(end)):
-                        dx = points[i, 0] - points[j, 0]
-                        dy = points[i, 1] - points[j, 1]
-                        dz = points[i, 2] - points[j, 2]
-                        found += int(dx * dx + dy * dy + dz * dz < reach2)
+            for group in range(2 if i < split else 1):
+                start = start_one if group == 0 else start_two
+                base = group * split
+                for kz in range(max(cz - REACH, 0), min(cz + REACH, nz - 1) + 1):
+                    for ky in range(max(cy - REACH, 0), min(cy + REACH, ny - 1) + 1):
+                        row = nx * (ky + ny * kz)
+                        begin, end = base + start[row + low], base + start[row + high + 1]
+                        for j in range(np.uint64(begin), np.uint64(end)):
+                            dx = points[i, 0] - points[j, 0]
+                            dy = points[i, 1] - points[j, 1]
+                            dz = points[i, 2] - points[j, 2]
+                            found += int(dx * dx + dy * dy + dz * dz < reach2)
         number[i] = found
 
 
 @njit(**FAST)
 def fill(
-    first: int, last: int, base: int, points: Points, cell: Whole, start: Whole,
-    offset: int, grid: Grid, reach2: float, begin_of: Whole, list_: Rows,
+    first: int, last: int, split: int, points: Points, cell: Whole,
+    start_one: Whole, start_two: Whole, grid: Grid, reach2: float,
+    begin_of: Whole, middle_of: Whole, found: NDArray[np.int32],
 ) -> None:  # fmt: skip
-    """Write the neighbours that `count` counted, from begin_of[i] on."""
+    """Write the neighbours that `count` counted; each row has room for one more."""
     nx, ny, nz = grid.nx, grid.ny, grid.nz
-    for i in range(base + first, base + last):
+    for i in range(first, last):
         c = cell[i]
         k = begin_of[i]
+        middle_of[i] = k
         if c < nx * ny * nz:
             cx, cy, cz = c % nx, (c // nx) % ny, c // (nx * ny)
             low, high = max(cx - REACH, 0), min(cx + REACH, nx - 1)
-            for kz in range(max(cz - REACH, 0), min(cz + REACH, nz - 1) + 1):
-                for ky in range(max(cy - REACH, 0), min(cy + REACH, ny - 1) + 1):
-                    row = nx * (ky + ny * kz)
-                    begin, end = offset + start[row + low], offset + start[row + high + 1]
-                    for j in range(np.uint64(begin), np.uint64(end)):
-                        dx = points[i, 0] - points[j, 0]
-                        dy = points[i, 1] - points[j, 1]
-                        dz = points[i, 2] - points[j, 2]
-                        # Written always and kept if near: no branch to mispredict.
-                        list_[k] = np.int32(j)
-                        k += int(dx * dx + dy * dy + dz * dz < reach2)
+            for group in range(2 if i < split else 1):
+                start = start_one if group == 0 else start_two
+                base = group * split
+                for kz in range(max(cz - REACH, 0), min(cz + REACH, nz - 1) + 1):
+                    for ky in range(max(cy - REACH, 0), min(cy + REACH, ny - 1) + 1):
+                        row = nx * (ky + ny * kz)
+                        begin, end = base + start[row + low], base + start[row + high + 1]
+                        for j in range(np.uint64(begin), np.uint64(end)):
+                            dx = points[i, 0] - points[j, 0]
+                            dy = points[i, 1] - points[j, 1]
+                            dz = points[i, 2] - points[j, 2]
+                            # Always written, kept if near: there is no branch to mispredict.
+                            found[k] = np.int32(j)
+                            k += int(dx * dx + dy * dy + dz * dz < reach2)
+                if group == 0:
+                    middle_of[i] = k
 
 
+def neighbours_within(reach: float, points: Points, split: int, team: Team) -> Neighbours:
+    """List what is nearer than `reach` [m] among points (n, 3) m, sorted within both groups."""
+    grid = grid_around(points[:split], reach)
+    cell_one, start_one, _ = sorted_into(points[:split], grid)
+    cell_two, start_two, _ = sorted_into(points[split:], grid)
+    cell = np.concatenate([cell_one, cell_two])
+    number = np.empty(len(points), np.int64)
+    search = (split, points, cell, start_one, start_two, grid, reach * reach)
+    team.run(count, len(points), *search, number)
+    begin = np.cumsum(number + 1) - (number + 1)
+    found = Neighbours(np.empty(int(number.sum()) + len(points), np.int32), begin)
+    found.middle, found.end = np.empty(len(points), np.int64), begin + number
+    team.run(fill, len(points), *search, begin, found.middle, found.list)
+    return found

@@ -1,0 +1,53 @@
+"""Weakly compressible smoothed-particle hydrodynamics with walls of dynamic particles.
+
+    dρ_i/dt = Σ_j m_j u_ij·∇_iW_ij                                       continuity
+    du_i/dt = -Σ_j m_j (p_i/ρ_i² + p_j/ρ_j² + Π_ij) ∇_iW_ij + g          momentum
+    Π_ij    = -α c₀ μ_ij/ρ̄_ij where μ_ij = h u_ij·r_ij/(r²+0.01h²) < 0   artificial viscosity
+    p       = (c₀²ρ₀/γ)[(ρ/ρ₀)^γ - 1], γ = 7                             Tait
+    dr_i/dt = u_i + ε Σ_j (m_j/ρ̄_ij)(u_j - u_i) W_ij                     XSPH
+
+Walls and moving surface samples are particles that obey the continuity equation (from
+fluid neighbours alone) and Tait's, but move as they are told; their density never falls below
+ρ₀, so that they never pull.
+
+In time, a particle's momentum changes in a step by exactly dt times the force of that step,
+uⁿ⁺¹ = uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past
+the step's end, extrapolated from the last two: with one pass over pairs a step, sound waves
+are then damped, not amplified (`laws.AHEAD`).
+
+A particle that goes further than half of the tank's longest edge beyond the walls is lost: it is
+removed, and `totals` shows its mass missing. Without walls none is.
+
+Papers: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; Monaghan, J. Comput. Phys. 82
+(1989) 1 (XSPH) and 110 (1994) 399 (Tait); Monaghan & Kos, J. Waterway Port Coast. Ocean Eng. 125
+(1999) 145 (time step); Panizzo, PhD thesis, L'Aquila (2004) (Shepard filter); Crespo,
+Gómez-Gesteira & Dalrymple, CMC 5 (2007) 173 (walls).
+"""
+
+from quintet.components.sph_fluid.build import particles
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.interfaces.manifest import Manifest, Plan, Ports
+from quintet.interfaces.ports import SURFACE, SURFACE_LOAD
+
+__all__ = ["MANIFEST", "SphFluidParams"]
+
+
+def _ports(_: SphFluidParams) -> Ports:
+    return (SURFACE,), (SURFACE_LOAD,)
+
+
+def _plan(params: SphFluidParams) -> Plan:
+    # One part in ten: how much velocities add to the speed of sound.
+    dt = params.courant * params.length / (1.1 * params.sound_speed)
+    listed = 45.0 * params.smoothing**3  # neighbours in the lists, with their margin
+    return Plan(particles(params), dt, rate=2.5e6 * 150 / listed, bytes_per_item=180 + 4 * listed)
+
+
+MANIFEST = Manifest(
+    kind="sph_fluid",
+    title="Weakly compressible SPH fluid",
+    params=SphFluidParams,
+    component="quintet.components.sph_fluid.component:SphFluid",
+    ports=_ports,
+    plan=_plan,
+)

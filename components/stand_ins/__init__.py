@@ -12,7 +12,7 @@ from quintet.components.stand_ins.params import (
 )
 from quintet.components.stand_ins.params import echo_ports as _echo_ports
 from quintet.interfaces.manifest import Manifest
-from quintet.interfaces.ports import LOAD, MOTION
+from quintet.interfaces.ports import MOTION
 
 REPLAY = Manifest(
     kind="replay",
@@ -26,7 +26,7 @@ PRESCRIBED = Manifest(
     title="rigid bodies on given paths",
     params=PrescribedParams,
     component="quintet.components.stand_ins.prescribed:Prescribed",
-    ports=lambda params: ((LOAD,), (MOTION,)),
+    ports=lambda params: ((), (MOTION,)),
 )
 ECHO = Manifest(
     kind="echo",

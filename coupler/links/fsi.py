@@ -112,6 +112,9 @@ class RigidFsi:
         }
 
     def _load(self, given: Fields) -> dict[str, Array]:
+        if not self.memory:  # before the first window nothing has moved, and nothing was pushed
+            rest = np.zeros((self.map.bodies, 3))
+            return {"load.force": rest, "load.torque": rest}
         # An impulse was gathered along the way between the last two poses: use their middle.
         arms = 0.5 * (self.memory[0][0] + self.memory[-1][0])
         force, torque = self.map.spread(given["surface_load.force"], arms)

@@ -1,0 +1,89 @@
+"""Where the particles are at the start, and how dense; needs numpy alone."""
+
+import math
+
+import numpy as np
+
+from quintet.components.sph_fluid.params import Box, SphFluidParams
+from quintet.components.sph_fluid.state import Array, State
+
+TAIT = 7  # exponent γ of the equation of state
+
+
+def cells(box: Box, spacing: float) -> tuple[int, int, int]:
+    """Whole number of particles along each edge of a box."""
+    low, high = box
+    x, y, z = (max(1, round((b - a) / spacing)) for a, b in zip(low, high, strict=True))
+    return x, y, z
+
+
+def particles(params: SphFluidParams) -> int:
+    """Fluid and wall particles, counted without making any."""
+    fluid = sum(math.prod(cells(box, params.spacing)) for box in params.fluid)
+    if params.walls is None:
+        return fluid
+    inside = cells(params.walls, params.spacing)
+    outside = [n + sum(shut) for n, shut in zip(inside, _shut(params), strict=True)]
+    return fluid + math.prod(outside) - math.prod(inside)
+
+
+def state(params: SphFluidParams) -> State:
+    """Initial state: at rest, each box under the hydrostatic pressure of its own surface."""
+    boxes = [fill_box(box, params.spacing) for box in params.fluid]
+    wall = wall_points(params)
+    dense = [hydrostatic(points, box, params) for points, box in zip(boxes, params.fluid, strict=True)]
+    made = State.empty(sum(map(len, boxes)), len(wall))
+    made.place[:, :3] = np.concatenate([*boxes, wall])
+    made.place[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
+    made.acceleration = math.hypot(*params.gravity)
+    return made
+
+
+def fill_box(box: Box, spacing: float) -> Array:
+    """Middles of the cells of a box; (n, 3) m, x fastest."""
+    return _lattice(box, cells(box, spacing), [(0, 0)] * 3)
+
+
+def wall_points(params: SphFluidParams) -> Array:
+    """One layer of particles half a cell outside the tank's faces; (n, 3) m.
+
+    So far out, the lattice of a fluid that touches a wall goes on into it.
+    """
+    if params.walls is None:
+        return np.zeros((0, 3))
+    points = _lattice(params.walls, cells(params.walls, params.spacing), _shut(params))
+    low, high = np.array(params.walls)
+    return points[((points < low) | (points > high)).any(axis=1)]
+
+
+def _shut(params: SphFluidParams) -> list[tuple[int, int]]:
+    return [(int(f"{x}-" not in params.open), int(f"{x}+" not in params.open)) for x in "xyz"]
+
+
+def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int]]) -> Array:
+    axes = [
+        low + (np.arange(-before, n + after) + 0.5) * (high - low) / n
+        for low, high, n, (before, after) in zip(*box, counts, beyond, strict=True)
+    ]
+    z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
+    return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+
+
+def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
+    """Density (n,) kg/m3 at points (n, 3) m below the surface of a box of fluid at rest."""
+    pull = math.hypot(*params.gravity)
+    depth = params.levels(box)[1] + points @ np.array(params.gravity) / (pull or 1.0)
+    pressure = params.density * pull * np.maximum(depth, 0.0)
+    stiffness = params.sound_speed**2 * params.density / TAIT  # Pa
+    return params.density * (1.0 + pressure / stiffness) ** (1.0 / TAIT)
+
+
+def wall_density(wall: Array, params: SphFluidParams) -> Array:
+    """Density (n,) kg/m3 of wall particles (n, 3) m: that of the fluid they touch, or ρ₀."""
+    density = np.full(len(wall), params.density)
+    for box in params.fluid:
+        low, high = np.array(box)
+        near = 1.01 * params.spacing
+        rows = np.flatnonzero(((wall > low - near) & (wall < high + near)).all(axis=1))
+        density[rows] = np.maximum(density[rows], hydrostatic(wall[rows], box, params))
+    return density

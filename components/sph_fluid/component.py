@@ -1,0 +1,244 @@
+"""The fluid as a component: what happens in a step, in order."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from quintet.components.shared.cells import grid_around, sorted_into
+from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.shared.neighbours import Neighbours, neighbours_within
+from quintet.components.shared.team import Team, threads_wanted
+from quintet.components.sph_fluid import build
+from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
+from quintet.components.sph_fluid.laws import AHEAD, constants
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Component, Fields, Totals
+from quintet.interfaces.errors import OrderError, StepError
+from quintet.interfaces.ports import SURFACE, SURFACE_LOAD
+
+SKIN = 0.1  # of the kernel's support: how much further the neighbour lists reach
+STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
+
+
+class SphFluid(Component):
+    """A weakly compressible fluid in a tank, and the surfaces that move in it."""
+
+    takes = (SURFACE,)
+    gives = (SURFACE_LOAD,)
+
+    def __init__(self, params: SphFluidParams) -> None:
+        self.params = params
+        self.fluid = constants(params)
+        self.team = Team(threads_wanted())
+        self.options: Any = None
+        if params.xsph > 0.0 or params.shepard_every > 0:
+            # Only here, so that a scene without them compiles nothing of them.
+            from quintet.components.sph_fluid import options
+
+            self.options = options
+        self.state = build.state(params)
+        press(self.fluid, self.state.place, self.state.motion)
+        self.near = Neighbours()
+        self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
+        self.rate = np.empty((0, 4))  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s); of the present step
+        self.placed = True
+
+    def describe(self) -> Fields:
+        """At which spacing, and how deep, surfaces should be sampled."""
+        reach = SUPPORT * self.fluid.smoothing
+        return {
+            "surface.spacing": np.array([self.params.spacing]),
+            "surface.depth": np.array([reach]),
+        }
+
+    def bind(self, static: Fields) -> None:
+        """Make room for the samples of the surfaces joined."""
+        if "surface.volume" in static:
+            self.state.add_samples(len(static["surface.volume"]), self.params.density)
+            press(self.fluid, self.state.place, self.state.motion)
+            self._find_samples()
+            self.placed = False
+
+    def stable_dt(self) -> float:
+        """Largest step [s]; Monaghan & Kos 1999, from the rates of the last one."""
+        h, state = self.fluid.smoothing, self.state
+        sound = h / (self.params.sound_speed + h * state.approach)
+        pull = math.sqrt(h / state.acceleration) if state.acceleration > 0.0 else math.inf
+        return self.params.courant * min(sound, pull)
+
+    def take(self, fields: Fields) -> None:
+        """Put the surface samples where they are in the coming step."""
+        if len(self.rows):
+            self.state.place[self.rows, :3] = fields["surface.position"]
+            self.state.motion[self.rows, :3] = fields["surface.velocity"]
+            self.placed = True
+
+    def step(self, dt: float) -> None:
+        """Advance by dt [s]."""
+        if not self.placed:
+            raise OrderError("step: surface samples must be placed first. Call take before it.")
+        if self._list_is_old():
+            self._sort()
+            self._list()
+        self._filter_density()
+        self._interact()
+        self._drift(dt)
+        self._advance(dt)
+
+    def _list_is_old(self) -> bool:
+        state = self.state
+        if len(state.reference) == 0:
+            return True
+        shift = state.place[self.rows, :3] - state.reference[self.rows]
+        shifted = math.sqrt(np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
+        margin = SKIN * SUPPORT * self.fluid.smoothing
+        return state.moved + max(state.moved, shifted) > margin
+
+    def _sort(self) -> None:
+        """Bring particles that are near into near rows; drop those that left the domain."""
+        state, split = self.state, self.state.fluid
+        kept = np.flatnonzero(self._inside(state.place[:split, :3]))
+        if not len(kept):
+            raise StepError("step: all fluid has left the domain. Check the walls and gravity.")
+        points = np.ascontiguousarray(state.place[:, :3])
+        fluid, boundary = points[kept], points[split:]
+        grid = grid_around(fluid, self._reach)
+        rows = [kept[sorted_into(fluid, grid)[2]], split + sorted_into(boundary, grid)[2]]
+        state.lost += split - len(kept)
+        state.keep(np.concatenate(rows))
+        state.reference, state.moved = state.place[:, :3].copy(), 0.0
+        self._find_samples()
+
+    def _inside(self, points: Array) -> Any:
+        if self.params.walls is None:
+            return np.ones(len(points), bool)
+        low, high = np.array(self.params.walls)
+        stray = STRAY * float((high - low).max())
+        return ((points > low - stray) & (points < high + stray)).all(axis=1)
+
+    @property
+    def _reach(self) -> float:
+        return (1.0 + SKIN) * SUPPORT * self.fluid.smoothing
+
+    def _list(self) -> None:
+        state = self.state
+        self.near = neighbours_within(self._reach, state.reference, state.fluid, self.team)
+        self.rate = np.empty_like(state.place)
+
+    def _find_samples(self) -> None:
+        is_sample = np.flatnonzero(self.state.sample >= 0)
+        order = np.argsort(self.state.sample[is_sample])
+        self.rows = self.state.fluid + is_sample[order]
+
+    def _filter_density(self) -> None:
+        state, every = self.state, self.params.shepard_every
+        if every > 0 and state.steps % every == every - 1:
+            density = np.empty(state.fluid)
+            arguments = (state.place, self.near.arrays, self.fluid, density)
+            self.team.run(self.options.shepard, state.fluid, *arguments)
+            state.place[: state.fluid, 3] = density
+            press(self.fluid, state.place, state.motion)
+
+    def _interact(self) -> None:
+        """Forces and rates of density, and what they do to the samples."""
+        state, near, gravity = self.state, self.near.arrays, self.params.gravity
+        pairs = (state.place, state.motion, near, self.fluid)
+        found = self.team.run(interact, len(state.place), state.fluid, *pairs, gravity, self.rate)
+        state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
+        state.approach = max(fastest for _, fastest in found)
+        if len(self.rows):
+            self.team.run(push_samples, len(self.rows), self.rows, *pairs, state.force)
+
+    def _drift(self, dt: float) -> None:
+        """XSPH: move with the neighbours' mean velocity."""
+        state = self.state
+        if self.params.xsph > 0.0:
+            drift = np.empty((state.fluid, 3))
+            arguments = (state.place, state.motion, self.near.arrays, self.fluid, drift)
+            self.team.run(self.options.mean_motion, state.fluid, *arguments)
+            state.place[: state.fluid, :3] += self.params.xsph * dt * drift
+
+    def _advance(self, dt: float) -> None:
+        state = self.state
+        # At most twice as far as the last step: extrapolating from a sliver would magnify noise.
+        ahead = AHEAD * min(dt / state.last_dt, 2.0) if state.last_dt > 0.0 else 0.0
+        arrays = (self.rate, state.reference, state.place, state.motion, state.before)
+        moved = self.team.run(
+            advance, len(state.place), state.fluid, dt, ahead, self.params.spacing, self.fluid, *arrays
+        )
+        if any(failed for _, failed in moved):
+            raise StepError(self._failure(dt))
+        state.moved = math.sqrt(max(distance for distance, _ in moved))
+        state.last_dt = dt
+        state.steps += 1
+
+    def _failure(self, dt: float) -> str:
+        state, rows = self.state, slice(self.state.fluid)
+        with np.errstate(over="ignore", invalid="ignore"):
+            speed = np.linalg.norm(state.motion[rows, :3], axis=1)
+            sound = (state.place[rows, 3] > 0.0) & np.isfinite(state.place[rows]).all(axis=1)
+            worst = int(np.argmax(np.where(sound & np.isfinite(speed), speed, np.inf)))
+        x, y, z, density = state.place[worst].tolist()
+        return (
+            f"step {state.steps} of {dt:.3g} s: a fluid particle must stay finite and move less than "
+            f"a spacing ({self.params.spacing:.3g} m) a step; particle {state.identity[worst]} at "
+            f"({x:.4g}, {y:.4g}, {z:.4g}) m has {speed[worst]:.4g} m/s and {density:.4g} kg/m3. "
+            f"Lower courant (now {self.params.courant}), raise viscosity or sound_speed, or look "
+            "for a surface that moves too fast."
+        )
+
+    def give(self) -> Fields:
+        """Copy out the mean force of the last step on each sample."""
+        return {"surface_load.force": self.state.force.copy()}
+
+    def save(self) -> Fields:
+        """Copy out all state; the neighbour list is kept as the places it was made from."""
+        return self.state.save() | {"placed": np.array(self.placed)}
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state."""
+        self.placed = bool(state["placed"])
+        self.state = State.load(state)
+        self._find_samples()
+        if len(self.state.reference):
+            self._list()
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies of the fluid that is left."""
+        fluid, rows = self.fluid, slice(self.state.fluid)
+        points, velocity = self.state.place[rows, :3], self.state.motion[rows, :3]
+        return Totals(
+            mass=fluid.mass * len(points),
+            momentum=fluid.mass * velocity.sum(axis=0),
+            angular_momentum=fluid.mass * np.cross(points, velocity).sum(axis=0),
+            kinetic=0.5 * fluid.mass * float(np.einsum("nd,nd->", velocity, velocity)),
+            potential=-fluid.mass * float((points @ np.array(self.params.gravity)).sum()),
+            internal=fluid.mass * float(self._elastic(self.state.place[rows, 3]).sum()),
+        )
+
+    def _elastic(self, density: Array) -> Array:
+        """∫ p/ρ² dρ from ρ₀ [J/kg]."""
+        ratio = density / self.fluid.density
+        if not self.params.tension:
+            ratio = np.maximum(ratio, 1.0)
+        power = build.TAIT - 1
+        return self.fluid.stiffness / self.fluid.density * (
+            (ratio**power - 1.0) / power + 1.0 / ratio - 1.0
+        )
+
+    def view(self) -> Fields:
+        """Fluid particles in the order of their birth."""
+        rows = np.argsort(self.state.identity)
+        place, motion = self.state.place[rows], self.state.motion[rows]
+        return {
+            "points": place[:, :3],
+            "velocity": motion[:, :3].astype(np.float32),
+            "density": place[:, 3].astype(np.float32),
+            "pressure": (motion[:, 3] * place[:, 3] ** 2).astype(np.float32),
+        }
+
+    def items(self) -> int:
+        """Fluid, wall and sample particles."""
+        return len(self.state.place)

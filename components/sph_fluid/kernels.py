@@ -1,0 +1,119 @@
+"""Loops over particles and their neighbours; each row is written by one call alone."""
+
+import math
+
+from numba import njit
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.neighbours import FAST
+from quintet.components.sph_fluid.laws import Fluid, approach, gradient, pressure_term, push
+from quintet.components.sph_fluid.state import Array, Whole
+
+List = tuple[Whole, Whole, Whole, NDArray[np.int32]]
+
+
+@njit(**FAST)
+def interact(
+    first: int, last: int, split: int, place: Array, motion: Array, near: List,
+    fluid: Fluid, gravity: tuple[float, float, float], rate: Array,
+) -> tuple[float, float]:  # fmt: skip
+    """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r²."""
+    begin, _, end, neighbour = near
+    greatest, fastest = 0.0, 0.0
+    for i in range(first, last):
+        x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
+        u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
+        ax, ay, az, growth = 0.0, 0.0, 0.0, 0.0
+        if i < split:
+            for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+                j = np.uint64(neighbour[k])
+                dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
+                r2 = dx * dx + dy * dy + dz * dz
+                dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
+                closing = approach(dot, r2, fluid)
+                slope = gradient(r2, fluid)
+                force = slope * push(term, motion[j, 3], closing, density + place[j, 3], fluid)
+                fastest = max(fastest, abs(closing))
+                growth += dot * slope
+                ax -= force * dx
+                ay -= force * dy
+                az -= force * dz
+            ax = fluid.mass * ax + gravity[0]
+            ay = fluid.mass * ay + gravity[1]
+            az = fluid.mass * az + gravity[2]
+            greatest = max(greatest, ax * ax + ay * ay + az * az)
+        else:
+            for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+                j = np.uint64(neighbour[k])
+                dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
+                dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
+                growth += dot * gradient(dx * dx + dy * dy + dz * dz, fluid)
+        rate[i, 0] = ax
+        rate[i, 1] = ay
+        rate[i, 2] = az
+        rate[i, 3] = fluid.mass * growth
+    return greatest, fastest
+
+
+@njit(**FAST)
+def push_samples(
+    first: int, last: int, row: Whole, place: Array, motion: Array, near: List,
+    fluid: Fluid, force: Array,
+) -> None:  # fmt: skip
+    """Write the force on surface samples: pair by pair, minus that on the fluid [N]."""
+    begin, _, end, neighbour = near
+    for s in range(first, last):
+        i = row[s]
+        fx, fy, fz = 0.0, 0.0, 0.0
+        for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+            j = np.uint64(neighbour[k])
+            dx, dy, dz = place[i, 0] - place[j, 0], place[i, 1] - place[j, 1], place[i, 2] - place[j, 2]
+            du, dv, dw = motion[i, 0] - motion[j, 0], motion[i, 1] - motion[j, 1], motion[i, 2] - motion[j, 2]
+            r2 = dx * dx + dy * dy + dz * dz
+            closing = approach(dx * du + dy * dv + dz * dw, r2, fluid)
+            size = gradient(r2, fluid) * push(
+                motion[i, 3], motion[j, 3], closing, place[i, 3] + place[j, 3], fluid
+            )
+            fx -= size * dx
+            fy -= size * dy
+            fz -= size * dz
+        force[s, 0] = fluid.mass * fluid.mass * fx
+        force[s, 1] = fluid.mass * fluid.mass * fy
+        force[s, 2] = fluid.mass * fluid.mass * fz
+
+
+# Not `fastmath`: that would take every number for finite, and this loop finds those that are not.
+@njit(error_model="numpy", cache=True, nogil=True)
+def advance(
+    first: int, last: int, split: int, dt: float, ahead: float, furthest: float, fluid: Fluid,
+    rate: Array, reference: Array, place: Array, motion: Array, before: Array,
+) -> tuple[float, int]:  # fmt: skip
+    """Advance rows [first, last); return the squared distance moved since the list, and failures."""
+    moved, failed = 0.0, 0
+    for i in range(first, last):
+        growth = rate[i, 3] + ahead * (rate[i, 3] - before[i])
+        before[i] = rate[i, 3]
+        density = place[i, 3] + dt * growth
+        if i < split:
+            step2, moved2 = 0.0, 0.0
+            for d in range(3):
+                step = dt * (motion[i, d] + 0.5 * dt * rate[i, d])
+                place[i, d] += step
+                motion[i, d] += dt * rate[i, d]
+                step2 += step * step
+                moved2 += (place[i, d] - reference[i, d]) ** 2
+            moved = max(moved, moved2)
+            failed += int(not (step2 <= furthest * furthest and 0.0 < density < math.inf))
+        else:
+            density = max(density, fluid.density)
+        place[i, 3] = density
+        motion[i, 3] = pressure_term(density, fluid)
+    return moved, failed
+
+
+@njit(error_model="numpy", cache=True, nogil=True)
+def press(fluid: Fluid, place: Array, motion: Array) -> None:
+    """Write p/ρ² of all rows from their densities."""
+    for i in range(place.shape[0]):
+        motion[i, 3] = pressure_term(place[i, 3], fluid)

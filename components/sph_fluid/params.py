@@ -1,0 +1,117 @@
+"""What a scene may say of a weakly compressible fluid."""
+
+import math
+from typing import Literal
+
+from pydantic import NonNegativeInt
+
+from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
+
+Box = tuple[Vector, Vector]  # lowest and highest corner, m
+Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
+
+
+@parameters
+class SphFluidParams:
+    """A fluid that fills boxes, in an open tank; SI.
+
+    Edges are cut into round(edge / spacing) cells with a particle in the middle of each; every
+    particle has mass density · spacing³.
+    """
+
+    spacing: Positive  # m, between particles
+    sound_speed: Positive  # m/s, artificial: ten times the largest velocity
+    fluid: tuple[Box, ...]  # m, boxes full of fluid
+    walls: Box | None = None  # m, the inside of a tank
+    open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
+    smoothing: Positive = 1.5  # 1, smoothing length / spacing
+    density: Positive = 1000.0  # kg/m3, at no pressure
+    gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
+    viscosity: NotNegative = 0.1  # 1, α of Monaghan's artificial viscosity
+    tension: bool = False  # whether pressure may fall below zero
+    xsph: Fraction = 0.0  # 1, ε: how far particles move with their neighbours' mean velocity
+    shepard_every: NonNegativeInt = 0  # steps between two Shepard filters of the density; 0: none
+    courant: Positive = 0.2  # 1, step / (time that sound takes through a smoothing length)
+
+    def __post_init__(self) -> None:
+        """Check what concerns several values at once."""
+        if not self.fluid:
+            raise ValueError("fluid must have at least one box; found none. Add a box.")
+        if not 1.0 <= self.smoothing <= 3.0:
+            raise ValueError(
+                f"smoothing must be from 1 to 3 spacings; found {self.smoothing}. Use 1.2 to 2."
+            )
+        self._check_boxes()
+        self._check_walls()
+        self._check_sound()
+
+    def _check_boxes(self) -> None:
+        for number, box in enumerate(self.fluid):
+            _check_corners(f"fluid[{number}]", box, self.spacing)
+            for other, earlier in enumerate(self.fluid[:number]):
+                if _overlap(box, earlier, 1e-6 * self.spacing):
+                    raise ValueError(
+                        f"fluid[{number}] must not overlap fluid[{other}]; found {box} and "
+                        f"{earlier}. Cut one of them."
+                    )
+
+    def _check_walls(self) -> None:
+        if self.walls is None:
+            return
+        _check_corners("walls", self.walls, self.spacing)
+        low, high = self.walls
+        room = 1e-6 * self.spacing
+        for number, box in enumerate(self.fluid):
+            for axis, name in enumerate("xyz"):
+                below = box[0][axis] < low[axis] - room and f"{name}-" not in self.open
+                above = box[1][axis] > high[axis] + room and f"{name}+" not in self.open
+                if below or above:
+                    raise ValueError(
+                        f"fluid[{number}] must be inside the walls along {name}, "
+                        f"{low[axis]} to {high[axis]} m; found {box[0][axis]} to "
+                        f"{box[1][axis]} m. Move the box, or add the face to open."
+                    )
+
+    def _check_sound(self) -> None:
+        needed = 10.0 * math.sqrt(math.hypot(*self.gravity) * self.depth)
+        if self.sound_speed < needed:
+            raise ValueError(
+                f"sound_speed must be at least 10 sqrt(g depth) = {needed:.4g} m/s for the fluid's "
+                f"depth of {self.depth:.4g} m; found {self.sound_speed}. Raise it; twice that "
+                "suits a dam break."
+            )
+
+    @property
+    def length(self) -> float:
+        """Smoothing length [m]."""
+        return self.smoothing * self.spacing
+
+    @property
+    def depth(self) -> float:
+        """Extent of all the fluid along gravity [m]; none without gravity."""
+        if not any(self.gravity):
+            return 0.0
+        levels = [level for box in self.fluid for level in self.levels(box)]
+        return max(levels) - min(levels)
+
+    def levels(self, box: Box) -> tuple[float, float]:
+        """Lowest and highest level of a box, measured against gravity [m]."""
+        size = math.hypot(*self.gravity) or 1.0
+        pairs = [(-low * g, -high * g) for low, high, g in zip(*box, self.gravity, strict=True)]
+        return sum(map(min, pairs)) / size, sum(map(max, pairs)) / size
+
+
+def _check_corners(name: str, box: Box, spacing: float) -> None:
+    low, high = box
+    if any(b - a < 0.5 * spacing for a, b in zip(low, high, strict=True)):
+        raise ValueError(
+            f"{name} must go from its lowest to its highest corner, half a spacing or more along "
+            f"each axis; found {low} to {high} m. Exchange the corners, or widen it."
+        )
+
+
+def _overlap(one: Box, other: Box, room: float) -> bool:
+    return all(
+        min(one[1][axis], other[1][axis]) - max(one[0][axis], other[0][axis]) > room
+        for axis in range(3)
+    )

@@ -1,0 +1,85 @@
+"""All that a fluid remembers from one step to the next."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.interfaces.component import Fields
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+
+@dataclass(slots=True)
+class State:
+    """Rows are the fluid, then the boundary (walls and surface samples), each sorted by cell.
+
+    Position and density, velocity and pressure stand side by side, as pairs need them.
+    """
+
+    place: Array  # (n, 4) m, m, m, kg/m3: x, y, z, ρ
+    motion: Array  # (n, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
+    before: Array  # (n,) kg/(m3 s), dρ/dt one step ago
+    reference: Array  # (n, 3) m, where the neighbour list was made; (0, 3): there is none yet
+    identity: Whole  # (fluid,) the number each fluid particle was born with
+    sample: Whole  # (boundary,) row in the port `surface`; -1 for walls
+    force: Array  # (samples, 3) N, mean over the last step
+    acceleration: float = 0.0  # m/s2, largest of the last step
+    approach: float = 0.0  # 1/s, largest |u·r|/(r²+0.01h²) of the last step
+    moved: float = 0.0  # m, furthest that a fluid particle is from its reference
+    last_dt: float = 0.0  # s
+    steps: int = 0
+    lost: int = 0  # particles that left the domain
+
+    @classmethod
+    def empty(cls, fluid: int, boundary: int) -> "State":
+        """State of particles at rest that are nowhere yet."""
+        n = fluid + boundary
+        return cls(
+            place=np.zeros((n, 4)),
+            motion=np.zeros((n, 4)),
+            before=np.zeros(n),
+            reference=np.zeros((0, 3)),
+            identity=np.arange(fluid),
+            sample=np.full(boundary, -1),
+            force=np.zeros((0, 3)),
+        )
+
+    @property
+    def fluid(self) -> int:
+        """Number of fluid particles."""
+        return len(self.identity)
+
+    def keep(self, fluid: Whole, boundary: Whole) -> None:
+        """Keep these rows of the fluid and of the boundary, in this order; all else goes."""
+        rows = np.concatenate([fluid, self.fluid + boundary])
+        self.place, self.motion = self.place[rows], self.motion[rows]
+        self.before = self.before[rows]
+        self.identity, self.sample = self.identity[fluid], self.sample[boundary]
+
+    def add_samples(self, count: int, density: float) -> None:
+        """Append surface samples to the boundary; they are nowhere until they are placed."""
+        place = np.zeros((count, 4))
+        place[:, 3] = density
+        self.place = np.concatenate([self.place, place])
+        self.motion = np.concatenate([self.motion, np.zeros((count, 4))])
+        self.before = np.concatenate([self.before, np.zeros(count)])
+        self.sample = np.concatenate([self.sample, np.arange(count)])
+        self.force = np.zeros((count, 3))
+
+    def sample_rows(self) -> Whole:
+        """Rows of the samples, in the order of their port; (samples,)."""
+        found = np.flatnonzero(self.sample >= 0)
+        return self.fluid + found[np.argsort(self.sample[found])]
+
+    def save(self) -> dict[str, NDArray[Any]]:
+        """Copy out everything."""
+        return {part.name: np.array(getattr(self, part.name)) for part in fields(self)}
+
+    @classmethod
+    def load(cls, saved: Fields) -> "State":
+        """Make the state that was saved."""
+        kept = {part.name: np.array(saved[part.name]) for part in fields(cls)}
+        return cls(**{name: a if a.ndim else a.item() for name, a in kept.items()})

@@ -1,0 +1,11 @@
+"""``python -m quintet.coupler.apart PROGRAM ...`` runs it out of the reach of its launcher.
+
+An MPI launcher kills the process groups of all its ranks when one is killed, told not to or
+not. The coupler, in a session of its own, lives to report it.
+"""
+
+import subprocess
+import sys
+
+# What the launcher opened for the program must stay open: MPI begins through it.
+sys.exit(subprocess.call(sys.argv[1:], start_new_session=True, close_fds=False))
