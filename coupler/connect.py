@@ -18,7 +18,7 @@ from quintet.interfaces.message import Message
 from quintet.interfaces.transport import FramedLine
 
 if TYPE_CHECKING:
-    from quintet.interfaces.zenoh import Hub, Security, ZenohLine
+    from quintet.interfaces.zenoh import Hub, ZenohLine
 
 JOINING = 180.0  # s until a component that we started says hello
 JOINING_BY_HAND = 3600.0  # s until one does that somebody starts elsewhere
@@ -78,11 +78,10 @@ class OverZenoh:
     def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
         from quintet.interfaces.zenoh import Hub, ZenohLine
 
-        security = _security(scene)
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.parts: dict[str, Part] = {}
         self.watches: dict[str, Watch] = {}
-        self.hub: Hub = Hub(endpoint, True, "coupler", security)
+        self.hub: Hub = Hub(endpoint, True, "coupler", scene.security)
         run = secrets.token_hex(4)
         lines = {name: ZenohLine(self.hub, run, name) for name in scene.components}
         try:
@@ -215,14 +214,6 @@ def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
-
-
-def _security(scene: Scene) -> "Security | None":
-    if not scene.tls:
-        return None
-    from quintet.interfaces.zenoh import Security
-
-    return Security(*scene.tls)
 
 
 def import_from(folders: list[str]) -> None:

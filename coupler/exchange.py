@@ -17,7 +17,7 @@ Works = list[tuple[str, str, str]]  # force, velocity, position or "": all of on
 class Leg:
     """One direction of a link: from the giver's outputs to the taker's inputs.
 
-    ``forces`` pairs impulses before and after the mapping whose sums must be equal.
+    ``sums`` pairs impulses before and after the mapping whose sums must be equal.
     ``works_on`` says by which of the taker's own outputs its impulses do work.
     ``moment`` gives the angular impulse about the origin of what was mapped.
     """
@@ -25,7 +25,7 @@ class Leg:
     giver: str
     taker: str
     carry: Callable[[Fields], dict[str, Array]]
-    forces: tuple[tuple[str, str], ...] = ()
+    sums: tuple[tuple[str, str], ...] = ()
     works_on: tuple[tuple[str, str, str], ...] = ()  # taken impulse, given rate, position or ""
     moment: Callable[[Fields], Array] | None = None
 
@@ -75,14 +75,25 @@ def misfits(name: str, found: Port, needed: Port) -> list[str]:
     return wrong
 
 
+@dataclass(frozen=True, slots=True)
+class Brought:
+    """What one leg brought: its giver's rows, before and after the mapping."""
+
+    number: int  # of the link
+    leg: Leg
+    before: Fields
+    after: Fields
+
+
 @dataclass(slots=True)
 class Carried:
     """Inputs for one component, and what each leg brought to them."""
 
     fields: dict[str, Array] = field(default_factory=dict)
-    legs: list[tuple[Leg, dict[str, Array]]] = field(default_factory=list)
+    legs: list[Brought] = field(default_factory=list)
     ends: list[str] = field(default_factory=list)  # instants that hold at the window's end
     guessed: list[str] = field(default_factory=list)  # replaced by an iteration's guess
+    mixed: list[str] = field(default_factory=list)  # some rows hold at the end, some do not
     outputs: dict[str, Fields] = field(default_factory=dict)  # from which they were carried
     sent: dict[str, dict[str, list[float]]] = field(default_factory=dict)  # sums of those
 
@@ -96,13 +107,18 @@ class Exchange:
     _slices: dict[tuple[str, str, int], slice] = field(default_factory=dict)
 
     def bind(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
-        """Static fields for every component, rows of several links one after another."""
+        """Static fields for every component: a partner's in rows, those of own items added up."""
         merged: dict[str, dict[str, Array]] = {name: {} for name in self.ports}
         for link in self.links:
             for name, fields in link.describe(described).items():
                 for key, array in fields.items():
                     known = merged[name].get(key)
-                    merged[name][key] = array if known is None else np.concatenate([known, array])
+                    if known is None:
+                        merged[name][key] = array
+                    elif self._port(name, key).items == "partner":
+                        merged[name][key] = np.concatenate([known, array])
+                    else:
+                        merged[name][key] = known + array
         return merged
 
     def memory(self) -> list[Any]:
@@ -119,9 +135,16 @@ class Exchange:
         return self._field(taker, key).centring == "impulse"
 
     def _field(self, taker: str, key: str) -> Field:
-        name, _, what = key.partition(".")
-        port = next(port for port in self.ports[taker][0] if port.name == name)
-        return next(one for one in port.fields if one.name == what)
+        name = key.partition(".")[2]
+        return next(one for one in self._port(taker, key).fields if one.name == name)
+
+    def _port(self, taker: str, key: str) -> Port:
+        name = key.partition(".")[0]
+        return next(port for port in self.ports[taker][0] if port.name == name)
+
+    def unit(self, taker: str, key: str) -> str:
+        """Unit of an input; of an impulse, that of its rate."""
+        return self._field(taker, key).unit
 
     def works(self, name: str) -> Works:
         """Pairs of force and velocity by which a component's links do work."""
@@ -134,39 +157,44 @@ class Exchange:
             for leg in link.legs:
                 if leg.taker != taker or leg.giver not in outputs:
                     continue
-                mine = self._rows(number, link, leg.giver, outputs[leg.giver])
-                brought = leg.carry(mine)
-                carried.legs.append((leg, brought))
-                for key, array in brought.items():
-                    gathered.setdefault(key, []).append((number, array))
-                    if leg.giver in fresh:
-                        carried.ends.append(key)
+                mine = self.rows(number, leg, outputs)
+                brought = Brought(number, leg, mine, leg.carry(mine))
+                carried.legs.append(brought)
+                for key, array in brought.after.items():
+                    gathered.setdefault(key, []).append((brought, array))
         for key, parts in gathered.items():
             carried.fields[key] = self._merge(taker, key, parts)
+            ahead = [brought.leg.giver in fresh for brought, _ in parts]
+            if all(ahead):
+                carried.ends.append(key)
+            elif any(ahead):
+                carried.mixed.append(key)
         return carried
 
-    def _rows(self, number: int, link: Link, giver: str, outputs: Fields) -> Fields:
-        taken = link.partner.get(giver)
-        rows = self._slices.get((giver, taken, number)) if taken else None
-        if rows is None:
-            return outputs
+    def rows(self, number: int, leg: Leg, outputs: Mapping[str, Fields]) -> Fields:
+        """Outputs of a leg's giver; of a port that several links share, the link's own rows."""
+        giver, given = leg.giver, outputs[leg.giver]
+        taken = self.links[number].partner.get(giver)
+        if taken is None or sum(link.partner.get(giver) == taken for link in self.links) == 1:
+            return given
+        if (giver, taken, number) not in self._slices:
+            self.inputs(giver, outputs, ())  # finds out which rows are whose
+        rows = self._slices[giver, taken, number]
         partners = {port.name for port in self.ports[giver][1] if port.items == "partner"}
-        return {k: v[rows] if k.split(".")[0] in partners else v for k, v in outputs.items()}
+        return {k: v[rows] if k.split(".")[0] in partners else v for k, v in given.items()}
 
-    def _merge(self, taker: str, key: str, parts: list[tuple[int, Array]]) -> Array:
+    def _merge(self, taker: str, key: str, parts: list[tuple[Brought, Array]]) -> Array:
         if len(parts) == 1:
             return parts[0][1]
-        name = key.partition(".")[0]
-        port = next(port for port in self.ports[taker][0] if port.name == name)
-        if port.items == "partner":
-            first = 0
-            for number, array in parts:
-                self._slices[taker, name, number] = slice(first, first + len(array))
+        if self._port(taker, key).items == "partner":
+            first, name = 0, key.partition(".")[0]
+            for brought, array in parts:
+                self._slices[taker, name, brought.number] = slice(first, first + len(array))
                 first += len(array)
             return np.concatenate([array for _, array in parts])
         if not self.is_impulse(taker, key):
             raise LinkError(
                 f"{taker}.{key}: only forces of several links can be added up; this is a value. "
-                f"Join {taker}.{name} once."
+                f"Join {taker}.{key.partition('.')[0]} once."
             )
         return np.sum([array for _, array in parts], axis=0)

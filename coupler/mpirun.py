@@ -22,6 +22,7 @@ from typing import IO
 from quintet.coupler.launch import environment, running, tail
 from quintet.coupler.scene import Scene
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.process import STARTER
 
 NAME = "mpi.json"  # in the log folder: processes, and the status that the coupler ended with
 SAID = ("coupler.out", "coupler.err")  # there too: what the coupler printed
@@ -67,7 +68,7 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
     note.unlink(missing_ok=True)
     threads = max(one.threads for one in scene.components.values())
     line = command(arguments, scene, folder)
-    env = {**environment(threads, scene.import_folders), "QUINTET_LOCAL": str(os.getpid())}
+    env = {**environment(threads, scene.import_folders), STARTER: str(os.getpid())}
     log = note.with_name(LAUNCHER)
     with open(log, "wb") as file:
         process = subprocess.Popen(

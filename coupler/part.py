@@ -64,7 +64,7 @@ class Part:
         """Wait for the answer."""
         try:
             message = self.line.receive(PATIENCE, expected)
-            require_finite(message.fields, f"{self.name}, window {self.window}")
+            require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
         if message.order == "failed":

@@ -1,8 +1,10 @@
 """Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
 
+import re
 import sys
 import tomllib
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -11,10 +13,12 @@ from quintet.coupler.exchange import Link
 from quintet.coupler.expect import Expectation, check
 from quintet.coupler.links import KINDS
 from quintet.coupler.scene import ComponentPlan, Scene, SceneFile
-from quintet.interfaces.errors import QuintetError, SceneError
+from quintet.interfaces.endpoint import Security, check_endpoint
+from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.manifest import Manifest, find, known_kinds
 from quintet.interfaces.params import read, unknown
 
+NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component: it names files and lines
 TABLES = ("components", "links", "expect", "presets", "stand_ins")
 
 
@@ -80,12 +84,14 @@ def parse(path: Path) -> dict[str, Any]:
     try:
         with open(path, "rb") as file:
             return tomllib.load(file)
-    except tomllib.TOMLDecodeError as error:
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SceneError(f"{path.name}: a scene must be valid TOML: {error}.") from error
 
 
 def _preset(table: dict[str, Any], preset: str) -> list[str]:
     presets = table.get("presets", {})
+    if not isinstance(presets, dict) or not isinstance(presets.get(preset, {}), dict):
+        return [f"presets.{preset} must be a table of paths and values. Write [presets.{preset}]."]
     if preset not in presets:
         return [unknown(f"preset {preset}", preset, presets)]
     return [m for path, value in presets[preset].items() for m in _place(table, path, value)]
@@ -94,7 +100,7 @@ def _preset(table: dict[str, Any], preset: str) -> list[str]:
 def _set(table: dict[str, Any], setting: str) -> list[str]:
     path, equals, text = setting.partition("=")
     if not equals:
-        return [f"--set needs PATH=VALUE; found {setting!r}."]
+        return [f"--set needs PATH=VALUE; found {setting!r}. Give it as in --set window=1e-3."]
     try:
         value = tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
@@ -123,7 +129,9 @@ def _place(table: dict[str, Any], path: str, value: Any) -> list[str]:
 
 
 def _swap(table: dict[str, Any], swap: str) -> list[str]:
-    name, _, kind = swap.partition("=")
+    name, equals, kind = swap.partition("=")
+    if not equals:
+        return [f"--swap needs NAME=KIND; found {swap!r}. Give it as in --swap NAME=replay."]
     kind, _, source = kind.partition("@")
     components = table.get("components", {})
     if name not in components:
@@ -145,19 +153,19 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
     file, mistakes = read(SceneFile, own, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
     components = _components(table.get("components"), mistakes)
-    links = _links(table.get("links", []), components, mistakes)
-    expect = _expect(table.get("expect", []), components, path.parent, mistakes)
+    wrong = set(table.get("components") or ()) - set(components)  # told of already
+    links = _links(_tables(table, "links", mistakes), components, wrong, mistakes)
+    expect = _expect(_tables(table, "expect", mistakes), components, wrong, path.parent, mistakes)
     if file is not None:
-        components = _ordered(file, components, mistakes)
+        components = components if wrong else _ordered(file, components, mistakes)
         if file.window != "auto" and file.window > file.end:
             mistakes.append(
                 f"scene.window must not exceed scene.end ({file.end:g} s); found {file.window:g} s."
                 " Shorten it."
             )
-        if len(file.tls) not in (0, 3):
-            mistakes.append("scene.tls needs three files: authority, certificate, key.")
+        mistakes += _reachable(file)
     if mistakes or file is None:
-        raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
+        raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])
     resolved = {key: value for key, value in table.items() if key != "presets"}
     return Scene(file, path, preset, components, links, expect, resolved, file.transport)
 
@@ -171,14 +179,49 @@ def _also_tables(mistake: str) -> str:
     return mistake
 
 
+def _reachable(file: SceneFile) -> list[str]:
+    """Check where the coupler is to listen, and the files that keep strangers out."""
+    if len(file.tls) not in (0, 3):
+        return [
+            "scene.tls must be three files: authority, certificate, key; found "
+            f"{len(file.tls)}. Name all three."
+        ]
+    wrong = [
+        f"scene.tls: {name} is not there. Make the file, or correct its path."
+        for name in file.tls
+        if not Path(name).is_file()
+    ]
+    if file.endpoint:
+        try:
+            check_endpoint(file.endpoint, Security(*file.tls) if file.tls else None)
+        except LineError as error:
+            wrong.append(f"scene.{error}")
+    return wrong
+
+
+def _tables(table: dict[str, Any], key: str, mistakes: list[str]) -> list[dict[str, Any]]:
+    """Return what must be a list of tables, or nothing."""
+    found = table.get(key, [])
+    if isinstance(found, list) and all(isinstance(one, dict) for one in found):
+        return found
+    mistakes.append(f"{key} must be a list of tables; found {found!r}. Write [[{key}]].")
+    return []
+
+
 def _components(table: Any, mistakes: list[str]) -> dict[str, ComponentPlan]:
     if not isinstance(table, dict) or not table:
         mistakes.append("components: a scene needs at least one. Add [components.NAME].")
         return {}
     found = {}
     for name, given in table.items():
-        one = _component(name, dict(given) if isinstance(given, dict) else {}, mistakes)
-        if one:
+        if not NAME.fullmatch(name) or name == "coupler":
+            mistakes.append(
+                f"components: a name must be letters, digits, _ or -, and not coupler; found "
+                f"{name!r}. Rename it."
+            )
+        elif not isinstance(given, dict):
+            mistakes.append(f"components.{name} must be a table; found {given!r}. Give it a kind.")
+        elif one := _component(name, dict(given), mistakes):
             found[name] = one
     return found
 
@@ -187,7 +230,7 @@ def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> Compone
     where = f"components.{name}"
     kind, threads = given.pop("kind", None), given.pop("threads", 1)
     if not isinstance(kind, str):
-        mistakes.append(f"{where}.kind is needed. Kinds here: {', '.join(sorted(known_kinds()))}.")
+        mistakes.append(f"{where}.kind must be a name; found {kind!r}. Known here: {', '.join(sorted(known_kinds()))}.")
         return None
     if type(threads) is not int or threads < 1:
         mistakes.append(f"{where}.threads must be a whole number from 1; found {threads!r}.")
@@ -200,7 +243,7 @@ def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> Compone
         return None
     try:
         takes, gives = manifest.ports(params)
-    except QuintetError as error:
+    except Exception as error:  # of any kind: what a kind does here is its author's
         mistakes.append(f"{where}: {error}")
         return None
     return ComponentPlan(name, kind, manifest, given, params, takes, gives, threads)
@@ -211,35 +254,59 @@ def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:
         return find(kind)
     except KeyError:
         mistakes.append(unknown(f"{where}.kind {kind}", kind, known_kinds()))
-    except (ImportError, AttributeError, ValueError, QuintetError) as error:
-        mistakes.append(f"{where}.kind {kind} cannot be imported: {error}. Name a module:Class.")
+    except QuintetError as error:
+        mistakes.append(f"{where}.{error}")
+    except Exception as error:  # of any kind: the module is its author's
+        said = f"{type(error).__name__}: {error}"
+        mistakes.append(f"{where}.kind {kind} cannot be imported ({said}). Name a module:Class.")
     return None
 
 
-def _links(table: Any, components: dict[str, ComponentPlan], mistakes: list[str]) -> list[Link]:
+def _links(
+    table: list[dict[str, Any]],
+    components: dict[str, ComponentPlan],
+    wrong: set[str],
+    mistakes: list[str],
+) -> list[Link]:
     ports = {name: (one.takes, one.gives) for name, one in components.items()}
     found: list[Link] = []
     for number, given in enumerate(table):
-        kind = given.get("kind", "")
+        kind = str(given.get("kind", ""))
         if kind not in KINDS:
             mistakes.append(unknown(f"links.{number}.kind {kind}", kind, KINDS))
-            continue
-        try:
-            found.append(KINDS[kind](number, given, ports))
-        except SceneError as error:
-            mistakes += error.mistakes
+        elif not wrong & set(_named([given.get("between"), given.get("pairs")])):
+            try:
+                found.append(KINDS[kind](number, given, ports))
+            except SceneError as error:
+                mistakes += error.mistakes
+    for name, count in Counter(link.name for link in found).items():
+        if count > 1:
+            mistakes.append(f"links: {count} have the name {name}. Give each its own.")
     return found
 
 
+def _named(value: Any) -> Iterator[str]:
+    """Components that stand in a link's lists, whatever else is wrong with them."""
+    if isinstance(value, list):
+        for one in value:
+            yield from _named(one)
+    elif isinstance(value, str):
+        yield value.split(".")[0]
+
+
 def _expect(
-    table: Any, components: dict[str, ComponentPlan], folder: Path, mistakes: list[str]
+    table: list[dict[str, Any]],
+    components: dict[str, ComponentPlan],
+    wrong: set[str],
+    folder: Path,
+    mistakes: list[str],
 ) -> list[Expectation]:
     found = []
     gives = {name: one.gives for name, one in components.items()}
     for number, given in enumerate(table):
-        one, wrong = read(Expectation, given, f"expect.{given.get('name', number)}")
-        mistakes += wrong
-        if one is not None:
+        one, lacks = read(Expectation, given, f"expect.{given.get('name', number)}")
+        mistakes += lacks
+        if one is not None and one.component not in wrong:
             mistakes += check(one, gives, folder)
             found.append(one)
     return found

@@ -8,6 +8,7 @@ from quintet.coupler.exchange import Link
 from quintet.coupler.expect import Expectation
 from quintet.coupler.schedule import Iteration
 from quintet.interfaces.component import Port
+from quintet.interfaces.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
 from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
 
@@ -93,6 +94,11 @@ class Scene:
     def tls(self) -> tuple[str, ...]:
         """Authority, certificate and key, or nothing."""
         return self.file.tls
+
+    @property
+    def security(self) -> Security | None:
+        """The same, as the lines take it."""
+        return Security(*self.tls) if self.tls else None
 
     @property
     def folder(self) -> Path:

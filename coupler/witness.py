@@ -1,6 +1,7 @@
 """What a run writes while it goes, and how it tells of its progress."""
 
 import contextlib
+import os
 import signal
 import sys
 import time
@@ -11,9 +12,11 @@ from typing import TYPE_CHECKING
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from quintet.coupler.launch import running
 from quintet.coupler.schedule import Coupling
 from quintet.coupler.scene import Scene
 from quintet.interfaces.component import Fields
+from quintet.interfaces.process import STARTER
 
 if TYPE_CHECKING:
     from quintet.coupler.record import Recorder
@@ -23,13 +26,16 @@ EVERY = 5.0  # s between two lines of progress where there is no terminal
 
 
 class Stop:
-    """Whether the user, or the batch system, asked for an end."""
+    """Whether the user, or the batch system, asked for an end, or nobody is there any more."""
 
     asked = False
 
+    def __init__(self) -> None:
+        self._starter = int(os.environ.get(STARTER, "0"))  # of an MPI job: who cleans up after it
+
     def __call__(self) -> bool:
-        """Tell whether an end was asked for."""
-        return self.asked
+        """Tell whether to end."""
+        return self.asked or (self._starter > 0 and not running(self._starter))
 
     @contextlib.contextmanager
     def listening(self) -> Iterator[None]:

@@ -56,6 +56,8 @@ def resolve(path: str) -> Any:
 
 def manifest_of(cls: type[Component], path: str) -> Manifest:
     """Manifest of a class that publishes none: its ``Params`` and its ports."""
+    if not (isinstance(cls, type) and issubclass(cls, Component)):
+        raise SceneError(f"kind {path}: {cls!r} is not a Component. Derive it from Component.")
     params = getattr(cls, "Params", None)
     if params is None:
         raise SceneError(

@@ -2,16 +2,20 @@
 
 import functools
 import os
+import sys
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
+from quintet.interfaces.component import Array
 from quintet.interfaces.errors import LineError
 from quintet.interfaces.message import Frame
 from quintet.interfaces.transport import FramedLine, wait
 
 TAG = 17
+KEPT = 4  # frames kept for the next messages
+UNSEEN = 3  # references to a frame in `_buffer` when no message's fields look into it
 SENDING = 600.0  # s that a large message may take until the receiver has asked for it
 
 
@@ -30,6 +34,7 @@ class MpiLine(FramedLine):
         self.rank = rank
         self.pid = pid  # of the other side when it runs on this host, else 0
         self._comm = world()
+        self._frames: list[Array] = []
 
     def _put(self, frame: bytearray) -> None:
         request = self._comm.Isend([frame, MPI.BYTE], self.rank, TAG)
@@ -40,9 +45,21 @@ class MpiLine(FramedLine):
         message = self._comm.Improbe(self.rank, TAG, status)
         if message is None:
             return None
-        frame = np.empty(status.Get_count(MPI.BYTE), np.uint8)
+        frame = self._buffer(status.Get_count(MPI.BYTE))
         request = message.Irecv([frame, MPI.BYTE])
         wait(lambda: request.Test() or None, SENDING, self._reason)
+        return frame
+
+    def _buffer(self, size: int) -> Array:
+        """Return a frame that nobody looks at any more, or a new one.
+
+        Fresh memory costs more than the message: the system clears every page of it.
+        """
+        for frame in self._frames:
+            if len(frame) == size and sys.getrefcount(frame) == UNSEEN:
+                return frame
+        frame = np.empty(size, np.uint8)
+        self._frames = [*self._frames[1 - KEPT :], frame]
         return frame
 
     def _broken(self) -> str:

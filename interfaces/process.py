@@ -10,6 +10,7 @@ import traceback
 from typing import Any
 
 from quintet.interfaces.component import Component
+from quintet.interfaces.endpoint import Security
 from quintet.interfaces.errors import LineError, QuintetError
 from quintet.interfaces.manifest import Manifest, find
 from quintet.interfaces.params import read
@@ -18,6 +19,7 @@ from quintet.interfaces.transport import Line
 
 JOINING = 600.0  # s until every other component has joined
 LINGERING = 10.0  # s
+STARTER = "QUINTET_STARTER"  # set where an MPI job was started on this host: the process that did
 
 
 def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -> None:
@@ -96,7 +98,7 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
 
 def over_zenoh(given: argparse.Namespace) -> Line:
     """Connect over zenoh; only a process that does so imports it."""
-    from quintet.interfaces.zenoh import Security, connect
+    from quintet.interfaces.zenoh import connect
 
     return connect(given.at, given.name, Security(*given.tls) if given.tls else None)
 
@@ -110,7 +112,7 @@ def over_mpi(name: str) -> Line:
 
 def launched_here() -> bool:
     """Whether the launcher of the ranks runs on this host and ends with the run."""
-    return "QUINTET_LOCAL" in os.environ
+    return STARTER in os.environ
 
 
 def about_me() -> dict[str, Any]:

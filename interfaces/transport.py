@@ -19,6 +19,7 @@ T = TypeVar("T")
 SPIN = 3e-4  # s of asking without sleep: longer than a round trip, shorter than any step
 NAP = 2e-5  # s, the first sleep
 LONGEST_NAP = 1e-3  # s
+SETTLING = 0.05  # s from a connection's end until the system knows how the process ended
 
 
 class Line(Protocol):
@@ -96,7 +97,10 @@ class FramedLine(ABC):
         return message
 
     def _reason(self) -> str:
-        return self._broken() or self.watch()
+        gone = self._broken()
+        if gone:
+            time.sleep(SETTLING)
+        return self.watch() or gone
 
     @abstractmethod
     def _put(self, frame: bytearray) -> None:

@@ -7,13 +7,12 @@ multicast joins strangers, and a publisher sends into the void until it is match
 
 import contextlib
 import json
-from dataclasses import dataclass
 from typing import Any
-from urllib.parse import urlsplit
 
 import zenoh
 from zenoh import handlers
 
+from quintet.interfaces.endpoint import Security, check_endpoint
 from quintet.interfaces.errors import LineError
 from quintet.interfaces.message import Frame
 from quintet.interfaces.transport import FramedLine, wait
@@ -21,33 +20,6 @@ from quintet.interfaces.transport import FramedLine, wait
 CAPACITY = 1024  # messages a receiver may leave lying; lock-step needs two or three
 BLOCKED = 600_000_000  # us that a full connection may block before it is given up
 LEASE = 60_000  # ms without a sign of life; shorter ones break while a solver holds the machine
-LOOPBACK = ("127.0.0.1", "localhost", "[::1]", "::1")
-
-
-@dataclass(frozen=True, slots=True)
-class Security:
-    """Files for mutual TLS: the authority that both sides trust, and one's own pair."""
-
-    authority: str
-    certificate: str
-    key: str
-
-
-def check_endpoint(endpoint: str, security: Security | None) -> None:
-    """Refuse an endpoint that others on the network could reach without mutual TLS."""
-    protocol, _, address = endpoint.partition("/")
-    host = urlsplit(f"//{address}").hostname if address else None
-    if protocol not in ("tcp", "tls") or not host:
-        raise LineError(
-            f"endpoint {endpoint!r}: must be tcp/HOST:PORT on the loopback or tls/HOST:PORT."
-        )
-    if protocol == "tcp" and host not in LOOPBACK:
-        raise LineError(
-            f"endpoint {endpoint!r}: off the loopback only tls with certificates on both sides "
-            "is allowed. Use tls/HOST:PORT and give authority, certificate and key."
-        )
-    if protocol == "tls" and security is None:
-        raise LineError(f"endpoint {endpoint!r}: tls needs authority, certificate and key.")
 
 
 def configuration(endpoint: str, listens: bool, security: Security | None) -> zenoh.Config:

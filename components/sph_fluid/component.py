@@ -58,7 +58,7 @@ class SphFluid(Component):
         if "surface.volume" in static:
             self.state.add_samples(len(static["surface.volume"]), self.params.density)
             press(self.fluid, self.state.place, self.state.motion)
-            self._find_samples()
+            self.rows = self.state.sample_rows()
             self.placed = False
 
     def stable_dt(self) -> float:
@@ -105,11 +105,10 @@ class SphFluid(Component):
         points = np.ascontiguousarray(state.place[:, :3])
         fluid, boundary = points[kept], points[split:]
         grid = grid_around(fluid, self._reach)
-        rows = [kept[sorted_into(fluid, grid)[2]], split + sorted_into(boundary, grid)[2]]
         state.lost += split - len(kept)
-        state.keep(np.concatenate(rows))
+        state.keep(kept[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         state.reference, state.moved = state.place[:, :3].copy(), 0.0
-        self._find_samples()
+        self.rows = state.sample_rows()
 
     def _inside(self, points: Array) -> Any:
         if self.params.walls is None:
@@ -126,11 +125,6 @@ class SphFluid(Component):
         state = self.state
         self.near = neighbours_within(self._reach, state.reference, state.fluid, self.team)
         self.rate = np.empty_like(state.place)
-
-    def _find_samples(self) -> None:
-        is_sample = np.flatnonzero(self.state.sample >= 0)
-        order = np.argsort(self.state.sample[is_sample])
-        self.rows = self.state.fluid + is_sample[order]
 
     def _filter_density(self) -> None:
         state, every = self.state, self.params.shepard_every
@@ -201,7 +195,7 @@ class SphFluid(Component):
         """Come back to a saved state."""
         self.placed = bool(state["placed"])
         self.state = State.load(state)
-        self._find_samples()
+        self.rows = self.state.sample_rows()
         if len(self.state.reference):
             self._list()
 

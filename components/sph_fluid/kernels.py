@@ -13,6 +13,20 @@ from quintet.components.sph_fluid.state import Array, Whole
 List = tuple[Whole, Whole, Whole, NDArray[np.int32]]
 
 
+# Numbers from 0 on are in the order of their bits, and the compiler makes vectors of the greatest
+# of integers, but not of that of floats: with it the loop would be half as fast.
+@njit(inline="always")
+def bits(number):  # type: ignore[no-untyped-def]
+    """Bits of a number, as an integer."""
+    return np.float64(number).view(np.int64)
+
+
+@njit(inline="always")
+def number(bits):  # type: ignore[no-untyped-def]
+    """Number that has these bits."""
+    return np.int64(bits).view(np.float64)
+
+
 @njit(**FAST)
 def interact(
     first: int, last: int, split: int, place: Array, motion: Array, near: List,
@@ -20,7 +34,7 @@ def interact(
 ) -> tuple[float, float]:  # fmt: skip
     """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r²."""
     begin, _, end, neighbour = near
-    greatest, fastest = 0.0, 0.0
+    greatest, fastest = 0.0, bits(0.0)
     for i in range(first, last):
         x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
         u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
@@ -34,7 +48,7 @@ def interact(
                 closing = approach(dot, r2, fluid)
                 slope = gradient(r2, fluid)
                 force = slope * push(term, motion[j, 3], closing, density + place[j, 3], fluid)
-                fastest = max(fastest, abs(closing))
+                fastest = max(fastest, bits(abs(closing)))
                 growth += dot * slope
                 ax -= force * dx
                 ay -= force * dy
@@ -53,7 +67,7 @@ def interact(
         rate[i, 1] = ay
         rate[i, 2] = az
         rate[i, 3] = fluid.mass * growth
-    return greatest, fastest
+    return greatest, number(fastest)
 
 
 @njit(**FAST)

@@ -65,7 +65,7 @@ class RigidFsi:
                 fluid,
                 body,
                 self._load,
-                forces=(("surface_load.force", "load.force"),),
+                sums=(("surface_load.force", "load.force"),),
                 works_on=(
                     ("load.force", "motion.velocity", "motion.position"),
                     ("load.torque", "motion.angular_velocity", ""),
@@ -141,7 +141,7 @@ class FaceFsi:
                 fluid,
                 body,
                 self._load,
-                forces=(("surface_load.force", "node_load.force"),),
+                sums=(("surface_load.force", "node_load.force"),),
                 works_on=(("node_load.force", "faces.velocity", "faces.position"),),
             ),
         ]

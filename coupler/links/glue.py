@@ -42,7 +42,7 @@ class Glue:
                 particles,
                 mesh,
                 self._load,
-                forces=(FORCE,),
+                sums=(FORCE,),
                 works_on=(("node_load.force", "node_glue.velocity", "integral"),),
             ),
             Leg(mesh, particles, self._move),
