@@ -66,7 +66,9 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("name", help="exchange, or a kind of component")
     one.add_argument("--threads", type=int, default=1)
     one.add_argument("--json", type=Path, metavar="FILE")
-    one.add_argument("--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given")
+    one.add_argument(
+        "--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given"
+    )
     one.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
     return top
 

@@ -5,6 +5,7 @@ import secrets
 import socket
 import sys
 import time
+import traceback
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -18,7 +19,7 @@ from quintet.interfaces.message import Message
 from quintet.interfaces.transport import FramedLine
 
 if TYPE_CHECKING:
-    from quintet.interfaces.zenoh import Hub, ZenohLine
+    from quintet.interfaces.zenoh import ZenohLine
 
 JOINING = 180.0  # s until a component that we started says hello
 JOINING_BY_HAND = 3600.0  # s until one does that somebody starts elsewhere
@@ -62,8 +63,9 @@ class InMemory:
         for name, one in scene.components.items():
             try:
                 component = build(one.manifest, {**settings(scene, name), "threads": threads})
-            except QuintetError as error:
-                raise ComponentFailed(name, 0, str(error)) from error
+            except Exception as error:
+                trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
+                raise ComponentFailed(name, 0, str(error), trace) from error
             line = MemoryLine(run, name)
             line.handle = partial(answer, Server(component, name), line.far)
             self.parts[name] = Part(name, line)
@@ -81,7 +83,7 @@ class OverZenoh:
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.parts: dict[str, Part] = {}
         self.watches: dict[str, Watch] = {}
-        self.hub: Hub = Hub(endpoint, True, "coupler", scene.security)
+        self.hub = Hub(endpoint, True, "coupler", scene.security)
         run = secrets.token_hex(4)
         lines = {name: ZenohLine(self.hub, run, name) for name in scene.components}
         try:

@@ -83,6 +83,7 @@ class Brought:
     leg: Leg
     before: Fields
     after: Fields
+    moment: Array | None  # angular impulse about the origin, where it is known
 
 
 @dataclass(slots=True)
@@ -146,21 +147,28 @@ class Exchange:
         """Unit of an input; of an impulse, that of its rate."""
         return self._field(taker, key).unit
 
+    def follows(self, name: str) -> bool:
+        """Whether a component takes the motion of a partner's items."""
+        return any(name in link.partner for link in self.links)
+
     def works(self, name: str) -> Works:
         """Pairs of force and velocity by which a component's links do work."""
         return sorted({work for link in self.links for work in link.works.get(name, [])})
 
     def inputs(self, taker: str, outputs: Mapping[str, Fields], fresh: Collection[str]) -> Carried:
         """Carry to one component what the others gave; `fresh` ones are a window ahead."""
-        carried, gathered = Carried(), {}
+        carried = Carried()
+        gathered: dict[str, list[tuple[Brought, Array]]] = {}
         for number, link in enumerate(self.links):
             for leg in link.legs:
                 if leg.taker != taker or leg.giver not in outputs:
                     continue
                 mine = self.rows(number, leg, outputs)
-                brought = Brought(number, leg, mine, leg.carry(mine))
+                mapped = leg.carry(mine)
+                moment = leg.moment(mapped) if leg.moment else None
+                brought = Brought(number, leg, mine, mapped, moment)
                 carried.legs.append(brought)
-                for key, array in brought.after.items():
+                for key, array in mapped.items():
                     gathered.setdefault(key, []).append((brought, array))
         for key, parts in gathered.items():
             carried.fields[key] = self._merge(taker, key, parts)

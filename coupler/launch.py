@@ -84,7 +84,9 @@ class Watch:
                 os.unlink(path)
 
 
-def start(arguments: list[str], log: Path, threads: int, folders: list[str]) -> subprocess.Popen[bytes]:
+def start(
+    arguments: list[str], log: Path, threads: int, folders: list[str]
+) -> subprocess.Popen[bytes]:
     """Start a Python program that prints into a log, apart from our terminal's signals."""
     with open(log, "ab") as file:
         return subprocess.Popen(

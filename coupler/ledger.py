@@ -1,21 +1,38 @@
 """The ledger: what crossed each link, as sent, received, mapped and applied.
 
 Four sums must agree in every window: of the impulses as the giver made them, as they arrived,
-after the mapping, and as the taker applied them in its steps. Work is counted on both sides
-from what each did itself; it agrees as well as the staggering in time lets it.
+after the mapping, and as the taker applied them in its steps. Over the whole run all that was
+given is applied once, but for what is on its way. Motion is handed out in each step as it was
+sent. Work is counted on both sides from what each did itself; it agrees as well as the
+staggering in time lets it.
 """
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from quintet.coupler.exchange import Carried, Exchange, Leg
+from quintet.coupler.balance import Balance
+from quintet.coupler.exchange import Brought, Carried, Exchange
+from quintet.coupler.motion import Motion
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.outputs import column_sums, size
+
+# The residual into which an impulse is booked, by the unit of its rate.
+RESIDUALS = {
+    "N": "momentum_residual",
+    "N m": "angular_residual",
+    "W": "heat_residual",
+    "m/s": "kinematic_residual",
+}
+
+COLUMNS = (
+    "time name momentum_residual angular_residual impulse_x impulse_y impulse_z work_given "
+    "work_taken mass momentum_x momentum_y momentum_z kinetic potential internal"
+).split()
 
 
 @dataclass(slots=True)
@@ -25,7 +42,9 @@ class Account:
     link: str
     momentum_residual: float = 0.0  # worst window, relative to the sum of its forces' sizes
     angular_residual: float = 0.0  # worst window, relative likewise (with the lever arm)
-    impulse: Array = field(default_factory=lambda: np.zeros(1))  # N s, on the taker
+    heat_residual: float = 0.0  # worst window, relative likewise
+    kinematic_residual: float = 0.0  # worst window, of motion handed out, relative to its size
+    impulse: Array = field(default_factory=lambda: np.zeros(3))  # N s, on the taker
     work_given: float = 0.0  # J, as the side that gives the force counts it
     work_taken: float = 0.0  # J, as the side that moves counts it
     turnover: float = 0.0  # J, sum of the magnitudes of the work of every window
@@ -34,6 +53,14 @@ class Account:
     def energy_residual(self) -> float:
         """Difference of the two sides' work, relative to the work that went through."""
         return abs(self.work_given - self.work_taken) / self.turnover if self.turnover else 0.0
+
+    def note(self, unit: str, gap: Any, scale: float) -> None:
+        """Book the difference of two sums that should be the same."""
+        worst = float(np.abs(gap).max()) if np.size(gap) else 0.0
+        if worst:
+            name = RESIDUALS[unit]
+            relative = worst / scale if scale else float("inf")
+            setattr(self, name, max(getattr(self, name), relative))
 
 
 class Ledger:
@@ -44,65 +71,94 @@ class Ledger:
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy: list[float] = []  # J, sum over the components, at every note
+        self._balance = Balance(exchange)
+        self._motion = Motion(exchange)
         self._file = open(path, "w", newline="") if path else None
         self._rows = csv.writer(self._file) if self._file else None
         if self._rows:
-            self._rows.writerow(
-                ["time", "name", "momentum_residual", "angular_residual", "impulse_x", "impulse_y"]
-                + ["impulse_z", "work_given", "work_taken", "mass", "momentum_x", "momentum_y"]
-                + ["momentum_z", "kinetic", "potential", "internal"]
-            )
+            self._rows.writerow(COLUMNS)
 
     @property
     def worst(self) -> float:
         """Largest momentum residual of any link so far."""
         return max((account.momentum_residual for account in self.accounts.values()), default=0.0)
 
-    def given(self, name: str, header: Mapping[str, Any], fields: Fields) -> None:
+    def primed(self, name: str, fields: Fields) -> None:
+        """Book the motion that a component was told before the first window."""
+        self._motion.arrive(name, fields, (), 0.0)
+
+    def given(
+        self, name: str, header: Mapping[str, Any], fields: Fields, outputs: Mapping[str, Fields]
+    ) -> None:
         """Book what a component gave: its own sums against those of what arrived."""
         sent = header["sent"]
         for link in self.exchange.links:
             account = self.accounts[link.name]
             for leg in link.legs:
-                for key, _ in leg.forces if leg.giver == name else ():
+                for key, after in leg.sums if leg.giver == name else ():
                     scale = sent.get(f"{key}/size", [0.0])[0]
                     gap = np.subtract(column_sums(fields[key]), sent.get(key, 0.0))
-                    self._note(account, gap, scale)
+                    account.note(self.exchange.unit(leg.taker, after), gap, scale)
             for key, *_ in link.works.get(name, []):
                 work = sent.get(f"{key}/work", [0.0])[0]
                 account.work_given += work
-                account.turnover += abs(work)
+                if any(leg.works_on for leg in link.legs):  # else the other side counts none
+                    account.turnover += abs(work)
+        self._balance.given(name, {**outputs, name: fields})
 
     def mapped(self, carried: Carried) -> None:
         """Book a mapping: sums of forces and of moments before against after."""
-        for leg, brought in carried.legs:
-            account = self._account(leg)
-            for before, after in leg.forces:
-                array = carried.outputs[leg.giver][before]
-                total = np.asarray(column_sums(brought[after]))
-                account.impulse = account.impulse + total
-                if self._alone(leg):
-                    self._note(account, total - column_sums(array), size(array))
-                    moment = carried.sent.get(leg.giver, {}).get(f"{before}/moment")
-                    self._turned(account, leg, brought, moment)
-
-    def _turned(self, account: Account, leg: Leg, brought: Fields, moment: Any) -> None:
-        if leg.moment is None or moment is None:
-            return
-        turned = leg.moment(brought)
-        reach = max(float(np.abs(moment).max()), float(np.abs(turned).max()))
-        if reach:
-            gap = float(np.abs(turned - moment).max()) / reach
-            account.angular_residual = max(account.angular_residual, gap)
+        for brought in carried.legs:
+            leg, account = brought.leg, self._account(brought)
+            for before, after in leg.sums:
+                array, unit = brought.before[before], self.exchange.unit(leg.taker, after)
+                total = np.asarray(column_sums(brought.after[after]))
+                if unit == "N":
+                    account.impulse[: len(total)] += total
+                account.note(unit, total - column_sums(array), size(array))
+                if brought.moment is not None and self._alone(brought):
+                    sent = carried.sent.get(leg.giver, {}).get(f"{before}/moment")
+                    if sent is not None:
+                        reach = max(np.abs(sent).max(), np.abs(brought.moment).max())
+                        account.note("N m", brought.moment - sent, float(reach))
 
     def applied(self, name: str, fields: Fields, header: Mapping[str, Any]) -> None:
-        """Book what a component was sent against what it received and applied."""
-        for link in self.exchange.links:
-            for leg in link.legs:
-                for _, key in leg.forces if leg.taker == name else ():
-                    scale, total = size(fields[key]), column_sums(fields[key])
-                    for seen in (header["received"].get(key, 0.0), header["applied"].get(key, 0.0)):
-                        self._note(self.accounts[link.name], np.subtract(total, seen), scale)
+        """Book the impulses that a component was sent against what it received and applied."""
+        self._balance.applied(name, header["applied"])
+        for account, keys in self._impulses(name):
+            for key in keys & fields.keys():
+                scale, total = size(fields[key]), column_sums(fields[key])
+                for seen in (header["received"].get(key, 0.0), header["applied"].get(key, 0.0)):
+                    account.note(self.exchange.unit(name, key), np.subtract(total, seen), scale)
+
+    def _impulses(self, name: str) -> list[tuple[Account, set[str]]]:
+        """For each link, the impulses that it brings to a component's ports."""
+        impulses = {
+            f"{port.name}.{one.name}"
+            for port in self.exchange.ports[name][0]
+            for one in port.fields
+            if one.centring == "impulse"
+        }
+        takers = [
+            link for link in self.exchange.links if any(leg.taker == name for leg in link.legs)
+        ]
+        return [(self.accounts[link.name], impulses) for link in takers]
+
+    def moved(self, name: str, carried: Carried, handed: Mapping[str, Any], dt: float) -> None:
+        """Book the motion that a component was given in its steps against what it was sent."""
+        self._motion.arrive(name, carried.fields, carried.ends, dt)
+        worst = self._motion.residual(name, handed)
+        for brought in carried.legs:
+            self._account(brought).note("m/s", worst, 1.0)
+
+    def settle(
+        self, is_late: Callable[[str, str], bool], owed: Mapping[tuple[str, str], Array]
+    ) -> None:
+        """Book, at a window's end, all that was ever given against all that was ever applied."""
+        for taker, key, links, gap, scale in self._balance.gaps(is_late, owed):
+            for number in links:
+                account = self.accounts[self.exchange.links[number].name]
+                account.note(self.exchange.unit(taker, key), gap, scale)
 
     def worked(self, name: str, fields: Fields, before: Fields, after: Fields, dt: float) -> None:
         """Book the work of the impulses that a component took, by its own motion."""
@@ -113,20 +169,13 @@ class Ledger:
                     work = float(np.vdot(fields[key], mean))
                     self.accounts[link.name].work_taken += work
 
-    def _alone(self, leg: Leg) -> bool:
+    def _alone(self, brought: Brought) -> bool:
         """Whether a leg brings all that its giver gave; shared ports are split by rows."""
-        legs = [one for link in self.exchange.links for one in link.legs if one.forces]
-        return sum(one.giver == leg.giver for one in legs) == 1
+        legs = [one for link in self.exchange.links for one in link.legs if one.sums]
+        return sum(one.giver == brought.leg.giver for one in legs) == 1
 
-    def _account(self, leg: Leg) -> Account:
-        owner = next(link for link in self.exchange.links if leg in link.legs)
-        return self.accounts[owner.name]
-
-    def _note(self, account: Account, gap: Any, scale: float) -> None:
-        worst = float(np.abs(gap).max()) if np.size(gap) else 0.0
-        if worst:
-            relative = worst / scale if scale else float("inf")
-            account.momentum_residual = max(account.momentum_residual, relative)
+    def _account(self, brought: Brought) -> Account:
+        return self.accounts[self.exchange.links[brought.number].name]
 
     def note(self, time: float, totals: Mapping[str, dict[str, Any]]) -> None:
         """Write a row for every link and component, at a time [s]."""
@@ -136,10 +185,9 @@ class Ledger:
         if not self._rows or not self._file:
             return
         for account in self.accounts.values():
-            self._rows.writerow(
-                [time, account.link, account.momentum_residual, account.angular_residual]
-                + [*account.impulse, account.work_given, account.work_taken]
-            )
+            residuals = [account.momentum_residual, account.angular_residual]
+            work = [account.work_given, account.work_taken]
+            self._rows.writerow([time, account.link, *residuals, *account.impulse, *work])
         for name, one in totals.items():
             held = [one["mass"], *one["momentum"], *(one[kind] for kind in kinds)]
             self._rows.writerow([time, name, *[""] * 7, *held])

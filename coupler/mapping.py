@@ -97,6 +97,14 @@ def bilinear(xi: Array, eta: Array) -> Array:
     )
 
 
+def tangents(xi: Array, eta: Array, x: Array) -> tuple[Array, Array]:
+    """Derivatives (n, 3) of the position on faces with corners (n, 4, 3), along xi and eta."""
+    a, b, c, d = np.moveaxis(x, 1, 0)
+    along = 0.25 * ((1 - eta)[:, None] * (b - a) + (1 + eta)[:, None] * (c - d))
+    across = 0.25 * ((1 - xi)[:, None] * (d - a) + (1 + xi)[:, None] * (c - b))
+    return along, across
+
+
 def corners(face: Array) -> Array:
     """Corners (m, 4) with triangles closed: a triangle's last corner stands twice."""
     face = np.asarray(face, dtype=np.int64)
@@ -116,11 +124,9 @@ def sample_faces(position: Array, face: Array, spacing: float) -> tuple[ShapeMap
         along = max(np.linalg.norm(b - a), np.linalg.norm(c - d))
         across = max(np.linalg.norm(d - a), np.linalg.norm(c - b))
         n, m = max(1, round(along / spacing)), max(1, round(across / spacing))
-        xi, eta = np.meshgrid((np.arange(n) + 0.5) * 2 / n - 1, (np.arange(m) + 0.5) * 2 / m - 1)
-        xi, eta = xi.ravel(), eta.ravel()
-        tangent = 0.25 * (np.outer(1 - eta, b - a) + np.outer(1 + eta, c - d))
-        cotangent = 0.25 * (np.outer(1 - xi, d - a) + np.outer(1 + xi, c - b))
-        normal = np.cross(tangent, cotangent)
+        grid = np.meshgrid((np.arange(n) + 0.5) * 2 / n - 1, (np.arange(m) + 0.5) * 2 / m - 1)
+        xi, eta = (axis.ravel() for axis in grid)
+        normal = np.cross(*tangents(xi, eta, position[corner][None]))
         length = np.linalg.norm(normal, axis=1)
         nodes.append(np.tile(corner, (n * m, 1)))
         weights.append(bilinear(xi, eta))
@@ -133,19 +139,37 @@ def sample_faces(position: Array, face: Array, spacing: float) -> tuple[ShapeMap
 def project(points: Array, position: Array, face: Array) -> ShapeMap:
     """Hang points (n, 3) on the faces they lie nearest to, by bilinear shape functions."""
     corner = corners(face)
-    centre = position[corner].mean(axis=1)
-    # One face per point, found point by point so that memory stays small for large meshes.
-    chosen = np.array([np.argmin(((centre - p) ** 2).sum(axis=1)) for p in points], dtype=np.int64)
-    node = corner[chosen]
-    x = position[node]
+    point, candidate = _candidates(points, position[corner])
+    target, x = points[point], position[corner[candidate]]
+    xi, eta = _foot(target, x)
+    distance = np.linalg.norm(target - np.einsum("nc,nck->nk", bilinear(xi, eta), x), axis=1)
+    order = np.lexsort((distance, point))  # stable: of equally near faces the first
+    _, first = np.unique(point[order], return_index=True)
+    best = order[first]
+    return ShapeMap(corner[candidate[best]], bilinear(xi[best], eta[best]), len(position))
+
+
+def _candidates(points: Array, x: Array) -> tuple[Array, Array]:
+    """Pairs of point and face, of all faces (m, 4, 3) that may be the nearest to the point."""
+    centre = x.mean(axis=1)
+    reach = np.linalg.norm(x - centre[:, None], axis=2).max(axis=1)
+    found = []
+    for p in points:  # one by one, so that memory stays small for large meshes
+        away = np.linalg.norm(centre - p, axis=1)
+        found.append(np.flatnonzero(away - reach <= away.min()))
+    counts = [len(faces) for faces in found]
+    return np.repeat(np.arange(len(points)), counts), np.concatenate([np.zeros(0, int), *found])
+
+
+def _foot(points: Array, x: Array) -> tuple[Array, Array]:
+    """Local coordinates of the foot of the perpendicular from points (n, 3) on faces (n, 4, 3)."""
     xi, eta = np.zeros(len(points)), np.zeros(len(points))
-    for _ in range(20):  # Gauss-Newton for the foot of the perpendicular on each face
+    for _ in range(20):  # Gauss-Newton, kept on the face
         gap = points - np.einsum("nc,nck->nk", bilinear(xi, eta), x)
-        t = 0.25 * ((1 - eta)[:, None] * (x[:, 1] - x[:, 0]) + (1 + eta)[:, None] * (x[:, 2] - x[:, 3]))
-        s = 0.25 * ((1 - xi)[:, None] * (x[:, 3] - x[:, 0]) + (1 + xi)[:, None] * (x[:, 2] - x[:, 1]))
+        t, s = tangents(xi, eta, x)
         tt, ss, ts = (t * t).sum(1), (s * s).sum(1), (t * s).sum(1)
         gt, gs = (gap * t).sum(1), (gap * s).sum(1)
-        det = tt * ss - ts * ts
+        det = np.maximum(tt * ss - ts * ts, 1e-12 * tt.max(initial=0.0) ** 2 + 1e-300)
         xi = np.clip(xi + (gt * ss - gs * ts) / det, -1.0, 1.0)
         eta = np.clip(eta + (gs * tt - gt * ts) / det, -1.0, 1.0)
-    return ShapeMap(node, bilinear(xi, eta), len(position))
+    return xi, eta

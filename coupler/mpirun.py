@@ -15,6 +15,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from types import FrameType
 from typing import IO
@@ -94,20 +95,22 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
     return 130 if asked else 3
 
 
-def _await(process: "subprocess.Popen[bytes]", note: Path, said: list[IO[bytes]]) -> None:
+def _await(process: "subprocess.Popen[bytes]", note: Path, said: Sequence[IO[bytes]]) -> None:
     """Pass on what the coupler prints, until it has its results and the ranks have left."""
     limit = float("inf")
     while time.monotonic() < limit:
         _pass_on(said)
-        found, ended = _read(note), process.poll() is not None
-        if ended and ("status" in found or not running(int(str(found.get("coupler", 0))))):
+        ended, found = process.poll() is not None, _read(note)
+        coupler = int(str(found.get("coupler", 0)))  # 0 until it has begun
+        over = "status" in found or not running(coupler)
+        if ended and over:
             return
-        if limit == float("inf") and "status" in found:
+        if coupler and over and limit == float("inf"):
             limit = time.monotonic() + LEAVING
         time.sleep(0.02)
 
 
-def _pass_on(said: list[IO[bytes]]) -> None:
+def _pass_on(said: Sequence[IO[bytes]]) -> None:
     for file, stream in zip(said, (sys.stdout, sys.stderr), strict=True):
         if text := file.read():
             stream.write(text.decode(errors="replace"))
@@ -120,7 +123,7 @@ def _forward_signals(note: Path, process: "subprocess.Popen[bytes]") -> list[int
 
     def forward(number: int, _: FrameType | None) -> None:
         asked.append(number)
-        pid = _read(note).get("coupler", 0)
+        pid = int(str(_read(note).get("coupler", 0)))
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
 

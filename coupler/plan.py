@@ -78,6 +78,8 @@ def _needs(one: ComponentPlan, end: float) -> tuple[str, str, str, str]:
 def _names(ports: tuple[Port, ...]) -> str:
     texts = []
     for port in ports:
-        fields = [f"{f.name} [{f.unit}{', impulse' * (f.centring == 'impulse')}]" for f in port.fields]
+        fields = [
+            f"{f.name} [{f.unit}{', impulse' * (f.centring == 'impulse')}]" for f in port.fields
+        ]
         texts.append(f"{port.name} ({', '.join(fields)})")
     return "; ".join(texts) or "nothing"

@@ -12,6 +12,7 @@ from typing import Any
 from quintet.coupler.exchange import Link
 from quintet.coupler.expect import Expectation, check
 from quintet.coupler.links import KINDS
+from quintet.coupler.on_top import put_preset, put_set, put_swap
 from quintet.coupler.scene import ComponentPlan, Scene, SceneFile
 from quintet.interfaces.endpoint import Security, check_endpoint
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
@@ -67,11 +68,11 @@ def load(
     """
     path = locate(scene)
     table = parse(path)
-    mistakes = _preset(table, preset) if preset else []
+    mistakes = put_preset(table, preset) if preset else []
     for swap in swaps:
-        mistakes += _swap(table, swap)
+        mistakes += put_swap(table, swap)
     for setting in settings:
-        mistakes += _set(table, setting)
+        mistakes += put_set(table, setting)
     if transport:
         table["transport"] = transport
     if mistakes:
@@ -86,65 +87,6 @@ def parse(path: Path) -> dict[str, Any]:
             return tomllib.load(file)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SceneError(f"{path.name}: a scene must be valid TOML: {error}.") from error
-
-
-def _preset(table: dict[str, Any], preset: str) -> list[str]:
-    presets = table.get("presets", {})
-    if not isinstance(presets, dict) or not isinstance(presets.get(preset, {}), dict):
-        return [f"presets.{preset} must be a table of paths and values. Write [presets.{preset}]."]
-    if preset not in presets:
-        return [unknown(f"preset {preset}", preset, presets)]
-    return [m for path, value in presets[preset].items() for m in _place(table, path, value)]
-
-
-def _set(table: dict[str, Any], setting: str) -> list[str]:
-    path, equals, text = setting.partition("=")
-    if not equals:
-        return [f"--set needs PATH=VALUE; found {setting!r}. Give it as in --set window=1e-3."]
-    try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        value = text  # a word needs no quotes on the command line
-    return _place(table, path, value)
-
-
-def _place(table: dict[str, Any], path: str, value: Any) -> list[str]:
-    """Set a value at a dotted path; new tables are made only for components' own settings."""
-    *heads, last = path.split(".")
-    at: Any = table
-    for number, head in enumerate(heads):
-        place = ".".join(heads[: number + 1])
-        if isinstance(at, list):
-            if not (head.isdigit() and int(head) < len(at)):
-                return [f"{place}: must be a number below {len(at)}; found {head!r}."]
-            at = at[int(head)]
-        elif isinstance(at, dict) and (head in at or place in ("output", "iteration")):
-            at = at.setdefault(head, {})
-        else:
-            return [unknown(place, head, at if isinstance(at, dict) else ())]
-    if not isinstance(at, dict):
-        return [f"{path} cannot be set: {'.'.join(heads)} is not a table."]
-    at[last] = value
-    return []
-
-
-def _swap(table: dict[str, Any], swap: str) -> list[str]:
-    name, equals, kind = swap.partition("=")
-    if not equals:
-        return [f"--swap needs NAME=KIND; found {swap!r}. Give it as in --swap NAME=replay."]
-    kind, _, source = kind.partition("@")
-    components = table.get("components", {})
-    if name not in components:
-        return [unknown(f"--swap {swap}: component {name}", name, components)]
-    if ":" not in kind and kind not in known_kinds():
-        return [unknown(f"--swap {swap}: kind {kind}", kind, known_kinds())]
-    if kind == "replay":
-        recording = source or f"runs/{table.get('name', '')}"
-        new = {"recording": str(Path(recording).resolve()), "component": name}
-    else:
-        new = table.get("stand_ins", {}).get(name, {}).get(kind, {})
-    components[name] = {"kind": kind, **new}
-    return []
 
 
 def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
@@ -230,7 +172,8 @@ def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> Compone
     where = f"components.{name}"
     kind, threads = given.pop("kind", None), given.pop("threads", 1)
     if not isinstance(kind, str):
-        mistakes.append(f"{where}.kind must be a name; found {kind!r}. Known here: {', '.join(sorted(known_kinds()))}.")
+        known = ", ".join(sorted(known_kinds()))
+        mistakes.append(f"{where}.kind must be a name; found {kind!r}. Known here: {known}.")
         return None
     if type(threads) is not int or threads < 1:
         mistakes.append(f"{where}.threads must be a whole number from 1; found {threads!r}.")

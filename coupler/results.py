@@ -3,16 +3,18 @@
 import json
 import os
 import platform
+import sys
 import time
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.expect import Outcome, evaluate
+from quintet.coupler.expect import Expectation, Outcome, evaluate
 from quintet.coupler.part import ComponentFailed, Part
 from quintet.coupler.record import Recording
 from quintet.coupler.scene import Scene
+from quintet.interfaces.errors import SceneError
 
 DONE, UNMET, BAD, FAILED, INTERRUPTED = 0, 1, 2, 3, 130  # exit status
 PACKAGES = ("quintet", "numpy", "numba", "mpi4py", "eclipse-zenoh", "h5py", "msgpack")
@@ -24,11 +26,20 @@ def outcomes(scene: Scene, folder: Path) -> list[Outcome]:
     if not scene.expect or not path.exists():
         return []
     with Recording(path) as recording:
-        return [evaluate(one, recording, scene.folder) for one in scene.expect]
+        return [_outcome(one, recording, scene.folder) for one in scene.expect]
+
+
+def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
+    """Compare; what a run turns out not to have, an item or a time, is not met."""
+    try:
+        return evaluate(one, recording, folder)
+    except SceneError as error:
+        print(f"quintet: expectation {one.name}: {error}", file=sys.stderr)
+        return Outcome(one.name, None, one.value or 0.0, one.within, one.unit, False, one.source)
 
 
 def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
-    """Draw the pictures that the scene asks for; none, and nothing imported, if it asks for none."""
+    """Draw the pictures that the scene asks for; import nothing where it asks for none."""
     times = scene.file.output.pictures
     if times and list(folder.glob("*.vtkhdf")):
         from quintet.coupler.pictures import snapshots

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from quintet.coupler.part import Part, describe_all
-from quintet.coupler.schedule import SCHEMES, Coupling
 from quintet.coupler.scene import Scene
+from quintet.coupler.schedule import SCHEMES, Coupling
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
 
@@ -69,6 +69,7 @@ def prepare(coupling: Coupling, described: dict[str, Fields]) -> dict[str, float
         fields = exchange.inputs(name, coupling.outputs, ()).fields
         instants = {k: v for k, v in fields.items() if not exchange.is_impulse(name, k)}
         part.ask("prime", instants)
+        coupling.ledger.primed(name, instants)
     return limits
 
 

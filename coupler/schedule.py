@@ -13,8 +13,13 @@ from quintet.coupler.exchange import Carried, Exchange
 from quintet.coupler.ledger import Ledger
 from quintet.coupler.part import Part
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.errors import LinkError, StepError
 from quintet.interfaces.message import Message
+
+
+# What components take from those that step after them: by the taker's name and the field's.
+Guess = dict[tuple[str, str], Array]
+FLOOR = 1e-3  # of the largest value so far: below it agreement is not asked for
 
 
 @dataclass(slots=True)
@@ -38,7 +43,8 @@ class Coupling:
     iteration: Iteration = field(default_factory=Iteration)
     outputs: dict[str, Fields] = field(default_factory=dict)  # the latest of every component
     sent: dict[str, dict[str, list[float]]] = field(default_factory=dict)  # sums as given
-    owed: dict[tuple[str, str], Array] = field(default_factory=dict)  # impulses not yet applied
+    owed: Guess = field(default_factory=dict)  # impulses not yet applied
+    sizes: dict[tuple[str, str], float] = field(default_factory=dict)  # largest norms so far
     repetitions: int = 0
 
     def gather(self, name: str, fresh: Collection[str]) -> Carried:
@@ -46,6 +52,19 @@ class Coupling:
         carried = self.exchange.inputs(name, self.outputs, fresh)
         carried.outputs, carried.sent = dict(self.outputs), dict(self.sent)
         return carried
+
+    def settle(self, is_late: Callable[[str, str], bool]) -> None:
+        """End a window's books; `is_late` tells which giver's impulses wait for the next."""
+        self.ledger.settle(is_late, self.owed)
+
+    def agree(self, gap: Guess, found: Guess) -> bool:
+        """Whether what was guessed is what was found, to the iteration's tolerance."""
+        norms = {key: float(np.linalg.norm(array)) for key, array in found.items()}
+        for key, norm in norms.items():
+            self.sizes[key] = max(self.sizes.get(key, 0.0), norm)
+        least = {key: max(norm, FLOOR * self.sizes[key]) for key, norm in norms.items()}
+        tolerance = self.iteration.tolerance
+        return all(np.linalg.norm(gap[key]) <= tolerance * least[key] for key in gap)
 
     def start(self, name: str, window: int, carried: Carried, totals: bool) -> None:
         """Order one component's window."""
@@ -55,8 +74,9 @@ class Coupling:
         """Put an answer into the ledger and among the outputs."""
         ledger, header = self.ledger, answer.header
         ledger.mapped(carried)
-        ledger.given(name, header, answer.fields)
+        ledger.given(name, header, answer.fields, self.outputs)
         ledger.applied(name, carried.fields, header)
+        ledger.moved(name, carried, header["handed"], self.dt)
         ledger.worked(name, carried.fields, carried.outputs[name], answer.fields, self.dt)
         self.keep(name, answer)
         if header.get("totals"):
@@ -72,21 +92,31 @@ Scheme = Callable[[Coupling, int, bool], None]  # coupling, window, whether tota
 
 def serial(coupling: Coupling, window: int, totals: bool) -> None:
     """One after the other: each sees the window's end of those before it."""
-    fresh: set[str] = set()
+    done: list[str] = []
     for name, part in coupling.parts.items():
-        carried = coupling.gather(name, fresh)
+        carried = coupling.gather(name, done)
+        if any(not coupling.exchange.is_impulse(name, key) for key in carried.mixed):
+            raise LinkError(
+                f"{name}: what it takes in {carried.mixed[0].partition('.')[0]} must all come from "
+                "components that step before it, or all from ones after it; it comes from both. "
+                "Change scene.order, or use scheme parallel or iterated."
+            )
         coupling.start(name, window, carried, totals)
         coupling.book(name, carried, part.finish())
-        fresh.add(name)
+        done.append(name)
+    coupling.settle(lambda giver, taker: done.index(taker) <= done.index(giver))
 
 
 def parallel(coupling: Coupling, window: int, totals: bool) -> None:
     """All at once: each sees the others as they were at the window's beginning."""
-    inputs = {name: coupling.gather(name, ()) for name in coupling.parts}
-    for name, carried in inputs.items():
-        coupling.start(name, window, carried, totals)
+    # Those that follow a partner's motion first: their last loads were made along that way.
+    first = sorted(coupling.parts, key=lambda name: not coupling.exchange.follows(name))
+    inputs = {name: coupling.gather(name, ()) for name in first}
+    for name in coupling.parts:
+        coupling.start(name, window, inputs[name], totals)
     for name, part in coupling.parts.items():
         coupling.book(name, inputs[name], part.finish())
+    coupling.settle(lambda giver, taker: True)
 
 
 def iterated(coupling: Coupling, window: int, totals: bool) -> None:
@@ -95,26 +125,21 @@ def iterated(coupling: Coupling, window: int, totals: bool) -> None:
     What the last repetition still lacked of an impulse is added in the next window, so that
     momentum closes to rounding although the iteration stops at its tolerance.
     """
-    everyone = set(coupling.parts)
-    stale = {name: _stale(coupling, name, number) for number, name in enumerate(coupling.parts)}
-    guess = {(n, k): v for n, fields in stale.items() for k, v in fields.items()}
-    aitken = Aitken(coupling.iteration)
     memory, before = coupling.exchange.memory(), dict(coupling.outputs)
+    guess = _stale(coupling)
+    aitken = Aitken(coupling.iteration)
     _all(coupling, "keep")
     for repetition in range(coupling.iteration.limit):
+        coupling.exchange.recall(memory)
         if repetition:
             _all(coupling, "rewind")
-            coupling.exchange.recall(memory)
             coupling.outputs = dict(before)
             coupling.repetitions += 1
         booked = _sweep(coupling, window, totals, guess)
-        found = {
-            (name, key): coupling.gather(name, everyone).fields[key]
-            for name, fields in stale.items()
-            for key in fields
-        }
+        taken = {name: coupling.gather(name, coupling.parts) for name, _ in guess}
+        found = {(name, key): taken[name].fields[key] for name, key in guess}
         gap = {key: found[key] - guess[key] for key in guess}
-        if all(_small(gap[key], found[key], coupling.iteration.tolerance) for key in gap):
+        if coupling.agree(gap, found):
             break
         guess = aitken.next(guess, gap)
     else:
@@ -124,12 +149,15 @@ def iterated(coupling: Coupling, window: int, totals: bool) -> None:
             "raise iteration.limit."
         )
     for name, carried, answer in booked:
+        if name in taken:  # the mapping that counts is that of the agreed outputs
+            carried.legs, carried.sent = taken[name].legs, taken[name].sent
         coupling.book(name, carried, answer)
     coupling.owed = {k: v for k, v in gap.items() if coupling.exchange.is_impulse(*k)}
+    coupling.settle(lambda giver, taker: False)
 
 
 def _sweep(
-    coupling: Coupling, window: int, totals: bool, guess: dict[tuple[str, str], Array]
+    coupling: Coupling, window: int, totals: bool, guess: Guess
 ) -> list[tuple[str, Carried, Message]]:
     """Step all components once with guessed inputs where the true ones come later."""
     fresh: set[str] = set()
@@ -149,10 +177,14 @@ def _sweep(
     return booked
 
 
-def _stale(coupling: Coupling, name: str, number: int) -> dict[str, Array]:
-    """Inputs of a component that come from those which step after it."""
-    carried = coupling.gather(name, list(coupling.parts)[:number])
-    return {key: value for key, value in carried.fields.items() if key not in carried.ends}
+def _stale(coupling: Coupling) -> Guess:
+    """Inputs that come, wholly or in part, from components which step after their taker."""
+    names = list(coupling.parts)
+    found: Guess = {}
+    for number, name in enumerate(names):
+        carried = coupling.gather(name, names[:number])
+        found |= {(name, k): v for k, v in carried.fields.items() if k not in carried.ends}
+    return found
 
 
 def _all(coupling: Coupling, order: str) -> None:
@@ -160,10 +192,6 @@ def _all(coupling: Coupling, order: str) -> None:
         part.tell(order)
     for part in coupling.parts.values():
         part.hear()
-
-
-def _small(gap: Array, found: Array, tolerance: float) -> bool:
-    return bool(np.linalg.norm(gap) <= tolerance * np.linalg.norm(found))
 
 
 class Aitken:
@@ -174,9 +202,7 @@ class Aitken:
         self.factor = settings.relaxation
         self._last: Array | None = None
 
-    def next(
-        self, guess: dict[tuple[str, str], Array], gap: dict[tuple[str, str], Array]
-    ) -> dict[tuple[str, str], Array]:
+    def next(self, guess: Guess, gap: Guess) -> Guess:
         """Next guess, from this one and what it lacked."""
         residual = np.concatenate([gap[key].ravel() for key in gap])
         if self.settings.aitken and self._last is not None:

@@ -33,7 +33,7 @@ def fill(shape: int, size: Array, spacing: float, depth: float) -> tuple[Array, 
         )
     cells = np.maximum(1, np.rint(size / spacing)).astype(int)
     step = size / cells
-    axes = [(np.arange(n) + 0.5) * s - 0.5 * edge for n, s, edge in zip(cells, step, size, strict=True)]
+    axes = [(np.arange(n) - 0.5 * (n - 1)) * s for n, s in zip(cells, step, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     return _box(points, size, step, depth) if shape == BOX else _sphere(points, size, depth)
 

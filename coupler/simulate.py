@@ -17,7 +17,6 @@ from quintet.coupler.scene import Scene
 from quintet.coupler.schedule import Coupling
 from quintet.coupler.toml import dumps
 from quintet.coupler.witness import Stop, Writer
-from quintet.interfaces.errors import LinkError, QuintetError, StepError
 
 OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png", "comparison.png")
 
@@ -41,16 +40,16 @@ def simulate(scene: Scene, folder: Path) -> int:
             outcome |= progress_of(progress)
             connection.close(True)
             connection = None
-    except (ComponentFailed, LinkError, StepError) as error:
-        outcome |= failed(error, scene, folder, writer)
     except KeyboardInterrupt:
-        outcome["status"] = "interrupted"
+        outcome |= {"status": "interrupted", "windows": writer.done, "time": writer.time}
+    except Exception as error:  # whatever it is, the run leaves a report
+        outcome |= failed(error, scene, folder, writer)
     finally:
         if connection:
             connection.close(False)
         writer.close()
         ledger.close()
-    if stop.asked:
+    if stop.asked and outcome["status"] != "done":
         outcome["status"] = "interrupted"
     return conclude(scene, folder, outcome, ledger, parts, clock())
 
@@ -58,7 +57,11 @@ def simulate(scene: Scene, folder: Path) -> int:
 def make_folder(scene: Scene, folder: Path) -> None:
     """Make an empty place for a run; only what an earlier run left there is removed."""
     (folder / "log").mkdir(parents=True, exist_ok=True)
-    for path in [*(folder / name for name in OURS), *folder.glob("*.vtkhdf"), *folder.glob("log/*")]:
+    for path in [
+        *(folder / name for name in OURS),
+        *folder.glob("*.vtkhdf"),
+        *folder.glob("log/*"),
+    ]:
         path.unlink(missing_ok=True)
     (folder / "scene.toml").write_text(dumps(scene.resolved))
 
@@ -69,7 +72,7 @@ def progress_of(progress: Progress) -> dict[str, Any]:
     return {"status": status, "windows": progress.done, "time": progress.time}
 
 
-def failed(error: QuintetError, scene: Scene, folder: Path, writer: Writer) -> dict[str, Any]:
+def failed(error: Exception, scene: Scene, folder: Path, writer: Writer) -> dict[str, Any]:
     """Report a failure: who, in which window, why, and the last lines of its log."""
     if not isinstance(error, ComponentFailed):
         error = ComponentFailed("coupler", writer.done, str(error), traceback.format_exc())

@@ -40,7 +40,7 @@ class Manifest:
     ports: Callable[[Any], Ports]
     plan: Callable[[Any], Plan] | None = None
 
-    def load(self) -> type[Component]:
+    def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
         found = resolve(self.component)
         if not (isinstance(found, type) and issubclass(found, Component)):

@@ -17,7 +17,7 @@ from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import MessageError
 
 Shapes = Mapping[str, tuple[int, ...]]
-Frame = bytes | bytearray | Array
+Frame = Any  # bytes, a bytearray or an array of bytes: whatever has a buffer
 
 MAGIC = b"qnt1"
 PREFIX = struct.Struct("<4sIQ")  # magic, bytes of the header, bytes of the frame
@@ -90,6 +90,8 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
                 f"field {key}: {count} items of {dtype.str} must end within the {len(frame)} "
                 f"bytes of the message; they end at {end}."
             )
+        if key in message.fields:
+            raise MessageError(f"field {key} is listed twice.")
         array = np.frombuffer(frame, dtype, count, offset).reshape(shape)
         array.flags.writeable = False
         message.fields[key] = array
@@ -159,8 +161,9 @@ def require_finite(fields: Fields, where: str) -> None:
     """Refuse a field with a number that is not finite; name the first."""
     for key, array in fields.items():
         if not finite(array):
-            item = int(np.argmin(np.isfinite(array.reshape(len(array), -1)).all(axis=1)))
+            rows = np.atleast_1d(array)
+            item = int(np.argmin(np.isfinite(rows.reshape(len(rows), -1)).all(axis=1)))
             raise MessageError(
                 f"{where}: every number of {key} must be finite; item {item} is "
-                f"{np.array2string(array[item])}. Reduce the time step, or look at that item."
+                f"{np.array2string(rows[item])}. Reduce the time step, or look at that item."
             )

@@ -4,7 +4,8 @@ An impulse is the sum of force times step over the steps, so what a link carries
 what the component did, at every subcycling ratio.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -69,6 +70,39 @@ class Outputs:
         sums |= {f"{key}/size": [size(array)] for key, array in self.total.items()}
         sums |= {f"{key}/work": [work] for key, work in self.work.items()}
         return sums | {f"{key}/moment": turn.tolist() for key, turn in self.moment.items()}
+
+
+class Handed:
+    """The instants that a component was given in a window, as sums over their items.
+
+    From what it was sent the coupler can tell what they should be: of the first step, and
+    the displacements of a whole window.
+    """
+
+    def __init__(self, instants: Collection[str], rates: Mapping[str, str]) -> None:
+        self.instants, self.rates = instants, rates  # keys; of a position, its velocity
+        self.first: Sums = {}  # in the middle of the first step
+        self.moved: dict[str, Array] = {}  # of each position, velocity times step, summed up
+        self.span = 0.0  # s, the first step
+
+    def begin(self) -> None:
+        """Forget the last window."""
+        self.first, self.moved, self.span = {}, {}, 0.0
+
+    def add(self, taken: Fields, dt: float) -> None:
+        """Add one step."""
+        if not self.span:
+            self.span = dt
+            self.first = {key: column_sums(taken[key]) for key in self.instants if key in taken}
+        for key, rate in self.rates.items():
+            if key in taken and rate in taken:
+                part = dt * np.asarray(column_sums(taken[rate]))
+                self.moved[key] = self.moved.get(key, 0.0) + part
+
+    def audit(self) -> dict[str, Any]:
+        """Return all of it, for a message."""
+        moved = {key: array.tolist() for key, array in self.moved.items()}
+        return {"first": self.first, "moved": moved, "span": self.span}
 
 
 def column_sums(array: Array) -> list[float]:

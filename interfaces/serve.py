@@ -16,10 +16,11 @@ from quintet.interfaces.errors import OrderError, QuintetError, StepError
 from quintet.interfaces.guard import Guard
 from quintet.interfaces.inputs import Inputs
 from quintet.interfaces.message import Message, require_finite
-from quintet.interfaces.outputs import Outputs, Sums, column_sums
+from quintet.interfaces.outputs import Handed, Outputs, Sums, column_sums
 from quintet.interfaces.transport import Line
 
 Answer = tuple[dict[str, Any], Fields]
+MOST = 1e9  # steps in a window; more would never end
 PATIENCE = 3600.0  # s between two orders; the coupler's death is noticed at once
 
 
@@ -27,6 +28,11 @@ def divide(left: float, stable: float) -> int:
     """Fewest equal steps into which the rest of a window falls."""
     if not stable > 0.0:  # also true of nan
         raise StepError(f"stable_dt must be positive; it is {stable}. Look at the state.")
+    if left > MOST * stable:
+        raise StepError(
+            f"stable_dt must be above {left / MOST:.1e} s, {MOST:.0e} steps to the end of this "
+            f"window; it is {stable}. Look at the state."
+        )
     return max(1, math.ceil(left / stable - 1e-9)) if math.isfinite(stable) else 1
 
 
@@ -38,6 +44,8 @@ class Server:
         self.guard = Guard(name)
         self.inputs = Inputs(component.takes)
         self.outputs = Outputs(component.gives)
+        instants = set(self.inputs.fields) - self.inputs.impulses
+        self.handed = Handed(sorted(instants), self.inputs.rates)
         self._kept: dict[str, Any] = {}
         self._orders: dict[str, Callable[[Message], Answer]] = {
             "describe": self._describe,
@@ -94,6 +102,7 @@ class Server:
             "sent": self.outputs.audit(),
             "received": received,
             "applied": applied,
+            "handed": self.handed.audit(),
             "totals": self._totals() if header.get("totals") else None,
             "busy": time.perf_counter() - began,
         }
@@ -106,6 +115,7 @@ class Server:
         """Step through a window [s]; tell the steps, the impulses applied, the last outputs."""
         component, inputs, outputs = self.component, self.inputs, self.outputs
         outputs.begin()
+        self.handed.begin()
         applied = {key: np.zeros(rate[0].size) for key, rate in inputs.rate.items() if len(rate)}
         sums = {key: np.asarray(column_sums(inputs.rate[key])) for key in applied}
         done, steps = 0.0, 0
@@ -118,6 +128,7 @@ class Server:
             if steps == 0 or not inputs.constant:
                 taken = inputs.over(done, end, window)
                 component.take(taken)
+                self.handed.add(taken, dt)
             component.step(dt)
             if outputs.impulses:
                 given = component.give()
@@ -188,9 +199,9 @@ def answer(server: Server, line: Line, message: Message) -> bool:
     try:
         header, fields = server.handle(message)
     except Exception as error:
-        line.send(failure(error), {})
         if not isinstance(error, QuintetError):
-            traceback.print_exc()  # into the component's log
+            traceback.print_exc()  # into the component's log, before the coupler looks there
+        line.send(failure(error), {})
         return False
     line.send({"order": "done", **header}, fields)
     return message.order != "finish"

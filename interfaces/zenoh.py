@@ -104,8 +104,8 @@ class ZenohLine(FramedLine):
 
     def wait_for_partner(self, seconds: float) -> None:
         """Wait until the other side's subscription is known; earlier messages would vanish."""
-        # .matching, because the status object itself is always true.
-        wait(lambda: self._outbox.matching_status.matching or None, seconds, self._broken)
+        outbox: Any = self._outbox  # its stub says that the status is a truth; it has one
+        wait(lambda: outbox.matching_status.matching or None, seconds, self._reason)
 
     def _put(self, frame: bytearray) -> None:
         try:

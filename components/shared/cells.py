@@ -34,7 +34,7 @@ class Grid(NamedTuple):
 
 
 def grid_around(points: Points, reach: float) -> Grid:
-    """Cells around points (n, 3) m, wide enough to hold all that is nearer to one than `reach` [m]."""
+    """Cells around points (n, 3) m that hold all that is nearer to one than `reach` [m]."""
     width = reach / REACH
     low = points.min(axis=0) - 1.001 * reach
     extent = points.max(axis=0) + 1.001 * reach - low
@@ -44,7 +44,8 @@ def grid_around(points: Points, reach: float) -> Grid:
             f"particles must stay together; they spread over {extent.round(3).tolist()} m, "
             f"{nx * ny * nz} cells of {width:.3g} m. Add walls, or end the run earlier."
         )
-    return Grid(*low.tolist(), 1.0 / width, nx, ny, nz)
+    x, y, z = low.tolist()
+    return Grid(x, y, z, 1.0 / width, nx, ny, nz)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

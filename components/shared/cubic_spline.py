@@ -1,4 +1,6 @@
-"""The cubic-spline smoothing kernel of Monaghan (Annu. Rev. Astron. Astrophys. 30, 1992), free of branches.
+"""The cubic-spline smoothing kernel, free of branches.
+
+Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543:
 
 W(r) = (α/4)[(2-q)₊³ - 4(1-q)₊³] with q = r/h, and α = 10/(7πh²) in two, 1/(πh³) in three
 dimensions; W = 0 for q ≥ 2.

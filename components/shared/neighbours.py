@@ -19,7 +19,7 @@ FAST = {"fastmath": True, "error_model": "numpy", "cache": True, "nogil": True}
 
 @dataclass(slots=True)
 class Neighbours:
-    """Lists of indices: of the first group in begin[i]:middle[i], of the second in middle[i]:end[i].
+    """Lists of indices: begin[i]:middle[i] in the first group, middle[i]:end[i] in the second.
 
     A point of the first group is its own neighbour: at no distance, it feels no force.
     """
@@ -97,7 +97,10 @@ def fill(
 
 
 def neighbours_within(reach: float, points: Points, split: int, team: Team) -> Neighbours:
-    """List what is nearer than `reach` [m] among points (n, 3) m, sorted within both groups."""
+    """List what is nearer than `reach` [m] among points (n, 3) m, the first `split` of them fluid.
+
+    Both groups must come in the order that `sorted_into` gives for this reach.
+    """
     grid = grid_around(points[:split], reach)
     cell_one, start_one, _ = sorted_into(points[:split], grid)
     cell_two, start_two, _ = sorted_into(points[split:], grid)

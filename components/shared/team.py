@@ -8,6 +8,7 @@ components of one process may run at once, and kernels compile in a fraction of 
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from typing import Any
 
 FEWEST = 1000  # rows that are worth handing to another thread
@@ -27,13 +28,12 @@ class Team:
         self._pool = ThreadPoolExecutor(size) if size > 1 else None
 
     def run(self, kernel: Callable[..., Any], rows: int, *arguments: Any) -> list[Any]:
-        """Call ``kernel(first, last, *arguments)`` on shares of the rows; return all it returned."""
+        """Call ``kernel(first, last, *arguments)`` on shares of the rows; return every result."""
         shares = min(SHARES * self.size, rows // FEWEST)
         if self._pool is None or shares < 2:
             return [kernel(0, rows, *arguments)]
         ends = [rows * share // shares for share in range(shares + 1)]
         calls = [
-            self._pool.submit(kernel, first, last, *arguments)
-            for first, last in zip(ends[:-1], ends[1:], strict=True)
+            self._pool.submit(kernel, first, last, *arguments) for first, last in pairwise(ends)
         ]
         return [call.result() for call in calls]

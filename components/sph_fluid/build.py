@@ -31,7 +31,8 @@ def state(params: SphFluidParams) -> State:
     """Initial state: at rest, each box under the hydrostatic pressure of its own surface."""
     boxes = [fill_box(box, params.spacing) for box in params.fluid]
     wall = wall_points(params)
-    dense = [hydrostatic(points, box, params) for points, box in zip(boxes, params.fluid, strict=True)]
+    pairs = zip(boxes, params.fluid, strict=True)
+    dense = [hydrostatic(points, box, params) for points, box in pairs]
     made = State.empty(sum(map(len, boxes)), len(wall))
     made.place[:, :3] = np.concatenate([*boxes, wall])
     made.place[:, 3] = np.concatenate([*dense, wall_density(wall, params)])

@@ -32,17 +32,12 @@ class SphFluid(Component):
         self.params = params
         self.fluid = constants(params)
         self.team = Team(threads_wanted())
-        self.options: Any = None
-        if params.xsph > 0.0 or params.shepard_every > 0:
-            # Only here, so that a scene without them compiles nothing of them.
-            from quintet.components.sph_fluid import options
-
-            self.options = options
         self.state = build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
         self.near = Neighbours()
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
         self.rate = np.empty((0, 4))  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s); of the present step
+        self.drift: Array | None = None  # (fluid, 3) m/s, XSPH's; where it is on
         self.placed = True
 
     def describe(self) -> Fields:
@@ -125,21 +120,26 @@ class SphFluid(Component):
         state = self.state
         self.near = neighbours_within(self._reach, state.reference, state.fluid, self.team)
         self.rate = np.empty_like(state.place)
+        if self.params.xsph > 0.0:
+            self.drift = np.empty((state.fluid, 3))
 
     def _filter_density(self) -> None:
         state, every = self.state, self.params.shepard_every
         if every > 0 and state.steps % every == every - 1:
+            from quintet.components.sph_fluid.shepard import shepard
+
             density = np.empty(state.fluid)
             arguments = (state.place, self.near.arrays, self.fluid, density)
-            self.team.run(self.options.shepard, state.fluid, *arguments)
+            self.team.run(shepard, state.fluid, *arguments)
             state.place[: state.fluid, 3] = density
             press(self.fluid, state.place, state.motion)
 
     def _interact(self) -> None:
         """Forces and rates of density, and what they do to the samples."""
-        state, near, gravity = self.state, self.near.arrays, self.params.gravity
-        pairs = (state.place, state.motion, near, self.fluid)
-        found = self.team.run(interact, len(state.place), state.fluid, *pairs, gravity, self.rate)
+        state, gravity, drift = self.state, self.params.gravity, self.drift
+        pairs = (state.place, state.motion, self.near.arrays, self.fluid)
+        rows = len(state.place)
+        found = self.team.run(interact, rows, state.fluid, *pairs, gravity, self.rate, drift)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
         if len(self.rows):
@@ -147,21 +147,16 @@ class SphFluid(Component):
 
     def _drift(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity."""
-        state = self.state
-        if self.params.xsph > 0.0:
-            drift = np.empty((state.fluid, 3))
-            arguments = (state.place, state.motion, self.near.arrays, self.fluid, drift)
-            self.team.run(self.options.mean_motion, state.fluid, *arguments)
-            state.place[: state.fluid, :3] += self.params.xsph * dt * drift
+        if self.drift is not None:
+            self.state.place[: self.state.fluid, :3] += self.params.xsph * dt * self.drift
 
     def _advance(self, dt: float) -> None:
         state = self.state
         # At most twice as far as the last step: extrapolating from a sliver would magnify noise.
         ahead = AHEAD * min(dt / state.last_dt, 2.0) if state.last_dt > 0.0 else 0.0
         arrays = (self.rate, state.reference, state.place, state.motion, state.before)
-        moved = self.team.run(
-            advance, len(state.place), state.fluid, dt, ahead, self.params.spacing, self.fluid, *arrays
-        )
+        numbers = (state.fluid, dt, ahead, self.params.spacing, self.fluid)
+        moved = self.team.run(advance, len(state.place), *numbers, *arrays)
         if any(failed for _, failed in moved):
             raise StepError(self._failure(dt))
         state.moved = math.sqrt(max(distance for distance, _ in moved))
@@ -169,19 +164,28 @@ class SphFluid(Component):
         state.steps += 1
 
     def _failure(self, dt: float) -> str:
-        state, rows = self.state, slice(self.state.fluid)
-        with np.errstate(over="ignore", invalid="ignore"):
-            speed = np.linalg.norm(state.motion[rows, :3], axis=1)
-            sound = (state.place[rows, 3] > 0.0) & np.isfinite(state.place[rows]).all(axis=1)
-            worst = int(np.argmax(np.where(sound & np.isfinite(speed), speed, np.inf)))
+        state, spacing = self.state, self.params.spacing
+        worst = self._worst(dt)
         x, y, z, density = state.place[worst].tolist()
+        speed = math.hypot(*state.motion[worst, :3].tolist())
         return (
-            f"step {state.steps} of {dt:.3g} s: a fluid particle must stay finite and move less than "
-            f"a spacing ({self.params.spacing:.3g} m) a step; particle {state.identity[worst]} at "
-            f"({x:.4g}, {y:.4g}, {z:.4g}) m has {speed[worst]:.4g} m/s and {density:.4g} kg/m3. "
-            f"Lower courant (now {self.params.courant}), raise viscosity or sound_speed, or look "
-            "for a surface that moves too fast."
+            f"step {state.steps} of {dt:.3g} s: a fluid particle must stay finite, have a positive "
+            f"density and move less than a spacing ({spacing:.3g} m); particle "
+            f"{state.identity[worst]} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {speed:.4g} m/s and "
+            f"{density:.4g} kg/m3. Lower courant (now {self.params.courant}), raise viscosity or "
+            "sound_speed, or look for a surface that moves too fast."
         )
+
+    def _worst(self, dt: float) -> int:
+        """Row of the fluid particle that is not finite, or the fastest, or the thinnest."""
+        rows = slice(self.state.fluid)
+        place, motion = self.state.place[rows], self.state.motion[rows]
+        finite = np.isfinite(place).all(axis=1) & np.isfinite(motion).all(axis=1)
+        if not finite.all():
+            return int(np.argmin(finite))
+        speed = np.linalg.norm(motion[:, :3], axis=1)
+        fast = float(speed.max()) * dt > self.params.spacing
+        return int(np.argmax(speed) if fast else np.argmin(place[:, 3]))
 
     def give(self) -> Fields:
         """Copy out the mean force of the last step on each sample."""
@@ -218,8 +222,10 @@ class SphFluid(Component):
         if not self.params.tension:
             ratio = np.maximum(ratio, 1.0)
         power = build.TAIT - 1
-        return self.fluid.stiffness / self.fluid.density * (
-            (ratio**power - 1.0) / power + 1.0 / ratio - 1.0
+        return (
+            self.fluid.stiffness
+            / self.fluid.density
+            * ((ratio**power - 1.0) / power + 1.0 / ratio - 1.0)
         )
 
     def view(self) -> Fields:

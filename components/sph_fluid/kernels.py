@@ -2,12 +2,12 @@
 
 import math
 
-from numba import njit
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from quintet.components.shared.neighbours import FAST
-from quintet.components.sph_fluid.laws import Fluid, approach, gradient, pressure_term, push
+from quintet.components.sph_fluid.laws import Fluid, approach, gradient, kernel, pressure_term, push
 from quintet.components.sph_fluid.state import Array, Whole
 
 List = tuple[Whole, Whole, Whole, NDArray[np.int32]]
@@ -30,33 +30,49 @@ def number(bits):  # type: ignore[no-untyped-def]
 @njit(**FAST)
 def interact(
     first: int, last: int, split: int, place: Array, motion: Array, near: List,
-    fluid: Fluid, gravity: tuple[float, float, float], rate: Array,
+    fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
 ) -> tuple[float, float]:  # fmt: skip
-    """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r²."""
+    """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r².
+
+    With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); where
+    it is None, numba leaves these lines out.
+    """
     begin, _, end, neighbour = near
     greatest, fastest = 0.0, bits(0.0)
     for i in range(first, last):
         x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
         u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
         ax, ay, az, growth = 0.0, 0.0, 0.0, 0.0
+        mx, my, mz = 0.0, 0.0, 0.0
         if i < split:
             for k in range(np.uint64(begin[i]), np.uint64(end[i])):
                 j = np.uint64(neighbour[k])
                 dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
+                du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
                 r2 = dx * dx + dy * dy + dz * dz
-                dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
+                dot = dx * du + dy * dv + dz * dw
+                both = density + place[j, 3]
                 closing = approach(dot, r2, fluid)
                 slope = gradient(r2, fluid)
-                force = slope * push(term, motion[j, 3], closing, density + place[j, 3], fluid)
+                force = slope * push(term, motion[j, 3], closing, both, fluid)
                 fastest = max(fastest, bits(abs(closing)))
                 growth += dot * slope
                 ax -= force * dx
                 ay -= force * dy
                 az -= force * dz
+                if drift is not None:
+                    weight = int(j < np.uint64(split)) * kernel(r2, fluid) / both
+                    mx -= weight * du
+                    my -= weight * dv
+                    mz -= weight * dw
             ax = fluid.mass * ax + gravity[0]
             ay = fluid.mass * ay + gravity[1]
             az = fluid.mass * az + gravity[2]
             greatest = max(greatest, ax * ax + ay * ay + az * az)
+            if drift is not None:
+                drift[i, 0] = 2.0 * fluid.mass * mx
+                drift[i, 1] = 2.0 * fluid.mass * my
+                drift[i, 2] = 2.0 * fluid.mass * mz
         else:
             for k in range(np.uint64(begin[i]), np.uint64(end[i])):
                 j = np.uint64(neighbour[k])
@@ -79,16 +95,17 @@ def push_samples(
     begin, _, end, neighbour = near
     for s in range(first, last):
         i = row[s]
+        x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
+        u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
         fx, fy, fz = 0.0, 0.0, 0.0
         for k in range(np.uint64(begin[i]), np.uint64(end[i])):
             j = np.uint64(neighbour[k])
-            dx, dy, dz = place[i, 0] - place[j, 0], place[i, 1] - place[j, 1], place[i, 2] - place[j, 2]
-            du, dv, dw = motion[i, 0] - motion[j, 0], motion[i, 1] - motion[j, 1], motion[i, 2] - motion[j, 2]
+            dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
             r2 = dx * dx + dy * dy + dz * dz
-            closing = approach(dx * du + dy * dv + dz * dw, r2, fluid)
-            size = gradient(r2, fluid) * push(
-                motion[i, 3], motion[j, 3], closing, place[i, 3] + place[j, 3], fluid
-            )
+            dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
+            closing = approach(dot, r2, fluid)
+            size = push(term, motion[j, 3], closing, density + place[j, 3], fluid)
+            size *= gradient(r2, fluid)
             fx -= size * dx
             fy -= size * dy
             fz -= size * dz
@@ -103,7 +120,7 @@ def advance(
     first: int, last: int, split: int, dt: float, ahead: float, furthest: float, fluid: Fluid,
     rate: Array, reference: Array, place: Array, motion: Array, before: Array,
 ) -> tuple[float, int]:  # fmt: skip
-    """Advance rows [first, last); return the squared distance moved since the list, and failures."""
+    """Advance rows [first, last); return the greatest shift² since the list, and failures."""
     moved, failed = 0.0, 0
     for i in range(first, last):
         growth = rate[i, 3] + ahead * (rate[i, 3] - before[i])

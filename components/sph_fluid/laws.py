@@ -13,6 +13,8 @@ from quintet.components.sph_fluid.params import SphFluidParams
 # sound waves neutral to second order in ω dt; a little more damps them, up to ω dt = 0.5.
 AHEAD = 1.25
 
+TINY = 1e-12  # h², added to r² so that a particle does not divide by its distance from itself
+
 
 class Fluid(NamedTuple):
     """The numbers that the laws need."""
@@ -60,15 +62,17 @@ def pressure_term(density, fluid):  # type: ignore[no-untyped-def]
 @njit(inline="always")
 def gradient(r2, fluid):  # type: ignore[no-untyped-def]
     """(dW/dr)/r, so that ∇_iW_ij = gradient · r_ij; finite where particles coincide."""
-    r2 = r2 + 1e-12 * fluid.smoothing * fluid.smoothing
+    r2 = r2 + TINY * fluid.smoothing * fluid.smoothing
     inverse = 1.0 / math.sqrt(r2)
     return fluid.slope * slope(r2 * inverse / fluid.smoothing) * inverse
 
 
 @njit(inline="always")
 def kernel(r2, fluid):  # type: ignore[no-untyped-def]
-    """W."""
-    return fluid.height * shape(math.sqrt(r2) / fluid.smoothing)
+    """W; from the same root as the gradient, so that one serves both."""
+    r2 = r2 + TINY * fluid.smoothing * fluid.smoothing
+    inverse = 1.0 / math.sqrt(r2)
+    return fluid.height * shape(r2 * inverse / fluid.smoothing)
 
 
 @njit(inline="always")

@@ -82,4 +82,5 @@ class State:
     def load(cls, saved: Fields) -> "State":
         """Make the state that was saved."""
         kept = {part.name: np.array(saved[part.name]) for part in fields(cls)}
-        return cls(**{name: a if a.ndim else a.item() for name, a in kept.items()})
+        own: dict[str, Any] = {name: a if a.ndim else a.item() for name, a in kept.items()}
+        return cls(**own)

@@ -15,7 +15,8 @@ from quintet.interfaces.params import unknown
 
 def join(name: str, pairs: Any, ports: Mapping[str, Ports]) -> "Direct":
     """Match pairs of ports, each given first: ``["a.motion", "b.foot"]``."""
-    mistakes, joined = [], []
+    mistakes: list[str] = []
+    joined = []
     for giver, taker in pairs:
         given = _port(name, giver, ports, 1, mistakes)
         taken = _port(name, taker, ports, 0, mistakes)
@@ -39,7 +40,9 @@ def _port(
     if name not in offered:
         verb = "gives" if side else "takes"
         known = ", ".join(offered) or "nothing"
-        mistakes.append(f"link {link}: {component} {verb} {known}; found {path}. Name one of these.")
+        mistakes.append(
+            f"link {link}: {component} {verb} {known}; found {path}. Name one of these."
+        )
     return offered.get(name)
 
 
@@ -62,7 +65,11 @@ class Direct:
                     giver,
                     taker,
                     _passing(names),
-                    forces=tuple(pair for pair in names if pair[0] in pushed),
+                    sums=tuple(
+                        (f"{given.name}.{f.name}", f"{taken.name}.{f.name}")
+                        for f in taken.fields
+                        if f.centring == "impulse"
+                    ),
                     works_on=self._works_on(giver, taker, taken),
                 )
             )

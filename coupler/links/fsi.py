@@ -121,6 +121,8 @@ class RigidFsi:
         return {"load.force": force, "load.torque": torque}
 
     def _moment(self, brought: Fields) -> Array:
+        if not self.memory:
+            return np.zeros(3)
         centre = 0.5 * (self.memory[0][1] + self.memory[-1][1])
         turn = np.cross(centre, brought["load.force"]) + brought["load.torque"]
         return np.asarray(turn.sum(axis=0))

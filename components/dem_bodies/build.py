@@ -1,0 +1,199 @@
+"""From parameters to arrays: mass, inertia, contact spheres and edges of each body."""
+
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.components.dem_bodies import materials
+from quintet.components.dem_bodies.clump import union
+from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
+from quintet.components.dem_bodies.placement import centred, reach, rotation
+from quintet.components.dem_bodies.state import Model, Numbers, State, Whole
+
+CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
+# Pairs of corners that differ in one coordinate.
+EDGES = np.array([(k, k + step) for step in (1, 2, 4) for k in range(8) if not k & step])
+# Corners around each face, seen from outside.
+FACES = np.array(
+    [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+)
+
+
+class Solid(NamedTuple):
+    """Mass and inertia of one body, and the spheres that make its contacts."""
+
+    mass: float  # kg
+    inertia: Numbers  # (3, 3) kg m2, body axes
+    centres: Numbers  # (s, 3) m, body axes
+    radii: Numbers  # (s,) m
+    size: Numbers  # (3,) m, edges of the box that holds it
+
+
+def solid(body: Body) -> Solid:
+    """Measure a body: a sphere and a box exactly, a clump by voxels."""
+    if body.size is not None:
+        size = np.array(body.size)
+        volume = float(size.prod())
+        inertia = (np.eye(3) * (size**2).sum() - np.diag(size**2)) / 12.0 * volume
+        centres = CORNERS * (0.5 * size - body.round)
+        radii = np.full(8, body.round)
+    elif body.diameter is not None:
+        size = np.full(3, body.diameter)
+        volume = np.pi / 6.0 * body.diameter**3
+        inertia = np.eye(3) * volume * body.diameter**2 / 10.0
+        centres, radii = np.zeros((1, 3)), np.array([0.5 * body.diameter])
+    else:
+        assert body.centres is not None and body.radii is not None
+        volume, _, inertia = union((body.centres, body.radii))
+        centres, radii = centred(body), np.array(body.radii)
+        size = np.ptp(np.vstack([centres - radii[:, None], centres + radii[:, None]]), axis=0)
+    density = body.density if body.mass is None else body.mass / volume
+    assert density is not None
+    return Solid(density * volume, density * inertia, centres, radii, size)
+
+
+def laws(params: DemBodiesParams) -> Numbers:
+    """Table (materials, materials, 4) of E* [Pa], G* [Pa], ζ and μ."""
+    names = list(params.materials)
+    table = np.zeros((len(names), len(names), 4))
+    for (i, a), (j, b) in product(enumerate(params.materials.values()), repeat=2):
+        table[i, j] = law(a, b, min(a.restitution, b.restitution), min(a.friction, b.friction))
+    for pair in params.pairs:
+        i, j = (names.index(name) for name in pair.between)
+        if pair.restitution is not None:
+            table[i, j, 2] = table[j, i, 2] = materials.damping_ratio(pair.restitution)
+        if pair.friction is not None:
+            table[i, j, 3] = table[j, i, 3] = pair.friction
+    return table
+
+
+def law(a: Material, b: Material, restitution: float, friction: float) -> Numbers:
+    """E* [Pa], G* [Pa], ζ and μ of two materials."""
+    young, poisson = (a.young, b.young), (a.poisson, b.poisson)
+    return np.array(
+        [
+            materials.effective_modulus(young, poisson),
+            materials.effective_shear(young, poisson),
+            materials.damping_ratio(restitution),
+            friction,
+        ]
+    )
+
+
+def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
+    """Arrays of all that never changes."""
+    bodies, planes = params.bodies, params.planes
+    names = {name: k for k, name in enumerate(params.materials)}
+    n = len(bodies) + 1
+    half, rounding = np.zeros((n, 3)), np.zeros(n)
+    counts, edges = np.zeros(n + 1, np.int64), np.zeros(n + 1, np.int64)
+    for k, body in enumerate(bodies):
+        counts[k + 1] = len(solids[k].radii)
+        if body.size is not None:
+            half[k], rounding[k] = 0.5 * np.array(body.size) - body.round, body.round
+            edges[k + 1] = len(EDGES)
+    first = np.cumsum(counts)
+    boxes = [int(first[k]) + EDGES for k, body in enumerate(bodies) if body.size is not None]
+    normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
+    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    points = np.array([plane.point for plane in planes]).reshape(-1, 3)
+    inverses = [np.linalg.inv(one.inertia) for one in solids]
+    return Model(
+        inverse_mass=np.array([1.0 / one.mass for one in solids] + [0.0]),
+        inverse_inertia=np.array([packed(one) for one in inverses] + [np.zeros(6)]),
+        isotropic=np.array([isotropic(one.inertia) for one in solids] + [True]),
+        half=half,
+        rounding=rounding,
+        reach=np.array([reach(body) for body in bodies]),
+        material=np.array([names[body.material] for body in bodies] + [0]),
+        sphere_from=first,
+        sphere_body=np.repeat(np.arange(n), counts[1:]),
+        sphere_centre=np.vstack([one.centres for one in solids]),
+        sphere_radius=np.concatenate([one.radii for one in solids]),
+        edge_from=np.cumsum(edges),
+        edge_ends=np.vstack(boxes) if boxes else np.zeros((0, 2), np.int64),
+        plane=np.column_stack([normals, (normals * points).sum(axis=1)]),
+        plane_material=as_whole([names[plane.material] for plane in planes]),
+        law=laws(params),
+        gravity=np.array(params.gravity),
+    )
+
+
+def as_whole(numbers: list[int]) -> Whole:
+    """Integer array, also of nothing."""
+    return np.array(numbers, np.int64)
+
+
+def packed(matrix: Numbers) -> Numbers:
+    """Six numbers xx yy zz xy xz yz of a symmetric matrix."""
+    return matrix[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+
+
+def isotropic(inertia: Numbers) -> bool:
+    """Whether a body turns about all axes alike, so that ω is parallel to its angular momentum."""
+    return bool(np.abs(inertia - inertia[0, 0] * np.eye(3)).max() <= 1e-14 * inertia[0, 0])
+
+
+def state(params: DemBodiesParams, solids: list[Solid]) -> State:
+    """Arrays of all that moves, as it is at the start."""
+    bodies, n = params.bodies, len(params.bodies) + 1
+    spheres = sum(len(one.radii) for one in solids)
+    spins = []
+    for body, one in zip(bodies, solids, strict=True):
+        turn = rotation(body.orientation)
+        spins.append(turn @ one.inertia @ turn.T @ np.array(body.angular_velocity))
+    still = [(0.0, 0.0, 0.0)]
+    orientations = np.array([body.orientation for body in bodies] + [(1.0, 0.0, 0.0, 0.0)])
+    return State(
+        position=np.array([body.position for body in bodies] + still),
+        velocity=np.array([body.velocity for body in bodies] + still),
+        orientation=orientations / np.linalg.norm(orientations, axis=1, keepdims=True),
+        spin=np.array([*spins, np.zeros(3)]),
+        angular_velocity=np.array([body.angular_velocity for body in bodies] + still),
+        contact=np.zeros((n, 6)),
+        load=np.zeros((n, 6)),
+        axes=np.zeros((n, 9)),
+        mobility=np.zeros((n, 6)),
+        rates=np.zeros((n, 12)),
+        centre=np.zeros((spheres, 3)),
+        listed=np.full((spheres, 3), np.inf),
+        report=np.zeros(8),
+    )
+
+
+def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
+    """Bound of √(S_n/m*) [rad/s] in impacts at the expected speed.
+
+    For each material the lightest contact and the largest radius are taken, though they may be
+    of different bodies.
+    """
+    table, names = laws(params)[:, :, 0], list(params.materials)
+    lightest, largest = np.zeros(len(names)), np.zeros(len(names))
+    for body, one in zip(params.bodies, solids, strict=True):
+        k = names.index(body.material)
+        lightest[k] = max(lightest[k], mobility(one))
+        largest[k] = max(largest[k], one.radii.max())
+    boxes = any(body.shape == "box" for body in params.bodies)
+    found = [0.0]
+    for i in np.flatnonzero(lightest):
+        for j in np.flatnonzero(lightest):
+            radius = 1.0 / (1.0 / largest[i] + 1.0 / largest[j])
+            if boxes:  # a sphere on a box's face has its own radius
+                radius = max(largest[i], largest[j])
+            mass = 1.0 / (lightest[i] + lightest[j])
+            found.append(materials.impact_frequency(table[i, j], radius, mass, params.speed))
+        for plane in params.planes:
+            modulus = table[i, names.index(plane.material)]
+            mass = 1.0 / lightest[i]
+            found.append(materials.impact_frequency(modulus, largest[i], mass, params.speed))
+    return max(found)
+
+
+def mobility(one: Solid) -> float:
+    """Largest 1/m* [1/kg] of a body's contact spheres over all directions of the normal."""
+    x, y, z = one.centres.T
+    o = np.zeros_like(x)
+    skew = np.array([[o, -z, y], [z, o, -x], [-y, x, o]]).transpose(2, 0, 1)  # r × n = skew n
+    turning = skew.transpose(0, 2, 1) @ np.linalg.inv(one.inertia) @ skew
+    return 1.0 / one.mass + float(np.linalg.eigvalsh(turning).max())

@@ -1,0 +1,125 @@
+"""Where bodies stand at the start: none inside another, none below a plane."""
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quintet.components.dem_bodies.clump import union
+from quintet.interfaces.component import Array
+
+if TYPE_CHECKING:
+    from quintet.components.dem_bodies.params import Body, Plane
+
+ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what touches exactly
+
+Ball = tuple[Array, float]  # centre (3,) m, radius m
+
+
+def rotation(orientation: tuple[float, float, float, float]) -> Array:
+    """Matrix (3, 3) of a unit quaternion: body -> world."""
+    w, x, y, z = np.array(orientation) / np.linalg.norm(orientation)
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.asarray(np.eye(3) + 2.0 * w * skew + 2.0 * skew @ skew)
+
+
+def centred(body: "Body") -> Array:
+    """Centres (n, 3) m of a clump's spheres about its centre of mass, in body axes."""
+    assert body.centres is not None and body.radii is not None
+    return np.asarray(np.array(body.centres) - union((body.centres, body.radii))[1])
+
+
+def balls(body: "Body") -> list[Ball]:
+    """Spheres of a body that is not a box, in the world."""
+    middle = np.array(body.position)
+    if body.diameter is not None:
+        return [(middle, 0.5 * body.diameter)]
+    assert body.radii is not None
+    centres = middle + centred(body) @ rotation(body.orientation).T
+    return list(zip(centres, body.radii, strict=True))
+
+
+def reach(body: "Body") -> float:
+    """Radius [m] about the centre of mass that holds the body."""
+    if body.size is not None:
+        return 0.5 * float(np.linalg.norm(body.size))
+    if body.diameter is not None:
+        return 0.5 * body.diameter
+    return float((np.linalg.norm(centred(body), axis=1) + np.array(body.radii)).max())
+
+
+def check(bodies: "Sequence[Body]", planes: "Sequence[Plane]") -> None:
+    """Refuse bodies that start inside one another or below a plane."""
+    for k, body in enumerate(bodies):
+        for m, plane in enumerate(planes):
+            gap = above(body, plane)
+            if gap < -ALLOWED * reach(body):
+                raise ValueError(
+                    f"bodies[{k}] must start above planes[{m}]; it reaches {-gap:.6g} m below. "
+                    "Raise it, or turn the plane's normal to the free side."
+                )
+    for i, j in near(bodies):
+        gap = between(bodies[i], bodies[j])
+        if gap < -ALLOWED * min(reach(bodies[i]), reach(bodies[j])):
+            raise ValueError(
+                f"bodies[{i}] and bodies[{j}] must not overlap at the start; they do by "
+                f"{-gap:.6g} m. Move one of them; touching is allowed."
+            )
+
+
+def above(body: "Body", plane: "Plane") -> float:
+    """Distance [m] of a body's lowest point from a plane."""
+    normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
+    origin = np.array(plane.point)
+    if body.size is not None:
+        down = np.abs(normal @ rotation(body.orientation)) @ (0.5 * np.array(body.size))
+        return float(normal @ (np.array(body.position) - origin) - down)
+    return float(min(normal @ (centre - origin) - radius for centre, radius in balls(body)))
+
+
+def near(bodies: "Sequence[Body]") -> Iterator[tuple[int, int]]:
+    """Pairs of bodies whose bounding spheres overlap, by a sweep along x."""
+    middle = np.array([body.position for body in bodies])
+    radius = np.array([reach(body) for body in bodies])
+    order = np.argsort(middle[:, 0] - radius, kind="stable")
+    middle, radius = middle[order], radius[order]
+    left, right = middle[:, 0] - radius, middle[:, 0] + radius
+    for step in range(1, len(bodies)):
+        # Sorted by their left ends: once nobody reaches the step-th next, nobody reaches further.
+        if not (left[step:] < right[:-step]).any():
+            return
+        apart = np.linalg.norm(middle[step:] - middle[:-step], axis=1)
+        for k in np.flatnonzero(apart < radius[step:] + radius[:-step]):
+            i, j = sorted((int(order[k]), int(order[k + step])))
+            yield i, j
+
+
+def between(a: "Body", b: "Body") -> float:
+    """Gap [m] between two bodies, negative where they overlap."""
+    if a.size is not None and b.size is not None:
+        return separation(a, b)
+    if a.size is not None or b.size is not None:
+        box, other = (a, b) if a.size is not None else (b, a)
+        return min(outside(box, centre) - radius for centre, radius in balls(other))
+    return min(
+        float(np.linalg.norm(c - d)) - r - s for c, r in balls(a) for d, s in balls(b)
+    )
+
+
+def outside(box: "Body", point: Array) -> float:
+    """Signed distance [m] of a point from a box."""
+    local = rotation(box.orientation).T @ (point - np.array(box.position))
+    beyond = np.abs(local) - 0.5 * np.array(box.size)
+    return float(np.linalg.norm(np.maximum(beyond, 0.0)) + min(beyond.max(), 0.0))
+
+
+def separation(a: "Body", b: "Body") -> float:
+    """Widest gap [m] between two boxes over the 15 axes that can part them (Gottschalk 1996)."""
+    R, S = rotation(a.orientation), rotation(b.orientation)
+    crossed = np.cross(R.T[:, None], S.T[None]).reshape(9, 3)
+    lengths = np.linalg.norm(crossed, axis=1)
+    axes = np.vstack([R.T, S.T, crossed[lengths > 1e-9] / lengths[lengths > 1e-9, None]])
+    apart = np.abs(axes @ (np.array(a.position) - np.array(b.position)))
+    half_a = np.abs(axes @ R) @ (0.5 * np.array(a.size))
+    half_b = np.abs(axes @ S) @ (0.5 * np.array(b.size))
+    return float((apart - half_a - half_b).max())

@@ -1,0 +1,70 @@
+"""What is put on top of a scene file: a preset, single settings, other components."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from quintet.interfaces.manifest import known_kinds
+from quintet.interfaces.params import unknown
+
+
+def put_preset(table: dict[str, Any], preset: str) -> list[str]:
+    """Set what a preset of the scene says; return the mistakes."""
+    presets = table.get("presets", {})
+    if not isinstance(presets, dict) or not isinstance(presets.get(preset, {}), dict):
+        return [f"presets.{preset} must be a table of paths and values. Write [presets.{preset}]."]
+    if preset not in presets:
+        return [unknown(f"preset {preset}", preset, presets)]
+    return [m for path, value in presets[preset].items() for m in _place(table, path, value)]
+
+
+def put_set(table: dict[str, Any], setting: str) -> list[str]:
+    """Set ``PATH=VALUE``, the value in TOML; return the mistakes."""
+    path, equals, text = setting.partition("=")
+    if not equals:
+        return [f"--set needs PATH=VALUE; found {setting!r}. Give it as in --set window=1e-3."]
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text  # a word needs no quotes on the command line
+    return _place(table, path, value)
+
+
+def _place(table: dict[str, Any], path: str, value: Any) -> list[str]:
+    """Set a value at a dotted path; new tables are made only for components' own settings."""
+    *heads, last = path.split(".")
+    at: Any = table
+    for number, head in enumerate(heads):
+        place = ".".join(heads[: number + 1])
+        if isinstance(at, list):
+            if not (head.isdigit() and int(head) < len(at)):
+                return [f"{place}: must be a number below {len(at)}; found {head!r}."]
+            at = at[int(head)]
+        elif isinstance(at, dict) and (head in at or place in ("output", "iteration")):
+            at = at.setdefault(head, {})
+        else:
+            return [unknown(place, head, at if isinstance(at, dict) else ())]
+    if not isinstance(at, dict):
+        return [f"{path} cannot be set: {'.'.join(heads)} is not a table."]
+    at[last] = value
+    return []
+
+
+def put_swap(table: dict[str, Any], swap: str) -> list[str]:
+    """Replace a component: ``NAME=KIND`` or ``NAME=replay@RUN``; return the mistakes."""
+    name, equals, kind = swap.partition("=")
+    if not equals:
+        return [f"--swap needs NAME=KIND; found {swap!r}. Give it as in --swap NAME=replay."]
+    kind, _, source = kind.partition("@")
+    components = table.get("components", {})
+    if name not in components:
+        return [unknown(f"--swap {swap}: component {name}", name, components)]
+    if ":" not in kind and kind not in known_kinds():
+        return [unknown(f"--swap {swap}: kind {kind}", kind, known_kinds())]
+    if kind == "replay":
+        recording = source or f"runs/{table.get('name', '')}"
+        new = {"recording": str(Path(recording).resolve()), "component": name}
+    else:
+        new = table.get("stand_ins", {}).get(name, {}).get(kind, {})
+    components[name] = {"kind": kind, **new}
+    return []

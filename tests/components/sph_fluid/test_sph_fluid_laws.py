@@ -1,0 +1,139 @@
+"""Kernel, gradients, and the equations on lattices."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quintet.components.shared.cells import grid_around, sorted_into
+from quintet.components.shared.neighbours import Neighbours, neighbours_within
+from quintet.components.shared.team import Team
+from quintet.components.sph_fluid import SphFluidParams, laws
+from quintet.components.sph_fluid.kernels import interact, press
+from quintet.components.sph_fluid.laws import Fluid, constants
+from quintet.components.sph_fluid.shepard import shepard
+
+REACH = 3.3  # spacings
+
+
+def lattice(n: int, spacing: float, dimensions: int = 3) -> np.ndarray:
+    """Points around the origin, sorted for `near`; in two dimensions, all y are equal."""
+    line = (np.arange(n) - 0.5 * (n - 1)) * spacing
+    axes = [line, line if dimensions == 3 else np.zeros(1), line]
+    points = np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=1)
+    order = sorted_into(points, grid_around(points, REACH * spacing))[2]
+    return points[order]
+
+
+def near(points: np.ndarray, spacing: float) -> Neighbours:
+    return neighbours_within(REACH * spacing, points, len(points), Team(1))
+
+
+def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: float) -> Fluid:
+    box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    settings = {"spacing": spacing, "smoothing": smoothing, "sound_speed": 40.0, "viscosity": 0.0}
+    return constants(SphFluidParams(fluid=(box,), **settings, **given), dimensions)
+
+
+def rates(
+    points: np.ndarray, velocity: np.ndarray, density: np.ndarray, fluid: Fluid
+) -> np.ndarray:
+    """Acceleration and dρ/dt (n, 4) without gravity."""
+    place = np.column_stack([points, density])
+    motion = np.column_stack([velocity, np.zeros(len(points))])
+    press(fluid, place, motion)
+    lists = near(points, fluid.smoothing / 1.5).arrays
+    rate = np.empty_like(place)
+    count = len(points)
+    interact(0, count, count, place, motion, lists, fluid, (0.0, 0.0, 0.0), rate, None)
+    return rate
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_kernel_sums_to_one(dimensions: int) -> None:
+    fluid = law(0.1, 3.0, dimensions)
+    points = lattice(13, 0.1, dimensions)
+    r2 = (points**2).sum(axis=1)
+    values = [laws.kernel.py_func(float(one), fluid) for one in r2]
+    assert sum(values) * 0.1**dimensions == pytest.approx(1.0, abs=2e-4)
+
+
+def test_kernel_gradient_is_the_derivative_of_the_kernel() -> None:
+    fluid = law(0.1)
+    for r in (0.02, 0.1, 0.14, 0.17, 0.25, 0.29):
+        step = 1e-6
+        low, high = (laws.kernel.py_func((r + d) ** 2, fluid) for d in (-step, step))
+        assert laws.gradient.py_func(r * r, fluid) * r == pytest.approx(
+            (high - low) / (2 * step), rel=1e-5
+        )
+
+
+def test_neighbour_lists_hold_all_pairs_within_reach() -> None:
+    points = np.random.default_rng(1).random((300, 3)) * [1.0, 0.5, 0.2]
+    grid = grid_around(points[:200], 0.15)
+    both = [points[:200], points[200:]]
+    points = np.concatenate([part[sorted_into(part, grid)[2]] for part in both])
+    found = neighbours_within(0.15, points, 200, Team(1))
+    distance = np.linalg.norm(points[:, None] - points[None], axis=2)
+    for i in range(300):
+        expected = np.flatnonzero(distance[i] < 0.15)
+        listed = np.sort(found.list[found.begin[i] : found.end[i]])
+        assert np.array_equal(listed, expected if i < 200 else expected[expected < 200])
+        first = found.list[found.begin[i] : found.middle[i]]
+        assert (first < 200).all()
+
+
+def test_continuity_converges_to_the_divergence_at_second_order() -> None:
+    errors = []
+    for spacing in (0.1, 0.05):
+        points = lattice(round(1.2 / spacing), spacing)
+        velocity = np.zeros_like(points)
+        velocity[:, 0] = np.sin(3.0 * points[:, 0])
+        found = rates(points, velocity, np.full(len(points), 1000.0), law(spacing))[:, 3]
+        inside = (np.abs(points) < 0.15).all(axis=1)
+        exact = -1000.0 * 3.0 * np.cos(3.0 * points[inside, 0])
+        errors.append(np.abs(found[inside] - exact).max() / 3000.0)
+    assert errors[1] < 0.01
+    assert errors[0] > 2.5 * errors[1]
+
+
+def test_pressure_gradient_converges_at_second_order() -> None:
+    errors = []
+    for spacing in (0.1, 0.05):
+        fluid = law(spacing)
+        points = lattice(round(1.2 / spacing), spacing)
+        # Small waves on a small pressure, for the lattice's mass per volume is ρ₀ exactly.
+        pressure = 1000.0 * (2.0 + np.sin(3.0 * points[:, 0]))
+        density = 1000.0 * (pressure / fluid.stiffness + 1.0) ** (1.0 / 7.0)
+        found = rates(points, np.zeros_like(points), density, fluid)[:, 0]
+        inside = (np.abs(points) < 0.15).all(axis=1)
+        exact = -3.0 * np.cos(3.0 * points[inside, 0])
+        errors.append(np.abs(found[inside] - exact).max() / 3.0)
+    assert errors[1] < 0.02
+    assert errors[0] > 2.5 * errors[1]
+
+
+def test_viscosity_acts_on_approach_only() -> None:
+    fluid = law(0.1)._replace(drag=1.0)
+    assert laws.push.py_func(0.0, 0.0, -2.0, 2000.0, fluid) == pytest.approx(1e-3)
+    assert laws.push.py_func(0.0, 0.0, 2.0, 2000.0, fluid) == 0.0
+
+
+def test_pressure_is_cut_unless_tension_is_allowed() -> None:
+    assert laws.tait.py_func(990.0, law(0.1)) == 0.0
+    assert laws.tait.py_func(990.0, law(0.1, tension=True)) < 0.0
+    slope = (laws.tait.py_func(1000.001, law(0.1)) - 0.0) / 0.001
+    assert slope == pytest.approx(40.0**2, rel=1e-4)
+
+
+def test_shepard_filter_keeps_a_uniform_density() -> None:
+    points = lattice(6, 0.1)
+    fluid = law(0.1)
+    place = np.column_stack([points, np.full(len(points), 1003.0)])
+    density = np.empty(len(points))
+    shepard(0, len(points), place, near(points, 0.1).arrays, fluid, density)
+    assert density == pytest.approx(1003.0, rel=1e-12)
+
+
+def test_normalisation_is_monaghans() -> None:
+    assert law(1.0, 1.0).height * 4.0 == pytest.approx(1.0 / math.pi)

@@ -1,0 +1,113 @@
+"""What a scene may not say, and what is known of it before it starts."""
+
+import math
+import re
+from typing import Any
+
+import pytest
+
+from quintet.components.sph_fluid import MANIFEST, SphFluidParams
+from quintet.components.sph_fluid.build import state
+from quintet.interfaces.params import read
+
+GOOD: dict[str, Any] = {
+    "spacing": 0.1,
+    "sound_speed": 60.0,
+    "fluid": [[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]],
+    "walls": [[0.0, 0.0, 0.0], [2.0, 1.0, 2.0]],
+}
+
+
+def mistakes(**changes: Any) -> str:
+    return "\n".join(read(SphFluidParams, GOOD | changes, "water")[1])
+
+
+def test_good_parameters_have_no_mistakes() -> None:
+    assert mistakes() == ""
+    assert mistakes(walls=None, gravity=[0.0, 0.0, 0.0], sound_speed=1.0) == ""
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"spacing": -0.1}, r"water.spacing should be greater than 0; found -0.1"),
+        ({"spacings": 0.1}, r"water.spacings is not known. Did you mean spacing"),
+        ({"fluid": []}, r"water: fluid must have at least one box; found none. Add a box."),
+        (
+            {"fluid": [[[0.0, 0.0, 0.0], [1.0, -1.0, 1.0]]]},
+            r"fluid\[0\] must go from its lowest to its highest corner.*found .*-1.0.*Exchange",
+        ),
+        (
+            {"fluid": [*GOOD["fluid"], [[0.5, 0.0, 0.0], [1.5, 1.0, 1.0]]]},
+            r"fluid\[1\] must not overlap fluid\[0\]; found .* Cut one",
+        ),
+        (
+            {"fluid": [[[0.0, 0.0, 0.0], [2.5, 1.0, 1.0]]]},
+            r"fluid\[0\] must be inside the walls along x, 0.0 to 2.0 m; found 0.0 to 2.5 m. Move",
+        ),
+        ({"walls": [[0.0, 0.0, 0.0], [0.0, 1.0, 1.0]]}, r"walls must go from .* widen it"),
+        (
+            {"sound_speed": 20.0},
+            r"sound_speed must be at least 10 sqrt\(g depth\) = 31.32 m/s .* found 20.0. Raise it",
+        ),
+        ({"smoothing": 4.0}, r"smoothing must be from 1 to 3 spacings; found 4.0. Use 1.2 to 2"),
+        ({"open": ["up"]}, r"water.open.* found 'up'"),
+        ({"xsph": 1.5}, r"water.xsph should be less than or equal to 1; found 1.5"),
+        ({"shepard_every": -1}, r"water.shepard_every should be greater than or equal to 0"),
+        ({"courant": 0.0}, r"water.courant should be greater than 0"),
+        ({"viscosity": -0.1}, r"water.viscosity should be greater than or equal to 0"),
+        ({"density": 0.0}, r"water.density should be greater than 0"),
+        ({"gravity": [0.0, 0.0, "down"]}, r"water.gravity.2 .* found 'down'"),
+        ({"tension": "no"}, r"water.tension .* found 'no'"),
+    ],
+)
+def test_mistake_says_where_rule_value_and_cure(changes: dict[str, Any], sentence: str) -> None:
+    found = mistakes(**changes)
+    assert re.search(sentence, found, re.DOTALL), found
+
+
+def test_fluid_may_reach_out_of_an_open_face() -> None:
+    assert mistakes(fluid=[[[0.0, 0.0, 0.0], [1.0, 1.0, 2.5]]]) == ""
+
+
+def test_plan_counts_what_is_built() -> None:
+    params = read(SphFluidParams, GOOD | {"open": ["z+", "x-"]}, "water")[0]
+    plan = MANIFEST.plan(params) if MANIFEST.plan else None
+    assert plan is not None and plan.items == len(state(params).place)
+    assert plan.dt == pytest.approx(0.2 * 0.15 / 66.0)
+
+
+def test_benchmark_tank_has_142421_particles() -> None:
+    tank = ((0.005, 0.005, 0.005), (1.595, 0.595, 0.605))
+    water = ((0.005, 0.005, 0.005), (0.605, 0.595, 0.305))
+    params = SphFluidParams(spacing=0.01, sound_speed=40.0, fluid=(water,), walls=tank)
+    assert MANIFEST.plan is not None
+    assert MANIFEST.plan(params).items == 142421
+
+
+def test_wall_goes_on_with_the_lattice_of_the_fluid() -> None:
+    params = read(SphFluidParams, GOOD, "water")[0]
+    made = state(params)
+    wall = made.place[made.fluid :, :3]
+    assert wall.min(axis=0) == pytest.approx([-0.05, -0.05, -0.05])
+    assert wall.max(axis=0) == pytest.approx([2.05, 1.05, 1.95])
+    assert made.place[: made.fluid, :3].min(axis=0) == pytest.approx([0.05] * 3)
+
+
+def test_pressure_at_the_start_is_hydrostatic() -> None:
+    params = read(SphFluidParams, GOOD, "water")[0]
+    made = state(params)
+    z, density = made.place[: made.fluid, 2], made.place[: made.fluid, 3]
+    stiffness = 60.0**2 * 1000.0 / 7.0
+    pressure = stiffness * ((density / 1000.0) ** 7 - 1.0)
+    assert pressure == pytest.approx(9810.0 * (1.0 - z), rel=1e-9)
+
+
+def test_ports_are_the_shared_ones() -> None:
+    takes, gives = MANIFEST.ports(None)
+    assert [port.name for port in (*takes, *gives)] == ["surface", "surface_load"]
+    assert math.isfinite(MANIFEST.load()(SphFluidParams(**tuples())).stable_dt())
+
+
+def tuples() -> dict[str, Any]:
+    return {"spacing": 0.5, "sound_speed": 60.0, "fluid": (((0.0,) * 3, (1.0,) * 3),)}

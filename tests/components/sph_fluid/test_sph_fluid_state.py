@@ -1,0 +1,133 @@
+"""Saving and loading, and what is neither imported nor compiled."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import Fields
+
+Make = Callable[..., SphFluid]
+Join = Callable[..., Fields]
+
+CONTINUE = """
+import sys
+import numpy as np
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+
+saved = dict(np.load(sys.argv[1]))
+box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
+position, velocity = saved.pop("position"), saved.pop("velocity")
+rows = len(position)
+ones = np.ones(rows)
+fluid.bind({"surface.normal": velocity, "surface.volume": ones, "surface.body": ones})
+fluid.load(saved)
+for _ in range(25):
+    fluid.take({"surface.position": position, "surface.velocity": velocity})
+    fluid.step(fluid.stable_dt())
+np.savez(sys.argv[1], **fluid.save())
+"""
+
+LOOK = """
+import sys, numpy as np
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid import kernels
+box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
+fluid.step(fluid.stable_dt())
+assert "quintet.components.sph_fluid.shepard" not in sys.modules
+assert not kernels.push_samples.signatures
+(signature,) = kernels.interact.signatures
+assert str(signature[-1]) == "none", signature
+assert fluid.drift is None and fluid.state.force.size == 0
+"""
+
+
+LIGHT = """
+import sys
+import quintet.components.sph_fluid as kind
+from quintet.interfaces.manifest import find
+
+assert find("sph_fluid") is kind.MANIFEST
+assert "numba" not in sys.modules
+"""
+
+
+def python(text: str, *arguments: str) -> None:
+    subprocess.run([sys.executable, "-c", text, *arguments], check=True)
+
+
+def test_saved_state_continues_with_the_same_bits_in_a_fresh_process(
+    drop: Make, plate: Join, tmp_path: Path
+) -> None:
+    fluid = drop()
+    fields = plate(fluid)
+    fluid.take(fields)
+    for _ in range(35):
+        fluid.step(fluid.stable_dt())
+    file = tmp_path / "state.npz"
+    position, velocity = fields["surface.position"], fields["surface.velocity"]
+    np.savez(file, **fluid.save(), position=position, velocity=velocity)
+    python(CONTINUE, str(file))
+    for _ in range(25):
+        fluid.take(fields)
+        fluid.step(fluid.stable_dt())
+    mine, other = fluid.save(), dict(np.load(file))
+    assert mine.keys() == other.keys()
+    assert all(np.array_equal(mine[name], other[name]) for name in mine)
+
+
+def test_repeated_window_gives_the_same_bits(pool: Make) -> None:
+    fluid = pool(xsph=0.5, shepard_every=5)
+    for _ in range(12):
+        fluid.step(fluid.stable_dt())
+    kept = fluid.save()
+    ends = []
+    for _ in range(2):
+        fluid.load(kept)
+        for _ in range(12):
+            fluid.step(fluid.stable_dt())
+        ends.append(fluid.save())
+    assert all(np.array_equal(ends[0][name], ends[1][name]) for name in kept)
+
+
+def test_what_goes_out_is_a_copy(drop: Make, plate: Join) -> None:
+    fluid = drop()
+    fluid.take(plate(fluid))
+    fluid.step(1e-4)
+    kept = {name: array.copy() for name, array in fluid.save().items()}
+    for fields in (fluid.give(), fluid.view(), fluid.save()):
+        for array in fields.values():
+            array[...] = 7
+    assert all(np.array_equal(kept[name], array) for name, array in fluid.save().items())
+
+
+def test_samples_keep_the_order_of_their_port(drop: Make, plate: Join) -> None:
+    fluid = drop()
+    fields = plate(fluid)
+    fluid.take(fields)
+    fluid.step(1e-4)
+    assert np.array_equal(fluid.state.place[fluid.rows, :3], fields["surface.position"])
+    assert len(fluid.give()["surface_load.force"]) == len(fields["surface.position"])
+
+
+def test_particles_are_shown_in_the_order_of_their_birth(pool: Make) -> None:
+    fluid = pool()
+    before = fluid.view()["points"]
+    for _ in range(3):
+        fluid.step(fluid.stable_dt())
+    assert np.abs(fluid.view()["points"] - before).max() < 1e-3
+
+
+def test_terms_that_are_off_are_not_compiled() -> None:
+    python(LOOK)
+
+
+def test_manifest_is_light() -> None:
+    python(LIGHT)

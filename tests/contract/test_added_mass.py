@@ -1,0 +1,94 @@
+"""A mass on a spring that carries a second: no staggered scheme holds when that is the heavier.
+
+Together they swing as cos(√(k / (m + m')) t); the carried mass answers with -m' dv/dt.
+"""
+
+import math
+
+import laboratory
+import numpy as np
+import pytest
+
+STIFFNESS, END = 10.0, 2.0
+LINK = {
+    "kind": "direct",
+    "pairs": [["swing.swing", "burden.carried"], ["burden.lump", "swing.lump"]],
+}
+
+
+def _run(folder, window, burden, scheme, ratio=1, **settings):
+    components = {
+        "swing": {"kind": "toy_points:Swing", "stiffness": STIFFNESS, "dt": window},
+        "burden": {"kind": "toy_points:Burden", "mass": burden, "dt": window / ratio},
+    }
+    path = laboratory.scene(
+        folder, components, LINK, end=END, window=window, scheme=scheme, **settings
+    )
+    return laboratory.couple(path)
+
+
+def _error(trace, burden):
+    exact = np.cos(math.sqrt(STIFFNESS / (1.0 + burden)) * trace.times)
+    return float(np.abs(trace.history("swing", "swing.position")[:, 0, 0] - exact).max())
+
+
+@pytest.mark.parametrize("scheme", ["serial", "parallel"])
+def test_staggered_schemes_hold_with_a_light_burden_only(tmp_path, scheme):
+    errors = [_error(_run(tmp_path, window, 0.5, scheme), 0.5) for window in (0.02, 0.01, 0.005)]
+    assert errors[-1] < 0.02
+    assert min(laboratory.orders(errors)) > 0.8
+    wild = _run(tmp_path, 0.01, 2.0, scheme)
+    assert _error(wild, 2.0) > 1e20  # and shorter windows make it worse
+    assert wild.account.momentum_residual <= 1e-12
+
+
+@pytest.mark.parametrize("ratio", [1, 7, 50])
+def test_iterated_windows_converge_with_a_heavy_burden(tmp_path, ratio):
+    errors = []
+    for window in (0.02, 0.01, 0.005):
+        trace = _run(tmp_path, window, 2.0, "iterated", ratio)
+        assert trace.account.momentum_residual <= 1e-12
+        errors.append(_error(trace, 2.0))
+    assert errors[-1] < 1e-5
+    assert min(laboratory.orders(errors)) > 1.9
+
+
+def test_the_frequency_is_exact(tmp_path):
+    trace = _run(tmp_path, 0.005, 2.0, "iterated")
+    place = trace.history("swing", "swing.position")[:, 0, 0]
+    first = int(np.flatnonzero(place <= 0.0)[0])
+    quarter = np.interp(0.0, place[[first, first - 1]], trace.times[[first, first - 1]])
+    exact = 0.5 * math.pi * math.sqrt(3.0 / STIFFNESS)
+    assert abs(quarter - exact) < 1e-5 * exact
+
+
+def test_aitken_needs_two_repetitions(tmp_path):
+    trace = _run(tmp_path, 0.01, 2.0, "iterated")
+    assert trace.coupling.repetitions / (len(trace.outputs) - 1) <= 2.1
+
+
+def test_constant_relaxation_needs_more_and_too_much_diverges(tmp_path):
+    iteration = {"aitken": False, "relaxation": 0.2}
+    steady = _run(tmp_path, 0.01, 2.0, "iterated", iteration=iteration)
+    aitken = _run(tmp_path, 0.01, 2.0, "iterated")
+    assert steady.coupling.repetitions > 3 * aitken.coupling.repetitions
+    assert _error(steady, 2.0) == pytest.approx(_error(aitken, 2.0), rel=1e-2)
+    from quintet.interfaces.errors import StepError
+
+    with pytest.raises(StepError, match="repetitions must bring the components to agreement"):
+        _run(tmp_path, 0.01, 2.0, "iterated", iteration={"aitken": False, "relaxation": 0.9})
+
+
+def test_what_an_iteration_lacks_is_applied_in_the_next_window(tmp_path):
+    loose = _run(tmp_path, 0.01, 2.0, "iterated", iteration={"tolerance": 0.05, "aitken": False})
+    applied = loose.account
+    assert applied.momentum_residual <= 1e-12
+    given = loose.history("burden", "lump.force").sum(axis=(0, 1))
+    owed = loose.coupling.owed["swing", "lump.force"].sum(axis=0)
+    assert np.abs(owed).max() > 1e-6  # the iteration did stop early
+    spring = loose.momentum()  # of both; the wall holds the spring's other end
+    np.testing.assert_allclose(given[1:], 0.0)
+    place = loose.history("swing", "swing.position")[:, 0, 0]
+    middle = 0.5 * (place[1:] + place[:-1])
+    wall = -STIFFNESS * loose.coupling.dt * middle.sum()
+    assert spring[0] + owed[0] == pytest.approx(wall, rel=2e-3)

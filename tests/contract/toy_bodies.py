@@ -1,0 +1,86 @@
+"""Toys: balls that turn and move as they are pushed."""
+
+import numpy as np
+
+from quintet.interfaces.component import Array, Component, Fields, Totals
+from quintet.interfaces.params import Positive, Vector, parameters
+from quintet.interfaces.ports import LOAD, MOTION
+
+
+def turn(orientation: Array, spin: Array, dt: float) -> Array:
+    """Quaternions (n, 4) w, x, y, z after turning with spins (n, 3) rad/s for a time [s]."""
+    rate = np.linalg.norm(spin, axis=1, keepdims=True)
+    axis = spin / np.where(rate > 0.0, rate, 1.0)
+    c, s = np.cos(0.5 * dt * rate), axis * np.sin(0.5 * dt * rate)
+    w, v = orientation[:, :1], orientation[:, 1:]
+    scalar = c * w - (s * v).sum(axis=1, keepdims=True)
+    return np.concatenate([scalar, c * v + w * s + np.cross(s, v)], axis=1)
+
+
+class Balls(Component):
+    """Spheres in free motion, pushed by forces and torques about their centres."""
+
+    takes = (LOAD,)
+    gives = (MOTION,)
+
+    @parameters
+    class Params:
+        """Equal spheres, and where and how fast each starts."""
+
+        diameter: Positive = 0.5  # m
+        mass: Positive = 2.0  # kg
+        positions: tuple[Vector, ...] = ((1.0, 2.0, 0.5), (2.0, 1.0, -1.0))  # m
+        velocities: tuple[Vector, ...] = ((1.0, 0.0, 0.2), (0.0, -0.7, 0.0))  # m/s
+        spins: tuple[Vector, ...] = ((0.5, 1.0, -2.0), (0.0, 3.0, 1.0))  # rad/s
+        dt: Positive = 0.01  # s
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.x, self.v = np.array(params.positions), np.array(params.velocities)
+        self.spin = np.array(params.spins)
+        self.q = np.tile([1.0, 0.0, 0.0, 0.0], (len(self.x), 1))
+        self.force, self.torque = np.zeros_like(self.x), np.zeros_like(self.x)
+        self.inertia = 0.1 * params.mass * params.diameter**2  # kg m2
+
+    def describe(self) -> Fields:
+        count, params = len(self.x), self.params
+        size, mass = np.full((count, 3), params.diameter), np.full(count, params.mass)
+        return {"motion.shape": np.zeros(count), "motion.size": size, "motion.mass": mass}
+
+    def stable_dt(self) -> float:
+        return self.params.dt
+
+    def take(self, fields: Fields) -> None:
+        self.force = np.array(fields["load.force"])
+        self.torque = np.array(fields["load.torque"])
+
+    def step(self, dt: float) -> None:
+        """Drift half, kick, drift half."""
+        self.x, self.q = self.x + 0.5 * dt * self.v, turn(self.q, self.spin, 0.5 * dt)
+        self.v = self.v + dt * self.force / self.params.mass
+        self.spin = self.spin + dt * self.torque / self.inertia
+        self.x, self.q = self.x + 0.5 * dt * self.v, turn(self.q, self.spin, 0.5 * dt)
+
+    def give(self) -> Fields:
+        return {
+            "motion.position": self.x.copy(),
+            "motion.velocity": self.v.copy(),
+            "motion.orientation": self.q.copy(),
+            "motion.angular_velocity": self.spin.copy(),
+        }
+
+    def save(self) -> Fields:
+        return {
+            key: getattr(self, key).copy() for key in ("x", "v", "q", "spin", "force", "torque")
+        }
+
+    def load(self, state: Fields) -> None:
+        for key in ("x", "v", "q", "spin", "force", "torque"):
+            setattr(self, key, np.array(state[key]))
+
+    def totals(self) -> Totals:
+        mass = self.params.mass
+        turning = mass * np.cross(self.x, self.v) + self.inertia * self.spin
+        kinetic = 0.5 * mass * (self.v**2).sum() + 0.5 * self.inertia * (self.spin**2).sum()
+        momentum = mass * self.v.sum(axis=0)
+        return Totals(mass * len(self.x), momentum, turning.sum(axis=0), float(kinetic))

@@ -1,0 +1,119 @@
+"""Runs of toy scenes in processes of their own, and what they leave behind."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+MARK = "QUINTET_TEST_RUN"
+TOYS = Path(__file__).with_name("toys.py")
+SCENE = """
+name = "toy"
+end = {end}
+window = 1e-3
+transport = "{transport}"
+[components.ping]
+kind = "toys:Toy"
+{ping}
+[components.pong]
+kind = "toys:Toy"
+{pong}
+[[links]]
+kind = "direct"
+pairs = [["ping.out", "pong.in"], ["pong.out", "ping.in"]]
+"""
+
+
+def write_scene(folder, transport="memory", end=1.0, ping="", pong=""):
+    """Two toys that give each other what they take; `end` counts seconds of 1000 windows."""
+    shutil.copy(TOYS, folder / "toys.py")
+    path = folder / "scene.toml"
+    path.write_text(SCENE.format(transport=transport, end=end, ping=ping, pong=pong))
+    return path
+
+
+class Started:
+    """``quintet run`` of a scene, as a user starts it, in a session of its own."""
+
+    def __init__(self, scene, *arguments):
+        self.folder = scene.parent / "out"
+        self.before = set(os.listdir("/dev/shm"))
+        self.mark = f"{MARK}={scene.parent}"
+        command = [sys.executable, "-m", "quintet.coupler.cli", "run", str(scene)]
+        command += ["--out", str(self.folder), *arguments]
+        self.process = subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+            env={**os.environ, MARK: str(scene.parent)},
+        )
+        self.out = self.err = ""
+
+    def wait(self, seconds=60.0):
+        """Wait for its end; return the exit status."""
+        try:
+            self.out, self.err = self.process.communicate(timeout=seconds)
+        finally:
+            self.end()
+        return self.process.returncode
+
+    def end(self):
+        """End whatever of it still runs."""
+        for pid in self.processes():
+            os.kill(pid, signal.SIGKILL)
+
+    def processes(self):
+        """Processes of this run: they all inherit the mark."""
+        found = []
+        for entry in Path("/proc").iterdir():
+            if entry.name.isdigit() and self._is_mine(entry):
+                found.append(int(entry.name))
+        return found
+
+    def _is_mine(self, entry):
+        try:
+            marked = self.mark.encode() in (entry / "environ").read_bytes().split(b"\0")
+            return marked and (entry / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+        except OSError:
+            return False
+
+    def wait_until(self, true, seconds=30.0):
+        """Wait until something is true of the run."""
+        limit = time.monotonic() + seconds
+        while not (found := true()):
+            assert time.monotonic() < limit, "it did not come to that"
+            time.sleep(0.005)
+        return found
+
+    def wait_for_windows(self):
+        """Wait until a component has stepped for a while; return nothing."""
+        steps = self.folder / "log" / "pong.log"
+        self.wait_until(lambda: steps.is_file() and "step 50" in steps.read_text())
+
+    def pid_of(self, name):
+        """Process of a component, as its log says."""
+        text = (self.folder / "log" / f"{name}.log").read_text()
+        return int(re.search(r"process (\d+)", text)[1])
+
+    def left_in_shared_memory(self):
+        """Files that came while it ran, and that no process uses any more."""
+        new = set(os.listdir("/dev/shm")) - self.before
+        used = ""
+        for maps in Path("/proc").glob("[0-9]*/maps"):
+            try:
+                used += maps.read_text()
+            except OSError:
+                continue
+        return {name for name in new if f"/dev/shm/{name}" not in used}
+
+    @property
+    def results(self):
+        """Its results.json."""
+        return json.loads((self.folder / "results.json").read_text())

@@ -1,0 +1,113 @@
+"""Components for trying out the coupler: they swap numbers, and fail on purpose."""
+
+import os
+import signal
+import time
+from typing import Literal
+
+import numpy as np
+
+from quintet.interfaces.component import Component, Field, Port, Totals
+from quintet.interfaces.params import Count, parameters
+
+NUMBER = (Field("number", (3,), "m"), Field("push", (3,), "N", "impulse"))
+
+
+class Toy(Component):
+    """Gives back what it takes, a little changed."""
+
+    @parameters
+    class Params:
+        items: Count = 5
+        pause: float = 0.0  # s, of every step
+        substeps: Count = 1  # of a window of 1 ms
+        fails_at: int = -1
+        fails_by: Literal["raise", "exit", "kill", "stop", "nan"] = "raise"
+        moment: str = ""  # file for the time of the failure
+
+    takes = (Port("in", NUMBER),)
+    gives = (Port("out", NUMBER),)
+
+    def __init__(self, params):
+        self.params = params
+        self.value = np.linspace(0.0, 1.0, 3 * params.items).reshape(-1, 3)
+        self.push = np.zeros_like(self.value)
+        self.steps = 0
+
+    def stable_dt(self):
+        return 1e-3 / self.params.substeps
+
+    def take(self, fields):
+        self.value = 0.9 * self.value + 0.1 * fields.get("in.number", self.value)
+        self.value = self.value + 1e-3 * fields.get("in.push", self.push)
+
+    def step(self, dt):
+        time.sleep(self.params.pause)
+        if self.steps == self.params.fails_at:
+            self.fail()
+        self.push = np.sin(self.value + self.steps)
+        self.steps += 1
+        if self.steps == 50:
+            print("step 50", flush=True)
+
+    def fail(self):
+        if self.params.moment:
+            with open(self.params.moment, "w") as file:
+                file.write(repr(time.time()))
+        match self.params.fails_by:
+            case "raise":
+                raise ArithmeticError("asked to raise")
+            case "exit":
+                os._exit(0)
+            case "kill":
+                os.kill(os.getpid(), signal.SIGKILL)
+            case "stop":
+                os.kill(os.getpid(), signal.SIGSTOP)
+            case "nan":
+                self.value = np.full_like(self.value, np.nan)
+
+    def give(self):
+        return {"out.number": self.value.copy(), "out.push": self.push.copy()}
+
+    def save(self):
+        return {"value": self.value.copy(), "push": self.push.copy()}
+
+    def load(self, state):
+        self.value, self.push = np.array(state["value"]), np.array(state["push"])
+
+    def totals(self):
+        return Totals(mass=1.0)
+
+
+class Plain:
+    """No component at all."""
+
+    @parameters
+    class Params:
+        pass
+
+
+class Bare(Component):
+    """A component without parameters of its own."""
+
+    stable_dt = take = step = give = save = load = lambda self, *_: None
+
+
+def other(name, field):
+    """A toy whose field differs."""
+    ports = {"takes": (Port("in", (field,)),), "gives": (Port("out", (field,)),)}
+    return type(name, (Toy,), {**ports, "__doc__": "A toy that does not fit."})
+
+
+InSeconds = other("InSeconds", Field("number", (3,), "s"))
+Impulsive = other("Impulsive", Field("number", (3,), "m/s", "impulse"))
+Instant = other("Instant", Field("push", (3,), "N"))
+Scalar = other("Scalar", Field("number", (), "m"))
+Unknown = other("Unknown", Field("heat", (3,), "m"))
+
+
+class Fragile(Toy):
+    """Cannot be built."""
+
+    def __init__(self, params):
+        raise RuntimeError("asked not to be built")

@@ -1,0 +1,139 @@
+"""A line loses nothing, mixes nothing up, and keeps its deadline."""
+
+import time
+
+import pytest
+
+from quintet.interfaces.errors import LineError, MessageError
+from quintet.interfaces.memory import MemoryLine
+from quintet.interfaces.message import encode
+from quintet.interfaces.transport import FramedLine, wait
+
+
+class ByHand(FramedLine):
+    """A line that receives what a test lays before it."""
+
+    def __init__(self, run="r1", gone=""):
+        super().__init__(run, "coupler")
+        self.frames, self.sent, self.gone = [], [], gone
+
+    def lay(self, seq, run="r1", **header):
+        self.frames.append(encode({"order": "done", "seq": seq, "run": run, **header}, {}, None))
+
+    def _put(self, frame):
+        self.sent.append(bytes(frame))
+
+    def _poll(self):
+        return self.frames.pop(0) if self.frames else None
+
+    def _broken(self):
+        return self.gone
+
+    def close(self):
+        pass
+
+
+def test_messages_in_order_are_received():
+    line = ByHand()
+    for seq in range(5):
+        line.lay(seq, n=seq)
+    assert [line.receive(0.1).header["n"] for _ in range(5)] == [0, 1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("seq", [0, 1, 3, -2, None, "2"])
+def test_a_gap_or_a_repetition_is_refused(seq):
+    line = ByHand()
+    line.lay(0)
+    line.lay(1)
+    line.lay(seq)
+    line.receive(0.1)
+    line.receive(0.1)
+    with pytest.raises(LineError, match=f"message 2 was expected, message {seq} arrived: messages"):
+        line.receive(0.1)
+
+
+def test_a_message_of_another_run_is_refused():
+    line = ByHand("r1")
+    line.lay(0, "r1")
+    line.lay(1, "r2")
+    line.receive(0.1)
+    with pytest.raises(LineError, match="a message of run 'r2' arrived in run 'r1'"):
+        line.receive(0.1)
+
+
+def test_a_component_learns_the_run_from_the_first_message_and_keeps_to_it():
+    line = ByHand("")
+    line.lay(0, "r7")
+    line.lay(1, "r8")
+    line.receive(0.1)
+    assert line.run == "r7"
+    with pytest.raises(LineError, match="of run 'r8' arrived in run 'r7'"):
+        line.receive(0.1)
+
+
+def test_bytes_that_are_no_message_are_refused():
+    line = ByHand()
+    line.frames.append(b"not a message at all")
+    with pytest.raises(MessageError):
+        line.receive(0.1)
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.05, 0.3])
+def test_the_deadline_is_kept(seconds):
+    began = time.perf_counter()
+    with pytest.raises(LineError, match=f"nothing arrived within {seconds:.1f} s"):
+        ByHand().receive(seconds)
+    assert seconds <= time.perf_counter() - began < seconds + 0.1
+
+
+def test_a_broken_line_says_why_before_the_deadline():
+    line = ByHand(gone="pong is gone")
+    began = time.perf_counter()
+    with pytest.raises(LineError, match="pong is gone"):
+        line.receive(60.0)
+    assert time.perf_counter() - began < 0.5
+    line.watch = lambda: "process 7 was killed by signal 9"  # who knows more is believed
+    with pytest.raises(LineError, match="process 7 was killed"):
+        line.receive(60.0)
+
+
+def test_what_was_sent_before_the_break_still_arrives():
+    inbox = []
+
+    def broken():
+        inbox.append("last words")  # came while nobody looked
+        return "gone"
+
+    assert wait(lambda: inbox.pop() if inbox else None, 1.0, broken) == "last words"
+
+
+def test_a_wait_gives_the_processor_away():
+    began = time.process_time()
+    with pytest.raises(LineError):
+        ByHand().receive(1.0)
+    assert time.process_time() - began < 0.25
+
+
+def test_every_message_says_run_sender_and_number():
+    line = ByHand("r1")
+    for _ in range(2):
+        line.send({"order": "advance", "seq": 99, "run": "forged"}, {})
+    other = ByHand("r1")
+    other.frames = list(line.sent)
+    for seq in range(2):
+        header = other.receive(0.1).header
+        assert (header["seq"], header["run"], header["from"]) == (seq, "r1", "coupler")
+
+
+def test_a_line_in_memory_hands_over_at_once():
+    line = MemoryLine("r1", "echo")
+
+    def answer(message):
+        line.far.send({"order": "done", "got": message.order}, message.fields)
+
+    line.handle = answer
+    for order in ("describe", "bind"):
+        line.send({"order": order}, {})
+        assert line.receive(0.0).header["got"] == order
+    with pytest.raises(LineError, match="the component gave no answer"):
+        line.receive(1.0)

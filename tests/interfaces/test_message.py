@@ -1,0 +1,167 @@
+"""A message comes back as it went; bytes that are none are refused, whatever they are."""
+
+import msgpack
+import numpy as np
+import pytest
+
+from quintet.interfaces import message as msg
+from quintet.interfaces.errors import MessageError
+from quintet.interfaces.message import ALIGN, PREFIX, decode, encode, require_finite
+
+
+def frame(arrays, body=b"", header=None, **prefix):
+    """A frame made by hand, as wrong as asked for."""
+    packed = msgpack.packb({"order": "x", "arrays": arrays} if header is None else header)
+    start = -(-(PREFIX.size + len(packed)) // ALIGN) * ALIGN
+    total = start + len(body)
+    made = bytearray(total)
+    magic, size = prefix.get("magic", b"qnt1"), prefix.get("size", len(packed))
+    PREFIX.pack_into(made, 0, magic, size, prefix.get("total", total))
+    made[PREFIX.size : PREFIX.size + len(packed)] = packed
+    made[start:] = body
+    return made
+
+
+@pytest.mark.parametrize("name", sorted(msg.DTYPES))
+@pytest.mark.parametrize("shape", [(5,), (5, 3), (2, 3, 4), (0,), (0, 3), (4, 0), (1, 1, 1, 1), ()])
+def test_every_type_and_shape_comes_back_bit_for_bit(name, shape):
+    random = np.random.default_rng(3)
+    array = random.integers(0, 2, shape).astype(name)
+    if array.dtype.kind == "f":
+        array = array * np.asarray(random.random(shape), name)
+    found = decode(encode({"order": "x"}, {"a.b": array, "z": np.arange(3.0)}, None))
+    assert found.fields["a.b"].dtype == array.dtype and found.fields["a.b"].shape == shape
+    assert found.fields["a.b"].tobytes() == array.tobytes()
+    assert (found.fields["z"] == np.arange(3.0)).all()
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        np.arange(24.0).reshape(4, 6)[:, ::2],
+        np.arange(24.0).reshape(4, 6).T,
+        np.arange(10.0)[::-1],
+        np.broadcast_to(np.float64(2.5), (3, 3)),
+    ],
+)
+def test_arrays_that_are_not_contiguous_come_back(array):
+    found = decode(encode({}, {"a": array}, None)).fields["a"]
+    assert found.shape == array.shape and (found == array).all()
+
+
+def test_a_header_comes_back_and_arrays_are_read_only():
+    header = {"order": "advance", "dt": 0.1, "window": 3, "list": [1, "two", None, True]}
+    found = decode(encode(header, {"a": np.zeros(3)}, None))
+    assert found.header == header and found.order == "advance"
+    with pytest.raises(ValueError, match="read-only"):
+        found.fields["a"][0] = 1.0
+
+
+def test_every_array_is_aligned_and_frames_are_used_again():
+    fields = {f"f{n}": np.arange(n, dtype="|u1") for n in (1, 7, 16, 17)}
+    made = encode({"order": "x"}, fields, None)
+    found = decode(made)
+    base = np.frombuffer(made, np.uint8).ctypes.data
+    for array in found.fields.values():
+        assert (array.ctypes.data - base) % ALIGN == 0
+    del found, array
+    assert encode({"order": "x"}, fields, made) is made
+    assert encode({"order": "longer " * 9}, fields, made) is not made
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (b"", "at least 16 bytes; found 0"),
+        (b"qnt1" * 3, "at least 16 bytes; found 12"),
+        (frame([], magic=b"pick"), "must begin with"),
+        (frame([])[:-1], "bytes; "),
+        (frame([]) + b"\0", "arrived"),
+        (frame([], size=1 << 30), "does not fit"),
+        (frame([], size=200), "does not fit"),
+        (frame([], size=3), "msgpack"),
+        (frame(None, header=[1, 2]), "must be a map; found list"),
+        (frame(None, header={"order": "x"}), "must list its arrays; found NoneType"),
+        (frame("abc"), "must list its arrays; found str"),
+        (frame(["abc"]), "listed as name, type, shape"),
+        (frame([["a", "<f8"]]), "listed as name, type, shape"),
+        (frame([[1, "<f8", [1]]]), "listed as name, type, shape"),
+        (frame([["a", "|O", [1]]], b"\0" * 16), "type '|O' is not one of"),
+        (frame([["a", ">f8", [2]]], b"\0" * 16), "type '>f8' is not one of"),
+        (frame([["a", ["<f8"], [2]]], b"\0" * 16), "is not one of"),
+        (frame([["a", "<f8", [-2]]], b"\0" * 16), "is not a shape"),
+        (frame([["a", "<f8", [1 << 40]]]), "is not a shape"),
+        (frame([["a", "<f8", [1 << 39, 1 << 39, 1 << 39]]]), "must end within"),
+        (frame([["a", "<f8", [1, 1, 1, 1, 1]]]), "is not a shape of at most 4"),
+        (frame([["a", "<f8", [2.0]]], b"\0" * 16), "is not a shape"),
+        (frame([["a", "<f8", [True]]], b"\0" * 16), "is not a shape"),
+        (frame([["a", "<f8", 2]], b"\0" * 16), "is not a shape"),
+        (frame([["a", "<f8", [3]]], b"\0" * 16), "must end within"),
+        (frame([["a", "<f8", [2]]], b"\0" * 32), "must be used up"),
+        (frame([["a", "<f8", [2]], ["a", "<f8", [2]]], b"\0" * 32), "listed twice"),
+    ],
+)
+def test_what_is_no_message_is_refused(made, words):
+    with pytest.raises(MessageError) as error:
+        decode(made)
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "array", [np.array([{}, None]), np.zeros(2, ">f8"), np.zeros(2, "c16"), np.array(["text"])]
+)
+def test_types_that_may_not_cross_are_refused_by_the_sender(array):
+    with pytest.raises(MessageError, match=r"field f: its type must be one of .* Convert it"):
+        encode({}, {"f": array}, None)
+
+
+def test_another_shape_than_expected_is_refused_and_a_failure_is_not():
+    made = encode({"order": "done"}, {"f": np.zeros((4, 3))}, None)
+    assert decode(made, {"f": (4, 3)}).fields["f"].shape == (4, 3)
+    with pytest.raises(MessageError, match=r"field f: expected shape \(5, 3\), shape \(4, 3\)"):
+        decode(made, {"f": (5, 3)})
+    with pytest.raises(MessageError, match=r"field g: expected shape \(1,\), nothing arrived"):
+        decode(made, {"f": (4, 3), "g": (1,)})
+    with pytest.raises(MessageError, match="field f: expected nothing"):
+        decode(made, {})
+    assert decode(encode({"order": "failed"}, {}, None), {"f": (4, 3)}).order == "failed"
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_a_number_that_is_not_finite_is_refused_with_its_item(bad):
+    array = np.ones((6, 3))
+    array[4, 1] = bad
+    with pytest.raises(MessageError, match=r"here: every number of f must be finite; item 4 is \["):
+        require_finite({"e": np.ones(2), "f": array}, "here")
+    with pytest.raises(MessageError, match="item 0 is"):
+        require_finite({"f": np.array(bad)}, "a single number")
+
+
+def test_large_numbers_whose_squares_overflow_are_finite():
+    require_finite({"f": np.full((3, 3), 1e300), "g": np.full(2, -1e200)}, "")
+    require_finite({"f": np.full((3, 3), 3e38, "<f4"), "i": np.arange(3), "e": np.zeros((0, 3))}, "")
+
+
+def test_no_bytes_raise_anything_but_a_message_error():
+    random = np.random.default_rng(11)
+    good = encode({"order": "x", "n": [1, 2.0, None]}, {"a": np.ones((3, 3)), "b": np.ones(4)}, None)
+    refused = 0
+    for _ in range(20_000):
+        bad = bytearray(good)
+        match random.integers(4):
+            case 0:  # some bytes turned, most often where sizes and shapes are told
+                for _ in range(random.integers(1, 5)):
+                    bad[random.integers(len(bad) if random.random() < 0.2 else 96)] = random.integers(256)
+            case 1:
+                bad = bad[: random.integers(len(bad))]
+                if len(bad) >= PREFIX.size:
+                    PREFIX.pack_into(bad, 0, b"qnt1", random.integers(200), len(bad))
+            case 2:
+                bad[PREFIX.size : PREFIX.size + 24] = random.bytes(24)
+            case 3:
+                bad = bytearray(random.bytes(int(random.integers(100))))
+        try:
+            decode(bad)
+        except MessageError:
+            refused += 1
+    assert refused > 10_000

@@ -1,0 +1,84 @@
+"""The main job, small: fluid and bodies, in one process and in several."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from quintet.coupler.cli import main
+from quintet.coupler.diff import compare
+from quintet.coupler.record import Recording
+
+SCENE = str(Path(__file__).parent / "small_dam.toml")
+
+
+def run(out: Path, *options: str) -> dict:
+    with pytest.raises(SystemExit) as ended:
+        main(["run", SCENE, "--out", str(out), *options])
+    found = json.loads((out / "results.json").read_text())
+    assert ended.value.code == 0, found
+    return found
+
+
+@pytest.fixture(scope="module")
+def live(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
+    out = tmp_path_factory.mktemp("live")
+    return out, run(out)
+
+
+def test_water_pushes_the_cube_downstream(live: tuple[Path, dict]) -> None:
+    with Recording(live[0]) as recording:
+        x = recording.history("cube", "motion.position", 0)[:, 0]
+    assert x[-1] > x[0] + 0.005
+
+
+def test_momentum_closes_to_rounding(live: tuple[Path, dict]) -> None:
+    (link,) = live[1]["ledger"]["links"]
+    assert 0.0 < link["impulse"][0]
+    assert link["momentum_residual"] < 1e-12
+
+
+@pytest.mark.parametrize(("window", "ratio"), [(2e-4, 1), (1.4e-3, 7), (1e-2, 50)])
+def test_momentum_closes_at_every_ratio(tmp_path: Path, window: float, ratio: int) -> None:
+    # The courant number sets the fluid's step, and with it how often it steps in a window.
+    found = run(tmp_path, "--set", f"window={window}", "--set", "end=0.2")
+    steps = found["timing"]["components"]["water"]["steps"]
+    assert steps / found["windows"] == pytest.approx(ratio, rel=0.3)
+    (link,) = found["ledger"]["links"]
+    assert link["impulse"][0] > 0.0
+    assert link["momentum_residual"] < 1e-12
+
+
+@pytest.mark.zenoh
+def test_zenoh_gives_the_same_bits(live: tuple[Path, dict], tmp_path: Path) -> None:
+    run(tmp_path, "--transport", "zenoh")
+    assert compare(live[0], tmp_path) is None
+
+
+@pytest.mark.mpi
+def test_mpi_gives_the_same_bits(live: tuple[Path, dict], tmp_path: Path) -> None:
+    run(tmp_path, "--transport", "mpi")
+    assert compare(live[0], tmp_path) is None
+
+
+def test_threads_change_no_bit(live: tuple[Path, dict], tmp_path: Path) -> None:
+    run(tmp_path, "--transport", "zenoh", "--set", "components.water.threads=2")
+    assert compare(live[0], tmp_path) is None
+
+
+def test_a_replayed_cube_gives_the_water_the_same_bits(
+    live: tuple[Path, dict], tmp_path: Path
+) -> None:
+    run(tmp_path, "--swap", f"cube=replay@{live[0]}")
+    with Recording(live[0]) as one, Recording(tmp_path) as other:
+        force = "surface_load.force"
+        assert one.field("water", force).tobytes() == other.field("water", force).tobytes()
+
+
+def test_a_prescribed_cube_runs(tmp_path: Path) -> None:
+    found = run(tmp_path, "--swap", "cube=prescribed")
+    assert found["status"] == "done"
+
+
+def test_views_are_left_for_every_component(live: tuple[Path, dict]) -> None:
+    assert sorted(path.name for path in live[0].glob("*.vtkhdf")) == ["cube.vtkhdf", "water.vtkhdf"]
