@@ -141,7 +141,7 @@ class OverMpi:
         run = secrets.token_hex(4)
         self.parts: dict[str, Part] = {}
         self.watches: dict[str, Watch] = {}
-        announce(folder, [], shared_files())
+        announce(folder, None, shared_files())
         for rank, name in enumerate(scene.components, start=1):
             line = mpi.MpiLine(run, "coupler", name, rank)
             line.watch = lambda: "the run was interrupted" if interrupted() else ""

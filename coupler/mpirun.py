@@ -15,7 +15,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import FrameType
 from typing import IO
@@ -28,6 +28,7 @@ from quintet.interfaces.process import STARTER
 NAME = "mpi.json"  # in the log folder: processes, and the status that the coupler ended with
 SAID = ("coupler.out", "coupler.err")  # there too: what the coupler printed
 LAUNCHER = "mpiexec.log"  # and what the launcher did
+JOINING = 200.0  # s for all components to join; the coupler gives up on each one sooner
 LEAVING = 3.0  # s for all ranks to leave after the coupler has its results
 
 
@@ -83,31 +84,42 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
     with contextlib.ExitStack() as stack:
         said = [stack.enter_context(open(note.with_name(name), "w+b")) for name in SAID]
         asked = _forward_signals(note, process)
-        _await(process, note, said)
+        reason = _await(process, note, said, asked)
         found = _read(note)
         _clean(process, found)
         _pass_on(said)
     if "status" in found:
         return int(str(found["status"]))
-    if not asked:
-        print("quintet: the MPI job ended, and left no results", file=sys.stderr)
-        print("\n".join(f"    {one}" for one in tail(log)), file=sys.stderr)
-    return 130 if asked else 3
+    if asked:
+        return 130
+    print(f"quintet: {reason}; there are no results", file=sys.stderr)
+    print("\n".join(f"    {one}" for one in tail(log)), file=sys.stderr)
+    return 3
 
 
-def _await(process: "subprocess.Popen[bytes]", note: Path, said: Sequence[IO[bytes]]) -> None:
-    """Pass on what the coupler prints, until it has its results and the ranks have left."""
-    limit = float("inf")
+def _await(
+    process: "subprocess.Popen[bytes]", note: Path, said: Sequence[IO[bytes]], asked: list[int]
+) -> str:
+    """Pass on what the coupler prints until all have left; tell what went wrong, if it did."""
+    reason, limit = "", time.monotonic() + JOINING
     while time.monotonic() < limit:
         _pass_on(said)
         ended, found = process.poll() is not None, _read(note)
         coupler = int(str(found.get("coupler", 0)))  # 0 until it has begun
-        over = "status" in found or not running(coupler)
-        if ended and over:
-            return
-        if coupler and over and limit == float("inf"):
-            limit = time.monotonic() + LEAVING
+        joined, over = found.get("pids") is not None, "status" in found
+        if ended and (over or not running(coupler)):
+            return reason or "the coupler ended"
+        if not reason:
+            if over or (coupler and not running(coupler)):
+                reason = "the coupler ended"
+            elif not joined and (ended or asked):
+                reason = "the MPI job ended before all components had joined"
+            elif joined:
+                limit = float("inf")
+            if reason:
+                limit = time.monotonic() + LEAVING
         time.sleep(0.02)
+    return reason or f"not all components joined within {JOINING:.0f} s"
 
 
 def _pass_on(said: Sequence[IO[bytes]]) -> None:
@@ -145,17 +157,18 @@ def enter(folder: Path) -> None:
         stream.flush()
         with open(folder / "log" / name, "ab") as file:
             os.dup2(file.fileno(), stream.fileno())
-    announce(folder, [], [])
+    announce(folder, None, [])
 
 
-def announce(folder: Path, pids: list[int], shared: list[str]) -> None:
-    """Note which processes and shared files the run has, for who cleans up after it."""
+def announce(folder: Path, pids: list[int] | None, shared: list[str]) -> None:
+    """Note which processes (None until all have joined) and shared files the run has."""
     _write(folder, {"coupler": os.getpid(), "pids": pids, "shared": shared})
 
 
 def leave(folder: Path, status: int) -> None:
     """End the coupler's rank: in order when all is well, else the whole job at once."""
     found = _read(folder / "log" / NAME)
+    _unlink(found)  # all ranks have it open by now; who started the job may be gone
     _write(folder, {**found, "status": status})
     sys.stdout.flush()
     sys.stderr.flush()
@@ -174,14 +187,23 @@ def _write(folder: Path, content: dict[str, object]) -> None:
 
 def _clean(process: "subprocess.Popen[bytes]", found: dict[str, object]) -> None:
     """End what still runs and remove what killed ranks left in shared memory."""
-    pids = [*found.get("pids", []), found.get("coupler", 0)]  # type: ignore[misc]
-    for pid in pids:
-        if pid and running(pid):
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGKILL)
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)
+    for pid in _mine():
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
     process.wait()
+    _unlink(found)
+
+
+def _unlink(found: dict[str, object]) -> None:
     for path in found.get("shared", []):  # type: ignore[attr-defined]
         with contextlib.suppress(OSError):
             os.unlink(path)
+
+
+def _mine() -> Iterator[int]:
+    """Processes of the job on this host: they were all given the same mark."""
+    mark = f"{STARTER}={os.getpid()}".encode()
+    for entry in Path("/proc").glob("[0-9]*/environ"):
+        with contextlib.suppress(OSError):
+            if mark in entry.read_bytes().split(b"\0"):
+                yield int(entry.parent.name)

@@ -16,7 +16,6 @@ from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import LinkError, StepError
 from quintet.interfaces.message import Message
 
-
 # What components take from those that step after them: by the taker's name and the field's.
 Guess = dict[tuple[str, str], Array]
 FLOOR = 1e-3  # of the largest value so far: below it agreement is not asked for

@@ -1,0 +1,55 @@
+"""Rigid bodies in frictional contact: spheres, rounded boxes, clumps of spheres, and planes.
+
+    m dv/dt = Σ F + m g + load,   dL/dt = Σ r × F + torque,   ω = R I⁻¹ Rᵀ L,   dq/dt = ½ (0, ω) ∘ q
+    F_n = 4/3 E* √R* δ^{3/2} + 2√(5/6) ζ √(S_n m*) dδ/dt ≥ 0          Hertz, damped
+    dF_t = -S_t v_t dt, |F_t| ≤ μ F_n                               Mindlin, Coulomb
+
+with S_n = 2E*√(R*δ), S_t = 8G*√(R*δ). The damping ratio ζ realises the coefficient of restitution e
+exactly, e = exp(-2ζ arccos ζ/√(1-ζ²)), although the force is never a pull; m* is the mass that
+resists at the point of contact, 1/m* = Σ [1/m + (r × n)·I⁻¹(r × n)], so that e holds for the normal
+velocity of a box's corner too, and for a box that falls flat on four of them.
+
+A box is what a sphere of radius `rounding` sweeps when its centre moves through a smaller box:
+its faces are exact. Two boxes touch where a corner of one is near the other (8 + 8 spheres against
+rounded boxes) and where two edges cross; that is all that convex polyhedra can do. Spheres and
+clumps touch boxes by their exact distance. Contacts along an edge or face thus need no row of
+small spheres, whose bumps would add to the friction.
+
+Velocity Verlet, of second order also with dampers: their velocities are foreseen at the end of
+the step. Angular momentum is advanced in world axes, so that it is exact for a free body.
+
+Papers: Hertz, J. reine angew. Math. 92 (1881) 156; Mindlin & Deresiewicz, J. Appl. Mech. 20 (1953)
+327; Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239 (damping); Antypov & Elliott, EPL 94
+(2011) 50004; Schwager & Pöschel, Granular Matter 9 (2007) 465 (where a contact ends); Walton &
+Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder Technol. 233 (2013)
+30 (comparison); Chung & Ooi, Granular Matter 13 (2011) 643 (tests).
+"""
+
+from quintet.components.dem_bodies import build
+from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.manifest import Manifest, Plan, Ports
+from quintet.interfaces.ports import LOAD, MOTION
+
+__all__ = ["MANIFEST", "DemBodiesParams"]
+
+
+def _ports(_: DemBodiesParams) -> Ports:
+    return (LOAD,), (MOTION,)
+
+
+def _plan(params: DemBodiesParams) -> Plan:
+    solids = [build.solid(body) for body in params.bodies]
+    ω = build.expected_frequency(params, solids)
+    dt = min(params.longest_step, DURATION * SPEED_UP / ω / params.steps_per_contact)
+    return Plan(len(solids), dt, rate=2e5, bytes_per_item=2000.0)
+
+
+MANIFEST = Manifest(
+    kind="dem_bodies",
+    title="Rigid bodies in frictional contact",
+    params=DemBodiesParams,
+    component="quintet.components.dem_bodies.component:DemBodies",
+    ports=_ports,
+    plan=_plan,
+)

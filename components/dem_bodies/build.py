@@ -152,13 +152,14 @@ def state(params: DemBodiesParams, solids: list[Solid]) -> State:
         spin=np.array([*spins, np.zeros(3)]),
         angular_velocity=np.array([body.angular_velocity for body in bodies] + still),
         contact=np.zeros((n, 6)),
+        before=np.zeros((n, 6)),
         load=np.zeros((n, 6)),
         axes=np.zeros((n, 9)),
         mobility=np.zeros((n, 6)),
         rates=np.zeros((n, 12)),
         centre=np.zeros((spheres, 3)),
         listed=np.full((spheres, 3), np.inf),
-        report=np.zeros(8),
+        report=np.zeros(10),
     )
 
 
@@ -175,7 +176,7 @@ def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
         lightest[k] = max(lightest[k], mobility(one))
         largest[k] = max(largest[k], one.radii.max())
     boxes = any(body.shape == "box" for body in params.bodies)
-    found = [0.0]
+    found = []
     for i in np.flatnonzero(lightest):
         for j in np.flatnonzero(lightest):
             radius = 1.0 / (1.0 / largest[i] + 1.0 / largest[j])

@@ -2,16 +2,15 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, cast
 
 import numpy as np
 
-from quintet.components.dem_bodies import build, contact_kernels, kernels, search
+from quintet.components.dem_bodies import build, kernels, search
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.state import Contacts, Numbers, State, empty_contacts
-from quintet.interfaces.component import Array, Component, Fields, Totals
+from quintet.components.dem_bodies.state import empty_contacts
+from quintet.interfaces.component import Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import LOAD, MOTION
 
@@ -45,14 +44,13 @@ class DemBodies(Component):
         self.params = params
         self.solids = [build.solid(body) for body in params.bodies]
         self.model = build.model(params, self.solids)
-        self.state: State = build.state(params, self.solids)
-        self.contacts: Contacts = empty_contacts(0)
+        self.state = build.state(params, self.solids)
+        self.contacts = empty_contacts(0)
         self.books = Books()
-        self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.count = len(self.solids)
+        self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.skin = SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
-        self._before: Numbers = np.zeros_like(self.state.contact)
         self._move(0.0)
 
     def describe(self) -> Fields:
@@ -64,20 +62,15 @@ class DemBodies(Component):
         }
 
     def stable_dt(self) -> float:
-        """Return a fraction of the contact time; before anything touches, of the time until then."""
-        report = self.state.report
+        """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
+        report, longest = self.state.report, self.params.longest_step
         ω = max(self.frequency, math.sqrt(report[rows.STIFFEST]))
-        longest = self.params.longest_step
-        if ω == 0.0:
-            return longest
         contact = DURATION * SPEED_UP / ω / self.params.steps_per_contact
-        # A pair that is not listed has been further apart than the skin, and has come nearer.
-        gap = min(float(report[rows.GAP]), self._unlisted_gap())
-        if gap <= 0.0:
-            return contact
+        # Pairs that are not listed were further apart than the skin, and may have come nearer.
+        gap = min(report[rows.GAP], self.skin - 2.0 * math.sqrt(report[rows.WAY]))
         speed = report[rows.FASTEST] + report[rows.HARDEST] * longest
         free = gap / (2.0 * speed) if speed > 0.0 else longest
-        return float(max(min(longest, free), min(contact, longest)))
+        return float(min(longest, max(free, contact)))
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; without them there is none."""
@@ -88,12 +81,49 @@ class DemBodies(Component):
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, contacts, half kick."""
-        held = float(self.state.report[rows.ELASTIC])
-        start = self.state.position.copy() if self.state.load.any() else None
+        report = self.state.report
+        held = report[rows.ELASTIC]
         self._move(dt)
-        work = float(self.state.report[rows.WORK])
-        self.books.dissipated += held - work - float(self.state.report[rows.ELASTIC])
         self.books.time += dt
+        self.books.given += float(report[rows.GIVEN])
+        self.books.dissipated += float(held - report[rows.WORK] - report[rows.ELASTIC])
+
+    def _move(self, dt: float) -> None:
+        state = self.state
+        if not kernels.advance(self.model, state, self.contacts, dt, 0.25 * self.skin**2):
+            self._list()
+            kernels.resolve(self.model, state, self.contacts, dt)
+        report = state.report
+        if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.FASTEST])):
+            self._refuse(dt)
+
+    def _list(self) -> None:
+        if not np.isfinite(self.state.position).all():
+            self._refuse(0.0)
+        self.contacts = search.listed(self.model, self.state, self.contacts, self.skin)
+        self.state.report[rows.WAY] = 0.0
+
+    def _refuse(self, dt: float) -> None:
+        """End the run with the body that is wrong and what to do."""
+        after = f"dem_bodies, t = {self.books.time + dt:.6g} s"
+        s, m = self.state, self.count
+        good = np.isfinite(np.hstack([s.position, s.velocity, s.spin, s.orientation])).all(axis=1)
+        if not good[:m].all():
+            k = int(np.argmin(good[:m]))
+            raise StepError(
+                f"{after}: the state must stay finite; body {k} is at {s.position[k].tolist()} m "
+                f"with {s.velocity[k].tolist()} m/s under a load of {s.load[k].tolist()} N, N m. "
+                "Look at the load it was given, or make steps_per_contact larger."
+            )
+        deepest, pair = s.report[rows.DEEPEST], int(s.report[rows.WHICH])
+        touching = self.contacts.touching
+        i, j = touching[touching[:, 0] == pair][0, 1:3]
+        other = f"body {j}" if j < m else "a plane"
+        raise StepError(
+            f"{after}: a contact may be {DEEPEST} of its radius deep; body {i} is {deepest:.3g} of "
+            f"it deep in {other}, near {s.position[i].round(4).tolist()} m. Make young or rounding "
+            "larger, or speed nearer to that of the impacts."
+        )
 
     def give(self) -> Fields:
         """Copy out the motion of all bodies."""
@@ -104,3 +134,56 @@ class DemBodies(Component):
             "motion.orientation": s.orientation[:m].copy(),
             "motion.angular_velocity": s.angular_velocity[:m].copy(),
         }
+
+    def save(self) -> Fields:
+        """Copy out all state: bodies, listed pairs and their history, what was added up."""
+        kept = {name: array.copy() for name, array in self.state._asdict().items()}
+        kept["pairs.key"] = self.contacts.key.copy()
+        kept["pairs.history"] = self.contacts.history.copy()
+        books = self.books
+        kept["books"] = np.array([books.time, books.dissipated, books.given])
+        return kept
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state, bit for bit."""
+        for name, array in self.state._asdict().items():
+            array[:] = state[name]
+        kept = empty_contacts(len(state["pairs.key"]))
+        kept.key[:] = state["pairs.key"]
+        kept.history[:] = state["pairs.history"]
+        self.contacts = search.contacts_from(kept.key, kept)
+        self.books = Books(*state["books"].tolist())
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies of the bodies; internal is the contacts' elastic energy."""
+        s, m, mass = self.state, self.count, self.mass
+        momentum = mass[:, None] * s.velocity[:m]
+        return Totals(
+            mass=float(mass.sum()),
+            momentum=momentum.sum(axis=0),
+            angular_momentum=(s.spin[:m] + np.cross(s.position[:m], momentum)).sum(axis=0),
+            kinetic=kernels.kinetic(self.model, s),
+            potential=-float(mass @ (s.position[:m] @ self.model.gravity)),
+            internal=float(s.report[rows.ELASTIC]),
+        )
+
+    def view(self) -> Fields:
+        """Corners and faces of boxes, centres of spheres, with body number and velocity."""
+        points, owners, faces = [], [], []
+        for k, body in enumerate(self.params.bodies):
+            corners = self.solids[k].centres
+            if body.size is not None:
+                corners = build.CORNERS * 0.5 * np.array(body.size)
+                faces.append(build.FACES + sum(len(one) for one in points))
+            axes = self.state.axes[k].reshape(3, 3)
+            points.append(self.state.position[k] + corners @ axes.T)
+            owners.append(np.full(len(corners), k))
+        where, body = np.vstack(points), np.concatenate(owners)
+        arm = where - self.state.position[body]
+        spun = np.cross(self.state.angular_velocity[body], arm)
+        shown = {"points": where, "body": body, "velocity": self.state.velocity[body] + spun}
+        return shown | ({"cells": np.vstack(faces)} if faces else {})
+
+    def items(self) -> int:
+        """Count the bodies."""
+        return self.count

@@ -4,14 +4,17 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.laws import (
-    DAMPING,
-    carried,
-    clamped,
-    crossing,
-    friction,
-    normal_force,
+from quintet.components.dem_bodies.geometry import (
+    FAR,
+    Found,
+    across,
+    axes_of,
+    facing,
+    on_box,
+    on_plane,
+    vector,
 )
+from quintet.components.dem_bodies.laws import DAMPING, carried, friction, normal_force
 from quintet.components.dem_bodies.state import (
     BOX,
     DEEPEST,
@@ -26,218 +29,156 @@ from quintet.components.dem_bodies.state import (
     Model,
     Numbers,
     State,
+    Whole,
 )
-from quintet.components.shared.rotations import PURE, Vector, backward, cross, dot, forward
-
-Found = tuple[float, Vector, Vector]  # gap m, normal from j to i, point half way
-
-FAR = 1e300  # m, of edges that do not cross
+from quintet.components.shared.rotations import INNER, Vector, beside, cross, dot, less
 
 
-@njit(**PURE)
-def on_plane(model: Model, state: State, s: int, p: int) -> Found:
-    """Sphere s above plane p."""
-    n = (model.plane[p, 0], model.plane[p, 1], model.plane[p, 2])
-    c = (state.centre[s, 0], state.centre[s, 1], state.centre[s, 2])
-    gap = dot(n, c) - model.plane[p, 3] - model.sphere_radius[s]
-    back = model.sphere_radius[s] + 0.5 * gap
-    return gap, n, (c[0] - back * n[0], c[1] - back * n[1], c[2] - back * n[2])
-
-
-@njit(**PURE)
-def facing(a: Vector, b: Vector, radius_a: float, radius_b: float) -> Found:
-    """Two spheres about the points a and b."""
-    d = (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-    distance = math.sqrt(dot(d, d))
-    gap = distance - radius_a - radius_b
-    n = (d[0] / distance, d[1] / distance, d[2] / distance) if distance > 0.0 else (0.0, 0.0, 1.0)
-    back = radius_a + 0.5 * gap
-    return gap, n, (a[0] - back * n[0], a[1] - back * n[1], a[2] - back * n[2])
-
-
-@njit(**PURE)
-def on_box(model: Model, state: State, s: int, j: int) -> Found:
-    """Sphere s and the rounded box j: a sphere rolling on the box less its rounding."""
-    c = (state.centre[s, 0], state.centre[s, 1], state.centre[s, 2])
-    a = state.axes[j]
-    r = (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
-    o = state.position[j]
-    x, y, z = backward(r, c[0] - o[0], c[1] - o[1], c[2] - o[2])
-    h = model.half[j]
-    x, y, z = forward(r, clamped(x, h[0]), clamped(y, h[1]), clamped(z, h[2]))
-    nearest = (o[0] + x, o[1] + y, o[2] + z)
-    return facing(c, nearest, model.sphere_radius[s], model.rounding[j])
-
-
-@njit(**PURE)
-def across(model: Model, state: State, e: int, f: int) -> Found:
-    """Rounded edges e and f where they cross."""
-    a, b = state.centre[model.edge_ends[e, 0]], state.centre[model.edge_ends[e, 1]]
-    c, d = state.centre[model.edge_ends[f, 0]], state.centre[model.edge_ends[f, 1]]
-    p, u = (a[0], a[1], a[2]), (b[0] - a[0], b[1] - a[1], b[2] - a[2])
-    q, v = (c[0], c[1], c[2]), (d[0] - c[0], d[1] - c[1], d[2] - c[2])
-    s, t = crossing(p, u, q, v)
-    if s < 0.0:
-        return FAR, p, p
-    on_e = (p[0] + s * u[0], p[1] + s * u[1], p[2] + s * u[2])
-    on_f = (q[0] + t * v[0], q[1] + t * v[1], q[2] + t * v[2])
-    radius = model.sphere_radius[model.edge_ends[e, 0]]
-    return facing(on_e, on_f, radius, model.sphere_radius[model.edge_ends[f, 0]])
-
-
-@njit(**PURE)
+@njit(**INNER)
 def note(
-    contacts: Contacts, report: Numbers, count: int, pair: int, i: int, j: int,
-    law: int, found: Found, radius: float, smallest: float,
+    report: Numbers, history: Numbers, touching: Whole, geometry: Numbers, count: int, pair: int,
+    i: int, j: int, law: int, found: Found, radius: float, smallest: float,
 ) -> int:  # fmt: skip
     """Write down a pair if it touches, forget its history if not; return the number noted."""
     gap, n, point = found
-    if gap < report[GAP]:
-        report[GAP] = gap
+    report[GAP] = min(report[GAP], gap)
     if not gap < 0.0:
-        if contacts.history[pair, 3] > 0.0:
-            contacts.history[pair] = 0.0
+        if history[pair, 3] > 0.0:
+            for k in range(5):
+                history[pair, k] = 0.0
         return count
     if -gap > report[DEEPEST] * smallest:
         report[DEEPEST] = -gap / smallest
         report[WHICH] = pair
-    touching, row = contacts.touching[count], contacts.geometry[count]
-    touching[0], touching[1], touching[2], touching[3] = pair, i, j, law
-    row[0], row[1], row[2] = n
-    row[3], row[4], row[5] = point
-    row[6], row[7] = -gap, radius
+    touching[count, 0], touching[count, 1] = pair, i
+    touching[count, 2], touching[count, 3] = j, law
+    for k in range(3):
+        geometry[count, k] = n[k]
+        geometry[count, 3 + k] = point[k]
+    geometry[count, 6], geometry[count, 7] = -gap, radius
     return count + 1
 
 
-@njit(**PURE)
+@njit(**INNER)
 def find(model: Model, state: State, contacts: Contacts) -> int:
     """Note all pairs that touch; return how many."""
     count, kinds, ground = 0, model.law.shape[0], model.reach.shape[0]
-    begin, report, material = contacts.begin, state.report, model.material
+    begin, ends, history = contacts.begin, contacts.ends, contacts.history
+    touching, geometry, report = contacts.touching, contacts.geometry, state.report
+    material, body, size, round_ = (
+        model.material, model.sphere_body, model.sphere_radius, model.rounding,
+    )  # fmt: skip
+    centre, plane, edge = state.centre, model.plane, model.edge_ends
     report[GAP], report[DEEPEST], report[WHICH] = FAR, 0.0, -1.0
     for k in range(begin[PLANE], begin[PLANE + 1]):
-        s, p = contacts.ends[k]
-        i = model.sphere_body[s]
-        law, r = material[i] * kinds + model.plane_material[p], model.sphere_radius[s]
-        found = on_plane(model, state, s, p)
-        count = note(contacts, report, count, k, i, ground, law, found, r, r)
+        s, p = ends[k, 0], ends[k, 1]
+        i, r = body[s], size[s]
+        law = material[i] * kinds + model.plane_material[p]
+        found = on_plane(vector(centre, s), r, vector(plane, p), plane[p, 3])
+        count = note(report, history, touching, geometry, count, k, i, ground, law, found, r, r)
     for k in range(begin[SPHERE], begin[SPHERE + 1]):
-        s, p = contacts.ends[k]
-        i, j = model.sphere_body[s], model.sphere_body[p]
-        law, r, q = material[i] * kinds + material[j], model.sphere_radius[s], model.sphere_radius[p]
-        a = (state.centre[s, 0], state.centre[s, 1], state.centre[s, 2])
-        b = (state.centre[p, 0], state.centre[p, 1], state.centre[p, 2])
-        found = facing(a, b, r, q)
-        count = note(contacts, report, count, k, i, j, law, found, r * q / (r + q), min(r, q))
+        s, p = ends[k, 0], ends[k, 1]
+        i, j, r, q = body[s], body[p], size[s], size[p]
+        law = material[i] * kinds + material[j]
+        found = facing(vector(centre, s), vector(centre, p), r, q)
+        mean, low = r * q / (r + q), min(r, q)
+        count = note(report, history, touching, geometry, count, k, i, j, law, found, mean, low)
     for k in range(begin[BOX], begin[BOX + 1]):
-        s, j = contacts.ends[k]
-        i = model.sphere_body[s]
-        law, r = material[i] * kinds + material[j], model.sphere_radius[s]
-        found = on_box(model, state, s, j)
-        smallest = min(r, model.rounding[j])
-        count = note(contacts, report, count, k, i, j, law, found, r, smallest)
+        s, j = ends[k, 0], ends[k, 1]
+        i, r = body[s], size[s]
+        law, q, o = material[i] * kinds + material[j], round_[j], vector(state.position, j)
+        half, low = vector(model.half, j), min(r, q)
+        found = on_box(vector(centre, s), r, o, axes_of(state.axes, j), half, q)
+        count = note(report, history, touching, geometry, count, k, i, j, law, found, r, low)
     for k in range(begin[EDGE], begin[EDGE + 1]):
-        e, f = contacts.ends[k]
-        s, p = model.edge_ends[e, 0], model.edge_ends[f, 0]
-        i, j = model.sphere_body[s], model.sphere_body[p]
-        law, r, q = material[i] * kinds + material[j], model.sphere_radius[s], model.sphere_radius[p]
-        found = across(model, state, e, f)
+        e, f = ends[k, 0], ends[k, 1]
+        i, j = body[edge[e, 0]], body[edge[f, 0]]
+        law, r, q = material[i] * kinds + material[j], round_[i], round_[j]
+        a, b = vector(centre, edge[e, 0]), vector(centre, edge[f, 0])
+        along, other = less(vector(centre, edge[e, 1]), a), less(vector(centre, edge[f, 1]), b)
+        found = across(a, along, b, other, r, q)
         # Crossed cylinders: as a sphere on a plane, of the mean radius.
-        count = note(contacts, report, count, k, i, j, law, found, math.sqrt(r * q), min(r, q))
+        mean, low = math.sqrt(r * q), min(r, q)
+        count = note(report, history, touching, geometry, count, k, i, j, law, found, mean, low)
     return count
 
 
-@njit(**PURE)
-def slip(rates: Numbers, arm: Vector, first: int) -> Vector:
+@njit(**INNER)
+def slip(rates: Numbers, i: int, first: int, arm: Vector) -> Vector:
     """Velocity [m/s] of a body's point at an arm from its centre; `first` 0 mean, 6 at the end."""
-    w = (rates[first + 3], rates[first + 4], rates[first + 5])
-    x, y, z = cross(w, arm)
-    return rates[first] + x, rates[first + 1] + y, rates[first + 2] + z
+    a, b, c = first + 3, first + 4, first + 5
+    x, y, z = cross((rates[i, a], rates[i, b], rates[i, c]), arm)
+    return rates[i, first] + x, rates[i, first + 1] + y, rates[i, first + 2] + z
 
 
-@njit(**PURE)
-def yielding(inverse_mass: float, mobility: Numbers, arm: Vector, n: Vector) -> float:
+@njit(**INNER)
+def yielding(inverse_mass: float, mobility: Numbers, i: int, arm: Vector, n: Vector) -> float:
     """1/m* [1/kg] of a body's point along n: 1/m + (r × n)·I⁻¹(r × n)."""
     x, y, z = cross(arm, n)
-    square = mobility[0] * x * x + mobility[1] * y * y + mobility[2] * z * z
-    mixed = mobility[3] * x * y + mobility[4] * x * z + mobility[5] * y * z
+    square = mobility[i, 0] * x * x + mobility[i, 1] * y * y + mobility[i, 2] * z * z
+    mixed = mobility[i, 3] * x * y + mobility[i, 4] * x * z + mobility[i, 5] * y * z
     return inverse_mass + square + 2.0 * mixed
 
 
-@njit(**PURE)
-def grown(history: Numbers, depth: float, closing: float, dt: float, born: bool) -> float:
+@njit(**INNER)
+def grown(history: Numbers, pair: int, depth: float, closing: float, dt: float) -> float:
     """Depth [m] that bears load; a crossing of edges bears nothing where it came into being.
 
     Edges begin to cross when a corner slides over an edge, with the faces already pressed
     together. To let that depth bear at once would make energy from nothing.
     """
-    if born and history[3] == 0.0:
-        history[4] = max(0.0, depth - max(0.0, closing) * dt)
-    history[4] = min(history[4], depth)
-    return depth - history[4]
+    if history[pair, 3] == 0.0 and dt > 0.0:
+        history[pair, 4] = max(0.0, depth - max(0.0, closing) * dt)
+    history[pair, 4] = min(history[pair, 4], depth)
+    return float(depth - history[pair, 4])
 
 
-@njit(**PURE)
+@njit(**INNER)
 def press(model: Model, state: State, contacts: Contacts, count: int, dt: float) -> None:
     """Forces and torques of all noted contacts: what one body gets the other loses."""
-    table = model.law.reshape(-1, 4)
-    state.contact[:] = 0.0
-    elastic_energy, stiffest = 0.0, 0.0
-    edges = contacts.begin[EDGE]
+    table, inverse_mass, mobility = model.law, model.inverse_mass, state.mobility
+    position, rates, contact = state.position, state.rates, state.contact
+    touching, geometry, history = contacts.touching, contacts.geometry, contacts.history
+    kinds, edges = table.shape[0], contacts.begin[EDGE]
+    contact[:] = 0.0
+    energy, stiffest = 0.0, 0.0
     for c in range(count):
-        pair, i, j, law = contacts.touching[c]
-        row, history = contacts.geometry[c], contacts.history[pair]
-        n, point, depth, radius = (row[0], row[1], row[2]), row[3:6], row[6], row[7]
-        modulus, shear, ζ, μ = table[law]
-        x, y = state.position[i], state.position[j]
-        arm_i = (point[0] - x[0], point[1] - x[1], point[2] - x[2])
-        arm_j = (point[0] - y[0], point[1] - y[1], point[2] - y[2])
-        mass = 1.0 / (
-            yielding(model.inverse_mass[i], state.mobility[i], arm_i, n)
-            + yielding(model.inverse_mass[j], state.mobility[j], arm_j, n)
-        )
-        v_i, v_j = slip(state.rates[i], arm_i, 6), slip(state.rates[j], arm_j, 6)
-        v = (v_i[0] - v_j[0], v_i[1] - v_j[1], v_i[2] - v_j[2])
+        pair, i, j, law = touching[c, 0], touching[c, 1], touching[c, 2], touching[c, 3]
+        a, b = law // kinds, law % kinds
+        modulus, shear, ζ, μ = table[a, b, 0], table[a, b, 1], table[a, b, 2], table[a, b, 3]
+        n, depth, radius = vector(geometry, c), geometry[c, 6], geometry[c, 7]
+        point = (geometry[c, 3], geometry[c, 4], geometry[c, 5])
+        arm_i, arm_j = less(point, vector(position, i)), less(point, vector(position, j))
+        yield_i = yielding(inverse_mass[i], mobility, i, arm_i, n)
+        mass = 1.0 / (yield_i + yielding(inverse_mass[j], mobility, j, arm_j, n))
+        v = less(slip(rates, i, 6, arm_i), slip(rates, j, 6, arm_j))
         opening = dot(v, n)
-        before, bearing = history[3] - history[4], depth
+        before, bearing = history[pair, 3] - history[pair, 4], depth
         if pair >= edges:
-            bearing = grown(history, depth, -opening, dt, dt > 0.0)
-        history[3] = depth
+            bearing = grown(history, pair, depth, -opening, dt)
+        history[pair, 3] = depth
         if bearing <= 0.0:
-            history[0], history[1], history[2] = 0.0, 0.0, 0.0
+            history[pair, 0], history[pair, 1], history[pair, 2] = 0.0, 0.0, 0.0
             continue
         root = math.sqrt(radius * bearing)
         normal, elastic = normal_force(modulus, root, bearing, ζ, mass, -opening)
         # Tangential: the elastic part turns with the contact, shrinks with its area on
-        # unloading (Walton & Braun, J. Rheol. 30 (1986) 949) and grows with the mean slip.
+        # unloading (Walton & Braun 1986) and grows with the mean slip of the step.
         shrink = math.sqrt(bearing / before) if bearing < before else 1.0
-        fx, fy, fz = carried((history[0], history[1], history[2]), n, shrink)
-        m_i, m_j = slip(state.rates[i], arm_i, 0), slip(state.rates[j], arm_j, 0)
-        m = (m_i[0] - m_j[0], m_i[1] - m_j[1], m_i[2] - m_j[2])
-        away, stiffness = dot(m, n), 8.0 * shear * root
-        k = stiffness * dt
-        fx -= k * (m[0] - away * n[0])
-        fy -= k * (m[1] - away * n[1])
-        fz -= k * (m[2] - away * n[2])
-        v_t = (v[0] - opening * n[0], v[1] - opening * n[1], v[2] - opening * n[2])
+        held = carried(vector(history, pair), n, shrink)
+        mean = less(slip(rates, i, 0, arm_i), slip(rates, j, 0, arm_j))
+        stiffness = 8.0 * shear * root
+        held = beside(held, -stiffness * dt, beside(mean, -dot(mean, n), n))
         damping = DAMPING * ζ * math.sqrt(stiffness * mass)
-        (tx, ty, tz), held = friction((fx, fy, fz), v_t, damping, μ * normal)
-        history[0], history[1], history[2] = held
-        force = (normal * n[0] + tx, normal * n[1] + ty, normal * n[2] + tz)
+        side, held = friction(held, beside(v, -opening, n), damping, μ * normal)
+        force = beside(side, normal, n)
         torque_i, torque_j = cross(arm_i, force), cross(arm_j, force)
-        for a in range(3):
-            state.contact[i, a] += force[a]
-            state.contact[j, a] -= force[a]
-            state.contact[i, 3 + a] += torque_i[a]
-            state.contact[j, 3 + a] -= torque_j[a]
-        elastic_energy += 0.4 * elastic * bearing + 0.5 * dot(held, held) / stiffness
+        for k in range(3):
+            history[pair, k] = held[k]
+            contact[i, k] += force[k]
+            contact[j, k] -= force[k]
+            contact[i, 3 + k] += torque_i[k]
+            contact[j, 3 + k] -= torque_j[k]
+        energy += 0.4 * elastic * bearing + 0.5 * dot(held, held) / stiffness
         stiffest = max(stiffest, 2.0 * modulus * root / mass)
-    state.report[ELASTIC], state.report[STIFFEST] = elastic_energy, stiffest
-
-
-@njit(**PURE)
-def touch(model: Model, state: State, contacts: Contacts, dt: float) -> int:
-    """Find contacts and let them press; return their number."""
-    count = find(model, state, contacts)
-    press(model, state, contacts, count, dt)
-    return count
+    state.report[ELASTIC], state.report[STIFFEST] = energy, stiffest

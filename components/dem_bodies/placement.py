@@ -101,9 +101,7 @@ def between(a: "Body", b: "Body") -> float:
     if a.size is not None or b.size is not None:
         box, other = (a, b) if a.size is not None else (b, a)
         return min(outside(box, centre) - radius for centre, radius in balls(other))
-    return min(
-        float(np.linalg.norm(c - d)) - r - s for c, r in balls(a) for d, s in balls(b)
-    )
+    return min(float(np.linalg.norm(c - d)) - r - s for c, r in balls(a) for d, s in balls(b))
 
 
 def outside(box: "Body", point: Array) -> float:

@@ -9,8 +9,13 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.contact_kernels import on_box, on_plane
-from quintet.components.dem_bodies.laws import segment_distance
+from quintet.components.dem_bodies.geometry import (
+    axes_of,
+    on_box,
+    on_plane,
+    segment_distance,
+    vector,
+)
 from quintet.components.dem_bodies.state import (
     BOX,
     EDGE,
@@ -25,13 +30,13 @@ from quintet.components.dem_bodies.state import (
     Whole,
     empty_contacts,
 )
-from quintet.components.shared.rotations import PURE
+from quintet.components.shared.rotations import INNER, PURE, dot, less
 
 BITS = 21  # of a cell's number along each axis
 MIDDLE = 1 << (BITS - 1)
 
 
-@njit(**PURE)
+@njit(**INNER)
 def cell_of(x: float, width: float) -> int:
     """Return the number of the cell along one axis; what is very far shares the last one."""
     return int(min(max(math.floor(x / width), 2.0 - MIDDLE), MIDDLE - 2.0)) + MIDDLE
@@ -42,13 +47,13 @@ def number(position: Numbers, bodies: int, width: float) -> Whole:
     """Return the cell of each body, as one number."""
     cells = np.empty(bodies, np.int64)
     for i in range(bodies):
-        x, y, z = position[i]
+        x, y, z = vector(position, i)
         cells[i] = (cell_of(z, width) << 2 * BITS) + (cell_of(y, width) << BITS)
         cells[i] += cell_of(x, width)
     return cells
 
 
-@njit(**PURE)
+@njit(**INNER)
 def emit(keys: Whole, count: int, kind: int, first: int, second: int) -> int:
     """Write a pair's key while there is room; return the number of pairs."""
     if count < keys.shape[0]:
@@ -56,38 +61,28 @@ def emit(keys: Whole, count: int, kind: int, first: int, second: int) -> int:
     return count + 1
 
 
-@njit(**PURE)
-def apart(state: State, s: int, p: int) -> float:
-    """Distance [m] of the centres of two spheres."""
-    x = state.centre[s, 0] - state.centre[p, 0]
-    y = state.centre[s, 1] - state.centre[p, 1]
-    z = state.centre[s, 2] - state.centre[p, 2]
-    return math.sqrt(x * x + y * y + z * z)
-
-
-@njit(**PURE)
-def edges_apart(model: Model, state: State, e: int, f: int) -> float:
+@njit(**INNER)
+def edges_apart(ends: Whole, centre: Numbers, e: int, f: int) -> float:
     """Distance [m] of two edges' axes."""
-    a, b = state.centre[model.edge_ends[e, 0]], state.centre[model.edge_ends[e, 1]]
-    c, d = state.centre[model.edge_ends[f, 0]], state.centre[model.edge_ends[f, 1]]
-    return segment_distance(
-        (a[0], a[1], a[2]), (b[0] - a[0], b[1] - a[1], b[2] - a[2]),
-        (c[0], c[1], c[2]), (d[0] - c[0], d[1] - c[1], d[2] - c[2]),
-    )  # fmt: skip
+    a, b = vector(centre, ends[e, 0]), vector(centre, ends[f, 0])
+    along, other = less(vector(centre, ends[e, 1]), a), less(vector(centre, ends[f, 1]), b)
+    return segment_distance(a, along, b, other)
 
 
-@njit(**PURE)
+@njit(**INNER)
 def list_spheres_of_box(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
     """List the spheres of body i that are near the box j."""
+    r, o = axes_of(state.axes, j), vector(state.position, j)
+    half, q = vector(model.half, j), model.rounding[j]
     for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
-        if on_box(model, state, s, j)[0] < skin:
+        if on_box(vector(state.centre, s), model.sphere_radius[s], o, r, half, q)[0] < skin:
             count = emit(keys, count, BOX, s, j)
     return count
 
 
-@njit(**PURE)
+@njit(**INNER)
 def list_bodies(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
@@ -100,12 +95,14 @@ def list_bodies(
     if not box_i and not box_j:
         for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
             for p in range(model.sphere_from[j], model.sphere_from[j + 1]):
-                if apart(state, s, p) < model.sphere_radius[s] + model.sphere_radius[p] + skin:
+                near = model.sphere_radius[s] + model.sphere_radius[p] + skin
+                d = less(vector(state.centre, s), vector(state.centre, p))
+                if dot(d, d) < near * near:
                     count = emit(keys, count, SPHERE, s, p)
     rounds = model.rounding[i] + model.rounding[j]
     for e in range(model.edge_from[i], model.edge_from[i + 1]):
         for f in range(model.edge_from[j], model.edge_from[j + 1]):
-            if edges_apart(model, state, e, f) < rounds + skin:
+            if edges_apart(model.edge_ends, state.centre, e, f) < rounds + skin:
                 count = emit(keys, count, EDGE, e, f)
     return count
 
@@ -122,7 +119,8 @@ def list_pairs(
     count = 0
     for s in range(model.sphere_body.shape[0]):
         for p in range(model.plane.shape[0]):
-            if on_plane(model, state, s, p)[0] < skin:
+            normal, c = vector(model.plane, p), vector(state.centre, s)
+            if on_plane(c, model.sphere_radius[s], normal, model.plane[p, 3])[0] < skin:
                 count = emit(keys, count, PLANE, s, p)
     for a in range(order.shape[0]):
         i = order[a]
@@ -134,9 +132,9 @@ def list_pairs(
                     j = order[b]
                     if j <= i:
                         continue
-                    d = state.position[i] - state.position[j]
+                    d = less(vector(state.position, i), vector(state.position, j))
                     near = model.reach[i] + model.reach[j] + skin
-                    if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < near * near:
+                    if dot(d, d) < near * near:
                         count = list_bodies(model, state, i, j, skin, keys, count)
     return count
 

@@ -47,13 +47,14 @@ class State(NamedTuple):
     spin: Numbers  # (n, 3) kg m2/s, angular momentum about the centre
     angular_velocity: Numbers  # (n, 3) rad/s
     contact: Numbers  # (n, 6) N and N m: force and torque of all contacts at the present time
+    before: Numbers  # (n, 6) the same at the beginning of the step
     load: Numbers  # (n, 6) N and N m, given from outside
     axes: Numbers  # (n, 9) rotation matrices, by rows
     mobility: Numbers  # (n, 6) 1/(kg m2), inverse inertia in world axes
     rates: Numbers  # (n, 12) velocity, angular velocity: mean of the step, and foreseen at its end
     centre: Numbers  # (s, 3) m, of the spheres
     listed: Numbers  # (s, 3) m, where they were when pairs were last listed
-    report: Numbers  # (8,) see REPORT
+    report: Numbers  # (10,) on the last step, see below
 
 
 class Contacts(NamedTuple):
@@ -69,7 +70,7 @@ class Contacts(NamedTuple):
     geometry: Numbers  # (pairs, 8) normal, point [m], depth [m], R* [m]
 
 
-# Rows of the report on a step.
+# What stands in the report.
 GAP = 0  # m, smallest distance of any pair
 STIFFEST = 1  # (rad/s)2, largest S_n/m* of any contact
 DEEPEST = 2  # largest depth over contact radius
@@ -78,6 +79,8 @@ ELASTIC = 4  # J, held by all contacts
 WORK = 5  # J, done by contacts on bodies in the step
 FASTEST = 6  # m/s, bound of the speed of any point
 HARDEST = 7  # m/s2, bound of the acceleration of any point by gravity and load
+GIVEN = 8  # J, work of the loads in the step
+WAY = 9  # m2, square of the longest way of any sphere since pairs were listed
 
 
 def empty_contacts(pairs: int) -> Contacts:

@@ -13,9 +13,11 @@ Vector = tuple[float, float, float]
 Matrix = tuple[float, float, float, float, float, float, float, float, float]  # by rows
 
 PURE = {"cache": True, "nogil": True, "error_model": "numpy"}
+# Of functions that only other kernels call: without the code for calls from Python and C.
+INNER = PURE | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
-@njit(**PURE)
+@njit(**INNER)
 def product(p: Quaternion, q: Quaternion) -> Quaternion:
     """Return p ∘ q: first q, then p."""
     a, b, c, d = p
@@ -28,7 +30,7 @@ def product(p: Quaternion, q: Quaternion) -> Quaternion:
     )
 
 
-@njit(**PURE)
+@njit(**INNER)
 def exponential(x: float, y: float, z: float) -> Quaternion:
     """Quaternion of the turn by a rotation vector [rad], in world axes."""
     square = x * x + y * y + z * z
@@ -40,20 +42,20 @@ def exponential(x: float, y: float, z: float) -> Quaternion:
     return math.cos(0.5 * angle), scale * x, scale * y, scale * z
 
 
-@njit(**PURE)
+@njit(**INNER)
 def normalised(q: Quaternion) -> Quaternion:
     """Return q with unit length."""
     scale = 1.0 / math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     return scale * q[0], scale * q[1], scale * q[2], scale * q[3]
 
 
-@njit(**PURE)
+@njit(**INNER)
 def turned(q: Quaternion, x: float, y: float, z: float) -> Quaternion:
     """Orientation q after turning by a rotation vector [rad], in world axes."""
     return normalised(product(exponential(x, y, z), q))
 
 
-@njit(**PURE)
+@njit(**INNER)
 def matrix(q: Quaternion) -> Matrix:
     """Rotation matrix, row by row, of a unit quaternion: body -> world."""
     w, x, y, z = q
@@ -64,7 +66,7 @@ def matrix(q: Quaternion) -> Matrix:
     )  # fmt: skip
 
 
-@njit(**PURE)
+@njit(**INNER)
 def forward(r: Matrix, x: float, y: float, z: float) -> Vector:
     """Return R v: body -> world."""
     return (
@@ -74,7 +76,7 @@ def forward(r: Matrix, x: float, y: float, z: float) -> Vector:
     )
 
 
-@njit(**PURE)
+@njit(**INNER)
 def backward(r: Matrix, x: float, y: float, z: float) -> Vector:
     """Return Rᵀ v: world -> body."""
     return (
@@ -84,13 +86,25 @@ def backward(r: Matrix, x: float, y: float, z: float) -> Vector:
     )
 
 
-@njit(**PURE)
+@njit(**INNER)
 def cross(a: Vector, b: Vector) -> Vector:
     """Return a × b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@njit(**PURE)
+@njit(**INNER)
 def dot(a: Vector, b: Vector) -> float:
     """Return a · b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(**INNER)
+def less(a: Vector, b: Vector) -> Vector:
+    """Return a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@njit(**INNER)
+def beside(a: Vector, scale: float, b: Vector) -> Vector:
+    """Return a + scale b."""
+    return a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]

@@ -27,7 +27,7 @@ class Echo(Component):
     def take(self, fields: Fields) -> None:
         """Keep what came."""
         if "passed.value" in fields:
-            self.value = fields["passed.value"]
+            self.value = np.array(fields["passed.value"])
 
     def step(self, dt: float) -> None:
         """Compute nothing; fail if it is time to."""
@@ -50,7 +50,7 @@ class Echo(Component):
 
     def give(self) -> Fields:
         """Return what came last."""
-        return {"returned.value": self.value}
+        return {"returned.value": self.value.copy()}
 
     def save(self) -> Fields:
         """Copy out the last value and the count."""

@@ -136,21 +136,17 @@ def test_inputs_half_a_step_late_or_early_show(tmp_path, monkeypatch, scheme, ru
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("window", [0, 13, 29])
+@pytest.mark.parametrize("window", [0, 13, 28])
 def test_a_window_lost_between_two_components_shows(tmp_path, monkeypatch, scheme, window):
     """What the gust gave in one window is lost; what it gave before is applied once more."""
-    keep, seen = Coupling.keep, []
+    keep = Coupling.keep
 
     def losing(self, name, answer):
-        seen.append(name)
         if name != "gust" or self.parts[name].window != window:
             keep(self, name, answer)
 
     monkeypatch.setattr(Coupling, "keep", losing)
-    if scheme == "parallel" and window == 29:
-        return  # the last window's impulse is on its way when the run ends
     assert _plate(tmp_path, scheme).momentum_residual > 1e-5
-    assert seen
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -1,0 +1,74 @@
+"""Small scenes for the tests of rigid bodies."""
+
+import math
+
+import numpy as np
+
+from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.params import read
+
+GLASS = {"young": 4.8e10, "poisson": 0.2, "restitution": 1.0, "friction": 0.0}
+PLASTIC = {"young": 3.0e9, "poisson": 0.3, "restitution": 0.6, "friction": 0.45}
+STEEL = {"young": 2.1e11, "poisson": 0.3, "restitution": 0.8, "friction": 0.35}
+FLOOR = {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "material": "a"}
+NOTHING = [0.0, 0.0, 0.0]
+
+
+def material(**given):
+    return {"young": 1e8, "poisson": 0.3, "restitution": 0.5, "friction": 0.3} | given
+
+
+def sphere(position, diameter=0.02, **given):
+    plain = {"shape": "sphere", "diameter": diameter, "density": 2500.0, "material": "a"}
+    return plain | {"position": position} | given
+
+
+def box(position, size=(0.15, 0.15, 0.15), **given):
+    plain = {"shape": "box", "size": list(size), "density": 800.0, "material": "a"}
+    return plain | {"position": position} | given
+
+
+def params(bodies, materials=None, **given):
+    scene = {"bodies": bodies, "materials": {"a": material()} if materials is None else materials}
+    found, mistakes = read(DemBodiesParams, scene | given, "bodies")
+    assert not mistakes, mistakes
+    return found
+
+
+def mistakes(bodies, **given):
+    scene = {"bodies": bodies, "materials": {"a": material()}} | given
+    return read(DemBodiesParams, scene, "bodies")[1]
+
+
+def build(bodies, materials=None, **given):
+    return DemBodies(params(bodies, materials, **given))
+
+
+def run(component, end, watch=None, dt=None):
+    """Step until a time; `watch` sees every step."""
+    time = 0.0
+    while time < end * (1.0 - 1e-12):
+        step = min(dt or component.stable_dt(), end - time)
+        component.step(step)
+        time += step
+        if watch is not None:
+            watch(time)
+
+
+def three_cubes():
+    """The cubes of the dam break, on its floor."""
+    bodies = [box([5.275, 0.35, z]) for z in (0.075, 0.225, 0.375)]
+    floor = FLOOR | {"material": "floor"}
+    return build(bodies, {"a": PLASTIC, "floor": STEEL}, planes=[floor], speed=3.0)
+
+
+def about(axis, angle):
+    """Quaternion of a turn about an axis."""
+    unit = np.array(axis) / np.linalg.norm(axis)
+    return [math.cos(0.5 * angle), *(math.sin(0.5 * angle) * unit).tolist()]
+
+
+def energy(component):
+    totals = component.totals()
+    return totals.kinetic + totals.potential + totals.internal

@@ -1,0 +1,152 @@
+"""Impacts of one contact, against exact solutions (Chung & Ooi, Granular Matter 13 (2011) 643)."""
+
+import math
+
+import numpy as np
+import pytest
+from dem_scenes import FLOOR, GLASS, NOTHING, STEEL, box, build, energy, material, run, sphere
+from scipy.integrate import solve_ivp
+
+from quintet.components.dem_bodies.materials import damping_ratio, restitution
+
+LIMESTONE = {"young": 2.0e10, "poisson": 0.25, "restitution": 1.0, "friction": 0.0}
+
+
+def pair(stuff, density, speed=10.0, steps=400):
+    bodies = [
+        sphere([side * 0.01, 0.0, 0.0], density=density, velocity=[-side * speed, 0.0, 0.0])
+        for side in (-1.0, 1.0)
+    ]
+    scene = {"gravity": NOTHING, "speed": 2 * speed, "steps_per_contact": steps}
+    return build(bodies, {"a": stuff}, **scene)
+
+
+@pytest.mark.parametrize(
+    ("stuff", "density", "force", "depth", "duration"),
+    [
+        (GLASS, 2800.0, 10697.0, 274.11e-6, 40.34e-6),
+        (LIMESTONE, 2500.0, 7108.0, 368.30e-6, 54.20e-6),
+    ],
+    ids=["glass", "limestone"],
+)
+def test_elastic_impact_of_two_spheres_is_hertz(stuff, density, force, depth, duration):
+    pushes, depths, times = [0.0], [0.0], []
+    spheres = pair(stuff, density)
+
+    def watch(time):
+        x = spheres.give()["motion.position"][:, 0]
+        pushes.append(abs(spheres.state.contact[0, 0]))
+        depths.append(0.02 - (x[1] - x[0]))
+        if pushes[-1] > 0.0:
+            times.append(time)
+
+    dt = duration / 400
+    run(spheres, 1.2 * duration, watch, dt)
+    assert max(pushes) == pytest.approx(force, rel=2e-3)
+    assert max(depths) == pytest.approx(depth, rel=2e-3)
+    assert times[-1] - times[0] + dt == pytest.approx(duration, rel=5e-3)  # whole steps
+    # The time over which it presses, without the steps' grain: momentum over mean force.
+    speed = spheres.give()["motion.velocity"][1, 0]
+    assert speed == pytest.approx(10.0, rel=1e-4)
+
+
+def crossing_time(spheres, dt, end):
+    """Time at which the gap opens again, by straight line between steps."""
+    gaps = [0.0]
+    run(spheres, end, lambda _: gaps.append(np.ptp(spheres.state.position[:2, 0]) - 0.02), dt)
+    k = next(k for k in range(2, len(gaps)) if gaps[k] > 0.0)
+    return dt * (k - gaps[k] / (gaps[k] - gaps[k - 1]))
+
+
+@pytest.mark.parametrize(
+    ("stuff", "density", "duration"), [(GLASS, 2800.0, 40.34e-6), (LIMESTONE, 2500.0, 54.20e-6)]
+)
+def test_duration_of_an_elastic_impact(stuff, density, duration):
+    found = crossing_time(pair(stuff, density), duration / 400, 1.2 * duration)
+    assert found == pytest.approx(duration, rel=2e-3)
+
+
+@pytest.mark.parametrize("e", [0.01, 0.1353352, 0.2, 0.4, 0.6, 0.8, 0.98, 1.0])
+def test_damping_ratio_realises_restitution_in_the_equation_of_motion(e):
+    ζ = damping_ratio(e)
+    assert restitution(ζ) == pytest.approx(e, rel=1e-12)
+    c = ζ * math.sqrt(5.0)  # x'' = -(x^3/2 + c x^1/4 x')
+
+    def force(x, v):
+        return max(x, 0.0) ** 1.5 + c * max(x, 0.0) ** 0.25 * v
+
+    def pulls(_, y):
+        return force(*y) + (1.0 if y[1] > 0.0 else 0.0)
+
+    pulls.terminal = True
+    found = solve_ivp(
+        lambda _, y: [y[1], -force(*y)], (0.0, 200.0), [1e-14, 1.0],
+        events=pulls, rtol=1e-9, atol=1e-12, method="LSODA",
+    )  # fmt: skip
+    assert -found.y[1, -1] == pytest.approx(e, rel=1e-4)
+
+
+@pytest.mark.parametrize("e", [0.2, 0.4, 0.6, 0.8, 1.0])
+@pytest.mark.parametrize("other", ["plane", "sphere"])
+def test_restitution_is_realised(e, other):
+    stuff = {"young": 3.8e11, "poisson": 0.23, "restitution": e, "friction": 0.0}
+    bodies = [sphere([0.0, 0.0, 2.5e-3 + 1e-6], 5e-3, density=4000.0, velocity=[0.0, 0.0, -3.9])]
+    if other == "sphere":
+        below = [0.0, 0.0, -2.5e-3]
+        bodies.append(sphere(below, 5e-3, density=4000.0, velocity=[0.0, 0.0, 3.9]))
+    planes = [FLOOR] if other == "plane" else []
+    spheres = build(bodies, {"a": stuff}, gravity=NOTHING, speed=3.9, planes=planes)
+    run(spheres, 5e-5, dt=spheres.stable_dt() if other == "plane" else None)
+    assert spheres.state.report[3] == -1  # apart again
+    assert spheres.give()["motion.velocity"][0, 2] / 3.9 == pytest.approx(e, rel=5e-3)
+
+
+def test_restitution_of_a_box_that_falls_flat_and_of_its_corner():
+    given = {"gravity": NOTHING, "planes": [FLOOR], "speed": 1.0}
+    stuff = {"a": STEEL | {"friction": 0.0, "restitution": 0.6}}
+    flat = build([box([0.0, 0.0, 0.075 + 1e-6], velocity=[0.0, 0.0, -1.0])], stuff, **given)
+    run(flat, 2e-3)
+    assert flat.give()["motion.velocity"][0, 2] == pytest.approx(0.6, rel=5e-3)
+    assert np.abs(flat.give()["motion.angular_velocity"]).max() < 1e-9
+
+
+@pytest.mark.parametrize("angle", [5.0, 30.0, 60.0])
+def test_gross_sliding_in_an_oblique_impact(angle):
+    θ, μ, e, radius = math.radians(90.0 - angle), 0.092, 0.98, 2.5e-3
+    vn, vt = 3.9 * math.cos(θ), 3.9 * math.sin(θ)
+    if math.tan(θ) < 3.5 * μ * (1.0 + e):
+        pytest.skip("sticks")
+    stuff = {"young": 3.8e11, "poisson": 0.23, "restitution": e, "friction": μ}
+    body = sphere([0.0, 0.0, radius + 1e-8], 5e-3, density=4000.0, velocity=[vt, 0.0, -vn])
+    ball = build([body], {"a": stuff}, gravity=NOTHING, speed=3.9, planes=[FLOOR])
+    run(ball, 1.2e-4, dt=2e-7)
+    given = ball.give()
+    assert given["motion.velocity"][0, 2] == pytest.approx(e * vn, rel=5e-3)
+    assert given["motion.velocity"][0, 0] == pytest.approx(vt - μ * (1 + e) * vn, rel=5e-3)
+    spin = 5.0 * μ * (1.0 + e) * vn / (2.0 * radius)
+    assert given["motion.angular_velocity"][0, 1] == pytest.approx(spin, rel=5e-3)
+
+
+def test_collision_conserves_momentum_and_angular_momentum():
+    bodies = [
+        box([0.0, 0.0, 0.0], velocity=[1.0, 0.2, 0.0], angular_velocity=[3.0, 2.0, 1.0]),
+        box([0.2, 0.05, 0.03], (0.1, 0.15, 0.12), angular_velocity=[-2.0, 1.0, 5.0]),
+        sphere([-0.2, 0.0, 0.01], 0.1, velocity=[3.0, 0.0, 0.0]),
+    ]
+    scene = build(bodies, {"a": material(young=1e9)}, gravity=NOTHING, speed=2.0)
+    start, least, most = scene.totals(), energy(scene), 0.0
+
+    def watch(_):
+        nonlocal most
+        most = max(most, scene.state.report[4])
+
+    run(scene, 0.2, watch)
+    end = scene.totals()
+    scale = np.abs(start.momentum).max()
+    np.testing.assert_allclose(end.momentum, start.momentum, atol=1e-13 * scale, rtol=0)
+    np.testing.assert_allclose(
+        end.angular_momentum, start.angular_momentum, atol=1e-13 * scale, rtol=0
+    )
+    assert most > 0.1  # J: they did meet
+    assert energy(scene) + scene.books.dissipated == pytest.approx(least, rel=2e-3)
+    assert scene.books.dissipated > 0.05 * least

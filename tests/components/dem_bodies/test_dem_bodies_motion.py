@@ -1,0 +1,201 @@
+"""Free motion, loads, energy, and the promises of the contract."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from dem_scenes import FLOOR, NOTHING, box, build, energy, material, run, sphere, three_cubes
+from scipy.integrate import solve_ivp
+
+from quintet.components.dem_bodies.clump import union
+from quintet.interfaces.errors import StepError
+
+SIZE = (0.1, 0.2, 0.3)
+SPIN = [0.3, 8.0, 0.2]  # rad/s, nearly about the middle axis: it tumbles
+
+
+def free_box():
+    body = box(NOTHING, SIZE, velocity=[1.0, 2.0, 3.0], angular_velocity=SPIN)
+    return build([body], gravity=NOTHING)
+
+
+def test_free_box_turns_by_eulers_equations():
+    inertia = np.array([0.13, 0.10, 0.05]) / 12.0  # per unit mass
+    expected = solve_ivp(
+        lambda _, w: np.cross(inertia * w, w) / inertia, (0.0, 2.0), SPIN, rtol=1e-10, atol=1e-12
+    ).y[:, -1]
+    errors = []
+    for dt in (1e-3, 5e-4):
+        body = free_box()
+        run(body, 2.0, dt=dt)
+        axes = body.state.axes[0].reshape(3, 3)
+        errors.append(np.abs(axes.T @ body.give()["motion.angular_velocity"][0] - expected).max())
+    assert errors[1] < 2e-3
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_free_box_keeps_angular_momentum_and_energy():
+    body = free_box()
+    start, spin = body.totals(), body.state.spin.copy()
+    drifts = []
+    run(body, 5.0, lambda _: drifts.append(body.totals().kinetic / start.kinetic - 1.0), dt=1e-3)
+    assert (body.state.spin == spin).all()
+    assert np.abs(drifts).max() < 2e-5
+    assert abs(np.mean(drifts[-1000:])) < 1e-5
+    np.testing.assert_allclose(body.totals().momentum, start.momentum, rtol=1e-14)
+
+
+def test_load_acts_as_an_impulse():
+    body = build([box(NOTHING), sphere([1.0, 0.0, 0.0])], gravity=NOTHING)
+    force, torque = np.array([[1.0, 2.0, 3.0], NOTHING]), np.array([[0.1, 0.0, 0.2], NOTHING])
+    force.flags.writeable = torque.flags.writeable = False
+    body.take({"load.force": force, "load.torque": torque})
+    run(body, 0.5, dt=1e-3)
+    np.testing.assert_allclose(body.totals().momentum, 0.5 * force[0], rtol=1e-12)
+    np.testing.assert_allclose(body.state.spin[0], 0.5 * torque[0], rtol=1e-12, atol=1e-15)
+    assert body.books.given == pytest.approx(body.totals().kinetic, rel=1e-12)
+    body.take({})
+    before = body.totals().momentum
+    run(body, 0.1, dt=1e-3)
+    np.testing.assert_array_equal(body.totals().momentum, before)
+
+
+def bounce(dt):
+    stuff = {"a": material(young=1e6, friction=0.3, restitution=0.7)}
+    body = box([0.0, 0.0, 0.2], velocity=[0.5, 0.0, -1.0], angular_velocity=[2.0, 1.0, 0.0])
+    scene = build([body], stuff, planes=[FLOOR])
+    scene.take({"load.force": np.array([[0.0, 1.0, 0.0]]), "load.torque": np.zeros((1, 3))})
+    start = energy(scene)
+    run(scene, 0.3, dt=dt)
+    return abs(energy(scene) + scene.books.dissipated - scene.books.given - start) / start
+
+
+def test_energy_balance_closes_with_the_step():
+    coarse, fine = bounce(4e-4), bounce(1e-4)
+    assert coarse < 2e-3
+    assert fine < 0.3 * coarse
+
+
+def test_two_half_steps_are_one_to_second_order():
+    """On one and the same damped contact that slips nowhere: local error dt³."""
+    stuff = {"a": material(young=1e6, friction=5.0, restitution=0.4)}
+    differences = []
+    for dt in (2e-4, 1e-4):
+        found = []
+        for pieces in (1, 2):
+            body = sphere([0.0, 0.0, 0.05], 0.1, velocity=[0.3, 0.0, -0.5])
+            ball = build([body], stuff, planes=[FLOOR])
+            run(ball, 2e-3, dt=5e-5)
+            for _ in range(pieces):
+                ball.step(dt / pieces)
+            given = ball.give()
+            found.append(np.append(given["motion.velocity"][0], given["motion.position"][0]))
+        differences.append(np.abs(found[0] - found[1]).max())
+    assert differences[0] / differences[1] > 6.0
+
+
+def test_union_of_spheres_counts_overlaps_once():
+    radius, apart = 1.0, 1.2
+    volume, centre, inertia = union((((0.0, 0.0, 0.0), (apart, 0.0, 0.0)), (radius, radius)))
+    h = radius - 0.5 * apart  # two caps of this height are counted twice
+    exact = 8.0 / 3.0 * np.pi - 2.0 * np.pi * h**2 * (3.0 * radius - h) / 3.0
+    assert volume == pytest.approx(exact, rel=5e-3)
+    np.testing.assert_allclose(centre, [0.5 * apart, 0.0, 0.0], atol=1e-9)
+    x = np.linspace(-radius, 0.5 * apart, 20001)
+    area = np.pi * (radius**2 - x**2)
+    about_x = 2.0 * np.trapezoid(area**2 / (2.0 * np.pi), x)
+    assert inertia[0, 0] == pytest.approx(about_x, rel=1e-2)
+    about_y = 2.0 * np.trapezoid(area**2 / (4.0 * np.pi) + area * (x - 0.5 * apart) ** 2, x)
+    assert inertia[1, 1] == pytest.approx(about_y, rel=1e-2)
+
+
+def test_clump_of_one_sphere_is_that_sphere_and_moves_alike():
+    clump = {"shape": "spheres", "centres": [[7.0, 0.0, 0.0]], "radii": [0.05], "material": "a"}
+    clump |= {"density": 2500.0, "position": [0.0, 0.0, 0.06]}
+    found = []
+    for body in (clump, sphere([0.0, 0.0, 0.06], 0.1)):
+        scene = build([body | {"velocity": [1.0, 0.0, 0.0]}], planes=[FLOOR])
+        run(scene, 0.1, dt=1e-5)
+        found.append((scene.mass[0], scene.give()["motion.velocity"][0]))
+    assert found[0][0] == pytest.approx(found[1][0], rel=1e-2)
+    np.testing.assert_allclose(found[0][1], found[1][1], rtol=2e-2, atol=1e-3)
+
+
+AGAIN = """
+import sys
+import numpy as np
+sys.path.insert(0, sys.argv[2])
+from test_dem_bodies_motion import thrown
+from dem_scenes import run
+scene = thrown()
+scene.load(dict(np.load(sys.argv[1])))
+run(scene, 0.05)
+np.savez(sys.argv[1], **scene.save())
+"""
+
+
+def thrown():
+    """Cubes that are pushed over."""
+    scene = three_cubes()
+    scene.take({"load.force": np.array([NOTHING, [30.0, 5.0, 0.0], [5.0, 20.0, 0.0]])})
+    return scene
+
+
+def test_loaded_in_a_fresh_process_goes_on_with_the_same_bits(tmp_path):
+    scene, file = thrown(), tmp_path / "state.npz"
+    run(scene, 0.2)
+    np.savez(file, **scene.save())
+    run(scene, 0.05)
+    folder = str(__file__).rsplit("/", 1)[0]
+    subprocess.run([sys.executable, "-c", AGAIN, str(file), folder], check=True)
+    again = np.load(file)
+    for name, array in scene.save().items():
+        np.testing.assert_array_equal(array, again[name], err_msg=name)
+    assert np.abs(scene.state.angular_velocity).max() > 0.1
+
+
+def test_rewinding_gives_the_same_bits():
+    scene = thrown()
+    run(scene, 0.01)
+    kept = scene.save()
+    run(scene, 0.02)
+    first = scene.save()
+    scene.load(kept)
+    run(scene, 0.02)
+    for name, array in scene.save().items():
+        np.testing.assert_array_equal(array, first[name], err_msg=name)
+
+
+def test_outputs_are_copies_and_views_have_faces():
+    scene = three_cubes()
+    scene.give()["motion.position"][:] = 0.0
+    assert scene.give()["motion.position"][0, 0] == 5.275
+    view = scene.view()
+    assert view["points"].shape == (24, 3) and view["cells"].shape == (18, 4)
+    corners = view["points"][view["cells"]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    middle = scene.give()["motion.position"].repeat(6, axis=0)
+    assert ((corners.mean(axis=1) - middle) * normals).sum(axis=1).min() > 0.0
+    np.testing.assert_array_equal(scene.describe()["motion.shape"], [1.0, 1.0, 1.0])
+
+
+def test_steps_are_long_while_nothing_can_touch():
+    far = build([sphere([0.0, 0.0, 1.0], 0.1)], planes=[FLOOR])
+    near = build([sphere([0.0, 0.0, 0.05], 0.1)], planes=[FLOOR])
+    assert far.stable_dt() == far.params.longest_step
+    assert near.stable_dt() < 0.2 * far.stable_dt()
+
+
+def test_too_deep_a_contact_ends_the_run():
+    soft = {"a": material(young=1e4)}
+    ball = build([sphere([0.0, 0.0, 0.06], 0.1, velocity=[0.0, 0.0, -9.0])], soft, planes=[FLOOR])
+    with pytest.raises(StepError, match=r"body 0 is .* deep in a plane.*Make young"):
+        run(ball, 0.1)
+
+
+def test_a_load_that_is_not_finite_ends_the_run():
+    ball = build([sphere([0.0, 0.0, 0.06], 0.1)])
+    ball.take({"load.force": np.array([[np.nan, 0.0, 0.0]])})
+    with pytest.raises(StepError, match="must stay finite; body 0"):
+        ball.step(1e-3)

@@ -1,0 +1,55 @@
+"""What is refused before anything starts, and that refusing needs no solver."""
+
+import subprocess
+import sys
+
+import pytest
+from dem_scenes import FLOOR, about, box, mistakes, params, sphere
+
+from quintet.components.dem_bodies import MANIFEST
+from quintet.interfaces.ports import LOAD, MOTION
+
+LOOSE = {"shape": "spheres", "density": 1.0, "material": "a", "position": [0.0, 0.0, 0.0]}
+
+
+@pytest.mark.parametrize(
+    ("bodies", "given", "sentence"),
+    [
+        ([box([0, 0, 0], material="b")], {}, "bodies[0].material must be one of the materials a"),
+        ([box([0, 0, 0])], {"planes": [FLOOR | {"material": "b"}]}, "planes[0].material"),
+        ([box([0, 0, 0])], {"pairs": [{"between": ["a", "b"]}]}, "pairs[0].between"),
+        ([box([0, 0, 0])], {"planes": [FLOOR]}, "reaches 0.075 m below"),
+        ([box([0, 0, 0])], {"planes": [FLOOR | {"normal": [0, 0, 0]}]}, "must have a direction"),
+        ([box([0, 0, 0]), box([0.1, 0, 0])], {}, "bodies[0] and bodies[1] must not overlap"),
+        ([box([0, 0, 0]), sphere([0.08, 0, 0])], {}, "they do by 0.005 m"),
+        ([sphere([0, 0, 0]), sphere([0.01, 0, 0])], {}, "they do by 0.01 m"),
+        ([box([0, 0, 0], orientation=[1.0, 1.0, 0.0, 0.0])], {}, "must be a unit quaternion"),
+        ([box([0, 0, 0], diameter=1.0)], {}, "a box is described by size alone"),
+        ([sphere([0, 0, 0], rounding=0.1)], {}, "rounding is for boxes"),
+        ([box([0, 0, 0], rounding=0.08)], {}, "rounding must be less than half"),
+        ([box([0, 0, 0], mass=1.0)], {}, "exactly one of density and mass"),
+        ([LOOSE | {"centres": [[0, 0, 0]], "radii": [1.0, 2.0]}], {}, "one radius for each centre"),
+        ([LOOSE | {"centres": [[0, 0, 0]]}], {}, "a spheres is described by centres and radii"),
+        ([], {}, "bodies"),
+        ([box([0, 0, 0])], {"steps_per_contact": 5}, "steps_per_contact"),
+        ([box([0, 0, 0], densty=1.0)], {}, "Did you mean density?"),
+    ],
+)
+def test_wrong_scenes_are_refused(bodies, given, sentence):
+    assert sentence in " ".join(mistakes(bodies, **given))
+
+
+def test_touching_is_allowed_at_every_orientation():
+    turned = about([0.0, 0.0, 1.0], 0.3)
+    bodies = [box([0, 0, 0.075], orientation=turned), box([0, 0, 0.225])]
+    bodies += [sphere([0, 0, 0.31]), box([0.15, 0, 0.225])]
+    assert params(bodies, planes=[FLOOR]).bodies[3].density == 800.0
+
+
+def test_manifest_needs_no_solver():
+    code = "import sys, quintet.components.dem_bodies; assert 'numba' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
+    given = params([box([0.0, 0.0, 0.0]), box([0.0, 0.0, 0.2])])
+    assert MANIFEST.ports(given) == ((LOAD,), (MOTION,))
+    plan = MANIFEST.plan(given)
+    assert plan.items == 2 and 1e-6 < plan.dt < 1e-3

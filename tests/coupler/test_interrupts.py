@@ -1,0 +1,113 @@
+"""A run that is asked to end does so in order; one whose coupler is killed does not go on."""
+
+import os
+import signal
+import time
+
+import pytest
+from started import Started, write_scene
+
+from quintet.coupler.record import Recording
+
+OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+SOON = 2.0  # s
+ORPHANED = 5.0  # s
+
+
+def running(folder, transport):
+    """A run in the middle of its windows."""
+    run = Started(write_scene(folder, transport, 1000.0, pong="pause = 1e-3"))
+    run.wait_for_windows()
+    return run
+
+
+@pytest.mark.parametrize("transport", ["memory", *OVER])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
+    if transport == "memory":  # its log is the terminal's
+        run = Started(write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3"))
+        time.sleep(1.5)
+    else:
+        run = running(tmp_path, transport)
+    began = time.monotonic()
+    if number == signal.SIGINT:  # a terminal sends it to all of the foreground
+        os.killpg(run.process.pid, number)
+    else:
+        run.process.send_signal(number)
+    run.out, run.err = run.process.communicate(timeout=30)
+    took = time.monotonic() - began
+    left = run.processes()
+    run.end()
+    print(f"{transport} {number.name}: ended after {took:.2f} s")
+    assert not left and took < SOON
+    assert run.process.returncode == 130
+    results = run.results
+    assert results["status"] == "interrupted" and results["windows"] >= 50
+    assert "fault" not in results
+    with Recording(run.folder) as recording:
+        for name in ("ping", "pong"):
+            assert len(recording.times(name)) == results["windows"] + 1
+    assert not run.left_in_shared_memory()
+    assert f"{number.name}: ending after this window" in run.err
+    if transport != "memory":
+        assert "finished" in (run.folder / "log" / "pong.log").read_text()
+
+
+@pytest.mark.zenoh
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_second_request_does_not_wait_for_the_window(tmp_path, number):
+    run = Started(write_scene(tmp_path, "zenoh", 1000.0, pong="pause = 2.0"))
+    run.wait_until(lambda: (run.folder / "recording.h5").is_file())
+    time.sleep(0.5)
+    began = time.monotonic()
+    run.process.send_signal(number)
+    time.sleep(0.3)
+    run.process.send_signal(number)
+    run.process.communicate(timeout=10)
+    took = time.monotonic() - began
+    assert run.process.returncode == 130 and took < 1.5
+    assert run.results["status"] == "interrupted" and not run.processes()
+
+
+def wait_for_the_end(run, began):
+    while run.processes():
+        assert time.monotonic() - began < ORPHANED, "components outlived their coupler"
+        time.sleep(0.02)
+    return time.monotonic() - began
+
+
+@pytest.mark.zenoh
+def test_components_end_when_their_coupler_is_killed(tmp_path):
+    run = running(tmp_path, "zenoh")
+    began = time.monotonic()
+    run.process.kill()
+    try:
+        print(f"zenoh: ended {wait_for_the_end(run, began):.2f} s after the coupler")
+    finally:
+        run.end()
+        run.process.communicate()
+    assert "the coupler" in (run.folder / "log" / "pong.log").read_text()
+    assert not run.left_in_shared_memory()
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("who", ["the process that started the job", "the coupler's rank"])
+def test_an_mpi_job_ends_when_its_coupler_is_killed(tmp_path, who):
+    run = running(tmp_path, "mpi")
+    began = time.monotonic()
+    if "rank" in who:
+        note = (run.folder / "log" / "mpi.json").read_text()
+        os.kill(int(note.partition('"coupler": ')[2].partition(",")[0]), signal.SIGKILL)
+    else:
+        run.process.kill()
+    try:
+        print(f"mpi: ended {wait_for_the_end(run, began):.2f} s after {who}")
+        out, err = run.process.communicate(timeout=10)
+    finally:
+        run.end()
+    if "rank" in who:
+        assert run.process.returncode == 3
+        assert "quintet: the coupler ended; there are no results" in err
+    else:
+        assert run.results["status"] == "interrupted"
+    assert not run.left_in_shared_memory()

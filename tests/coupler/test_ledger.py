@@ -1,0 +1,115 @@
+"""The ledger's sums, one by one."""
+
+import csv
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from quintet.coupler.exchange import Exchange
+from quintet.coupler.ledger import Account, Ledger, mean_rate
+from quintet.coupler.links import KINDS
+from quintet.coupler.motion import Motion
+from quintet.interfaces.component import Port
+from quintet.interfaces.inputs import Inputs
+from quintet.interfaces.outputs import Handed
+from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
+
+MOVED = Port("moved", (POSITION, VELOCITY))
+PUSHED = Port("pushed", (FORCE,))
+PORTS = {"a": ((PUSHED,), (MOVED,)), "b": ((MOVED,), (PUSHED,))}
+
+
+def _exchange():
+    pairs = [["a.moved", "b.moved"], ["b.pushed", "a.pushed"]]
+    return Exchange([KINDS["direct"](0, {"name": "rope", "pairs": pairs}, PORTS)], PORTS)
+
+
+def test_a_difference_is_booked_under_its_unit_and_the_worst_one_stays():
+    account = Account("rope")
+    account.note("N", np.array([0.0, -2e-3, 1e-3]), 10.0)
+    account.note("N", np.array([1e-5]), 10.0)
+    account.note("W", np.array([1.0]), 4.0)
+    account.note("N m", np.zeros(3), 0.0)
+    assert (account.momentum_residual, account.heat_residual) == (2e-4, 0.25)
+    assert (account.angular_residual, account.kinematic_residual) == (0.0, 0.0)
+    account.note("N", np.ones(3), 0.0)  # something from nothing
+    assert account.momentum_residual == np.inf
+
+
+def test_all_that_was_given_is_applied_or_on_its_way():
+    ledger = Ledger(_exchange())
+    force = np.array([[1.0, 2.0, 3.0], [-4.0, 0.0, 1.0]])
+    sums = {"pushed.force": force.sum(axis=0).tolist()}
+    header = {"sent": {**sums, "pushed.force/size": [np.abs(force).sum()]}}
+    fields = {"pushed.force": force}
+    ledger.given("b", header, fields, {"b": fields})
+    late = {"is_late": lambda giver, taker: True, "owed": {}}
+    ledger.settle(**late)
+    assert ledger.worst == 0.0
+    ledger.given("b", header, fields, {"b": fields})
+    ledger.applied("a", fields, {"received": sums, "applied": sums})
+    ledger.settle(**late)
+    assert ledger.worst == 0.0
+    owed = {("a", "pushed.force"): force}
+    ledger.settle(lambda giver, taker: False, owed)
+    assert ledger.worst == 0.0
+    ledger.settle(lambda giver, taker: False, {})
+    assert ledger.worst == pytest.approx(4.0 / 22.0)
+
+
+def test_a_hermite_path_is_found_anew_from_its_sums():
+    """What the serving loop hands out of a cubic path is what the ledger works out for itself."""
+    random, window = np.random.default_rng(1), 0.7
+    inputs, handed = (
+        Inputs([MOVED]),
+        Handed(["moved.position"], {"moved.position": "moved.velocity"}),
+    )
+    motion = Motion(_exchange())
+    for number in range(4):
+        fields = {f"moved.{key}": random.normal(size=(5, 3)) for key in ("position", "velocity")}
+        ends = list(fields) if number else []
+        inputs.arrive(fields, ends, window)
+        motion.arrive("b", fields, ends, window)
+        handed.begin()
+        marks = np.linspace(0.0, window, 8)
+        for begin, end in pairwise(marks):
+            handed.add(inputs.over(begin, end, window), end - begin)
+        assert motion.residual("b", handed.audit()) < 1e-14
+        wrong = handed.audit()
+        wrong["first"] = {key: np.add(v, 1e-6) for key, v in wrong["first"].items()}
+        assert motion.residual("b", wrong) > 1e-9
+
+
+def test_mean_rates_are_those_of_the_displacement_where_it_is_known():
+    before = {"x": np.zeros((1, 3)), "v": np.ones((1, 3))}
+    after = {"x": np.full((1, 3), 4.0), "v": np.full((1, 3), 5.0)}
+    np.testing.assert_array_equal(mean_rate(before, after, "v", "x", 2.0), 2.0)
+    np.testing.assert_array_equal(mean_rate(before, after, "v", "", 2.0), 3.0)
+    np.testing.assert_array_equal(mean_rate(before, after, "v", "integral", 2.0), 2.5)
+
+
+def test_work_that_only_one_side_counts_is_no_residual():
+    pairs = [["a.moved", "b.moved"]]
+    ports = {"a": ((), (MOVED,)), "b": ((MOVED,), (PUSHED,))}
+    exchange = Exchange([KINDS["direct"](0, {"name": "rope", "pairs": pairs}, ports)], ports)
+    exchange.links[0].works = {"b": [("pushed.force", "moved.velocity", "")]}
+    ledger = Ledger(exchange)
+    fields = {"pushed.force": np.ones((1, 3))}
+    ledger.given("b", {"sent": {"pushed.force/work": [3.0]}}, fields, {"b": fields})
+    account = ledger.accounts["rope"]
+    assert account.work_given == 3.0
+    assert account.energy_residual == 0.0
+
+
+def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
+    ledger = Ledger(_exchange(), tmp_path / "ledger.csv")
+    one = {"mass": 1.0, "momentum": [0.0] * 3, "kinetic": 2.0, "potential": 0.0, "internal": 1.0}
+    for time, kinetic in ((0.0, 2.0), (0.5, 1.0), (1.0, 2.5)):
+        ledger.note(time, {"a": {**one, "kinetic": kinetic}, "b": one})
+    ledger.close()
+    with open(tmp_path / "ledger.csv", newline="") as file:
+        rows = list(csv.reader(file))
+    assert len(rows) == 1 + 3 * 3
+    assert {len(row) for row in rows if row[1] in ("a", "b")} == {len(rows[0])}
+    assert ledger.summary()["energy_drift"] == pytest.approx(0.5 / 1.5)

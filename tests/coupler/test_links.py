@@ -1,0 +1,165 @@
+"""Links: which ports they join, what they refuse, and what they carry."""
+
+import numpy as np
+import pytest
+
+from quintet.coupler.links import KINDS
+from quintet.coupler.links.direct import join as join_direct
+from quintet.coupler.links.fsi import FaceFsi, RigidFsi
+from quintet.coupler.links.fsi import join as join_fsi
+from quintet.coupler.links.glue import join as join_glue
+from quintet.interfaces.component import Field, Port
+from quintet.interfaces.errors import LinkError, SceneError
+from quintet.interfaces.ports import (
+    FACES,
+    FORCE,
+    GLUED,
+    GLUED_LOAD,
+    LOAD,
+    MOTION,
+    NODE_GLUE,
+    NODE_LOAD,
+    POSITION,
+    SURFACE,
+    SURFACE_LOAD,
+    VELOCITY,
+)
+
+WARMTH = Field("heat", (), "W", "impulse")
+PORTS = {
+    "water": ((SURFACE,), (SURFACE_LOAD,)),
+    "cubes": ((LOAD,), (MOTION,)),
+    "path": ((), (MOTION,)),
+    "plate": ((NODE_LOAD,), (FACES, NODE_GLUE)),
+    "rods": ((GLUED,), (GLUED_LOAD,)),
+    "puck": ((Port("push", (FORCE, WARMTH)),), (Port("pose", (POSITION, VELOCITY)),)),
+    "air": ((Port("flight", (VELOCITY,)),), (Port("drag", (FORCE, WARMTH)),)),
+}
+TURN = np.array([[np.cos(0.4), 0.0, 0.0, np.sin(0.4)]])
+
+
+def test_fsi_finds_who_is_who_in_either_order():
+    for pair in (("water", "cubes"), ("cubes", "water")):
+        found = join_fsi("link", pair, PORTS)
+        assert isinstance(found, RigidFsi) and (found.fluid, found.body) == ("water", "cubes")
+    assert isinstance(join_fsi("link", ("plate", "water"), PORTS), FaceFsi)
+    assert len(join_fsi("link", ("water", "path"), PORTS).legs) == 1  # it takes no load
+
+
+def test_fsi_says_what_does_not_fit():
+    with pytest.raises(SceneError, match="cubes takes load and gives motion"):
+        join_fsi("link", ("cubes", "plate"), PORTS)
+    push = Port("load", (Field("force", (3,), "N"),))
+    wrong = {**PORTS, "cubes": ((push,), (MOTION,))}
+    with pytest.raises(SceneError, match=r"cubes.load.force is instant, the other side's impulse"):
+        join_fsi("link", ("water", "cubes"), wrong)
+
+
+def test_glue_finds_who_is_who_in_either_order():
+    for pair in (("rods", "plate"), ("plate", "rods")):
+        found = join_glue("glue", pair, PORTS)
+        assert (found.particles, found.mesh) == ("rods", "plate")
+    with pytest.raises(SceneError, match="water must take a port glued"):
+        join_glue("glue", ("water", "plate"), PORTS)
+
+
+def _cube_in_water():
+    link = join_fsi("link", ("water", "cubes"), PORTS)
+    static = link.describe(
+        {
+            "water": {"surface.spacing": np.array([0.1]), "surface.depth": np.array([1.0])},
+            "cubes": {
+                "motion.shape": np.ones(1),
+                "motion.size": np.full((1, 3), 0.4),
+                "motion.mass": np.ones(1),
+            },
+        }
+    )
+    return link, static["water"]
+
+
+def _pose(x, turn):
+    return {
+        "motion.position": np.array([[x, 0.0, 0.0]]),
+        "motion.velocity": np.array([[1.0, 2.0, 3.0]]),
+        "motion.orientation": turn,
+        "motion.angular_velocity": np.array([[0.0, 0.0, 5.0]]),
+    }
+
+
+def test_a_rigid_body_is_sampled_as_the_fluid_asks():
+    _, static = _cube_in_water()
+    assert static["surface.volume"].sum() == pytest.approx(0.4**3, rel=1e-13)
+    assert static["surface.normal"].shape == (64, 3)
+
+
+def test_loads_are_zero_before_anything_moved():
+    link, _ = _cube_in_water()
+    load = link.legs[1].carry({"surface_load.force": np.ones((64, 3))})
+    np.testing.assert_array_equal(load["load.force"], np.zeros((1, 3)))
+    np.testing.assert_array_equal(link.legs[1].moment(load), np.zeros(3))
+
+
+def test_loads_act_at_the_middle_of_the_way():
+    """Force and moment about the origin are those of forces halfway between the two poses."""
+    link, _ = _cube_in_water()
+    still = np.array([[1.0, 0.0, 0.0, 0.0]])
+    first = link.legs[0].carry(_pose(1.0, still))["surface.position"]
+    second = link.legs[0].carry(_pose(1.2, TURN))["surface.position"]
+    force = np.random.default_rng(2).normal(size=(64, 3))
+    load = link.legs[1].carry({"surface_load.force": force})
+    moment = np.cross(0.5 * (first + second), force).sum(axis=0)
+    np.testing.assert_allclose(load["load.force"][0], force.sum(axis=0), atol=1e-13)
+    np.testing.assert_allclose(link.legs[1].moment(load), moment, atol=1e-12)
+
+
+def test_samples_of_a_turning_body_move_with_it():
+    link, _ = _cube_in_water()
+    moved = link.legs[0].carry(_pose(1.0, TURN))
+    arm = moved["surface.position"] - [1.0, 0.0, 0.0]
+    turned = np.array([1.0, 2.0, 3.0]) + np.cross([0.0, 0.0, 5.0], arm)
+    np.testing.assert_allclose(moved["surface.velocity"], turned, atol=1e-14)
+
+
+def test_a_body_smaller_than_the_spacing_is_refused():
+    link = join_fsi("link", ("water", "cubes"), PORTS)
+    described = {
+        "water": {"surface.spacing": np.array([0.1]), "surface.depth": np.array([1.0])},
+        "cubes": {"motion.shape": np.ones(1), "motion.size": np.full((1, 3), 0.05)},
+    }
+    with pytest.raises(LinkError, match=r"body 0 of cubes is 0\.05 m"):
+        link.describe(described)
+
+
+def test_direct_passes_only_what_is_taken():
+    pairs = [["puck.pose", "air.flight"], ["air.drag", "puck.push"]]
+    link = join_direct("drag", pairs, PORTS)
+    pose = {"pose.position": np.zeros((2, 3)), "pose.velocity": np.ones((2, 3))}
+    assert set(link.legs[0].carry(pose)) == {"flight.velocity"}
+    assert link.legs[1].sums == (("drag.force", "push.force"), ("drag.heat", "push.heat"))
+    assert link.works == {"air": [("drag.force", "flight.velocity", "")]}
+    assert link.legs[1].works_on == (("push.force", "pose.velocity", "pose.position"),)
+
+
+def test_direct_names_ports_that_are_not_there():
+    with pytest.raises(SceneError, match=r"air takes flight; found air\.fligth"):
+        join_direct("drag", [["puck.pose", "air.fligth"]], PORTS)
+    with pytest.raises(SceneError, match="Did you mean puck"):
+        join_direct("drag", [["pcuk.pose", "air.flight"]], PORTS)
+    with pytest.raises(SceneError, match="is not known to the other side"):
+        join_direct("drag", [["air.drag", "air.flight"]], PORTS)
+
+
+@pytest.mark.parametrize(
+    ("table", "rule"),
+    [
+        ({"kind": "fsi", "between": ["water"]}, "must name two components"),
+        ({"kind": "fsi", "between": ["water", "water"]}, "must name two components"),
+        ({"kind": "glue", "between": ["rods", "palte"]}, "Did you mean plate"),
+        ({"kind": "fsi", "betwen": ["water", "cubes"]}, "Did you mean between"),
+        ({"kind": "direct", "pairs": ["a.b", "c.d"]}, "must be pairs of ports"),
+    ],
+)
+def test_tables_of_links_are_checked(table, rule):
+    with pytest.raises(SceneError, match=rule):
+        KINDS[table["kind"]](0, table, PORTS)

@@ -1,0 +1,84 @@
+"""Bodies filled with samples: their volume, their spacing, their skin."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quintet.coupler.shapes import BOX, SPHERE, fill
+from quintet.interfaces.errors import LinkError
+
+DEEP = 1e9
+
+
+@pytest.mark.parametrize("spacing", [0.1, 0.07, 0.5])
+def test_volumes_of_a_box_add_up(spacing):
+    size = np.array([1.0, 0.6, 0.4])
+    arm, normal, volume = fill(BOX, size, spacing, DEEP)
+    assert volume.sum() == pytest.approx(0.24, rel=1e-13)
+    np.testing.assert_allclose(arm.mean(axis=0), 0.0, atol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=1e-14)
+
+
+@pytest.mark.parametrize("spacing", [0.1, 0.063, 0.9])
+def test_volumes_of_a_sphere_add_up(spacing):
+    arm, normal, volume = fill(SPHERE, np.full(3, 1.0), spacing, DEEP)
+    assert volume.sum() == pytest.approx(math.pi / 6.0, rel=1e-13)
+    assert (np.linalg.norm(arm, axis=1) < 0.5).all()
+    np.testing.assert_allclose(arm.mean(axis=0), 0.0, atol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=1e-14)
+
+
+def test_a_box_keeps_the_spacing_that_divides_it():
+    arm, _, volume = fill(BOX, np.array([0.4, 0.3, 0.2]), 0.1, DEEP)
+    assert len(arm) == 4 * 3 * 2
+    np.testing.assert_allclose(volume, 1e-3, rtol=1e-12)
+    apart = np.linalg.norm(arm[:, None] - arm[None], axis=2) + np.eye(len(arm))
+    assert apart.min() == pytest.approx(0.1, rel=1e-12)
+    # The outermost lie half a spacing below the faces.
+    np.testing.assert_allclose(np.abs(arm).max(axis=0), [0.15, 0.1, 0.05], rtol=1e-12)
+
+
+def test_spacing_is_rounded_to_divide_the_edges():
+    arm, _, _ = fill(BOX, np.array([1.0, 1.0, 1.0]), 0.3, DEEP)
+    assert len(arm) == 27
+
+
+@pytest.mark.parametrize("shape", [SPHERE, BOX])
+def test_only_a_skin_of_the_depth_is_filled(shape):
+    size, spacing, depth = np.full(3, 1.0), 0.05, 0.12
+    arm, _, volume = fill(shape, size, spacing, depth)
+    whole, _, whole_volume = fill(shape, size, spacing, DEEP)
+    if shape == BOX:
+        below = (0.5 - np.abs(whole)).min(axis=1)
+    else:
+        below = 0.5 - np.linalg.norm(whole, axis=1)
+    np.testing.assert_array_equal(arm, whole[below < depth])
+    assert 0 < len(arm) < len(whole)
+    np.testing.assert_array_equal(volume, whole_volume[: len(volume)])
+
+
+def test_normals_point_outward_and_between_the_faces_on_edges():
+    arm, normal, _ = fill(BOX, np.full(3, 0.4), 0.1, DEEP)
+    assert ((arm * normal).sum(axis=1) > 0.0).all()
+    corner = np.argmax(arm.sum(axis=1))
+    np.testing.assert_allclose(normal[corner], np.full(3, 1.0 / math.sqrt(3.0)), rtol=1e-14)
+    face = np.flatnonzero(np.isclose(arm, [0.15, 0.05, 0.05]).all(axis=1))[0]
+    np.testing.assert_allclose(normal[face], [1.0, 0.0, 0.0], atol=1e-15)
+    arm, normal, _ = fill(SPHERE, np.full(3, 1.0), 0.1, DEEP)
+    radial = arm / np.linalg.norm(arm, axis=1)[:, None]
+    np.testing.assert_allclose(normal, radial, atol=1e-14)
+
+
+@pytest.mark.parametrize("shape", [SPHERE, BOX])
+def test_a_body_smaller_than_the_spacing_has_one_sample(shape):
+    arm, normal, volume = fill(shape, np.full(3, 0.1), 1.0, DEEP)
+    np.testing.assert_allclose(arm, np.zeros((1, 3)), atol=1e-15)
+    np.testing.assert_array_equal(normal, [[0.0, 0.0, 1.0]])
+    exact = 1e-3 * (math.pi / 6.0 if shape == SPHERE else 1.0)
+    assert volume.sum() == pytest.approx(exact, rel=1e-13)
+
+
+def test_an_unknown_shape_is_refused():
+    with pytest.raises(LinkError, match="must be 0 \\(sphere\\) or 1 \\(box\\)"):
+        fill(3, np.full(3, 1.0), 0.1, DEEP)
