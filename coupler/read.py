@@ -186,8 +186,12 @@ def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> Compone
         return None
     try:
         takes, gives = manifest.ports(params)
-    except Exception as error:  # of any kind: what a kind does here is its author's
+    except QuintetError as error:
         mistakes.append(f"{where}: {error}")
+        return None
+    except Exception as error:  # of any kind: what it does here is its author's
+        said = f"{type(error).__name__}: {error}"
+        mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
         return None
     return ComponentPlan(name, kind, manifest, given, params, takes, gives, threads)
 
@@ -215,9 +219,12 @@ def _links(
     found: list[Link] = []
     for number, given in enumerate(table):
         kind = str(given.get("kind", ""))
+        lists = [given.get("between", []), given.get("pairs", [])]
         if kind not in KINDS:
             mistakes.append(unknown(f"links.{number}.kind {kind}", kind, KINDS))
-        elif not wrong & set(_named([given.get("between"), given.get("pairs")])):
+        elif not all(map(_is_names, lists)):
+            mistakes.append(f"links.{number}: components and ports are names; found {lists!r}.")
+        elif not wrong & set(_named(lists)):
             try:
                 found.append(KINDS[kind](number, given, ports))
             except SceneError as error:
@@ -226,6 +233,11 @@ def _links(
         if count > 1:
             mistakes.append(f"links: {count} have the name {name}. Give each its own.")
     return found
+
+
+def _is_names(value: Any) -> bool:
+    """Whether there are names in a list, and in the lists in it, and nothing else."""
+    return isinstance(value, str) or (isinstance(value, list) and all(map(_is_names, value)))
 
 
 def _named(value: Any) -> Iterator[str]:

@@ -10,7 +10,9 @@ from quintet.interfaces.errors import LinkError
 SPHERE, BOX = 0, 1  # codes of a body's shape, as ports.MOTION gives them
 
 
-def fill(shape: int, size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array]:
+def fill(
+    shape: int, size: Array, spacing: float, depth: float, inset: float | None = None
+) -> tuple[Array, Array, Array]:
     """Sample one body on a lattice, to a depth below its surface.
 
     Parameters
@@ -20,7 +22,9 @@ def fill(shape: int, size: Array, spacing: float, depth: float) -> tuple[Array, 
     size : (3,) float array, m
         Edges of the box, or the sphere's diameter three times.
     spacing, depth : float, m
-        Distance of samples; how far below the surface they reach (deeper ones act on nothing).
+        Distance of samples; how far below the outermost they reach (deeper ones act on nothing).
+    inset : float, m
+        How far below the surface the outermost samples lie; half a spacing if not given.
 
     Returns
     -------
@@ -31,6 +35,8 @@ def fill(shape: int, size: Array, spacing: float, depth: float) -> tuple[Array, 
             f"a body's shape must be 0 (sphere) or 1 (box) to be sampled; found {shape}. Give the "
             "body one of these shapes, or leave it out of the link."
         )
+    if inset is not None:
+        size = size - 2.0 * (inset - 0.5 * spacing)
     cells = np.maximum(1, np.rint(size / spacing)).astype(int)
     step = size / cells
     axes = [(np.arange(n) - 0.5 * (n - 1)) * s for n, s in zip(cells, step, strict=True)]

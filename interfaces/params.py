@@ -7,6 +7,7 @@ wrong scene is refused with every mistake at once and no solver imported.
 import dataclasses
 import difflib
 import json
+import re
 from collections.abc import Iterable
 from typing import Annotated, Any, dataclass_transform, get_args
 
@@ -20,6 +21,9 @@ Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
 Vector = tuple[Number, Number, Number]
 PositiveVector = tuple[Positive, Positive, Positive]
+
+
+TAG = re.compile(r"constrained-\w+|literal\[.*\]")  # what pydantic adds to a place
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
@@ -36,9 +40,21 @@ def read(params: type, given: dict[str, Any], where: str) -> tuple[Any, list[str
         text = json.dumps(given)
         return TypeAdapter(params).validate_json(text, strict=True), []
     except ValidationError as error:
-        return None, [_sentence(params, where, one) for one in error.errors()]
+        return None, [_sentence(params, where, one) for one in _by_place(error.errors())]
     except (TypeError, ValueError) as error:
         return None, [f"{where}: {error}. Use numbers, text, lists and tables only."]
+
+
+def _by_place(mistakes: Iterable[Any]) -> list[dict[str, Any]]:
+    """One mistake for each place; where a value may be of several kinds, their rules joined."""
+    found: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for one in mistakes:
+        place = tuple(part for part in one["loc"] if not TAG.fullmatch(str(part)))
+        if place in found:
+            found[place]["msg"] += " or " + one["msg"].removeprefix("Input should be ")
+        else:
+            found[place] = {**one, "loc": place}
+    return list(found.values())
 
 
 def _sentence(params: type, where: str, mistake: Any) -> str:

@@ -21,7 +21,11 @@ SURFACE = Port(
         Field("volume", (), "m3"),  # that the sample stands for
         Field("body", (), "1"),  # number of the body (or mesh) it belongs to
     ),
-    states=(Field("spacing", (), "m"), Field("depth", (), "m")),
+    states=(
+        Field("spacing", (), "m"),
+        Field("depth", (), "m"),  # how far below the surface samples are wanted
+        Field("inset", (), "m"),  # how far below it the outermost lie; half a spacing if not said
+    ),
 )
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 

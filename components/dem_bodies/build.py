@@ -98,7 +98,7 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
     normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     points = np.array([plane.point for plane in planes]).reshape(-1, 3)
-    inverses = [np.linalg.inv(one.inertia) for one in solids]
+    inverses: list[Numbers] = [np.linalg.inv(one.inertia) for one in solids]
     return Model(
         inverse_mass=np.array([1.0 / one.mass for one in solids] + [0.0]),
         inverse_inertia=np.array([packed(one) for one in inverses] + [np.zeros(6)]),

@@ -10,12 +10,12 @@ from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.state import empty_contacts
-from quintet.interfaces.component import Component, Fields, Totals
+from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import LOAD, MOTION
 
 SKIN = 0.4  # over the smallest contact radius
-DEEPEST = 0.2  # overlap over contact radius; Hertz's law holds for small ones
+DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0}  # as ports.MOTION gives them; 2 is our own
 
 
@@ -107,9 +107,9 @@ class DemBodies(Component):
         """End the run with the body that is wrong and what to do."""
         after = f"dem_bodies, t = {self.books.time + dt:.6g} s"
         s, m = self.state, self.count
-        good = np.isfinite(np.hstack([s.position, s.velocity, s.spin, s.orientation])).all(axis=1)
-        if not good[:m].all():
-            k = int(np.argmin(good[:m]))
+        good = np.isfinite(np.hstack([s.position, s.velocity, s.spin])).all(axis=1)
+        if not all(good[:m].tolist()):
+            k = int(np.argmin(good))
             raise StepError(
                 f"{after}: the state must stay finite; body {k} is at {s.position[k].tolist()} m "
                 f"with {s.velocity[k].tolist()} m/s under a load of {s.load[k].tolist()} N, N m. "
@@ -169,19 +169,21 @@ class DemBodies(Component):
 
     def view(self) -> Fields:
         """Corners and faces of boxes, centres of spheres, with body number and velocity."""
-        points, owners, faces = [], [], []
+        points: list[Array] = []
+        owners: list[int] = []
+        faces: list[Array] = []
         for k, body in enumerate(self.params.bodies):
             corners = self.solids[k].centres
             if body.size is not None:
                 corners = build.CORNERS * 0.5 * np.array(body.size)
-                faces.append(build.FACES + sum(len(one) for one in points))
+                faces.append(build.FACES + len(owners))
             axes = self.state.axes[k].reshape(3, 3)
             points.append(self.state.position[k] + corners @ axes.T)
-            owners.append(np.full(len(corners), k))
-        where, body = np.vstack(points), np.concatenate(owners)
-        arm = where - self.state.position[body]
-        spun = np.cross(self.state.angular_velocity[body], arm)
-        shown = {"points": where, "body": body, "velocity": self.state.velocity[body] + spun}
+            owners += [k] * len(corners)
+        where, owner = np.vstack(points), np.array(owners)
+        arm = where - self.state.position[owner]
+        spun = np.cross(self.state.angular_velocity[owner], arm)
+        shown = {"points": where, "body": owner, "velocity": self.state.velocity[owner] + spun}
         return shown | ({"cells": np.vstack(faces)} if faces else {})
 
     def items(self) -> int:

@@ -14,7 +14,13 @@ from quintet.components.dem_bodies.geometry import (
     on_plane,
     vector,
 )
-from quintet.components.dem_bodies.laws import DAMPING, carried, friction, normal_force
+from quintet.components.dem_bodies.laws import (
+    DAMPING,
+    carried,
+    first_weight,
+    friction,
+    normal_force,
+)
 from quintet.components.dem_bodies.state import (
     BOX,
     DEEPEST,
@@ -161,7 +167,10 @@ def press(model: Model, state: State, contacts: Contacts, count: int, dt: float)
             history[pair, 0], history[pair, 1], history[pair, 2] = 0.0, 0.0, 0.0
             continue
         root = math.sqrt(radius * bearing)
-        normal, elastic = normal_force(modulus, root, bearing, ζ, mass, -opening)
+        ratio = ζ
+        if before == 0.0 and -opening * dt > 0.0:
+            ratio *= first_weight(min(1.0, bearing / (-opening * dt)))
+        normal, elastic = normal_force(modulus, root, bearing, ratio, mass, -opening)
         # Tangential: the elastic part turns with the contact, shrinks with its area on
         # unloading (Walton & Braun 1986) and grows with the mean slip of the step.
         shrink = math.sqrt(bearing / before) if bearing < before else 1.0

@@ -20,9 +20,9 @@ def cells(box: Box, spacing: float) -> tuple[int, int, int]:
 def particles(params: SphFluidParams) -> int:
     """Fluid and wall particles, counted without making any."""
     fluid = sum(math.prod(cells(box, params.spacing)) for box in params.fluid)
-    if params.walls is None:
+    if params.tank is None:
         return fluid
-    inside = cells(params.walls, params.spacing)
+    inside = cells(params.tank, params.spacing)
     outside = [n + sum(shut) for n, shut in zip(inside, _shut(params), strict=True)]
     return fluid + math.prod(outside) - math.prod(inside)
 
@@ -46,14 +46,15 @@ def fill_box(box: Box, spacing: float) -> Array:
 
 
 def wall_points(params: SphFluidParams) -> Array:
-    """One layer of particles half a cell outside the tank's faces; (n, 3) m.
+    """One layer of particles `standoff` spacings outside the tank's faces; (n, 3) m.
 
-    So far out, the lattice of a fluid that touches a wall goes on into it.
+    Half a spacing out, the lattice of a fluid that touches a wall goes on into it; but moving
+    fluid keeps off dynamic particles by more than that, the more so where the wall was dry.
     """
-    if params.walls is None:
+    if params.tank is None:
         return np.zeros((0, 3))
-    points = _lattice(params.walls, cells(params.walls, params.spacing), _shut(params))
-    low, high = np.array(params.walls)
+    points = _lattice(params.tank, cells(params.tank, params.spacing), _shut(params))
+    low, high = np.array(params.tank)
     return points[((points < low) | (points > high)).any(axis=1)]
 
 
@@ -84,7 +85,7 @@ def wall_density(wall: Array, params: SphFluidParams) -> Array:
     density = np.full(len(wall), params.density)
     for box in params.fluid:
         low, high = np.array(box)
-        near = 1.01 * params.spacing
+        near = (params.standoff + 0.51) * params.spacing
         rows = np.flatnonzero(((wall > low - near) & (wall < high + near)).all(axis=1))
         density[rows] = np.maximum(density[rows], hydrostatic(wall[rows], box, params))
     return density

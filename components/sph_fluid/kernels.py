@@ -54,7 +54,8 @@ def interact(
                 both = density + place[j, 3]
                 closing = approach(dot, r2, fluid)
                 slope = gradient(r2, fluid)
-                force = slope * push(term, motion[j, 3], closing, both, fluid)
+                share = fluid.grip + (1.0 - fluid.grip) * int(j < np.uint64(split))
+                force = slope * push(term, motion[j, 3], share * closing, both, fluid)
                 fastest = max(fastest, bits(abs(closing)))
                 growth += dot * slope
                 ax -= force * dx
@@ -103,7 +104,7 @@ def push_samples(
             dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
             r2 = dx * dx + dy * dy + dz * dz
             dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
-            closing = approach(dot, r2, fluid)
+            closing = fluid.grip * approach(dot, r2, fluid)
             size = push(term, motion[j, 3], closing, density + place[j, 3], fluid)
             size *= gradient(r2, fluid)
             fx -= size * dx

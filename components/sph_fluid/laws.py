@@ -27,6 +27,7 @@ class Fluid(NamedTuple):
     stiffness: float  # Pa, B
     lowest: float  # Pa, pressure is cut below
     drag: float  # m2/s, 2 α c₀ h
+    grip: float  # 1, share of it between fluid and boundary
 
 
 def constants(params: SphFluidParams, dimensions: int = 3) -> Fluid:
@@ -42,6 +43,7 @@ def constants(params: SphFluidParams, dimensions: int = 3) -> Fluid:
         stiffness=params.sound_speed**2 * params.density / TAIT,
         lowest=-math.inf if params.tension else 0.0,
         drag=2.0 * params.viscosity * params.sound_speed * h,
+        grip=params.grip,
     )
 
 

@@ -1,7 +1,7 @@
 """What a scene may say of a weakly compressible fluid."""
 
 import math
-from typing import Literal
+from typing import Literal, get_args
 
 from pydantic import NonNegativeInt
 
@@ -9,6 +9,8 @@ from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, p
 
 Box = tuple[Vector, Vector]  # lowest and highest corner, m
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
+
+FACES = get_args(Face)
 
 
 @parameters
@@ -28,6 +30,8 @@ class SphFluidParams:
     density: Positive = 1000.0  # kg/m3, at no pressure
     gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
     viscosity: NotNegative = 0.1  # 1, α of Monaghan's artificial viscosity
+    grip: Fraction = 1.0  # 1, share of the viscosity that acts between fluid and walls or samples
+    standoff: Positive = 0.5  # 1, spacings from a wall's face, or a surface, to its particles
     tension: bool = False  # whether pressure may fall below zero
     xsph: Fraction = 0.0  # 1, ε: how far particles move with their neighbours' mean velocity
     shepard_every: NonNegativeInt = 0  # steps between two Shepard filters of the density; 0: none
@@ -71,6 +75,18 @@ class SphFluidParams:
                         f"{low[axis]} to {high[axis]} m; found {box[0][axis]} to "
                         f"{box[1][axis]} m. Move the box, or add the face to open."
                     )
+
+    @property
+    def tank(self) -> Box | None:
+        """Box around the tank on whose outside, half a cell off, the wall particles lie."""
+        if self.walls is None:
+            return None
+        (x, y, z), (u, v, w) = self.walls
+        out = {face: (self.standoff - 0.5) * self.spacing for face in FACES if face not in self.open}
+        return (
+            (x - out.get("x-", 0.0), y - out.get("y-", 0.0), z - out.get("z-", 0.0)),
+            (u + out.get("x+", 0.0), v + out.get("y+", 0.0), w + out.get("z+", 0.0)),
+        )
 
     def _check_sound(self) -> None:
         needed = 10.0 * math.sqrt(math.hypot(*self.gravity) * self.depth)

@@ -76,11 +76,13 @@ class RigidFsi:
 
     def describe(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
         """Sample every body at the fluid's spacing."""
-        spacing = float(described[self.fluid]["surface.spacing"][0])
-        depth = float(described[self.fluid]["surface.depth"][0])
+        stated = described[self.fluid]
+        spacing, depth = float(stated["surface.spacing"][0]), float(stated["surface.depth"][0])
+        inset = float(stated.get("surface.inset", [0.5 * spacing])[0])
         shapes, sizes = described[self.body]["motion.shape"], described[self.body]["motion.size"]
-        self._check(sizes, spacing)
-        parts = [fill(int(s), size, spacing, depth) for s, size in zip(shapes, sizes, strict=True)]
+        self._check(sizes, 2.0 * inset)
+        pairs = zip(shapes, sizes, strict=True)
+        parts = [fill(int(shape), size, spacing, depth, inset) for shape, size in pairs]
         owner = np.repeat(np.arange(len(parts)), [len(arm) for arm, _, _ in parts])
         self.map = RigidMap(np.concatenate([arm for arm, _, _ in parts]), owner, len(parts))
         return {
@@ -91,12 +93,12 @@ class RigidFsi:
             }
         }
 
-    def _check(self, sizes: Array, spacing: float) -> None:
-        small = np.flatnonzero(sizes.min(axis=1) < spacing)
+    def _check(self, sizes: Array, least: float) -> None:
+        small = np.flatnonzero(sizes.min(axis=1) < least)
         if len(small):
             raise LinkError(
-                f"link {self.name}: a body must be at least one fluid spacing ({spacing:g} m) "
-                f"across; body {small[0]} of {self.body} is {sizes[small[0]].min():g} m. Refine "
+                f"link {self.name}: a body must be at least {least:g} m across, twice the depth at "
+                f"which {self.fluid} wants its outermost samples; body {small[0]} of {self.body} is {sizes[small[0]].min():g} m. Refine "
                 f"the spacing of {self.fluid}, or leave the body out."
             )
 

@@ -1,0 +1,1 @@
+"""A dam break meets three stacked cubes: scene and experiment."""

@@ -1,0 +1,1 @@
+"""Two masses on springs: the scene of the tutorial, and its component."""

@@ -15,7 +15,6 @@ from quintet.interfaces.ports import MOTION
 
 SQUARE = np.array([[0.1 * i, 0.1 * j, 0.0] for i in range(3) for j in range(3)])
 STILL = np.zeros_like(SQUARE)
-ELSEWHERE = {"sph_fluid", "dem_bodies"}  # installed kinds whose cases are yet to be added
 
 
 @dataclass
@@ -75,7 +74,44 @@ BODY = {"shape": "box", "size": [0.1, 0.1, 0.1], "position": [1.0, 2.0, 3.0]}
 SPRING = {"mass": 2.0, "stiffness": 50.0, "arm": [0.0, 0.0, 1.0], "start": [0.0, 0.0, 1.0]}
 ONE, TWO = np.zeros((1, 3)), np.zeros((2, 3))
 
+# A drop without weight, with two samples at its side.
+DROP = {
+    "spacing": 0.05,
+    "sound_speed": 20.0,
+    "gravity": [0.0, 0.0, 0.0],
+    "fluid": [[[0.0, 0.0, 0.0], [0.2, 0.2, 0.2]]],
+}
+BESIDE = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])
+# Two boxes without weight that hover over a floor.
+STUFF = {"young": 1e7, "poisson": 0.3, "restitution": 0.5, "friction": 0.4}
+FLOAT = {**BODY, "density": 500.0, "material": "wood"}
+BOXES = {
+    "gravity": [0.0, 0.0, 0.0],
+    "materials": {"wood": STUFF},
+    "bodies": [FLOAT, {**FLOAT, "position": [1.0, 2.0, 3.2]}],
+    "planes": [{"point": [0.0, 0.0, 2.9], "normal": [0.0, 0.0, 1.0], "material": "wood"}],
+}
+
 CASES = {
+    "sph_fluid": Case(
+        "sph_fluid",
+        DROP,
+        static={
+            "surface.normal": np.tile([0.0, 0.0, 1.0], (2, 1)),
+            "surface.volume": np.full(2, 1.25e-4),
+            "surface.body": np.zeros(2),
+        },
+        rest={"surface.position": BESIDE, "surface.velocity": TWO},
+        scale={"surface.velocity": 1.0},
+        dt=1e-4,
+    ),
+    "dem_bodies": Case(
+        "dem_bodies",
+        BOXES,
+        rest={"load.force": TWO, "load.torque": TWO},
+        scale={"load.force": 1.0, "load.torque": 0.1},
+        dt=1e-4,
+    ),
     "echo": Case(
         "echo", {"items": 4}, rest={"passed.value": np.zeros((4, 3))}, scale={"passed.value": 1.0}
     ),

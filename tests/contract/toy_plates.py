@@ -93,6 +93,7 @@ class Gust(Component):
         return {
             "surface.spacing": np.array([params.spacing]),
             "surface.depth": np.array([params.depth]),
+            "surface.inset": np.array([0.5 * params.spacing]),
         }
 
     def bind(self, static: Fields) -> None:

@@ -62,7 +62,7 @@ def test_load_acts_as_an_impulse():
 
 
 def bounce(dt):
-    stuff = {"a": material(young=1e6, friction=0.3, restitution=0.7)}
+    stuff = {"a": material(young=1e9, friction=0.3, restitution=0.7)}
     body = box([0.0, 0.0, 0.2], velocity=[0.5, 0.0, -1.0], angular_velocity=[2.0, 1.0, 0.0])
     scene = build([body], stuff, planes=[FLOOR])
     scene.take({"load.force": np.array([[0.0, 1.0, 0.0]]), "load.torque": np.zeros((1, 3))})
@@ -72,7 +72,7 @@ def bounce(dt):
 
 
 def test_energy_balance_closes_with_the_step():
-    coarse, fine = bounce(4e-4), bounce(1e-4)
+    coarse, fine = bounce(4e-5), bounce(1e-5)
     assert coarse < 2e-3
     assert fine < 0.3 * coarse
 

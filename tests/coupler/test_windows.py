@@ -1,0 +1,61 @@
+"""Ten thousand windows, a pause in the middle: every answer is that to its own question."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+COUNT = 10_000
+SCENE = """
+name = "echo"
+end = 1.0
+transport = "{transport}"
+[components.echo]
+kind = "echo"
+items = 50
+"""
+COUPLER = """
+import sys, time
+from pathlib import Path
+import numpy as np
+from quintet.coupler.connect import connect
+from quintet.coupler.read import load
+folder, count = Path(sys.argv[1]), int(sys.argv[2])
+connection = connect(load(str(folder / "scene.toml")), folder, lambda: False)
+part = connection.parts["echo"]
+part.ask("describe")
+part.ask("bind", {}, works=[])
+value = np.zeros(part.give()["returned.value"].shape)
+part.ask("prime", {"passed.value": value})
+for window in range(count):
+    value[:] = window + 1.0
+    part.start(window, 1.0, {"passed.value": value}, ["passed.value"], False)
+    if window == count // 2:
+        time.sleep(8.0)  # the answer lies there for longer than a silent component may take
+    found = part.finish().fields["returned.value"]
+    assert (found == window + 0.5).all() or (found == window + 1.0).all(), window
+connection.close(True)
+(folder / "done").write_text(str(part.timing.steps))
+"""
+COMPONENT = ["quintet.interfaces.process", "echo", "--name", "echo", "--mpi"]
+OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("transport", OVER)
+def test_no_window_is_lost_when_the_coupler_pauses(tmp_path, transport):
+    (tmp_path / "scene.toml").write_text(SCENE.format(transport=transport))
+    (tmp_path / "log").mkdir()
+    (tmp_path / "coupler.py").write_text(COUPLER)
+    command = [str(tmp_path / "coupler.py"), str(tmp_path), str(COUNT)]
+    if transport == "zenoh":
+        command = [sys.executable, *command]
+    else:
+        beside = Path(sys.executable).with_name("mpiexec")
+        launcher = str(beside) if beside.exists() else "mpiexec"
+        python = ["-n", "1", sys.executable, "-m", "mpi4py"]
+        command = [launcher, *python, *command, ":", *python, "-m", *COMPONENT]
+    done = subprocess.run(command, timeout=90, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (tmp_path / "done").read_text() == str(COUNT)

@@ -1,0 +1,243 @@
+"""Lines over zenoh: the same bytes, nothing lost, no strangers."""
+
+import itertools
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from quintet.interfaces.endpoint import Security, check_endpoint
+from quintet.interfaces.errors import LineError
+from quintet.interfaces.memory import MemoryLine
+
+pytestmark = pytest.mark.zenoh
+PAUSE = 8.0  # s, longer than zenoh's own settings keep a blocked connection
+
+SENDER = """
+import sys
+import numpy as np
+from quintet.interfaces.zenoh import connect
+line = connect(sys.argv[1], "sender")
+line.run = "r1"
+array = np.zeros((200, 3))
+for n in range(int(sys.argv[2])):
+    array[0, 0] = n
+    line.send({"order": "data"}, {"a": array})
+line.send({"order": "end"}, {})
+line.receive(60.0)
+line.close()
+"""
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture
+def hubs():
+    from quintet.interfaces.zenoh import Hub
+
+    opened = []
+
+    def open_two(endpoint, security=None):
+        opened.append(Hub(endpoint, True, "coupler", security))
+        opened.append(Hub(endpoint, False, "water", security))
+        return opened
+
+    yield open_two
+    for hub in opened:
+        hub.close()
+
+
+def lines(hubs, endpoint, security=None):
+    from quintet.interfaces.zenoh import ZenohLine
+
+    near, far = hubs(endpoint, security)
+    one, two = ZenohLine(near, "r1", "water"), ZenohLine(far, "", "coupler")
+    for line in (one, two):
+        line.wait_for_partner(10.0)
+    return one, two
+
+
+def test_memory_and_zenoh_carry_the_same_bytes(hubs):
+    one, two = lines(hubs, f"tcp/127.0.0.1:{free_port()}")
+    memory, carried = MemoryLine("r1", "coupler"), []
+    put = memory._put
+    memory._put = lambda frame: carried.append(bytes(frame)) or put(frame)
+    random = np.random.default_rng(0)
+    for size in (0, 1, 1000, 200_000):
+        fields = {"surface.position": random.random((size, 3)), "n": np.arange(size)}
+        for line in (memory, one):
+            line.send({"order": "advance", "window": size}, fields)
+        frame = None
+        while frame is None:
+            frame = two._poll()
+        assert bytes(frame) == carried[-1]
+
+
+def test_a_partner_that_leaves_is_noticed_at_once(hubs):
+    one, two = lines(hubs, f"tcp/127.0.0.1:{free_port()}")
+    two.send({"order": "last words"}, {})
+    time.sleep(0.1)
+    two.hub.close()
+    began = time.perf_counter()
+    assert one.receive(10.0).order == "last words"
+    with pytest.raises(LineError, match="water is gone"):
+        one.receive(10.0)
+    assert time.perf_counter() - began < 1.0
+
+
+@pytest.mark.slow
+def test_nothing_is_lost_while_a_receiver_pauses():
+    from quintet.interfaces.zenoh import Hub, ZenohLine
+
+    count = 10_000
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    hub = Hub(endpoint, True, "coupler", None)
+    line = ZenohLine(hub, "r1", "sender")
+    arguments = [sys.executable, "-c", SENDER, endpoint, str(count)]
+    with subprocess.Popen(arguments) as sender:
+        line.wait_for_partner(20.0)
+        for n in range(count):
+            if n == count // 2:
+                time.sleep(PAUSE)
+            assert line.receive(20.0).fields["a"][0, 0] == n
+        assert line.receive(20.0).order == "end"
+        line.send({"order": "well done"}, {})
+        assert sender.wait(20) == 0
+    hub.close()
+
+
+ALLOWED = ["tcp/127.0.0.1:7447", "tcp/localhost:1", "tcp/[::1]:7447"]
+OFF_LOOPBACK = [
+    "tcp/0.0.0.0:7447", "tcp/192.168.1.2:7447", "tcp/example.org:7447", "tcp/[::]:7447",
+    "tcp/127.0.0.1.example.org:7447",
+]  # fmt: skip
+MALFORMED = [
+    "", "tcp", "tcp/", "tcp/127.0.0.1", "udp/127.0.0.1:7447", "quic/127.0.0.1:7447", "127.0.0.1:7447",
+    "tcp/127.0.0.1:7447,tcp/0.0.0.0:7447", "tcp/0.0.0.0@127.0.0.1:7447", "tcp/127.0.0.1:7447#iface=eth0",
+]  # fmt: skip
+FILES = Security("ca.pem", "me.pem", "me.key")
+
+
+@pytest.mark.parametrize("endpoint", ALLOWED)
+def test_the_loopback_needs_no_certificates(endpoint):
+    check_endpoint(endpoint, None)
+
+
+@pytest.mark.parametrize(("endpoint", "security"), list(itertools.product(OFF_LOOPBACK, [None, FILES])))
+def test_off_the_loopback_plain_connections_are_refused(endpoint, security):
+    with pytest.raises(LineError) as error:
+        check_endpoint(endpoint, security)
+    assert str(error.value) == (
+        f"endpoint {endpoint!r}: off the loopback only tls with certificates on both sides is "
+        "allowed. Use tls/HOST:PORT and give authority, certificate and key."
+    )
+
+
+@pytest.mark.parametrize("endpoint", MALFORMED)
+def test_what_is_no_endpoint_is_refused(endpoint):
+    with pytest.raises(LineError, match=r"must be tcp/HOST:PORT on the loopback or tls/HOST:PORT"):
+        check_endpoint(endpoint, FILES)
+
+
+def test_tls_needs_certificates():
+    check_endpoint("tls/example.org:7447", FILES)
+    with pytest.raises(LineError, match="tls needs authority, certificate and key"):
+        check_endpoint("tls/example.org:7447", None)
+
+
+def openssl(folder, *arguments):
+    subprocess.run(["openssl", *arguments], cwd=folder, check=True, capture_output=True)
+
+
+def authority(folder, name):
+    """An authority with its key, and a leaf for both sides that it signed."""
+    key = ["-newkey", "rsa:2048", "-nodes", "-days", "1"]
+    openssl(
+        folder, "req", "-x509", *key, "-keyout", f"{name}.key", "-out", f"{name}.pem",
+        "-subj", f"/CN={name}",
+    )  # fmt: skip
+    openssl(
+        folder, "req", *key[:3], "-keyout", f"{name}-leaf.key", "-out", f"{name}-leaf.csr",
+        "-subj", "/CN=quintet",
+    )  # fmt: skip
+    (folder / "leaf.ext").write_text(
+        "subjectAltName=DNS:localhost,IP:127.0.0.1\nextendedKeyUsage=serverAuth,clientAuth\n"
+    )
+    openssl(
+        folder, "x509", "-req", "-in", f"{name}-leaf.csr", "-CA", f"{name}.pem",
+        "-CAkey", f"{name}.key", "-CAcreateserial", "-days", "1", "-extfile", "leaf.ext",
+        "-out", f"{name}-leaf.pem",
+    )  # fmt: skip
+    files = [folder / f"{name}.pem", folder / f"{name}-leaf.pem", folder / f"{name}-leaf.key"]
+    return Security(*map(str, files))
+
+
+@pytest.fixture(scope="module")
+def certificates(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("certificates")
+    return authority(folder, "ours"), authority(folder, "foreign")
+
+
+def test_messages_cross_mutual_tls(hubs, certificates):
+    one, two = lines(hubs, f"tls/localhost:{free_port()}", certificates[0])
+    one.send({"order": "advance"}, {"a": np.arange(3.0)})
+    assert (two.receive(5.0).fields["a"] == np.arange(3.0)).all()
+    two.send({"order": "done"}, {})
+    assert one.receive(5.0).order == "done"
+
+
+@pytest.mark.parametrize("who", ["no certificate", "a foreign certificate", "plain tcp"])
+def test_strangers_are_refused(certificates, who):
+    import json
+
+    import zenoh
+
+    from quintet.interfaces.zenoh import Hub, configuration
+
+    ours, foreign = certificates
+    port = free_port()
+    hub = Hub(f"tls/localhost:{port}", True, "coupler", ours)
+    endpoint = f"tcp/localhost:{port}" if who == "plain tcp" else f"tls/localhost:{port}"
+    shown = {"no certificate": ours, "a foreign certificate": foreign, "plain tcp": None}[who]
+    config = configuration(endpoint, False, shown)
+    config.insert_json5("connect/timeout_ms", "700")
+    if shown:
+        tls = {"root_ca_certificate": ours.authority, "verify_name_on_connect": True}
+        if who == "a foreign certificate":
+            pair = {"connect_certificate": shown.certificate, "connect_private_key": shown.key}
+            tls |= {"enable_mtls": True, **pair}
+        config.insert_json5("transport/link/tls", json.dumps(tls))
+    with pytest.raises(zenoh.ZError):
+        zenoh.open(config)
+    hub.look()
+    assert hub.alive <= {"coupler"}
+    hub.close()
+
+
+def test_nobody_there_is_said(monkeypatch):
+    from quintet.interfaces import zenoh as ours
+
+    plain = ours.configuration
+
+    def hasty(*arguments):
+        config = plain(*arguments)
+        config.insert_json5("connect/timeout_ms", "300")
+        return config
+
+    monkeypatch.setattr(ours, "configuration", hasty)
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    with pytest.raises(LineError, match=f"endpoint {endpoint}: water cannot reach it"):
+        ours.connect(endpoint, "water")
+
+
+def test_zenoh_is_imported_only_where_it_is_used():
+    code = "import quintet.interfaces.process, sys; sys.exit('zenoh' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], cwd=Path.home()).returncode == 0
