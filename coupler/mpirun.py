@@ -83,7 +83,7 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
         )
     with contextlib.ExitStack() as stack:
         said = [stack.enter_context(open(note.with_name(name), "w+b")) for name in SAID]
-        asked = _forward_signals(note, process)
+        asked = stack.enter_context(_forwarding(note, process))
         reason = _await(process, note, said, asked)
         found = _read(note)
         _clean(process, found)
@@ -129,7 +129,8 @@ def _pass_on(said: Sequence[IO[bytes]]) -> None:
             stream.flush()
 
 
-def _forward_signals(note: Path, process: "subprocess.Popen[bytes]") -> list[int]:
+@contextlib.contextmanager
+def _forwarding(note: Path, process: "subprocess.Popen[bytes]") -> Iterator[list[int]]:
     """Pass Ctrl-C and SIGTERM on to the coupler alone, which ends the others in order."""
     asked: list[int] = []
 
@@ -139,9 +140,12 @@ def _forward_signals(note: Path, process: "subprocess.Popen[bytes]") -> list[int
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
 
-    for one in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(one, forward)
-    return asked
+    old = {one: signal.signal(one, forward) for one in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield asked
+    finally:
+        for one, handler in old.items():
+            signal.signal(one, handler)
 
 
 def _read(note: Path) -> dict[str, object]:

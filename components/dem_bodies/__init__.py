@@ -7,7 +7,7 @@
 with S_n = 2E*√(R*δ), S_t = 8G*√(R*δ). The damping ratio ζ realises the coefficient of restitution e
 exactly, e = exp(-2ζ arccos ζ/√(1-ζ²)), although the force is never a pull; m* is the mass that
 resists at the point of contact, 1/m* = Σ [1/m + (r × n)·I⁻¹(r × n)], so that e holds for the normal
-velocity of a box's corner too, and for a box that falls flat on four of them.
+velocity of a box's corner too, and nearly for a box that falls flat on four of them.
 
 A box is what a sphere of radius `rounding` sweeps when its centre moves through a smaller box:
 its faces are exact. Two boxes touch where a corner of one is near the other (8 + 8 spheres against

@@ -98,7 +98,7 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
     normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     points = np.array([plane.point for plane in planes]).reshape(-1, 3)
-    inverses: list[Numbers] = [np.linalg.inv(one.inertia) for one in solids]
+    inverses = [np.asarray(np.linalg.inv(one.inertia), np.float64) for one in solids]
     return Model(
         inverse_mass=np.array([1.0 / one.mass for one in solids] + [0.0]),
         inverse_inertia=np.array([packed(one) for one in inverses] + [np.zeros(6)]),
@@ -188,7 +188,7 @@ def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
             modulus = table[i, names.index(plane.material)]
             mass = 1.0 / lightest[i]
             found.append(materials.impact_frequency(modulus, largest[i], mass, params.speed))
-    return max(found)
+    return float(max(found))
 
 
 def mobility(one: Solid) -> float:

@@ -107,8 +107,8 @@ class DemBodies(Component):
         """End the run with the body that is wrong and what to do."""
         after = f"dem_bodies, t = {self.books.time + dt:.6g} s"
         s, m = self.state, self.count
-        good = np.isfinite(np.hstack([s.position, s.velocity, s.spin])).all(axis=1)
-        if not all(good[:m].tolist()):
+        good = np.isfinite(np.hstack([s.position, s.velocity, s.spin]).sum(axis=1))
+        if not good.all():
             k = int(np.argmin(good))
             raise StepError(
                 f"{after}: the state must stay finite; body {k} is at {s.position[k].tolist()} m "

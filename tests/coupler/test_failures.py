@@ -35,9 +35,7 @@ def check_end(run):
 
 @pytest.mark.parametrize("transport", OVER)
 @pytest.mark.parametrize("by", FAILURES)
-def test_a_failing_component_ends_the_run_with_a_report(
-    tmp_path, transport, by, record_property
-):
+def test_a_failing_component_ends_the_run_with_a_report(tmp_path, transport, by, record_property):
     run, moment = failing(tmp_path, transport, by)
     run.out, run.err = run.process.communicate(timeout=60)
     took = time.time() - float(moment.read_text())

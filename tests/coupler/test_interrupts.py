@@ -102,7 +102,7 @@ def test_an_mpi_job_ends_when_its_coupler_is_killed(tmp_path, who):
         run.process.kill()
     try:
         print(f"mpi: ended {wait_for_the_end(run, began):.2f} s after {who}")
-        out, err = run.process.communicate(timeout=10)
+        err = run.process.communicate(timeout=10)[1]
     finally:
         run.end()
     if "rank" in who:

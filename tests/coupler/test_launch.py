@@ -16,7 +16,14 @@ from quintet.interfaces.errors import SceneError
 
 SLEEPS = "import time; time.sleep(60)"
 WORKS = "while True: pass"
-TOUCHES = "import time\nwhile True:\n  t = time.time()\n  while time.time() < t + 0.01: pass\n  time.sleep(0.1)"
+TOUCHES = """
+import time
+while True:
+    began = time.time()
+    while time.time() < began + 0.01:
+        pass
+    time.sleep(0.1)
+"""
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 """A wrong scene never starts: each mistake is a sentence with the place, the rule and the value."""
 
+# ruff: noqa: E501  (a mistake a line)
+
 import subprocess
 
 import pytest

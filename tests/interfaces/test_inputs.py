@@ -1,5 +1,7 @@
 """Between the ends of a window inputs are what their law says: exact where it can be."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -24,7 +26,7 @@ def between(inputs, count, window=WINDOW):
     """Inputs of each step when the window falls into so many."""
     edges = np.linspace(0.0, window, count + 1)
     edges[-1] = window
-    return [(a, b, inputs.over(a, b, window)) for a, b in zip(edges, edges[1:], strict=False)]
+    return [(a, b, inputs.over(a, b, window)) for a, b in itertools.pairwise(edges)]
 
 
 def moved(ends=True):
@@ -97,7 +99,7 @@ def test_a_field_that_is_not_taken_or_changes_its_rows_is_refused():
     inputs = Inputs((MOVED,))
     with pytest.raises(PortError, match=r"field p\.mass is not taken here; the ports take p\.pos"):
         inputs.arrive({"p.mass": np.zeros(2)}, (), WINDOW)
-    with pytest.raises(PortError, match=r"field p\.position must have shape \(2, 3\); found \(2, 2"):
+    with pytest.raises(PortError, match=r"field p\.position must have shape \(2, 3\); found"):
         inputs.arrive({"p.position": np.zeros((2, 2))}, (), WINDOW)
     inputs.arrive({"p.velocity": np.zeros((4, 3))}, (), WINDOW)
     with pytest.raises(PortError, match=r"must have shape \(4, 3\); found \(5, 3\)"):

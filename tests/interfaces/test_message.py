@@ -139,19 +139,22 @@ def test_a_number_that_is_not_finite_is_refused_with_its_item(bad):
 
 def test_large_numbers_whose_squares_overflow_are_finite():
     require_finite({"f": np.full((3, 3), 1e300), "g": np.full(2, -1e200)}, "")
-    require_finite({"f": np.full((3, 3), 3e38, "<f4"), "i": np.arange(3), "e": np.zeros((0, 3))}, "")
+    require_finite({"f": np.full((3, 3), 3e38, "<f4"), "i": np.arange(3)}, "")
+    require_finite({"e": np.zeros((0, 3))}, "")
 
 
 def test_no_bytes_raise_anything_but_a_message_error():
     random = np.random.default_rng(11)
-    good = encode({"order": "x", "n": [1, 2.0, None]}, {"a": np.ones((3, 3)), "b": np.ones(4)}, None)
+    fields = {"a": np.ones((3, 3)), "b": np.ones(4)}
+    good = encode({"order": "x", "n": [1, 2.0, None]}, fields, None)
     refused = 0
     for _ in range(20_000):
         bad = bytearray(good)
         match random.integers(4):
             case 0:  # some bytes turned, most often where sizes and shapes are told
                 for _ in range(random.integers(1, 5)):
-                    bad[random.integers(len(bad) if random.random() < 0.2 else 96)] = random.integers(256)
+                    place = random.integers(len(bad) if random.random() < 0.2 else 96)
+                    bad[place] = random.integers(256)
             case 1:
                 bad = bad[: random.integers(len(bad))]
                 if len(bad) >= PREFIX.size:

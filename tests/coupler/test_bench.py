@@ -1,0 +1,34 @@
+"""The benchmark of the exchange measures each transport, and writes what it found."""
+
+import json
+
+import pytest
+
+from quintet.coupler import bench
+from quintet.coupler.cli import main
+
+OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+KEYS = {"name", "case", "items", "threads", "rate", "unit", "median_ms", "p99_ms", "options"}
+
+
+@pytest.mark.parametrize("transport", OVER)
+def test_the_exchange_is_measured(tmp_path, monkeypatch, capsys, transport):
+    monkeypatch.setattr(bench, "SIZES", {100: 200, 1000: 100})
+    file = tmp_path / "found.json"
+    with pytest.raises(SystemExit) as ended:
+        main(["bench", "exchange", "--transport", transport, "--json", str(file)])
+    assert ended.value.code == 0
+    found = json.loads(file.read_text())
+    assert [one["items"] for one in found] == [100, 1000]
+    for one, size in zip(found, ("2.4 kB", "24 kB"), strict=True):
+        assert one.keys() >= KEYS and size in one["case"] and transport in one["case"]
+        assert one["unit"] == "windows/s" and one["rate"] > 20.0
+        assert 0.0 < one["median_ms"] <= one["p99_ms"]
+    assert capsys.readouterr().out.count("windows/s") == 2
+
+
+def test_an_unknown_benchmark_is_refused(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["bench", "exchnge"])
+    assert ended.value.code == 2
+    assert "bench exchnge is not known. Did you mean exchange?" in capsys.readouterr().err

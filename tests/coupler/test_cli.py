@@ -1,0 +1,179 @@
+"""Every command does what its help says, and ends with the status that is stated."""
+
+import json
+
+import pytest
+from started import Started, write_scene
+
+from quintet.coupler.cli import main
+from quintet.coupler.connect import free_port
+from quintet.coupler.read import library
+
+EXPECT = """
+[[expect]]
+name = "number"
+component = "pong"
+field = "out.number"
+axis = 0
+measure = "at"
+begin = 0.02
+value = {value}
+within = 0.5
+unit = "m"
+source = "none"
+"""
+OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+
+
+def status(*arguments):
+    with pytest.raises(SystemExit) as ended:
+        main([str(one) for one in arguments])
+    return ended.value.code
+
+
+@pytest.fixture
+def ran(tmp_path, capsys):
+    """A finished run in memory."""
+    path = write_scene(tmp_path, end=0.02)
+    assert status("run", path, "--out", tmp_path / "out") == 0
+    capsys.readouterr()
+    return tmp_path / "out"
+
+
+def test_list_names_every_scene_with_its_presets(capsys):
+    assert status("list", "--json") == 0
+    rows = {row["scene"]: row for row in json.loads(capsys.readouterr().out)}
+    assert rows.keys() == library().keys()
+    assert all(row["components"] and row["presets"] for row in rows.values())
+    assert status("list") == 0
+    table = capsys.readouterr().out
+    assert all(name in table for name in rows)
+
+
+def test_check_prints_the_plan_and_starts_nothing(tmp_path, capsys):
+    assert status("check", write_scene(tmp_path, "zenoh", end=0.02)) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    for words in (
+        "0.02 s in 20 windows, serial, over zenoh; 3 processes, the coupler one of them",
+        "ping takes in (number [m], push [N, impulse]); gives out (number [m], push [N, impulse])",
+        "link ping-pong: ping -> pong",
+        "link ping-pong: pong -> ping",
+    ):
+        assert words in said
+    assert {path.name for path in tmp_path.iterdir()} <= {"scene.toml", "toys.py", "__pycache__"}
+
+
+@pytest.mark.parametrize(("value", "expected"), [("0.1", 0), ("9.0", 1)])
+def test_run_tells_whether_expectations_were_met(tmp_path, capsys, value, expected):
+    path = write_scene(tmp_path, end=0.02)
+    path.write_text(path.read_text() + EXPECT.format(value=value))
+    assert status("run", path, "--out", tmp_path / "out") == expected
+    results = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert results["status"] == "done" and results["windows"] == 20
+    assert results["expect"][0]["met"] is (expected == 0)
+    assert ("not met" in capsys.readouterr().out) is (expected == 1)
+
+
+def test_an_item_that_no_run_has_is_an_expectation_not_met(tmp_path, capsys):
+    path = write_scene(tmp_path, end=0.02)
+    path.write_text(path.read_text() + EXPECT.format(value="0.1") + "item = 99\n")
+    assert status("run", path, "--out", tmp_path / "out") == 1
+    results = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert results["expect"][0]["met"] is False and results["expect"][0]["value"] is None
+    assert "there is no item 99" in capsys.readouterr().err
+
+
+def test_results_have_all_that_they_promise(ran):
+    results = json.loads((ran / "results.json").read_text())
+    for key in ("scene", "preset", "transport", "status", "windows", "time", "expect", "command"):
+        assert key in results
+    assert results["time"] == pytest.approx(0.02)
+    assert {"links", "energy_drift"} <= results["ledger"].keys()
+    assert results["ledger"]["links"][0]["momentum_residual"] < 1e-13
+    assert {"wall", "compile", "components", "exchange", "mapping"} <= results["timing"].keys()
+    assert results["timing"]["components"]["ping"]["steps"] == 20
+    assert {"cpu", "cores", "versions"} <= results["machine"].keys()
+
+
+def test_a_run_can_be_run_again_from_the_scene_that_it_left(ran, tmp_path):
+    (tmp_path / "again.toml").write_text((ran / "scene.toml").read_text())
+    assert status("run", tmp_path / "again.toml", "--out", tmp_path / "again") == 0
+    assert status("diff", ran, tmp_path / "again") == 0
+
+
+def test_a_second_run_into_a_folder_replaces_the_first_and_nothing_else(ran, tmp_path):
+    (ran / "notes.txt").write_text("mine")
+    assert status("run", tmp_path / "scene.toml", "--out", ran, "--set", "end=0.005") == 0
+    assert (ran / "notes.txt").read_text() == "mine"
+    assert json.loads((ran / "results.json").read_text())["windows"] == 5
+
+
+def test_show_tells_what_happened(ran, capsys):
+    assert status("show", ran) == 0
+    said = capsys.readouterr().out
+    assert "toy: done, 20 windows to t = 0.02 s over memory" in said and "ping-pong" in said
+    assert status("show", ran, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["status"] == "done"
+
+
+def test_show_and_diff_refuse_what_is_no_run(tmp_path, capsys):
+    assert status("show", tmp_path) == 2
+    assert "it has no results.json. Run a scene into it first." in capsys.readouterr().err
+    assert status("diff", tmp_path, tmp_path) == 2
+    assert "there is no such file. Run the scene first." in capsys.readouterr().err
+
+
+def test_diff_finds_the_first_difference(ran, tmp_path, capsys):
+    other = tmp_path / "other"
+    changed = ("--set", "components.pong.items=5", "--set", "components.pong.substeps=2")
+    assert status("run", tmp_path / "scene.toml", "--out", other, *changed) == 0
+    capsys.readouterr()
+    assert status("diff", ran, other) == 1
+    assert capsys.readouterr().out.startswith("window 1 (t = 0.001 s): pong.out.")
+    assert status("diff", ran, ran) == 0
+    assert "the same, bit for bit" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("transport", OVER)
+@pytest.mark.parametrize("scheme", ["serial", "parallel"])
+def test_every_transport_gives_the_same_bits(tmp_path, capsys, transport, scheme):
+    path = write_scene(tmp_path, end=0.2, ping="substeps = 7", pong="substeps = 3")
+    settings = ("--set", f"scheme={scheme}")
+    assert status("run", path, "--out", tmp_path / "memory", *settings) == 0
+    run = Started(path, *settings, "--transport", transport)
+    assert run.wait() == 0, run.err
+    assert run.results["transport"] == transport
+    assert status("diff", tmp_path / "memory", run.folder) == 0
+    # What it says is the same as well, times of the clock apart.
+    assert f"toy: done, 200 windows to t = 0.2 s over {transport}" in run.out
+
+
+def test_a_replayed_component_gives_the_same_bits(ran, tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    swap = ("--swap", f"ping=replay@{ran}")
+    one_way = ("--set", 'links.0.pairs=[["ping.out", "pong.in"]]')
+    assert status("run", path, "--out", tmp_path / "again", *swap, *one_way) == 0
+    found = json.loads((tmp_path / "again" / "results.json").read_text())
+    assert found["status"] == "done"
+    from quintet.coupler.record import Recording
+
+    with Recording(ran) as one, Recording(tmp_path / "again") as other:
+        gap = one.field("pong", "out.number") - other.field("pong", "out.number")
+    assert abs(gap).max() < 1e-15
+
+
+def test_no_command_and_no_such_command_are_bad_input(capsys):
+    assert status() == 2
+    assert status("simulate") == 2
+    assert "invalid choice" in capsys.readouterr().err
+
+
+@pytest.mark.zenoh
+def test_a_run_over_mutual_tls_gives_the_same_bits(tmp_path, certificates, capsys):
+    path = write_scene(tmp_path, "zenoh", end=0.05)
+    assert status("run", path, "--transport", "memory", "--out", tmp_path / "memory") == 0
+    ours = certificates[0]
+    files = json.dumps([ours.authority, ours.certificate, ours.key])
+    run = Started(path, "--set", f"tls={files}", "--set", f'endpoint="tls/localhost:{free_port()}"')
+    assert run.wait() == 0, run.err
+    assert status("diff", tmp_path / "memory", run.folder) == 0

@@ -1,0 +1,118 @@
+"""What a scene does not name is not imported, by nobody."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from started import Started, write_scene
+
+from quintet.coupler.read import library
+
+HEAVY = {"zenoh", "mpi4py", "matplotlib", "scipy", "vtk", "numba"}
+ALONE = """
+name = "alone"
+end = 0.01
+window = 1e-3
+transport = "memory"
+[components.{name}]
+kind = "{kind}"
+{settings}
+"""
+MAIN = """
+import json, os, sys
+from quintet.coupler.cli import main
+try:
+    main(sys.argv[1:])
+except SystemExit as ended:
+    with open(os.environ["FOUND"], "w") as file:
+        json.dump([ended.code, sorted(sys.modules)], file)
+"""
+SPY = """
+import os, sys
+from toys import Toy
+class Spy(Toy):
+    '''Writes down what its process imported.'''
+    def totals(self):
+        with open(self.params.moment, "w") as file:
+            file.write(" ".join(sys.modules))
+        return super().totals()
+"""
+
+
+def modules(tmp_path, *arguments):
+    """Run the command line in a fresh interpreter; return what it imported."""
+    found = tmp_path / "modules.json"
+    done = subprocess.run(
+        [sys.executable, "-c", MAIN, *arguments],
+        env={**os.environ, "FOUND": str(found)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    status, names = json.loads(found.read_text())
+    assert status == 0, done.stderr
+    return set(names)
+
+
+def solvers(names):
+    """Solver packages, and whatever of one is more than its manifest."""
+    parts = [name.split(".") for name in names if name.startswith("quintet.components.")]
+    return {part[2] for part in parts}, {part[3] for part in parts if len(part) > 3}
+
+
+def test_one_component_in_memory_imports_no_transport_and_no_other_solver(tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(ALONE.format(name="echo", kind="echo", settings="items = 3"))
+    names = modules(tmp_path, "run", str(scene))
+    assert not names & HEAVY
+    assert not names & {"quintet.interfaces.zenoh", "quintet.interfaces.mpi"}
+    assert solvers(names) == ({"stand_ins"}, {"params", "echo"})
+    links = {name for name in names if name.startswith("quintet.coupler.links.")}
+    assert not links
+
+
+def test_a_scene_imports_the_component_that_it_names_and_no_other(tmp_path):
+    settings = 'bodies = [{shape = "box", size = [1, 1, 1], position = [0, 0, 0]}]'
+    scene = tmp_path / "scene.toml"
+    scene.write_text(ALONE.format(name="box", kind="prescribed", settings=settings))
+    names = modules(tmp_path, "run", str(scene))
+    assert not names & HEAVY
+    assert solvers(names) == ({"stand_ins"}, {"params", "prescribed"})
+
+
+@pytest.mark.zenoh
+def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
+    scene = tmp_path / "scene.toml"
+    two = ALONE.format(name="ping", kind="echo", settings="items = 3")
+    two += '[components.pong]\nkind = "echo"\nitems = 3\n[[links]]\nkind = "direct"\n'
+    two += 'pairs = [["ping.returned", "pong.passed"], ["pong.returned", "ping.passed"]]\n'
+    scene.write_text(two)
+    names = modules(tmp_path, "run", str(scene), "--transport", "zenoh")
+    assert "zenoh" in names and not names & (HEAVY - {"zenoh"})
+    assert solvers(names) == ({"stand_ins"}, {"params"})
+    assert "quintet.interfaces.memory" not in names
+
+
+@pytest.mark.parametrize("name", library())
+def test_checking_a_scene_imports_no_solver_and_no_transport(tmp_path, name):
+    names = modules(tmp_path, "check", name)
+    assert not names & HEAVY
+    assert not solvers(names)[1] & {"component", "kernels", "laws"}
+
+
+@pytest.mark.zenoh
+def test_a_component_imports_neither_coupler_nor_another_transport(tmp_path):
+    seen = tmp_path / "seen"
+    path = write_scene(tmp_path, "zenoh", 0.01, pong=f'moment = "{seen}"')
+    (tmp_path / "spy.py").write_text(SPY)
+    path.write_text(path.read_text().replace('pong]\nkind = "toys:Toy"', 'pong]\nkind = "spy:Spy"'))
+    run = Started(path)
+    assert run.wait() == 0, run.err
+    names = set(seen.read_text().split())
+    assert "zenoh" in names
+    assert not names & {"mpi4py", "matplotlib", "h5py", "rich", "numba"}
+    assert not {name for name in names if name.startswith("quintet.coupler")}
+    assert solvers(names) == (set(), set())
