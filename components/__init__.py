@@ -1,0 +1,1 @@
+"""Solvers: one folder per kind, all of the same inner shape."""

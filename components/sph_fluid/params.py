@@ -82,7 +82,9 @@ class SphFluidParams:
         if self.walls is None:
             return None
         (x, y, z), (u, v, w) = self.walls
-        out = {face: (self.standoff - 0.5) * self.spacing for face in FACES if face not in self.open}
+        out = {
+            face: (self.standoff - 0.5) * self.spacing for face in FACES if face not in self.open
+        }
         return (
             (x - out.get("x-", 0.0), y - out.get("y-", 0.0), z - out.get("z-", 0.0)),
             (u + out.get("x+", 0.0), v + out.get("y+", 0.0), w + out.get("z+", 0.0)),

@@ -94,12 +94,12 @@ class RigidFsi:
         }
 
     def _check(self, sizes: Array, least: float) -> None:
-        small = np.flatnonzero(sizes.min(axis=1) < least)
-        if len(small):
+        widths = sizes.min(axis=1)
+        for body in np.flatnonzero(widths < least)[:1]:
             raise LinkError(
                 f"link {self.name}: a body must be at least {least:g} m across, twice the depth at "
-                f"which {self.fluid} wants its outermost samples; body {small[0]} of {self.body} is {sizes[small[0]].min():g} m. Refine "
-                f"the spacing of {self.fluid}, or leave the body out."
+                f"which {self.fluid} wants its outermost samples; body {body} of {self.body} is "
+                f"{widths[body]:g} m. Refine the spacing of {self.fluid}, or leave the body out."
             )
 
     def _move(self, given: Fields) -> dict[str, Array]:
