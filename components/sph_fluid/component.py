@@ -46,7 +46,7 @@ class SphFluid(Component):
         return {
             "surface.spacing": np.array([self.params.spacing]),
             "surface.depth": np.array([reach]),
-            "surface.inset": np.array([self.params.standoff * self.params.spacing]),
+            "surface.inset": np.array([self.params.inset * self.params.spacing]),
         }
 
     def bind(self, static: Fields) -> None:

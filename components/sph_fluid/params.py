@@ -31,7 +31,8 @@ class SphFluidParams:
     gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
     viscosity: NotNegative = 0.1  # 1, α of Monaghan's artificial viscosity
     grip: Fraction = 1.0  # 1, share of the viscosity that acts between fluid and walls or samples
-    standoff: Positive = 0.5  # 1, spacings from a wall's face, or a surface, to its particles
+    standoff: Positive = 0.5  # 1, spacings from a wall's face out to its particles
+    inset: NotNegative = 0.5  # 1, spacings from a moving surface in to its outermost samples
     tension: bool = False  # whether pressure may fall below zero
     xsph: Fraction = 0.0  # 1, ε: how far particles move with their neighbours' mean velocity
     shepard_every: NonNegativeInt = 0  # steps between two Shepard filters of the density; 0: none
