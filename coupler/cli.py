@@ -18,6 +18,7 @@ BAD = 2  # exit status of bad input: nothing was started
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run one command and exit with its status."""
     given = parser().parse_args(arguments)
+    given.words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         status = given.does(given)
     except SceneError as error:
@@ -124,7 +125,7 @@ def run(given: argparse.Namespace) -> int:
     if scene.transport == "mpi" and not given.inside_mpi:
         from quintet.coupler.mpirun import run_under_mpi
 
-        return run_under_mpi(sys.argv[1:], scene, folder)
+        return run_under_mpi(given.words, scene, folder)
     if given.inside_mpi:
         from quintet.coupler.mpirun import enter
 

@@ -1,0 +1,25 @@
+"""The README shows what is there."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text()
+
+
+def blocks(kind: str) -> list[str]:
+    return re.findall(rf"^```{kind}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+
+
+def test_the_tutorial_is_the_component_beside_its_scene():
+    assert (ROOT / "scenarios/two_springs/springs.py").read_text() in blocks("python")
+
+
+def test_the_picture_and_the_files_it_links_are_there():
+    for link in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / link).exists(), link
+
+
+def test_the_scenes_it_runs_exist():
+    named = set(re.findall(r"quintet (?:run|check|join) (\w+)", README))
+    assert named and all((ROOT / "scenarios" / name / "scene.toml").exists() for name in named)
