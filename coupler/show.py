@@ -162,4 +162,6 @@ def _fault(fault: Mapping[str, Any]) -> Text:
 def _number(value: Any) -> str:
     if value is None:
         return "-"
+    if isinstance(value, list):
+        return " ".join(f"{one:.3g}" for one in value)
     return f"{value:.4g}" if isinstance(value, (int, float)) else str(value)
