@@ -1,0 +1,41 @@
+"""Where walls stand, where samples are wanted, and how walls drag."""
+
+import numpy as np
+import pytest
+
+from quintet.components.sph_fluid import build
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.params import SphFluidParams
+
+TANK = {"walls": ((0.0, 0.0, 0.0), (1.0, 0.5, 0.5)), "fluid": (((0.0, 0.0, 0.0), (0.5, 0.5, 0.3)),)}
+
+
+def params(**given):
+    return SphFluidParams(spacing=0.1, sound_speed=40.0, **TANK, **given)
+
+
+@pytest.mark.parametrize("standoff", [0.5, 1.5, 2.5])
+def test_wall_particles_stand_off_as_asked(standoff):
+    one = params(standoff=standoff)
+    wall = build.wall_points(one)
+    assert wall.min(axis=0) == pytest.approx([-0.1 * standoff] * 3)
+    assert wall[:, 0].max() == pytest.approx(1.0 + 0.1 * standoff)
+    assert build.particles(one) == len(wall) + 5 * 5 * 3
+
+
+def test_samples_are_wanted_at_the_inset():
+    assert SphFluid(params(inset=1.5)).describe()["surface.inset"][0] == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize(("grip", "drags"), [(0.0, False), (1.0, True)])
+def test_walls_drag_only_with_grip(grip, drags):
+    # At rest density there is no pressure: what slows a fluid that slides on its wall is drag.
+    one = params(grip=grip, gravity=(0.0, 0.0, 0.0), viscosity=0.5)
+    fluid = SphFluid(one)
+    rows = slice(fluid.state.fluid)
+    fluid.state.motion[rows, 1] = 1.0
+    before = fluid.totals().momentum[1]
+    fluid.step(1e-7)
+    lost = 1.0 - fluid.totals().momentum[1] / before
+    assert (lost > 1e-7) == drags
+    assert np.isfinite(lost)
