@@ -3,7 +3,6 @@
 import contextlib
 import secrets
 import socket
-import sys
 import time
 import traceback
 from collections.abc import Callable
@@ -216,8 +215,3 @@ def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
-
-
-def import_from(folders: list[str]) -> None:
-    """Let components that lie beside the scene be imported."""
-    sys.path[:0] = [folder for folder in folders if folder not in sys.path]
