@@ -66,3 +66,13 @@ def _sphere(points: Array, size: Array, depth: float) -> tuple[Array, Array, Arr
     normal = points[keep] / np.maximum(distance[keep], 1e-12 * radius)[:, None]
     normal[~normal.any(axis=1)] = (0.0, 0.0, 1.0)
     return points[keep], normal, np.full(int(keep.sum()), volume)
+
+
+def mirrors(shape: int, size: Array, arm: Array, normal: Array) -> Array:
+    """Images (n, 3) m of samples that `fill` made, mirrored in the body's surface."""
+    if shape == SPHERE:
+        below = 0.5 * size[0] - np.linalg.norm(arm, axis=1)
+    else:
+        # On edges and corners the nearest surface point is as far along each of the faces' normals.
+        below = (0.5 * size - np.abs(arm)).min(axis=1) * np.sqrt((normal != 0.0).sum(axis=1))
+    return np.asarray(arm + 2.0 * below[:, None] * normal)

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from quintet.interfaces.component import Field, Port
@@ -27,6 +27,8 @@ SURFACE = Port(
         Field("inset", (), "m"),  # how far below it the outermost lie; half a spacing if not said
     ),
 )
+# The same with the mirror image of each sample through its surface, for fluids that ask for it.
+MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,), "m")))
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 
 # Rigid bodies: given by whatever moves them, loaded by a force and a torque about the centre.

@@ -2,7 +2,8 @@
 
 Points come in two groups, each sorted by cell, so that the cells of a row along x are one
 contiguous range. The first group (fluid) looks for both, the second (walls) for the first
-only. Lists are written row after row: first counted, then filled.
+only: each from where it is, or from other places that stand for it. Lists are written row
+after row: first counted, then filled.
 """
 
 from dataclasses import dataclass, field
@@ -11,7 +12,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from quintet.components.shared.cells import REACH, Grid, Points, Whole, grid_around, sorted_into
+from quintet.components.shared.cells import (
+    REACH,
+    Grid,
+    Points,
+    Whole,
+    grid_around,
+    number_cells,
+    sorted_into,
+)
 from quintet.components.shared.team import Team
 
 FAST = {"fastmath": True, "error_model": "numpy", "cache": True, "nogil": True}
@@ -37,10 +46,10 @@ class Neighbours:
 
 @njit(**FAST)
 def count(
-    first: int, last: int, split: int, points: Points, cell: Whole,
+    first: int, last: int, split: int, seekers: Points, points: Points, cell: Whole,
     start_one: Whole, start_two: Whole, grid: Grid, reach2: float, number: Whole,
 ) -> None:  # fmt: skip
-    """Count the neighbours of points [first, last)."""
+    """Count the neighbours of seekers [first, last)."""
     nx, ny, nz = grid.nx, grid.ny, grid.nz
     for i in range(first, last):
         c = cell[i]
@@ -56,16 +65,16 @@ def count(
                         row = nx * (ky + ny * kz)
                         begin, end = base + start[row + low], base + start[row + high + 1]
                         for j in range(np.uint64(begin), np.uint64(end)):
-                            dx = points[i, 0] - points[j, 0]
-                            dy = points[i, 1] - points[j, 1]
-                            dz = points[i, 2] - points[j, 2]
+                            dx = seekers[i, 0] - points[j, 0]
+                            dy = seekers[i, 1] - points[j, 1]
+                            dz = seekers[i, 2] - points[j, 2]
                             found += int(dx * dx + dy * dy + dz * dz < reach2)
         number[i] = found
 
 
 @njit(**FAST)
 def fill(
-    first: int, last: int, split: int, points: Points, cell: Whole,
+    first: int, last: int, split: int, seekers: Points, points: Points, cell: Whole,
     start_one: Whole, start_two: Whole, grid: Grid, reach2: float,
     begin_of: Whole, middle_of: Whole, found: NDArray[np.int32],
 ) -> None:  # fmt: skip
@@ -86,9 +95,9 @@ def fill(
                         row = nx * (ky + ny * kz)
                         begin, end = base + start[row + low], base + start[row + high + 1]
                         for j in range(np.uint64(begin), np.uint64(end)):
-                            dx = points[i, 0] - points[j, 0]
-                            dy = points[i, 1] - points[j, 1]
-                            dz = points[i, 2] - points[j, 2]
+                            dx = seekers[i, 0] - points[j, 0]
+                            dy = seekers[i, 1] - points[j, 1]
+                            dz = seekers[i, 2] - points[j, 2]
                             # Always written, kept if near: there is no branch to mispredict.
                             found[k] = np.int32(j)
                             k += int(dx * dx + dy * dy + dz * dz < reach2)
@@ -96,20 +105,28 @@ def fill(
                     middle_of[i] = k
 
 
-def neighbours_within(reach: float, points: Points, split: int, team: Team) -> Neighbours:
+def neighbours_within(
+    reach: float, points: Points, split: int, team: Team, seekers: Points | None = None
+) -> Neighbours:
     """List what is nearer than `reach` [m] among points (n, 3) m, the first `split` of them fluid.
 
-    Both groups must come in the order that `sorted_into` gives for this reach.
+    Both groups must come in the order that `sorted_into` gives for this reach. Where given, the
+    `seekers` (any, 3) m look for fluid in place of the second group.
     """
     grid = grid_around(points[:split], reach)
     cell_one, start_one, _ = sorted_into(points[:split], grid)
     cell_two, start_two, _ = sorted_into(points[split:], grid)
+    if seekers is not None:
+        cell_two = np.empty(len(seekers), np.int64)
+        number_cells(seekers, grid, cell_two)
     cell = np.concatenate([cell_one, cell_two])
-    number = np.empty(len(points), np.int64)
-    search = (split, points, cell, start_one, start_two, grid, reach * reach)
-    team.run(count, len(points), *search, number)
+    rows = len(cell)
+    start = points if seekers is None else np.concatenate([points[:split], seekers])
+    number = np.empty(rows, np.int64)
+    search = (split, start, points, cell, start_one, start_two, grid, reach * reach)
+    team.run(count, rows, *search, number)
     begin = np.cumsum(number + 1) - (number + 1)
-    found = Neighbours(np.empty(int(number.sum()) + len(points), np.int32), begin)
-    found.middle, found.end = np.empty(len(points), np.int64), begin + number
-    team.run(fill, len(points), *search, begin, found.middle, found.list)
+    found = Neighbours(np.empty(int(number.sum()) + rows, np.int32), begin)
+    found.middle, found.end = np.empty(rows, np.int64), begin + number
+    team.run(fill, rows, *search, begin, found.middle, found.list)
     return found

@@ -27,13 +27,13 @@ Gómez-Gesteira & Dalrymple, CMC 5 (2007) 173 (walls).
 from quintet.components.sph_fluid.build import particles
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.manifest import Manifest, Plan, Ports
-from quintet.interfaces.ports import SURFACE, SURFACE_LOAD
+from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
 
 __all__ = ["MANIFEST", "SphFluidParams"]
 
 
-def _ports(_: SphFluidParams) -> Ports:
-    return (SURFACE,), (SURFACE_LOAD,)
+def _ports(params: SphFluidParams) -> Ports:
+    return (MIRRORED_SURFACE if params.mirrored else SURFACE,), (SURFACE_LOAD,)
 
 
 def _plan(params: SphFluidParams) -> Plan:

@@ -4,32 +4,32 @@ import math
 
 import numpy as np
 
-from quintet.components.sph_fluid.params import Box, SphFluidParams
+from quintet.components.sph_fluid.params import FACES, Box, SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
 
 TAIT = 7  # exponent γ of the equation of state
 
 
-def cells(box: Box, spacing: float) -> tuple[int, int, int]:
+def cells(box: Box, params: SphFluidParams) -> tuple[int, int, int]:
     """Whole number of particles along each edge of a box."""
     low, high = box
-    x, y, z = (max(1, round((b - a) / spacing)) for a, b in zip(low, high, strict=True))
-    return x, y, z
+    x, y, z = (max(1, round((b - a) / params.spacing)) for a, b in zip(low, high, strict=True))
+    return (x, y, z) if params.dimensions == 3 else (x, 1, z)
 
 
 def particles(params: SphFluidParams) -> int:
     """Fluid and wall particles, counted without making any."""
-    fluid = sum(math.prod(cells(box, params.spacing)) for box in params.fluid)
+    fluid = sum(math.prod(cells(box, params)) for box in params.fluid)
     if params.tank is None:
         return fluid
-    inside = cells(params.tank, params.spacing)
+    inside = cells(params.tank, params)
     outside = [n + sum(shut) for n, shut in zip(inside, _shut(params), strict=True)]
     return fluid + math.prod(outside) - math.prod(inside)
 
 
 def state(params: SphFluidParams) -> State:
     """Initial state: at rest, each box under the hydrostatic pressure of its own surface."""
-    boxes = [fill_box(box, params.spacing) for box in params.fluid]
+    boxes = [fill_box(box, params) for box in params.fluid]
     wall = wall_points(params)
     pairs = zip(boxes, params.fluid, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
@@ -40,26 +40,27 @@ def state(params: SphFluidParams) -> State:
     return made
 
 
-def fill_box(box: Box, spacing: float) -> Array:
+def fill_box(box: Box, params: SphFluidParams) -> Array:
     """Middles of the cells of a box; (n, 3) m, x fastest."""
-    return _lattice(box, cells(box, spacing), [(0, 0)] * 3)
+    return _lattice(box, cells(box, params), [(0, 0)] * 3)
 
 
 def wall_points(params: SphFluidParams) -> Array:
-    """One layer of particles `standoff` spacings outside the tank's faces; (n, 3) m.
+    """Layers of particles, the first `standoff` spacings outside the tank's faces; (n, 3) m.
 
     Half a spacing out, the lattice of a fluid that touches a wall goes on into it; but moving
     fluid keeps off dynamic particles by more than that, the more so where the wall was dry.
     """
     if params.tank is None:
         return np.zeros((0, 3))
-    points = _lattice(params.tank, cells(params.tank, params.spacing), _shut(params))
+    points = _lattice(params.tank, cells(params.tank, params), _shut(params))
     low, high = np.array(params.tank)
     return points[((points < low) | (points > high)).any(axis=1)]
 
 
 def _shut(params: SphFluidParams) -> list[tuple[int, int]]:
-    return [(int(f"{x}-" not in params.open), int(f"{x}+" not in params.open)) for x in "xyz"]
+    beyond = {face: params.layers if face in params.shut else 0 for face in FACES}
+    return [(beyond[f"{x}-"], beyond[f"{x}+"]) for x in "xyz"]
 
 
 def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int]]) -> Array:

@@ -11,12 +11,12 @@ from quintet.components.shared.neighbours import Neighbours, neighbours_within
 from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
-from quintet.components.sph_fluid.laws import AHEAD, constants
+from quintet.components.sph_fluid.laws import AHEAD, constants, diffusion, guard
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
-from quintet.interfaces.component import Component, Fields, Totals
-from quintet.interfaces.errors import OrderError, StepError
-from quintet.interfaces.ports import SURFACE, SURFACE_LOAD
+from quintet.interfaces.component import Component, Fields, Port, Totals
+from quintet.interfaces.errors import OrderError, PortError, StepError
+from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
 
 SKIN = 0.1  # of the kernel's support: how much further the neighbour lists reach
 STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
@@ -25,20 +25,29 @@ STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is l
 class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
 
-    takes = (SURFACE,)
+    takes: tuple[Port, ...] = (SURFACE,)
     gives = (SURFACE_LOAD,)
 
     def __init__(self, params: SphFluidParams) -> None:
         self.params = params
         self.fluid = constants(params)
+        self.diffusion = diffusion(params)
+        self.guard = guard(params)
+        self.friction = 4.0 * params.laminar if params.laminar > 0.0 else None
         self.team = Team(threads_wanted())
         self.state = build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
         self.near = Neighbours()
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
+        self.listed: Whole = self.rows  # (samples,) and where in the neighbour lists
         self.rate = np.empty((0, 4))  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s); of the present step
         self.drift: Array | None = None  # (fluid, 3) m/s, XSPH's; where it is on
         self.placed = True
+        if params.mirrored:
+            self.takes = (MIRRORED_SURFACE,)
+            from quintet.components.sph_fluid.mdbc import mirror
+
+            self.state.mirror = mirror(self.state.place[self.state.fluid :, :3], params)
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
@@ -52,23 +61,31 @@ class SphFluid(Component):
     def bind(self, static: Fields) -> None:
         """Make room for the samples of the surfaces joined."""
         if "surface.volume" in static:
-            self.state.add_samples(len(static["surface.volume"]), self.params.density)
+            if self.params.dimensions == 2:
+                raise PortError("surface: samples need three dimensions; this fluid has two.")
+            count = len(static["surface.volume"])
+            self.state.add_samples(count, self.params.density, self.params.mirrored)
             press(self.fluid, self.state.place, self.state.motion)
             self.rows = self.state.sample_rows()
             self.placed = False
+            self.body = static["surface.body"]
+            self.state.film = np.zeros((count if self.params.gaps else 0, 3))
 
     def stable_dt(self) -> float:
-        """Largest step [s]; Monaghan & Kos 1999, from the rates of the last one."""
+        """Largest step [s]; Monaghan & Kos 1999 and Morris 1997, from the rates of the last one."""
         h, state = self.fluid.smoothing, self.state
         sound = h / (self.params.sound_speed + h * state.approach)
         pull = math.sqrt(h / state.acceleration) if state.acceleration > 0.0 else math.inf
-        return self.params.courant * min(sound, pull)
+        viscous = 0.5 * h * h / self.params.laminar if self.params.laminar > 0.0 else math.inf
+        return min(self.params.courant * min(sound, pull), 0.25 * viscous)
 
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
         if len(self.rows):
             self.state.place[self.rows, :3] = fields["surface.position"]
             self.state.motion[self.rows, :3] = fields["surface.velocity"]
+            if self.params.mirrored:
+                self.state.mirror[self.rows - self.state.fluid] = fields["surface.mirror"]
             self.placed = True
 
     def step(self, dt: float) -> None:
@@ -79,7 +96,9 @@ class SphFluid(Component):
             self._sort()
             self._list()
         self._filter_density()
-        self._interact()
+        if self.params.mirrored:
+            self._extrapolate()
+        self._interact(dt)
         self._drift(dt)
         self._advance(dt)
 
@@ -88,9 +107,13 @@ class SphFluid(Component):
         if len(state.reference) == 0:
             return True
         shift = state.place[self.rows, :3] - state.reference[self.rows]
-        shifted = math.sqrt(np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
+        shifted = np.einsum("nd,nd->n", shift, shift).max(initial=0.0)
+        if self.params.mirrored:
+            here = self.rows - state.fluid
+            shift = state.mirror[here] - state.reference[len(state.place) + here]
+            shifted = max(shifted, np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
         margin = SKIN * SUPPORT * self.fluid.smoothing
-        return state.moved + max(state.moved, shifted) > margin
+        return bool(state.moved + max(state.moved, math.sqrt(shifted)) > margin)
 
     def _sort(self) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
@@ -103,7 +126,7 @@ class SphFluid(Component):
         grid = grid_around(fluid, self._reach)
         state.lost += split - len(kept)
         state.keep(kept[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
-        state.reference, state.moved = state.place[:, :3].copy(), 0.0
+        state.reference, state.moved = np.concatenate([state.place[:, :3], state.mirror]), 0.0
         self.rows = state.sample_rows()
 
     def _inside(self, points: Array) -> Any:
@@ -114,12 +137,28 @@ class SphFluid(Component):
         return ((points > low - stray) & (points < high + stray)).all(axis=1)
 
     @property
+    def _advancing(self) -> int:
+        """Rows whose density has a rate: all, or the fluid's where walls are mirrored."""
+        return self.state.fluid if self.params.mirrored else len(self.state.place)
+
+    @property
     def _reach(self) -> float:
         return (1.0 + SKIN) * SUPPORT * self.fluid.smoothing
 
     def _list(self) -> None:
         state = self.state
-        self.near = neighbours_within(self._reach, state.reference, state.fluid, self.team)
+        points, seekers = state.reference[: len(state.place)], None
+        self.listed = self.rows
+        if self.params.mirrored:
+            # Walls look for fluid from their mirror points; samples, which it pushes, from where
+            # they are as well.
+            seekers = np.concatenate([state.reference[len(points) :], points[self.rows]])
+            self.listed = len(points) + np.arange(len(self.rows))
+        self.near = neighbours_within(self._reach, points, state.fluid, self.team, seekers)
+        if len(state.film):
+            from quintet.components.sph_fluid.gap import film
+
+            self.film = film(state, self.body, self.params)
         self.rate = np.empty_like(state.place)
         if self.params.xsph > 0.0:
             self.drift = np.empty((state.fluid, 3))
@@ -135,16 +174,32 @@ class SphFluid(Component):
             state.place[: state.fluid, 3] = density
             press(self.fluid, state.place, state.motion)
 
-    def _interact(self) -> None:
+    def _extrapolate(self) -> None:
+        """Mirrored walls: density as if the fluid went on into them."""
+        from quintet.components.sph_fluid.mdbc import extrapolate
+
+        state = self.state
+        own = np.full(len(state.mirror), -1)
+        own[self.rows - state.fluid] = self.listed
+        arrays = (own, state.mirror, state.place, state.motion, self.near.arrays)
+        self.team.run(extrapolate, len(own), state.fluid, *arrays, self.fluid)
+
+    def _interact(self, dt: float) -> None:
         """Forces and rates of density, and what they do to the samples."""
-        state, gravity, drift = self.state, self.params.gravity, self.drift
+        state, gravity = self.state, self.params.gravity
         pairs = (state.place, state.motion, self.near.arrays, self.fluid)
-        rows = len(state.place)
-        found = self.team.run(interact, rows, state.fluid, *pairs, gravity, self.rate, drift)
+        terms = (self.rate, self.drift, self.diffusion, self.friction, self.guard)
+        found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
         if len(self.rows):
-            self.team.run(push_samples, len(self.rows), self.rows, *pairs, state.force)
+            rows = (self.rows, self.listed)
+            on_samples = (self.friction, self.guard, state.force)
+            self.team.run(push_samples, len(self.rows), *rows, *pairs, *on_samples)
+        if len(state.film):
+            from quintet.components.sph_fluid.gap import push
+
+            push(self.film, state, dt, self.params)
 
     def _drift(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity."""
@@ -157,7 +212,7 @@ class SphFluid(Component):
         ahead = AHEAD * min(dt / state.last_dt, 2.0) if state.last_dt > 0.0 else 0.0
         arrays = (self.rate, state.reference, state.place, state.motion, state.before)
         numbers = (state.fluid, dt, ahead, self.params.spacing, self.fluid)
-        moved = self.team.run(advance, len(state.place), *numbers, *arrays)
+        moved = self.team.run(advance, self._advancing, *numbers, *arrays)
         if any(failed for _, failed in moved):
             raise StepError(self._failure(dt))
         state.moved = math.sqrt(max(distance for distance, _ in moved))
@@ -206,15 +261,15 @@ class SphFluid(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left."""
-        fluid, rows = self.fluid, slice(self.state.fluid)
+        mass, rows = self.fluid.mass * self.params.thickness, slice(self.state.fluid)
         points, velocity = self.state.place[rows, :3], self.state.motion[rows, :3]
         return Totals(
-            mass=fluid.mass * len(points),
-            momentum=fluid.mass * velocity.sum(axis=0),
-            angular_momentum=fluid.mass * np.cross(points, velocity).sum(axis=0),
-            kinetic=0.5 * fluid.mass * float(np.einsum("nd,nd->", velocity, velocity)),
-            potential=-fluid.mass * float((points @ np.array(self.params.gravity)).sum()),
-            internal=fluid.mass * float(self._elastic(self.state.place[rows, 3]).sum()),
+            mass=mass * len(points),
+            momentum=mass * velocity.sum(axis=0),
+            angular_momentum=mass * np.cross(points, velocity).sum(axis=0),
+            kinetic=0.5 * mass * float(np.einsum("nd,nd->", velocity, velocity)),
+            potential=-mass * float((points @ np.array(self.params.gravity)).sum()),
+            internal=mass * float(self._elastic(self.state.place[rows, 3]).sum()),
         )
 
     def _elastic(self, density: Array) -> Array:

@@ -7,7 +7,19 @@ from numba import njit
 from numpy.typing import NDArray
 
 from quintet.components.shared.neighbours import FAST
-from quintet.components.sph_fluid.laws import Fluid, approach, gradient, kernel, pressure_term, push
+from quintet.components.sph_fluid.laws import (
+    Diffusion,
+    Fluid,
+    Guard,
+    approach,
+    flatten,
+    gradient,
+    kernel,
+    pressure_term,
+    push,
+    repel,
+    spread,
+)
 from quintet.components.sph_fluid.state import Array, Whole
 
 List = tuple[Whole, Whole, Whole, NDArray[np.int32]]
@@ -31,11 +43,14 @@ def number(bits):  # type: ignore[no-untyped-def]
 def interact(
     first: int, last: int, split: int, place: Array, motion: Array, near: List,
     fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
+    diffusion: Diffusion | None, friction: float | None, guard: Guard | None,
 ) -> tuple[float, float]:  # fmt: skip
     """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r².
 
-    With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); where
-    it is None, numba leaves these lines out.
+    With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); with
+    `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, 4ν
+    [m2/s], let the fluid be viscous (Lo & Shao 2002); with `guard`, let walls repel what is about
+    to pass between their particles. Of what is None, numba leaves the lines out.
     """
     begin, _, end, neighbour = near
     greatest, fastest = 0.0, bits(0.0)
@@ -54,15 +69,26 @@ def interact(
                 both = density + place[j, 3]
                 closing = approach(dot, r2, fluid)
                 slope = gradient(r2, fluid)
-                share = fluid.grip + (1.0 - fluid.grip) * int(j < np.uint64(split))
+                inside = int(j < np.uint64(split))
+                share = fluid.grip + (1.0 - fluid.grip) * inside
                 force = slope * push(term, motion[j, 3], share * closing, both, fluid)
+                if guard is not None:
+                    force -= (1 - inside) * repel(r2, guard)
                 fastest = max(fastest, bits(abs(closing)))
                 growth += dot * slope
                 ax -= force * dx
                 ay -= force * dy
                 az -= force * dz
+                if diffusion is not None:
+                    more = spread(place[j, 3] - density, dx, dy, dz, diffusion)
+                    growth -= inside * more * (slope * flatten(r2, fluid)) / both
+                if friction is not None:
+                    shear = friction * share * (slope * flatten(r2, fluid)) / both
+                    ax += shear * du
+                    ay += shear * dv
+                    az += shear * dw
                 if drift is not None:
-                    weight = int(j < np.uint64(split)) * kernel(r2, fluid) / both
+                    weight = inside * kernel(r2, fluid) / both
                     mx -= weight * du
                     my -= weight * dv
                     mz -= weight * dw
@@ -89,8 +115,8 @@ def interact(
 
 @njit(**FAST)
 def push_samples(
-    first: int, last: int, row: Whole, place: Array, motion: Array, near: List,
-    fluid: Fluid, force: Array,
+    first: int, last: int, row: Whole, listed: Whole, place: Array, motion: Array, near: List,
+    fluid: Fluid, friction: float | None, guard: Guard | None, force: Array,
 ) -> None:  # fmt: skip
     """Write the force on surface samples: pair by pair, minus that on the fluid [N]."""
     begin, _, end, neighbour = near
@@ -99,17 +125,26 @@ def push_samples(
         x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
         u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
         fx, fy, fz = 0.0, 0.0, 0.0
-        for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+        for k in range(np.uint64(begin[listed[s]]), np.uint64(end[listed[s]])):
             j = np.uint64(neighbour[k])
             dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
             r2 = dx * dx + dy * dy + dz * dz
-            dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
+            du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
+            dot = dx * du + dy * dv + dz * dw
             closing = fluid.grip * approach(dot, r2, fluid)
-            size = push(term, motion[j, 3], closing, density + place[j, 3], fluid)
-            size *= gradient(r2, fluid)
+            slope = gradient(r2, fluid)
+            both = density + place[j, 3]
+            size = slope * push(term, motion[j, 3], closing, both, fluid)
+            if guard is not None:
+                size -= repel(r2, guard)
             fx -= size * dx
             fy -= size * dy
             fz -= size * dz
+            if friction is not None:
+                shear = friction * fluid.grip * (slope * flatten(r2, fluid)) / both
+                fx += shear * du
+                fy += shear * dv
+                fz += shear * dw
         force[s, 0] = fluid.mass * fluid.mass * fx
         force[s, 1] = fluid.mass * fluid.mass * fy
         force[s, 2] = fluid.mass * fluid.mass * fz

@@ -13,13 +13,19 @@ from quintet.components.sph_fluid.params import SphFluidParams
 # sound waves neutral to second order in ω dt; a little more damps them, up to ω dt = 0.5.
 AHEAD = 1.25
 
+# Mirrored walls press as the fluid does, and would let single fast particles through. Within
+# NEAREST spacings, which a particle half a spacing off the face does not reach, their particles
+# repel: softly beside the fluid's own stiffness, but enough to turn a tenth of the speed of sound.
+GUARD = 0.2
+NEAREST = 0.9
+
 TINY = 1e-12  # h², added to r² so that a particle does not divide by its distance from itself
 
 
 class Fluid(NamedTuple):
     """The numbers that the laws need."""
 
-    mass: float  # kg, of every particle
+    mass: float  # kg, of every particle; kg/m in two dimensions
     smoothing: float  # m, h
     height: float  # 1/m3, α/4: scale of W
     slope: float  # 1/m4, -3α/(4h): scale of dW/dr
@@ -30,9 +36,43 @@ class Fluid(NamedTuple):
     grip: float  # 1, share of it between fluid and boundary
 
 
-def constants(params: SphFluidParams, dimensions: int = 3) -> Fluid:
+class Diffusion(NamedTuple):
+    """The numbers that the diffusion of density needs."""
+
+    strength: float  # m2/s, 4 δ h c₀
+    x: float  # kg/m4, hydrostatic gradient of density, ρ₀ g/c₀²
+    y: float
+    z: float
+
+
+def diffusion(params: SphFluidParams) -> Diffusion | None:
+    """Numbers of the diffusion of density; None where it is off."""
+    if params.diffusion == 0.0:
+        return None
+    sound = params.sound_speed
+    x, y, z = (params.density * pull / sound**2 for pull in params.gravity)
+    return Diffusion(4.0 * params.diffusion * params.length * sound, x, y, z)
+
+
+class Guard(NamedTuple):
+    """The numbers that the repulsion of mirrored walls needs."""
+
+    stiffness: float  # 1/(kg s2)
+    reach2: float  # m2
+
+
+def guard(params: SphFluidParams) -> Guard | None:
+    """Numbers of the repulsion of mirrored walls; None for others, which repel by themselves."""
+    if not params.mirrored:
+        return None
+    mass = params.density * params.spacing**params.dimensions
+    stiffness = GUARD * (params.sound_speed / params.spacing) ** 2 / mass
+    return Guard(stiffness, (NEAREST * params.spacing) ** 2)
+
+
+def constants(params: SphFluidParams) -> Fluid:
     """Numbers of the laws from the parameters."""
-    h = params.length
+    h, dimensions = params.length, params.dimensions
     alpha = normalisation(dimensions, h)
     return Fluid(
         mass=params.density * params.spacing**dimensions,
@@ -87,3 +127,26 @@ def approach(dot, r2, fluid):  # type: ignore[no-untyped-def]
 def push(term_i, term_j, closing, density_sum, fluid):  # type: ignore[no-untyped-def]
     """p_i/ρ_i² + p_j/ρ_j² + Π_ij; Monaghan 1992, eq. (3.3) and (4.2) with β = 0."""
     return term_i + term_j - fluid.drag * min(closing, 0.0) / density_sum
+
+
+@njit(inline="always")
+def flatten(r2, fluid):  # type: ignore[no-untyped-def]
+    """r²/(r² + 0.01h²): with the gradient, r·∇W/(r² + 0.01h²)."""
+    return r2 / (r2 + 0.01 * fluid.smoothing * fluid.smoothing)
+
+
+@njit(inline="always")
+def spread(difference, dx, dy, dz, diffusion):  # type: ignore[no-untyped-def]
+    """4δhc₀ [(ρ_j - ρ_i) - ρᴴ_ij], ρᴴ_ij from the weight of the fluid between the two.
+
+    Fourtakas et al., Comput. Fluids 190 (2019) 346, eq. (12), linear in p/B, with m_j/ρ̄_ij for
+    the volume, so that no mass is made.
+    """
+    hydrostatic = diffusion.x * dx + diffusion.y * dy + diffusion.z * dz
+    return diffusion.strength * (difference + hydrostatic)
+
+
+@njit(inline="always")
+def repel(r2, guard):  # type: ignore[no-untyped-def]
+    """Force of a wall particle on one of fluid over m² r, of finite reach."""
+    return guard.stiffness * max(1.0 - r2 / guard.reach2, 0.0)

@@ -18,19 +18,26 @@ class SphFluidParams:
     """A fluid that fills boxes, in an open tank; SI.
 
     Edges are cut into round(edge / spacing) cells with a particle in the middle of each; every
-    particle has mass density · spacing³.
+    particle has mass density · spacing³. In two dimensions, x and z, all boxes are one slab
+    between frictionless planes, a single layer of particles.
     """
 
     spacing: Positive  # m, between particles
     sound_speed: Positive  # m/s, artificial: ten times the largest velocity
     fluid: tuple[Box, ...]  # m, boxes full of fluid
+    dimensions: Literal[2, 3] = 3  # 2: x and z
     walls: Box | None = None  # m, the inside of a tank
     open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
     smoothing: Positive = 1.5  # 1, smoothing length / spacing
     density: Positive = 1000.0  # kg/m3, at no pressure
     gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
     viscosity: NotNegative = 0.1  # 1, α of Monaghan's artificial viscosity
+    laminar: NotNegative = 0.0  # m2/s, kinematic viscosity of the fluid itself
+    diffusion: NotNegative = 0.0  # 1, δ of Fourtakas' diffusion of density; 0.1 is usual
     grip: Fraction = 1.0  # 1, share of the viscosity that acts between fluid and walls or samples
+    boundary: Literal["dbc", "mdbc"] = "dbc"  # dynamic wall particles, or mirrored ones
+    gaps: bool = False  # whether films in gaps narrower than particles carry pressure; with mdbc
+    roughness: Positive = 5e-4  # m, least width that a film has between faces that touch
     standoff: Positive = 0.5  # 1, spacings from a wall's face out to its particles
     inset: NotNegative = 0.5  # 1, spacings from a moving surface in to its outermost samples
     tension: bool = False  # whether pressure may fall below zero
@@ -49,6 +56,12 @@ class SphFluidParams:
         self._check_boxes()
         self._check_walls()
         self._check_sound()
+        self._check_slab()
+        if self.mirrored and (self.standoff, self.inset) != (0.5, 0.5):
+            raise ValueError(
+                "boundary mdbc puts its particles half a spacing behind the face; found standoff "
+                f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
+            )
 
     def _check_boxes(self) -> None:
         for number, box in enumerate(self.fluid):
@@ -77,15 +90,51 @@ class SphFluidParams:
                         f"{box[1][axis]} m. Move the box, or add the face to open."
                     )
 
+        if self.gaps and not self.mirrored:
+            raise ValueError(
+                "gaps needs boundary mdbc, whose samples know the pressure at a gap's rim; found "
+                f"{self.boundary}. Set boundary, or leave gaps out."
+            )
+
+    def _check_slab(self) -> None:
+        boxes = [*self.fluid, *([] if self.walls is None else [self.walls])]
+        sides = {(low[1], high[1]) for low, high in boxes}
+        if self.dimensions == 2 and (len(sides) > 1 or self.gravity[1] != 0.0):
+            raise ValueError(
+                "in two dimensions, x and z, all boxes must reach over the same y, and gravity has "
+                f"no y; found y from {sorted(sides)} and gravity {self.gravity}. Correct them, or "
+                "set dimensions to 3."
+            )
+
+    @property
+    def thickness(self) -> float:
+        """Of the slab [m] that a particle's mass is counted over; 1 in three dimensions."""
+        low, high = self.fluid[0]
+        return high[1] - low[1] if self.dimensions == 2 else 1.0
+
+    @property
+    def shut(self) -> tuple[Face, ...]:
+        """Faces at which the tank has wall particles."""
+        sides = ("y-", "y+") if self.dimensions == 2 else ()
+        return tuple(face for face in FACES if face not in (*self.open, *sides))
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether walls take their density from mirror points."""
+        return self.boundary == "mdbc"
+
+    @property
+    def layers(self) -> int:
+        """Layers of wall particles: one that repels, or as many as a kernel meets."""
+        return math.ceil(2.0 * self.smoothing) if self.mirrored else 1
+
     @property
     def tank(self) -> Box | None:
         """Box around the tank on whose outside, half a cell off, the wall particles lie."""
         if self.walls is None:
             return None
         (x, y, z), (u, v, w) = self.walls
-        out = {
-            face: (self.standoff - 0.5) * self.spacing for face in FACES if face not in self.open
-        }
+        out = {face: (self.standoff - 0.5) * self.spacing for face in self.shut}
         return (
             (x - out.get("x-", 0.0), y - out.get("y-", 0.0), z - out.get("z-", 0.0)),
             (u + out.get("x+", 0.0), v + out.get("y+", 0.0), w + out.get("z+", 0.0)),

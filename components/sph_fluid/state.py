@@ -22,10 +22,14 @@ class State:
     place: Array  # (n, 4) m, m, m, kg/m3: x, y, z, ρ
     motion: Array  # (n, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
     before: Array  # (n,) kg/(m3 s), dρ/dt one step ago
-    reference: Array  # (n, 3) m, where the neighbour list was made; (0, 3): there is none yet
+    reference: Array  # (n, 3) m, where the neighbour list was made, with mirrors (n + boundary, 3);
+    # (0, 3): there is none yet
+    mirror: Array  # (boundary, 3) m, mirror points of walls and samples; (0, 3) without mdbc
     identity: Whole  # (fluid,) the number each fluid particle was born with
     sample: Whole  # (boundary,) row in the port `surface`; -1 for walls
     force: Array  # (samples, 3) N, mean over the last step
+    film: Array  # (samples, 3) of films in narrow gaps: pressure [Pa], full share, width [m] or 0
+    # where there is none; (0, 3) where they are not wanted
     acceleration: float = 0.0  # m/s2, largest of the last step
     approach: float = 0.0  # 1/s, largest |u·r|/(r²+0.01h²) of the last step
     moved: float = 0.0  # m, furthest that a fluid particle is from its reference
@@ -42,9 +46,11 @@ class State:
             motion=np.zeros((n, 4)),
             before=np.zeros(n),
             reference=np.zeros((0, 3)),
+            mirror=np.zeros((0, 3)),
             identity=np.arange(fluid),
             sample=np.full(boundary, -1),
             force=np.zeros((0, 3)),
+            film=np.zeros((0, 3)),
         )
 
     @property
@@ -58,8 +64,10 @@ class State:
         self.place, self.motion = self.place[rows], self.motion[rows]
         self.before = self.before[rows]
         self.identity, self.sample = self.identity[fluid], self.sample[boundary]
+        if len(self.mirror):
+            self.mirror = self.mirror[boundary]
 
-    def add_samples(self, count: int, density: float) -> None:
+    def add_samples(self, count: int, density: float, mirrored: bool = False) -> None:
         """Append surface samples to the boundary; they are nowhere until they are placed."""
         place = np.zeros((count, 4))
         place[:, 3] = density
@@ -67,6 +75,8 @@ class State:
         self.motion = np.concatenate([self.motion, np.zeros((count, 4))])
         self.before = np.concatenate([self.before, np.zeros(count)])
         self.sample = np.concatenate([self.sample, np.arange(count)])
+        if mirrored:
+            self.mirror = np.concatenate([self.mirror, np.zeros((count, 3))])
         self.force = np.zeros((count, 3))
 
     def sample_rows(self) -> Whole:

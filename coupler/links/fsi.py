@@ -10,10 +10,18 @@ import numpy as np
 
 from quintet.coupler.exchange import Leg, Ports, Works, requires
 from quintet.coupler.mapping import RigidMap, ShapeMap, sample_faces
-from quintet.coupler.shapes import fill
+from quintet.coupler.shapes import fill, mirrors
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError, SceneError
-from quintet.interfaces.ports import FACES, LOAD, MOTION, NODE_LOAD, SURFACE, SURFACE_LOAD
+from quintet.interfaces.ports import (
+    FACES,
+    LOAD,
+    MIRRORED_SURFACE,
+    MOTION,
+    NODE_LOAD,
+    SURFACE,
+    SURFACE_LOAD,
+)
 
 WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
@@ -28,13 +36,15 @@ def join(name: str, between: tuple[str, str], ports: Mapping[str, Ports]) -> "Ri
             continue
         rigid = MOTION.name in gives
         motion, load = (MOTION, LOAD) if rigid else (FACES, NODE_LOAD)
-        lacks = requires(ports[fluid], fluid, SURFACE, SURFACE_LOAD)
+        lacks = requires(ports[fluid], fluid, MIRRORED_SURFACE, SURFACE_LOAD)
         # What is moved by a path or a recording takes no load, and is sent none.
         loaded = load.name in {port.name for port in ports[body][0]}
         lacks += requires(ports[body], body, load if loaded else None, motion)
         if lacks:
             raise SceneError(f"link {name}: {'; '.join(lacks)}. Correct the ports.")
-        found = (RigidFsi if rigid else FaceFsi)(name, fluid, body)
+        surface = next(port for port in ports[fluid][0] if port.name == SURFACE.name)
+        mirrored = any(field.name == "mirror" for field in surface.fields)
+        found = (RigidFsi if rigid else FaceFsi)(name, fluid, body, mirrored)
         found.legs = found.legs if loaded else found.legs[:1]
         return found
     raise SceneError(
@@ -52,9 +62,10 @@ def _names(ports: tuple[Port, ...]) -> str:
 class RigidFsi:
     """Samples ride on rigid bodies; their forces become a force and a torque on each."""
 
-    def __init__(self, name: str, fluid: str, body: str) -> None:
-        self.name, self.fluid, self.body = name, fluid, body
+    def __init__(self, name: str, fluid: str, body: str, mirrored: bool = False) -> None:
+        self.name, self.fluid, self.body, self.mirrored = name, fluid, body, mirrored
         self.map: RigidMap
+        self.mirror: RigidMap  # of the samples' mirror points, where the fluid takes them
         # Arms (n, 3) m and centres (bodies, 3) m in the world, at the last two times known.
         self.memory: tuple[tuple[Array, Array], ...] = ()
         self.partner = {fluid: SURFACE.name}
@@ -85,6 +96,12 @@ class RigidFsi:
         parts = [fill(int(shape), size, spacing, depth, inset) for shape, size in pairs]
         owner = np.repeat(np.arange(len(parts)), [len(arm) for arm, _, _ in parts])
         self.map = RigidMap(np.concatenate([arm for arm, _, _ in parts]), owner, len(parts))
+        if self.mirrored:
+            images = [
+                mirrors(int(shape), size, arm, normal)
+                for shape, size, (arm, normal, _) in zip(shapes, sizes, parts, strict=True)
+            ]
+            self.mirror = RigidMap(np.concatenate(images), owner, len(parts))
         return {
             self.fluid: {
                 "surface.normal": np.concatenate([normal for _, normal, _ in parts]),
@@ -108,10 +125,13 @@ class RigidFsi:
         arms = self.map.arms(turn)
         self.memory = (*self.memory[-1:], (arms, centre))
         body = self.map.body
-        return {
+        moved = {
             "surface.position": centre[body] + arms,
             "surface.velocity": velocity[body] + np.cross(spin[body], arms),
         }
+        if self.mirrored:
+            moved["surface.mirror"] = centre[body] + self.mirror.arms(turn)
+        return moved
 
     def _load(self, given: Fields) -> dict[str, Array]:
         if not self.memory:  # before the first window nothing has moved, and nothing was pushed
@@ -133,8 +153,8 @@ class RigidFsi:
 class FaceFsi:
     """Samples ride on the faces of a mesh; their forces go to its nodes."""
 
-    def __init__(self, name: str, fluid: str, body: str) -> None:
-        self.name, self.fluid, self.body = name, fluid, body
+    def __init__(self, name: str, fluid: str, body: str, mirrored: bool = False) -> None:
+        self.name, self.fluid, self.body, self.mirrored = name, fluid, body, mirrored
         self.map: ShapeMap
         self.memory = None
         self.partner = {fluid: SURFACE.name}
@@ -165,10 +185,13 @@ class FaceFsi:
         }
 
     def _move(self, given: Fields) -> dict[str, Array]:
-        return {
+        moved = {
             "surface.position": self.map.gather(given["faces.position"]),
             "surface.velocity": self.map.gather(given["faces.velocity"]),
         }
+        if self.mirrored:  # samples lie on the faces, each its own image
+            moved["surface.mirror"] = moved["surface.position"]
+        return moved
 
     def _load(self, given: Fields) -> dict[str, Array]:
         return {"node_load.force": self.map.spread(given["surface_load.force"])}

@@ -32,7 +32,7 @@ def near(points: np.ndarray, spacing: float) -> Neighbours:
 def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: float) -> Fluid:
     box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     settings = {"spacing": spacing, "smoothing": smoothing, "sound_speed": 40.0, "viscosity": 0.0}
-    return constants(SphFluidParams(fluid=(box,), **settings, **given), dimensions)
+    return constants(SphFluidParams(fluid=(box,), dimensions=dimensions, **settings, **given))
 
 
 def rates(
@@ -45,7 +45,8 @@ def rates(
     lists = near(points, fluid.smoothing / 1.5).arrays
     rate = np.empty_like(place)
     count = len(points)
-    interact(0, count, count, place, motion, lists, fluid, (0.0, 0.0, 0.0), rate, None)
+    terms = ((0.0, 0.0, 0.0), rate, None, None, None, None)
+    interact(0, count, count, place, motion, lists, fluid, *terms)
     return rate
 
 

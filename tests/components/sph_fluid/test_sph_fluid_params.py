@@ -104,8 +104,10 @@ def test_pressure_at_the_start_is_hydrostatic() -> None:
 
 
 def test_ports_are_the_shared_ones() -> None:
-    takes, gives = MANIFEST.ports(None)
-    assert [port.name for port in (*takes, *gives)] == ["surface", "surface_load"]
+    for boundary, fields in (("dbc", 2), ("mdbc", 3)):
+        takes, gives = MANIFEST.ports(SphFluidParams(**tuples(), boundary=boundary))
+        assert [port.name for port in (*takes, *gives)] == ["surface", "surface_load"]
+        assert len(takes[0].fields) == fields
     assert math.isfinite(MANIFEST.load()(SphFluidParams(**tuples())).stable_dt())
 
 

@@ -1,0 +1,114 @@
+"""Walls whose density is that of the fluid before them; imported only by a scene that asks.
+
+Modified dynamic boundary condition: English et al., Comput. Part. Mech. 9 (2022) 911. The
+density at the mirror point of a boundary particle, and its gradient there, are fitted to the
+fluid around that point and carried on to the particle, so that the fluid feels its own pressure
+go on into the wall and comes as near to it as to itself. The fit is one of moving least squares
+(English et al. solve the equations of Liu & Liu): linear fields are met exactly by both, and the
+symmetric matrix of this one tells by its pivots along which directions the fluid is too thin to
+fit, as across a film or a plane of particles; the gradient there is none.
+"""
+
+import numpy as np
+from numba import njit
+
+from quintet.components.shared.neighbours import FAST
+from quintet.components.sph_fluid.kernels import List
+from quintet.components.sph_fluid.laws import Fluid, kernel, pressure_term
+from quintet.components.sph_fluid.params import FACES, SphFluidParams
+from quintet.components.sph_fluid.state import Array, Whole
+
+THIN = 0.02  # h², variance of places along a direction below which no gradient is fitted
+NONE = 1e-2  # Σ V W below which there is no fluid
+
+
+def mirror(points: Array, params: SphFluidParams) -> Array:
+    """Mirror points (n, 3) m of wall particles (n, 3) m, through the nearest point of the walls."""
+    if params.walls is None:
+        return np.zeros((0, 3))
+    low, high = (np.array(corner) for corner in params.walls)
+    for axis in range(3):
+        low[axis] = low[axis] if FACES[2 * axis] in params.shut else -np.inf
+        high[axis] = high[axis] if FACES[2 * axis + 1] in params.shut else np.inf
+    return np.asarray(2.0 * np.clip(points, low, high) - points)
+
+
+@njit(**FAST)
+def extrapolate(
+    first: int, last: int, split: int, own: Whole, mirrors: Array, place: Array, motion: Array,
+    near: List, fluid: Fluid,
+) -> None:  # fmt: skip
+    """Write density and p/ρ² of boundary rows [first, last).
+
+    Where a mirror point sees no fluid, as between a body and the floor it stands on, the mean
+    density around the particle itself is taken (Adami, Hu & Adams, J. Comput. Phys. 231 (2012)
+    7057), if `own` says which row of the lists that is. Walls never pull.
+    """
+    inverse = 1.0 / fluid.smoothing
+    for b in range(first, last):
+        i = split + b
+        x, y, z = mirrors[b, 0], mirrors[b, 1], mirrors[b, 2]
+        c, p, q, r, weights = fit(i, x, y, z, place, near, fluid)
+        if weights < NONE and own[b] >= 0:
+            x, y, z = place[i, 0], place[i, 1], place[i, 2]
+            c, p, q, r, weights = fit(own[b], x, y, z, place, near, fluid)
+            p, q, r = 0.0, 0.0, 0.0
+        excess = (
+            c + (p * (place[i, 0] - x) + q * (place[i, 1] - y) + r * (place[i, 2] - z)) * inverse
+        )
+        place[i, 3] = fluid.density + max(excess, 0.0)
+        motion[i, 3] = pressure_term(place[i, 3], fluid)
+
+
+@njit(**FAST)
+def fit(row, x, y, z, place, near, fluid):  # type: ignore[no-untyped-def]
+    """ρ - ρ₀ at a point, its gradient times h, and Σ V W, from the fluid that a row lists."""
+    begin, _, end, neighbour = near
+    inverse = 1.0 / fluid.smoothing
+    s, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
+    xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    b, bx, by, bz = 0.0, 0.0, 0.0, 0.0
+    for k in range(np.uint64(begin[row]), np.uint64(end[row])):
+        j = np.uint64(neighbour[k])
+        dx, dy, dz = place[j, 0] - x, place[j, 1] - y, place[j, 2] - z
+        w = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / place[j, 3]
+        dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
+        excess = place[j, 3] - fluid.density
+        s += w
+        wx, wy, wz, e = w * dx, w * dy, w * dz, w * excess
+        sx += wx
+        sy += wy
+        sz += wz
+        xx += wx * dx
+        xy += wx * dy
+        xz += wx * dz
+        yy += wy * dy
+        yz += wy * dz
+        zz += wz * dz
+        b += e
+        bx += e * dx
+        by += e * dy
+        bz += e * dz
+    if s < NONE:
+        return 0.0, 0.0, 0.0, 0.0, s
+    mean = b / s
+    # About the mean place: three unknowns are left, solved by Cholesky's method.
+    mx, my, mz = sx / s, sy / s, sz / s
+    xx, xy, xz = xx / s - mx * mx, xy / s - mx * my, xz / s - mx * mz
+    yy, yz, zz = yy / s - my * my, yz / s - my * mz, zz / s - mz * mz
+    bx, by, bz = bx / s - mx * mean, by / s - my * mean, bz / s - mz * mean
+    x_in, l21, l31 = 0.0, 0.0, 0.0
+    if xx > THIN:
+        x_in, l21, l31 = 1.0 / xx, xy / xx, xz / xx
+    d2, y_in, l32 = yy - l21 * xy, 0.0, 0.0
+    if d2 > THIN:
+        y_in, l32 = 1.0 / d2, (yz - l31 * xy) / d2
+    d3, z_in = zz - l31 * xz - l32 * l32 * d2, 0.0
+    if d3 > THIN:
+        z_in = 1.0 / d3
+    by -= l21 * bx
+    bz -= l31 * bx + l32 * by
+    gz = bz * z_in
+    gy = by * y_in - l32 * gz
+    gx = bx * x_in - l21 * gy - l31 * gz
+    return mean - gx * mx - gy * my - gz * mz, gx, gy, gz, s
