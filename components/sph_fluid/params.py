@@ -5,9 +5,11 @@ from typing import Literal, get_args
 
 from pydantic import NonNegativeInt
 
-from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
+from quintet.interfaces.params import Fraction, NotNegative, Number, Positive, Vector, parameters
 
 Box = tuple[Vector, Vector]  # lowest and highest corner, m
+Spot = tuple[Number, Number]  # x and y, m
+Axis = Literal["x", "y", "z"]
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
 
 FACES = get_args(Face)
@@ -37,6 +39,10 @@ class SphFluidParams:
     xsph: Fraction = 0.0  # 1, ε: how far particles move with their neighbours' mean velocity
     shepard_every: NonNegativeInt = 0  # steps between two Shepard filters of the density; 0: none
     courant: Positive = 0.2  # 1, step / (time that sound takes through a smoothing length)
+    pressure_gauges: tuple[Vector, ...] = ()  # m, points whose pressure is given
+    level_gauges: tuple[Spot, ...] = ()  # m, x and y above which the surface's height is given
+    front: Axis | None = None  # along which the furthest fluid is given
+    motion_gauge: bool = False  # whether largest speed, energies, centre of mass are given
 
     def __post_init__(self) -> None:
         """Check what concerns several values at once."""

@@ -104,7 +104,7 @@ def test_pressure_at_the_start_is_hydrostatic() -> None:
 
 
 def test_ports_are_the_shared_ones() -> None:
-    takes, gives = MANIFEST.ports(None)
+    takes, gives = MANIFEST.ports(SphFluidParams(**tuples()))
     assert [port.name for port in (*takes, *gives)] == ["surface", "surface_load"]
     assert math.isfinite(MANIFEST.load()(SphFluidParams(**tuples())).stable_dt())
 
