@@ -28,7 +28,7 @@ def particles(params: SphFluidParams) -> int:
 
 
 def state(params: SphFluidParams) -> State:
-    """Initial state: at rest, each box under the hydrostatic pressure of its own surface."""
+    """Initial state: each box under the hydrostatic pressure of its own surface."""
     boxes = [fill_box(box, params.spacing) for box in params.fluid]
     wall = wall_points(params)
     pairs = zip(boxes, params.fluid, strict=True)
@@ -36,6 +36,9 @@ def state(params: SphFluidParams) -> State:
     made = State.empty(sum(map(len, boxes)), len(wall))
     made.place[:, :3] = np.concatenate([*boxes, wall])
     made.place[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
+    if params.wave is not None:
+        moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
+        made.motion[: len(moves), :3] = moves
     made.acceleration = math.hypot(*params.gravity)
     return made
 

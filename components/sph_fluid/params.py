@@ -5,6 +5,7 @@ from typing import Literal, get_args
 
 from pydantic import NonNegativeInt
 
+from quintet.components.sph_fluid.wave import Wave
 from quintet.interfaces.params import Fraction, NotNegative, Number, Positive, Vector, parameters
 
 Box = tuple[Vector, Vector]  # lowest and highest corner, m
@@ -39,6 +40,7 @@ class SphFluidParams:
     xsph: Fraction = 0.0  # 1, ε: how far particles move with their neighbours' mean velocity
     shepard_every: NonNegativeInt = 0  # steps between two Shepard filters of the density; 0: none
     courant: Positive = 0.2  # 1, step / (time that sound takes through a smoothing length)
+    wave: Wave | None = None  # standing on the fluid at the start
     pressure_gauges: tuple[Vector, ...] = ()  # m, points whose pressure is given
     level_gauges: tuple[Spot, ...] = ()  # m, x and y above which the surface's height is given
     front: Axis | None = None  # along which the furthest fluid is given
@@ -55,6 +57,8 @@ class SphFluidParams:
         self._check_boxes()
         self._check_walls()
         self._check_sound()
+        if self.wave is not None:
+            self.wave.check(self.fluid, self.gravity)
 
     def _check_boxes(self) -> None:
         for number, box in enumerate(self.fluid):
