@@ -18,6 +18,9 @@ are then damped, not amplified (`laws.AHEAD`).
 A particle that goes further than half of the tank's longest edge beyond the walls is lost: it is
 removed, and `totals` shows its mass missing. Without walls none is.
 
+`obstacles` are boxes of wall particles that stand still in the tank; a `wave` sets level water into
+the motion of a standing wave at the start.
+
 Gauges (`pressure_gauges`, `level_gauges`, `front`, `motion_gauge`) give what a scene compares
 with a reference, each in a port of its own; see `gauges.py` for what they read.
 

@@ -29,6 +29,7 @@ class SphFluidParams:
     fluid: tuple[Box, ...]  # m, boxes full of fluid
     walls: Box | None = None  # m, the inside of a tank
     open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
+    obstacles: tuple[Box, ...] = ()  # m, boxes that stand still in the tank
     smoothing: Positive = 1.5  # 1, smoothing length / spacing
     density: Positive = 1000.0  # kg/m3, at no pressure
     gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
@@ -56,6 +57,7 @@ class SphFluidParams:
             )
         self._check_boxes()
         self._check_walls()
+        self._check_obstacles()
         self._check_sound()
         if self.wave is not None:
             self.wave.check(self.fluid, self.gravity)
@@ -85,6 +87,23 @@ class SphFluidParams:
                         f"fluid[{number}] must be inside the walls along {name}, "
                         f"{low[axis]} to {high[axis]} m; found {box[0][axis]} to "
                         f"{box[1][axis]} m. Move the box, or add the face to open."
+                    )
+
+    def _check_obstacles(self) -> None:
+        least = 2.0 * self.standoff * self.spacing
+        for number, box in enumerate(self.obstacles):
+            name = f"obstacles[{number}]"
+            _check_corners(name, box, self.spacing)
+            if (width := min(b - a for a, b in zip(*box, strict=True))) < least:
+                raise ValueError(
+                    f"{name} must be at least {least:g} m across, twice the standoff; found "
+                    f"{width:g} m. Refine the spacing, or lower standoff."
+                )
+            for other, water in enumerate(self.fluid):
+                if _overlap(box, water, 1e-6 * self.spacing):
+                    raise ValueError(
+                        f"{name} must not overlap fluid[{other}]; found {box} and {water}. "
+                        "Cut the fluid."
                     )
 
     @property

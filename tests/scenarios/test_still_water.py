@@ -6,7 +6,9 @@ import pytest
 
 Run = Callable[..., dict]
 
-NOISE = pytest.mark.xfail(strict=True, reason="dynamic walls push water off and make noise")
+NOISE = pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="dynamic walls push water off and make noise"
+)
 
 
 @pytest.fixture(scope="module")
