@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from quintet.components.shared.cubic_spline import SUPPORT
 from quintet.components.sph_fluid.params import Box, SphFluidParams
 from quintet.components.sph_fluid.state import Array
 
+FELT = 2.0  # smoothing lengths, the radius of the kernel
 ROUNDING = 1e-6  # of a spacing
 
 
@@ -28,7 +28,7 @@ def _points(box: Box, params: SphFluidParams) -> Array:
     z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
     points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
     depth = np.where(wet[:, np.newaxis], [points - low, high - points], np.inf)  # m, (2, n, 3)
-    return points[depth.min(axis=(0, 2)) < SUPPORT * params.length]
+    return points[depth.min(axis=(0, 2)) < FELT * params.length]
 
 
 def _wet(box: Box, params: SphFluidParams) -> Array:

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from quintet.components.shared.cubic_spline import SUPPORT
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
 from quintet.components.sph_fluid.build import state
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.obstacles import obstacle_points
+from quintet.components.sph_fluid.obstacles import FELT, obstacle_points
 from quintet.interfaces.params import read
 
 SPACING = 0.05
@@ -45,6 +46,7 @@ def test_what_water_cannot_feel_is_left_out():
     middle = np.array([1.05, 0.5, 0.55])
     assert np.abs(points - middle).max(axis=1).min() > 0.1
     assert len(points) < 14 * 16 * 14
+    assert FELT == SUPPORT
 
 
 def test_plan_counts_the_particles_of_obstacles():
