@@ -8,35 +8,34 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field as Limits
 
+from quintet.coupler import curves
+from quintet.coupler.curves import Curve
+from quintet.coupler.oscillation import fit
 from quintet.coupler.record import Recording
-from quintet.interfaces.component import Array, Field, Port
+from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import NotNegative, Number, parameters, unknown
+from quintet.interfaces.params import NotNegative, Number, Positive, parameters, unknown
 
-Measure = Literal["rms", "crossing", "at", "max", "min", "mean"]
+Measure = Literal["rms", "relative_rms", "crossing", "at", "max", "min", "mean", "period", "decay"]
+DISTANCES = ("rms", "relative_rms")  # to a curve
 Index = Annotated[int, Limits(ge=0)]
 ROUNDING = 1e-9  # of a time: what a run's last window may lack
-
-
-class Curve(NamedTuple):
-    """Values over time."""
-
-    times: Array  # (m,) s
-    values: Array  # (m,)
 
 
 @parameters
 class Expectation:
     """One number that a run must reproduce.
 
-    ``rms`` is the distance to the curve of a file, over that curve's own times; ``crossing``
-    the first time at which a level is passed; ``at`` the value at ``begin``; the others are
-    taken between ``begin`` and ``end``. Impulse fields are measured as mean rates.
+    ``rms`` is the distance to the curve of a file, over that curve's own times, and
+    ``relative_rms`` the same over the curve's own size; ``crossing`` the first time at which a
+    level is passed; ``at`` the value at ``begin``; ``period`` [s] and ``decay`` [1/s] those of the
+    damped oscillation that fits best; these and the others are taken between ``begin`` and
+    ``end``. Impulse fields are measured as mean rates.
     """
 
     name: str
@@ -49,6 +48,7 @@ class Expectation:
     measure: Measure
     value: Number | None = None  # reference as a number
     csv: str | None = None  # reference as a curve: a file beside the scene
+    csv_second: Positive = 1.0  # s, one unit of the times in that file
     begin: NotNegative = 0.0  # s
     end: NotNegative | None = None  # s; None: of the reference curve, or of the run
     level: Number | None = None  # of a crossing
@@ -62,10 +62,13 @@ class Expectation:
             raise ValueError(f"expectation {self.name}: " + " ".join(wrong))
 
     def _rules(self) -> list[tuple[bool, str]]:
-        is_rms = self.measure == "rms"
+        is_rms = self.measure in DISTANCES
         return [
-            (is_rms and self.csv is None, "rms needs a reference curve; give csv."),
-            (is_rms and self.value is not None, "rms compares with a curve; remove value."),
+            (is_rms and self.csv is None, f"{self.measure} needs a reference curve; give csv."),
+            (
+                is_rms and self.value is not None,
+                f"{self.measure} compares with a curve; remove value.",
+            ),
             (
                 not is_rms and (self.value is None) == (self.csv is None),
                 "it must have one reference; give either value or csv.",
@@ -159,88 +162,36 @@ def curve(expectation: Expectation, recording: Recording) -> Curve:
 
 
 def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
-    """Read the reference curve: two columns, one header line, comments begin with #."""
+    """Read the reference curve, if there is one."""
     if expectation.csv is None:
         return None
-    path = Path(folder) / expectation.csv
     where = f"expectation {expectation.name}: reference {expectation.csv}"
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise SceneError(
-            f"{where} must be a text file beside the scene; {error}. Put it there."
-        ) from error
-    texts = [(n, line.partition("#")[0].strip()) for n, line in enumerate(lines, 1)]
-    rows = [(n, text.split(",")) for n, text in texts if text]
-    if rows and _numbers(rows[0][1]) is not None:
-        raise SceneError(f"{where}: line {rows[0][0]} must be a header, as t_s,x_m. Add one.")
-    return _curve(where, rows[1:])
-
-
-def _curve(where: str, rows: list[tuple[int, list[str]]]) -> Curve:
-    if len(rows) < 2:
-        raise SceneError(f"{where} must have two lines of numbers or more; found {len(rows)}.")
-    numbers: list[tuple[float, float]] = []
-    for line, texts in rows:
-        found = _numbers(texts)
-        if found is None:
-            raise SceneError(
-                f"{where}: line {line} must be two finite numbers; found {','.join(texts)!r}. "
-                "Correct it."
-            )
-        if numbers and found[0] <= numbers[-1][0]:
-            raise SceneError(f"{where}: times must increase; line {line} has {found[0]:g}.")
-        numbers.append(found)
-    times, values = np.array(numbers).T
-    return Curve(times, values)
-
-
-def _numbers(texts: list[str]) -> tuple[float, float] | None:
-    try:
-        time, value = (float(text) for text in texts)
-    except ValueError:
-        return None
-    return (time, value) if math.isfinite(time) and math.isfinite(value) else None
-
-
-def _between(curve: Curve, begin: float, end: float) -> Curve:
-    """Cut a curve to a window, ends interpolated; what reaches beyond the curve is left out."""
-    times, values = curve
-    begin, end = max(begin, times[0]), min(end, times[-1])
-    inside = (times > begin) & (times < end)
-    cut = np.concatenate([[begin], times[inside], [end]]) if end > begin else np.array([end])
-    return Curve(cut, np.interp(cut, times, values))
-
-
-def _crossing(curve: Curve, level: float) -> float:
-    """First time at which a level is passed, or nan."""
-    times, above = curve.times, curve.values - level
-    passed = np.flatnonzero(above[:-1] * above[1:] <= 0.0)
-    if not len(passed):
-        return math.nan
-    k = int(passed[0])
-    if above[k] == above[k + 1]:  # both on the level
-        return float(times[k])
-    part = above[k] / (above[k] - above[k + 1])
-    return float(times[k] + part * (times[k + 1] - times[k]))
+    return curves.read(Path(folder) / expectation.csv, where, expectation.csv_second)
 
 
 def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
-    """Take the measure of a curve, all but rms."""
+    """Take the measure of a curve, all but the distances."""
     if expectation.measure == "at":
         return float(np.interp(expectation.begin, curve.times, curve.values))
-    part = _between(curve, expectation.begin, end)
-    if expectation.measure == "crossing":
-        assert expectation.level is not None
-        return _crossing(part, expectation.level)
-    if expectation.measure == "mean":
-        span = part.times[-1] - part.times[0]
-        return float(np.trapezoid(part.values, part.times) / span if span else part.values[0])
-    return float(part.values.max() if expectation.measure == "max" else part.values.min())
+    part = curves.between(curve, expectation.begin, end)
+    match expectation.measure:
+        case "crossing":
+            assert expectation.level is not None
+            return curves.crossing(part, expectation.level)
+        case "period":
+            return fit(part).period
+        case "decay":
+            return fit(part).decay
+        case "mean":
+            return curves.mean(part)
+        case "max":
+            return float(part.values.max())
+        case _:
+            return float(part.values.min())
 
 
 def reference_value(expectation: Expectation, folder: Path) -> float:
-    """Return what is expected: a number as given, or the same measure of the curve; 0 for rms."""
+    """Return what is expected: a number, or the same measure of the curve; 0 for a distance."""
     reference = reference_curve(expectation, folder)
     if reference is None:
         return float(expectation.value or 0.0)
@@ -252,11 +203,12 @@ def reference_value(expectation: Expectation, folder: Path) -> float:
             f"{where} must reach into {expectation.begin:g} to {end:g} s; it has {first:g} to "
             f"{last:g} s. Correct begin or end."
         )
-    if expectation.measure == "rms":
+    if expectation.measure in DISTANCES:
         return 0.0
     value = _measured(expectation, reference, end)
     if math.isnan(value):
-        raise SceneError(f"{where} must pass the level {expectation.level}; it does not.")
+        rule = "oscillate" if expectation.level is None else f"pass the level {expectation.level}"
+        raise SceneError(f"{where} must {rule}; it does not.")
     return value
 
 
@@ -289,9 +241,9 @@ def _value(expectation: Expectation, recording: Recording, folder: Path) -> floa
     end = last if wanted is None else wanted
     if max(end, expectation.begin) > last * (1.0 + ROUNDING):
         return math.nan
-    if expectation.measure != "rms":
+    if expectation.measure not in DISTANCES:
         return _measured(expectation, computed, end)
     assert target is not None
     inside = (target.times >= expectation.begin) & (target.times <= end)
-    distance = np.interp(target.times, *computed)[inside] - target.values[inside]
-    return float(np.sqrt(np.mean(distance**2))) if inside.any() else math.nan
+    part = Curve(target.times[inside], target.values[inside])
+    return curves.distance(computed, part, expectation.measure == "relative_rms")

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler import vtkhdf
-from quintet.coupler.expect import Expectation, Outcome, curve, reference_curve
+from quintet.coupler.expect import DISTANCES, Expectation, Outcome, curve, reference_curve
 from quintet.coupler.record import Recording
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
+IN_UNIT = ("rms", "at", "max", "min", "mean")  # measures that have the unit of their curve
 PANEL_WIDTH = 5.2  # inches
 COLUMNS = 2
 DOTS = 150  # per inch
@@ -116,8 +117,8 @@ def _compare(
     panel.set_title(_title(one, outcome), fontsize=9)
     end = max(reference.times[-1], one.end or 0.0)
     panel.set_xlim(min(reference.times[0], one.begin), end * 1.02)
-    # A crossing is measured in seconds: what its curve is in, only the field can say.
-    unit = "" if one.measure == "crossing" else f" [{one.unit}]"
+    # Of other measures the unit is not that of the curve, which only the field can say.
+    unit = f" [{one.unit}]" if one.measure in IN_UNIT else ""
     panel.set(xlabel="t [s]", ylabel=f"{one.component} {one.field}{unit}")
     if one.level is not None:
         panel.axhline(one.level, color="grey", linewidth=0.8, linestyle="--")
@@ -126,10 +127,10 @@ def _compare(
 
 
 def _title(one: Expectation, outcome: Outcome | None) -> str:
-    measure = "RMS" if one.measure == "rms" else one.measure
+    measure = one.measure.replace("rms", "RMS").replace("_", " ")
     if outcome is None or outcome.value is None:
         return f"{one.name}: {measure} has no value"
-    against = "" if one.measure == "rms" else f" against {outcome.reference:.4g}"
+    against = "" if one.measure in DISTANCES else f" against {outcome.reference:.4g}"
     verdict = "met" if outcome.met else "NOT met"
     return (
         f"{one.name}: {measure} {outcome.value:.3g}{against}, "

@@ -4,6 +4,7 @@ An impulse is the sum of force times step over the steps, so what a link carries
 what the component did, at every subcycling ratio.
 """
 
+import math
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
@@ -107,7 +108,7 @@ class Handed:
 
 def column_sums(array: Array) -> list[float]:
     """Sum over the items; one number per component of the field."""
-    rows = array.reshape(len(array), -1)
+    rows = array.reshape(len(array), math.prod(array.shape[1:]))
     # A product with ones sums the columns several times faster than a reduction along rows.
     return (np.ones(len(rows)) @ rows).tolist()
 

@@ -18,6 +18,12 @@ are then damped, not amplified (`laws.AHEAD`).
 A particle that goes further than half of the tank's longest edge beyond the walls is lost: it is
 removed, and `totals` shows its mass missing. Without walls none is.
 
+`obstacles` are boxes of wall particles that stand still in the tank; a `wave` sets level water into
+the motion of a standing wave at the start.
+
+Gauges (`pressure_gauges`, `level_gauges`, `front`, `motion_gauge`) give what a scene compares
+with a reference, each in a port of its own; see `gauges.py` for what they read.
+
 Papers: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; Monaghan, J. Comput. Phys. 82
 (1989) 1 (XSPH) and 110 (1994) 399 (Tait); Monaghan & Kos, J. Waterway Port Coast. Ocean Eng. 125
 (1999) 145 (time step); Panizzo, PhD thesis, L'Aquila (2004) (Shepard filter); Crespo,
@@ -25,6 +31,7 @@ Gómez-Gesteira & Dalrymple, CMC 5 (2007) 173 (walls).
 """
 
 from quintet.components.sph_fluid.build import particles
+from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.manifest import Manifest, Plan, Ports
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
@@ -33,7 +40,7 @@ __all__ = ["MANIFEST", "SphFluidParams"]
 
 
 def _ports(params: SphFluidParams) -> Ports:
-    return (MIRRORED_SURFACE if params.mirrored else SURFACE,), (SURFACE_LOAD,)
+    return (MIRRORED_SURFACE if params.mirrored else SURFACE,), (SURFACE_LOAD, *gauge_ports(params))
 
 
 def _plan(params: SphFluidParams) -> Plan:

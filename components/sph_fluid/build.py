@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from quintet.components.sph_fluid.obstacles import obstacle_points
 from quintet.components.sph_fluid.params import FACES, Box, SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
 
@@ -18,8 +19,9 @@ def cells(box: Box, params: SphFluidParams) -> tuple[int, int, int]:
 
 
 def particles(params: SphFluidParams) -> int:
-    """Fluid and wall particles, counted without making any."""
+    """Fluid and wall particles, counted without making any but those of obstacles."""
     fluid = sum(math.prod(cells(box, params)) for box in params.fluid)
+    fluid += len(obstacle_points(params))
     if params.tank is None:
         return fluid
     inside = cells(params.tank, params)
@@ -28,14 +30,17 @@ def particles(params: SphFluidParams) -> int:
 
 
 def state(params: SphFluidParams) -> State:
-    """Initial state: at rest, each box under the hydrostatic pressure of its own surface."""
+    """Initial state: each box under the hydrostatic pressure of its own surface."""
     boxes = [fill_box(box, params) for box in params.fluid]
-    wall = wall_points(params)
+    wall = np.concatenate([wall_points(params), obstacle_points(params)])
     pairs = zip(boxes, params.fluid, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
     made = State.empty(sum(map(len, boxes)), len(wall))
     made.place[:, :3] = np.concatenate([*boxes, wall])
     made.place[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
+    if params.wave is not None:
+        moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
+        made.motion[: len(moves), :3] = moves
     made.acceleration = math.hypot(*params.gravity)
     return made
 

@@ -10,6 +10,7 @@ from quintet.components.shared.cubic_spline import SUPPORT
 from quintet.components.shared.neighbours import Neighbours, neighbours_within
 from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build
+from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
 from quintet.components.sph_fluid.laws import AHEAD, constants, diffusion, guard
 from quintet.components.sph_fluid.params import SphFluidParams
@@ -26,10 +27,9 @@ class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
 
     takes: tuple[Port, ...] = (SURFACE,)
-    gives = (SURFACE_LOAD,)
 
     def __init__(self, params: SphFluidParams) -> None:
-        self.params = params
+        self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
         self.fluid = constants(params)
         self.diffusion = diffusion(params)
         self.guard = guard(params)
@@ -45,9 +45,9 @@ class SphFluid(Component):
         self.placed = True
         if params.mirrored:
             self.takes = (MIRRORED_SURFACE,)
-            from quintet.components.sph_fluid.mdbc import mirror
+            from quintet.components.sph_fluid.mdbc import mirrors
 
-            self.state.mirror = mirror(self.state.place[self.state.fluid :, :3], params)
+            self.state.mirror = mirrors(params)
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
@@ -244,8 +244,15 @@ class SphFluid(Component):
         return int(np.argmax(speed) if fast else np.argmin(place[:, 3]))
 
     def give(self) -> Fields:
-        """Copy out the mean force of the last step on each sample."""
-        return {"surface_load.force": self.state.force.copy()}
+        """Copy out the mean force of the last step on each sample, and what gauges read now."""
+        return {"surface_load.force": self.state.force.copy(), **self._read_gauges()}
+
+    def _read_gauges(self) -> Fields:
+        if len(self.gives) == 1:
+            return {}
+        from quintet.components.sph_fluid.gauges import Gauges
+
+        return Gauges(self.params, self.fluid).read(self.state, self.near.arrays)
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""

@@ -13,8 +13,10 @@ import numpy as np
 from numba import njit
 
 from quintet.components.shared.neighbours import FAST
+from quintet.components.sph_fluid.build import wall_points
 from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import Fluid, kernel, pressure_term
+from quintet.components.sph_fluid.obstacles import obstacle_mirrors
 from quintet.components.sph_fluid.params import FACES, SphFluidParams
 from quintet.components.sph_fluid.state import Array, Whole
 
@@ -22,15 +24,17 @@ THIN = 0.02  # h², variance of places along a direction below which no gradient
 NONE = 1e-2  # Σ V W below which there is no fluid
 
 
-def mirror(points: Array, params: SphFluidParams) -> Array:
-    """Mirror points (n, 3) m of wall particles (n, 3) m, through the nearest point of the walls."""
+def mirrors(params: SphFluidParams) -> Array:
+    """Mirror points (n, 3) m of all wall particles, through the nearest point of their wall."""
+    points = wall_points(params)
     if params.walls is None:
-        return np.zeros((0, 3))
+        return obstacle_mirrors(params)
     low, high = (np.array(corner) for corner in params.walls)
     for axis in range(3):
         low[axis] = low[axis] if FACES[2 * axis] in params.shut else -np.inf
         high[axis] = high[axis] if FACES[2 * axis + 1] in params.shut else np.inf
-    return np.asarray(2.0 * np.clip(points, low, high) - points)
+    images = 2.0 * np.clip(points, low, high) - points
+    return np.concatenate([images, obstacle_mirrors(params)])
 
 
 @njit(**FAST)

@@ -5,9 +5,12 @@ from typing import Literal, get_args
 
 from pydantic import NonNegativeInt
 
-from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
+from quintet.components.sph_fluid.wave import Wave
+from quintet.interfaces.params import Fraction, NotNegative, Number, Positive, Vector, parameters
 
 Box = tuple[Vector, Vector]  # lowest and highest corner, m
+Spot = tuple[Number, Number]  # x and y, m
+Axis = Literal["x", "y", "z"]
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
 
 FACES = get_args(Face)
@@ -28,6 +31,7 @@ class SphFluidParams:
     dimensions: Literal[2, 3] = 3  # 2: x and z
     walls: Box | None = None  # m, the inside of a tank
     open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
+    obstacles: tuple[Box, ...] = ()  # m, boxes that stand still in the tank
     smoothing: Positive = 1.5  # 1, smoothing length / spacing
     density: Positive = 1000.0  # kg/m3, at no pressure
     gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
@@ -44,6 +48,11 @@ class SphFluidParams:
     xsph: Fraction = 0.0  # 1, ε: how far particles move with their neighbours' mean velocity
     shepard_every: NonNegativeInt = 0  # steps between two Shepard filters of the density; 0: none
     courant: Positive = 0.2  # 1, step / (time that sound takes through a smoothing length)
+    wave: Wave | None = None  # standing on the fluid at the start
+    pressure_gauges: tuple[Vector, ...] = ()  # m, points whose pressure is given
+    level_gauges: tuple[Spot, ...] = ()  # m, x and y above which the surface's height is given
+    front: Axis | None = None  # along which the furthest fluid is given
+    motion_gauge: bool = False  # whether largest speed, energies, centre of mass are given
 
     def __post_init__(self) -> None:
         """Check what concerns several values at once."""
@@ -55,6 +64,7 @@ class SphFluidParams:
             )
         self._check_boxes()
         self._check_walls()
+        self._check_obstacles()
         self._check_sound()
         self._check_slab()
         if self.mirrored and (self.standoff, self.inset) != (0.5, 0.5):
@@ -62,6 +72,8 @@ class SphFluidParams:
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
             )
+        if self.wave is not None:
+            self.wave.check(self.fluid, self.gravity)
 
     def _check_boxes(self) -> None:
         for number, box in enumerate(self.fluid):
@@ -127,6 +139,23 @@ class SphFluidParams:
     def layers(self) -> int:
         """Layers of wall particles: one that repels, or as many as a kernel meets."""
         return math.ceil(2.0 * self.smoothing) if self.mirrored else 1
+
+    def _check_obstacles(self) -> None:
+        least = 2.0 * self.standoff * self.spacing
+        for number, box in enumerate(self.obstacles):
+            name = f"obstacles[{number}]"
+            _check_corners(name, box, self.spacing)
+            if (width := min(b - a for a, b in zip(*box, strict=True))) < least:
+                raise ValueError(
+                    f"{name} must be at least {least:g} m across, twice the standoff; found "
+                    f"{width:g} m. Refine the spacing, or lower standoff."
+                )
+            for other, water in enumerate(self.fluid):
+                if _overlap(box, water, 1e-6 * self.spacing):
+                    raise ValueError(
+                        f"{name} must not overlap fluid[{other}]; found {box} and {water}. "
+                        "Cut the fluid."
+                    )
 
     @property
     def tank(self) -> Box | None:

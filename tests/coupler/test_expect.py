@@ -79,6 +79,24 @@ def test_a_reference_curve_is_measured_as_the_computed_one(tmp_path, recording):
     assert (top.value, top.reference, top.met) == (pytest.approx(3.0), 2.0, False)
 
 
+def test_an_oscillation_is_measured_by_its_period_and_decay(tmp_path, recording):
+    # A third of a cycle of z = sin t is too little, and y = 0 does not oscillate.
+    base = {"measure": "period", "unit": "s", "value": 2.0 * np.pi}
+    assert evaluate(_expectation(axis=2, **base), recording, tmp_path).value is None
+    assert evaluate(_expectation(axis=1, **base), recording, tmp_path).value is None
+    _write(tmp_path, "t,x\n" + "\n".join(f"{0.01 * k},{np.sin(k)}" for k in range(100)))
+    one = _expectation(measure="period", csv="ref.csv", csv_second=100.0, unit="s", within=1.0)
+    assert evaluate(one, recording, tmp_path).reference == pytest.approx(2.0 * np.pi)
+
+
+def test_times_of_a_reference_may_have_a_unit_of_their_own(tmp_path, recording):
+    _write(tmp_path, "T,X\n0,1\n4,3\n")
+    one = _expectation(measure="rms", csv="ref.csv", csv_second=0.5, within=1e-9)
+    assert evaluate(one, recording, tmp_path).met
+    relative = _expectation(measure="relative_rms", csv="ref.csv", csv_second=0.25, end=1.0)
+    assert evaluate(relative, recording, tmp_path).value == pytest.approx(np.sqrt(1.0 / 10.0))
+
+
 def test_a_vector_without_axis_is_its_magnitude_and_an_impulse_its_mean_rate(tmp_path, recording):
     one = _expectation(field="load.force", axis=None, measure="mean", value=5.0, unit="N")
     assert evaluate(one, recording, tmp_path).met
@@ -122,6 +140,7 @@ def test_a_last_window_that_is_rounded_still_reaches_the_end(tmp_path, recording
     ("settings", "word"),
     [
         ({"measure": "rms", "value": 1.0}, "rms needs a reference curve; give csv"),
+        ({"measure": "relative_rms"}, "relative_rms needs a reference curve; give csv"),
         ({"measure": "at"}, "give either value or csv"),
         ({"measure": "max", "value": 1.0, "csv": "a.csv"}, "give either value or csv"),
         ({"measure": "crossing", "value": 1.0}, "a crossing needs one"),

@@ -242,6 +242,17 @@ def test_an_error_goes_back_over_the_line_with_its_traceback(capsys):
     assert "no such thing" in capsys.readouterr().err  # and into the component's log
 
 
+def test_a_port_without_items_is_served():
+    server = served([WINDOW])
+    server.component.give = lambda: {
+        "push.force": np.zeros((0, 3)),
+        "motion.position": np.zeros((N, 3)),
+    }
+    header, given = advance(server, 0)
+    assert header["sent"]["push.force"] == [0.0, 0.0, 0.0]
+    assert given["push.force"].shape == (0, 3)
+
+
 def test_field_units_and_centrings_come_from_a_closed_list():
     with pytest.raises(PortError, match=r"field f: a unit must be one of .* found 'kN'"):
         Field("f", (3,), "kN")

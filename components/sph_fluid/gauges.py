@@ -1,0 +1,120 @@
+"""What gauges read: pressure at points, level above spots, the front, energies.
+
+Pressure is that of the plane p + b·r which fits the particles near the point best, each with
+the weight V_j (1 - r_j²/4h²)²: a linear pressure is read exactly, on a wall too, where
+particles lie on one side only (moving least squares: Lancaster & Salkauskas, Math. Comp. 37
+(1981) 141). In directions in which the particles hardly spread the plane is level, so that of a
+flat layer, or of a drop, the Shepard mean is left. Without fluid near it a gauge reads 0.
+
+A level is where the share of volume Σ_j V_j W_j, seen from above, first rises through one half;
+beside a wall, where it is nowhere 1, through half of its largest value. Lone drops are passed
+over; a dry spot reads the lowest level of the tank.
+
+The front is half a spacing ahead of the furthest particle with 1/(V W(0)) neighbours or more
+(11 in three dimensions, with h = 1.5 spacings): a block's corner has so many, spray has not.
+"""
+
+import math
+
+import numpy as np
+
+from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.sph_fluid.gauge_kernels import MOMENTS, fill_columns, furthest, gather
+from quintet.components.sph_fluid.kernels import List
+from quintet.components.sph_fluid.laws import Fluid
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import Fields
+
+THIN = 0.01  # of h²: mean square of the distances from a plane below which a layer is thin
+FINE = 0.25  # spacings between the heights at which the share of volume is looked at
+SURFACE = 0.5  # share of volume at the surface
+DROP = 2.0  # particles on one spot whose share of volume is not yet a surface
+
+
+class Gauges:
+    """The gauges of one fluid that are switched on."""
+
+    def __init__(self, params: SphFluidParams, fluid: Fluid) -> None:
+        self.params, self.fluid = params, fluid
+        self.points = np.array(params.pressure_gauges).reshape(-1, 3)  # (m, 3) m
+        self.spots = np.array(params.level_gauges).reshape(-1, 2)  # (m, 2) m
+        boxes = [params.walls] if params.walls else params.fluid
+        self.floor = min(box[0][2] for box in boxes)  # m
+        self.lone = fluid.mass / fluid.density * 4.0 * fluid.height  # 1, V W(0)
+
+    def read(self, state: State, near: List) -> Fields:
+        """Read all gauges; `near` are the neighbour lists of this state, if it has any yet."""
+        found: dict[str, Array] = {}
+        if len(self.points):
+            found["pressure_gauge.pressure"] = self._pressure(state)
+        if len(self.spots):
+            found["level_gauge.height"] = self._height(state)
+        if self.params.front is not None:
+            found["front.position"] = self._front(state, near)
+        if self.params.motion_gauge:
+            found |= self._motion(state)
+        return found
+
+    def _pressure(self, state: State) -> Array:
+        sums = np.empty((len(self.points), MOMENTS))
+        gather(self.points, state.fluid, state.place, state.motion, self.fluid, sums)
+        planes = [plane(row, THIN * self.fluid.smoothing**2) for row in sums]
+        return np.maximum(planes, self.fluid.lowest)
+
+    def _height(self, state: State) -> Array:
+        z, spacing = state.place[: state.fluid, 2], self.params.spacing
+        reach, rise = SUPPORT * self.fluid.smoothing, FINE * spacing
+        bottom = z.min() - reach
+        count = math.ceil((z.max() + reach - bottom) / rise) + 1
+        share = np.empty((len(self.spots), count))
+        fill_columns(self.spots, bottom, rise, state.fluid, state.place, self.fluid, share)
+        return np.array([self._surface(row, bottom, rise) for row in share])
+
+    def _surface(self, share: Array, bottom: float, rise: float) -> float:
+        most = min(1.0, float(share.max()))
+        if most <= DROP * self.lone:
+            return self.floor
+        half = SURFACE * most
+        k = int(np.flatnonzero(share >= half)[-1])  # never the last: there the share is 0
+        part = (share[k] - half) / (share[k] - share[k + 1])
+        return float(bottom + (k + part) * rise)
+
+    def _front(self, state: State, near: List) -> Array:
+        axis = "xyz".index(str(self.params.front))
+        along = state.place[: state.fluid, axis]
+        found = -math.inf
+        if len(state.reference):
+            found = furthest(axis, 1.0 / self.lone, state.fluid, state.place, near, self.fluid)
+        # At the start there are no lists, and no spray either.
+        front = found if math.isfinite(found) else float(along.max())
+        return np.array([front + 0.5 * self.params.spacing])
+
+    def _motion(self, state: State) -> Fields:
+        points, velocity = state.place[: state.fluid, :3], state.motion[: state.fluid, :3]
+        squares = np.einsum("nd,nd->n", velocity, velocity)
+        centre, mass = points.mean(axis=0), self.fluid.mass * len(points)
+        return {
+            "motion_gauge.speed": np.sqrt(squares.max(keepdims=True)),
+            "motion_gauge.kinetic": 0.5 * self.fluid.mass * squares.sum(keepdims=True),
+            "motion_gauge.potential": np.array([-mass * float(centre @ self.params.gravity)]),
+            "motion_gauge.centre": centre[np.newaxis],
+        }
+
+
+def plane(sums: Array, thin: float) -> float:
+    """Value at the origin of the plane that fits best, from `MOMENTS`; 0 where there are none.
+
+    Along directions in which the mean square distance is below `thin` [m2] the plane is level.
+    """
+    total = sums[0]
+    if total == 0.0:
+        return 0.0
+    xx, xy, xz, yy, yz, zz = sums[4:10] / total
+    middle, value = sums[1:4] / total, sums[10] / total
+    spread = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) - np.outer(middle, middle)
+    along = sums[11:14] / total - value * middle
+    squares, axes = np.linalg.eigh(spread)
+    wide = axes[:, squares > thin]
+    slope = wide @ ((wide.T @ along) / squares[squares > thin])
+    return float(value - slope @ middle)

@@ -1,0 +1,57 @@
+"""Boxes that stand still in the water, filled with wall particles as deep as water feels them."""
+
+import numpy as np
+
+from quintet.components.sph_fluid.params import Box, SphFluidParams
+from quintet.components.sph_fluid.state import Array
+
+FELT = 2.0  # smoothing lengths, the radius of the kernel
+ROUNDING = 1e-6  # of a spacing
+
+
+def obstacle_points(params: SphFluidParams) -> Array:
+    """Particles of all obstacles, the outermost `standoff` spacings inside their faces; (n, 3) m.
+
+    A face that lies on a wall of the tank never meets water: there the particles go on to half a
+    spacing from the wall, so that no gap is left in the corner.
+    """
+    parts = [_points(box, params)[0] for box in params.obstacles]
+    return np.concatenate([np.zeros((0, 3)), *parts])
+
+
+def obstacle_mirrors(params: SphFluidParams) -> Array:
+    """Images (n, 3) m of the particles of all obstacles, mirrored in the nearest wet face."""
+    parts = [np.zeros((0, 3))]
+    for box in params.obstacles:
+        points, depth = _points(box, params)
+        # On edges and corners, in all the faces that are equally near.
+        nearest = depth <= depth.min(axis=(0, 2))[:, np.newaxis] + ROUNDING * params.spacing
+        below, above = 2.0 * np.where(nearest, depth, 0.0)
+        parts.append(points - below + above)
+    return np.concatenate(parts)
+
+
+def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
+    """Particles (n, 3) m of one obstacle, and how deep below each wet face [m]; (2, n, 3)."""
+    wet = _wet(box, params)  # (2, 3)
+    gap = np.where(wet, params.standoff, 0.5) * params.spacing
+    low, high = np.array(box[0]) + gap[0], np.array(box[1]) - gap[1]
+    counts = np.maximum(1, np.round((high - low) / params.spacing)).astype(int) + 1
+    axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
+    z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
+    points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    below = [points - np.array(box[0]), np.array(box[1]) - points]
+    depth = np.where(wet[:, np.newaxis], below, np.inf)
+    felt = depth.min(axis=(0, 2)) < FELT * params.length
+    return points[felt], depth[:, felt]
+
+
+def _wet(box: Box, params: SphFluidParams) -> Array:
+    """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
+    if params.walls is None:
+        return np.ones((2, 3), bool)
+    room = ROUNDING * params.spacing
+    lower = np.array(box[0]) > np.array(params.walls[0]) + room
+    upper = np.array(box[1]) < np.array(params.walls[1]) - room
+    shut = np.array([[f"{axis}{end}" not in params.open for axis in "xyz"] for end in "-+"])
+    return np.stack([lower, upper]) | ~shut

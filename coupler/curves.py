@@ -1,0 +1,108 @@
+"""Values over time: read from a file, cut, and measured."""
+
+import math
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
+
+
+class Curve(NamedTuple):
+    """Values over time."""
+
+    times: Array  # (m,) s
+    values: Array  # (m,)
+
+
+def read(path: Path, where: str, second: float = 1.0) -> Curve:
+    """Read a curve: two columns, one header line, comments begin with #.
+
+    Parameters
+    ----------
+    path : Path
+    where : str
+        What the messages begin with.
+    second : float, s
+        One unit of the file's times.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(
+            f"{where} must be a text file beside the scene; {error}. Put it there."
+        ) from error
+    texts = [(n, line.partition("#")[0].strip()) for n, line in enumerate(lines, 1)]
+    rows = [(n, text.split(",")) for n, text in texts if text]
+    if rows and _numbers(rows[0][1]) is not None:
+        raise SceneError(f"{where}: line {rows[0][0]} must be a header, as t_s,x_m. Add one.")
+    times, values = _columns(where, rows[1:])
+    return Curve(second * times, values)
+
+
+def _columns(where: str, rows: list[tuple[int, list[str]]]) -> Curve:
+    if len(rows) < 2:
+        raise SceneError(f"{where} must have two lines of numbers or more; found {len(rows)}.")
+    numbers: list[tuple[float, float]] = []
+    for line, texts in rows:
+        found = _numbers(texts)
+        if found is None:
+            raise SceneError(
+                f"{where}: line {line} must be two finite numbers; found {','.join(texts)!r}. "
+                "Correct it."
+            )
+        if numbers and found[0] <= numbers[-1][0]:
+            raise SceneError(f"{where}: times must increase; line {line} has {found[0]:g}.")
+        numbers.append(found)
+    times, values = np.array(numbers).T
+    return Curve(times, values)
+
+
+def _numbers(texts: list[str]) -> tuple[float, float] | None:
+    try:
+        time, value = (float(text) for text in texts)
+    except ValueError:
+        return None
+    return (time, value) if math.isfinite(time) and math.isfinite(value) else None
+
+
+def between(curve: Curve, begin: float, end: float) -> Curve:
+    """Cut a curve to a window, ends interpolated; what reaches beyond the curve is left out."""
+    times, values = curve
+    begin, end = max(begin, times[0]), min(end, times[-1])
+    inside = (times > begin) & (times < end)
+    cut = np.concatenate([[begin], times[inside], [end]]) if end > begin else np.array([end])
+    return Curve(cut, np.interp(cut, times, values))
+
+
+def mean(curve: Curve) -> float:
+    """Mean over time."""
+    span = curve.times[-1] - curve.times[0]
+    return float(np.trapezoid(curve.values, curve.times) / span if span else curve.values[0])
+
+
+def crossing(curve: Curve, level: float) -> float:
+    """First time at which a level is passed, or nan."""
+    times, above = curve.times, curve.values - level
+    passed = np.flatnonzero(above[:-1] * above[1:] <= 0.0)
+    if not len(passed):
+        return math.nan
+    k = int(passed[0])
+    if above[k] == above[k + 1]:  # both on the level
+        return float(times[k])
+    part = above[k] / (above[k] - above[k + 1])
+    return float(times[k] + part * (times[k + 1] - times[k]))
+
+
+def distance(curve: Curve, target: Curve, relative: bool) -> float:
+    """Root mean square of curve - target over the target's times; nan where it has none.
+
+    Relative: over the root mean square of the target.
+    """
+    if not len(target.times):
+        return math.nan
+    off = np.interp(target.times, *curve) - target.values
+    size = float(np.sqrt(np.mean(off**2)))
+    return size / float(np.sqrt(np.mean(target.values**2))) if relative else size

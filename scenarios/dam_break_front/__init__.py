@@ -1,0 +1,1 @@
+"""The front of a dam break: scene and two experiments."""

@@ -1,0 +1,1 @@
+"""A standing wave that fades: scene, exact by linear theory."""

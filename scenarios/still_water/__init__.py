@@ -1,0 +1,1 @@
+"""Water at rest in a tank: scene, exact by hydrostatics."""

@@ -1,0 +1,193 @@
+"""Gauges read what is there: exact fields, levels, the front without its spray, energies."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from quintet.components.sph_fluid import MANIFEST, SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.params import read
+
+SPACING = 0.02
+BOX = ((0.0, 0.0, 0.0), (0.2, 0.2, 0.16))  # m
+SLOPES = np.array([300.0, -200.0, -9810.0])  # Pa/m
+
+
+def fluid_with(**given):
+    settings = {"spacing": SPACING, "sound_speed": 30.0, "fluid": (BOX,)}
+    return SphFluid(SphFluidParams(**(settings | given)))
+
+
+def linear(fluid):
+    """Give the particles the pressure 5000 Pa + SLOPES · r, and shake their places."""
+    rows = slice(fluid.state.fluid)
+    place, motion = fluid.state.place, fluid.state.motion
+    shake = np.random.default_rng(2).uniform(-0.2, 0.2, place[rows, :3].shape)
+    place[rows, :3] += SPACING * shake
+    pressure = 5000.0 + place[rows, :3] @ SLOPES
+    motion[rows, 3] = pressure / place[rows, 3] ** 2
+
+
+@pytest.mark.parametrize(
+    "point",
+    [(0.1, 0.1, 0.08), (0.103, 0.091, 0.05), (0.0, 0.1, 0.08), (0.2, 0.2, 0.0), (0.1, 0.1, -0.02)],
+    ids=["on the lattice", "beside it", "on a wall", "in a corner", "off the fluid"],
+)
+def test_linear_pressure_is_read_exactly(point):
+    fluid = fluid_with(pressure_gauges=(point,))
+    linear(fluid)
+    found = fluid.give()["pressure_gauge.pressure"]
+    assert found == pytest.approx([5000.0 + np.array(point) @ SLOPES], rel=1e-11)
+
+
+def test_pressure_in_a_flat_layer_is_read_exactly():
+    point = (0.103, 0.091, 0.013)  # above the only layer, 0.01 m high
+    fluid = fluid_with(fluid=((BOX[0], (0.2, 0.2, 0.02)),), pressure_gauges=(point,))
+    rows = slice(fluid.state.fluid)
+    place, motion = fluid.state.place, fluid.state.motion
+    motion[rows, 3] = (500.0 + place[rows, :3] @ SLOPES) / place[rows, 3] ** 2
+    level = np.array([0.103, 0.091, 0.01])
+    assert fluid.give()["pressure_gauge.pressure"] == pytest.approx([500.0 + level @ SLOPES])
+
+
+def test_hydrostatic_pressure_is_read_on_the_floor_at_the_start():
+    fluid = fluid_with(pressure_gauges=((0.1, 0.1, 0.0), (0.0, 0.0, 0.0), (0.1, 0.1, 0.08)))
+    found = fluid.give()["pressure_gauge.pressure"]
+    assert found == pytest.approx([9810.0 * 0.16, 9810.0 * 0.16, 9810.0 * 0.08], rel=1e-9)
+
+
+def test_a_dry_gauge_reads_zero_and_a_lone_drop_its_own_pressure():
+    spot = (0.5, 0.1, 0.1)
+    fluid = fluid_with(pressure_gauges=(spot, (0.5, 0.1, 0.5)))
+    fluid.state.place[0, :3] = np.array(spot) + 0.3 * SPACING
+    fluid.state.motion[0, 3] = 70.0 / fluid.state.place[0, 3] ** 2
+    assert fluid.give()["pressure_gauge.pressure"] == pytest.approx([70.0, 0.0])
+
+
+def test_pressure_is_not_read_below_where_it_is_cut():
+    # Above the surface the plane goes on to -196 Pa.
+    for tension, pressure in ((False, 0.0), (True, -196.2)):
+        fluid = fluid_with(tension=tension, pressure_gauges=((0.1, 0.1, 0.18),))
+        found = fluid.give()["pressure_gauge.pressure"]
+        assert found == pytest.approx([pressure])
+
+
+@pytest.mark.parametrize(("height", "within"), [(0.16, 0.1), (0.06, 0.1), (0.04, 0.25)])
+def test_level_of_still_water_is_within_a_tenth_of_a_spacing_unless_it_is_shallow(height, within):
+    water = (BOX[0], (0.2, 0.2, height))
+    spots = ((0.1, 0.1), (0.107, 0.093), (0.0, 0.1), (0.01, 0.19), (0.0, 0.0), (5.0, 0.1))
+    given = {"fluid": (water,), "walls": (BOX[0], (0.2, 0.2, 0.3)), "level_gauges": spots}
+    found = fluid_with(**given).give()["level_gauge.height"]
+    assert found[:5] == pytest.approx(np.full(5, height), abs=within * SPACING)
+    assert found[5] == 0.0  # dry: the floor
+
+
+def test_level_is_the_highest_and_passes_over_drops():
+    boxes = (BOX, ((0.0, 0.0, 0.4), (0.2, 0.2, 0.5)))
+    spots = ((0.1, 0.1), (0.17, 0.1))
+    fluid = fluid_with(fluid=boxes, level_gauges=spots)
+    fluid.state.place[0, :3] = [0.1, 0.1, 0.8]
+    assert fluid.give()["level_gauge.height"] == pytest.approx([0.5, 0.5], abs=0.1 * SPACING)
+    high = fluid.state.place[:, 2] > 0.35
+    fluid.state.place[high, 0] += 1.0
+    assert fluid.give()["level_gauge.height"] == pytest.approx([0.16, 0.16], abs=0.1 * SPACING)
+
+
+def test_level_follows_a_slope():
+    fluid = fluid_with(level_gauges=((0.1, 0.1), (0.06, 0.1), (0.14, 0.1)))
+    fluid.state.place[:, 2] += 0.1 * (fluid.state.place[:, 0] - 0.1)
+    exact = [0.16, 0.156, 0.164]
+    assert fluid.give()["level_gauge.height"] == pytest.approx(exact, abs=0.1 * SPACING)
+
+
+@pytest.mark.parametrize(("axis", "end"), [("x", 0.2), ("y", 0.2), ("z", 0.16)])
+def test_front_of_a_box_is_its_face(axis, end):
+    fluid = fluid_with(front=axis, gravity=(0.0, 0.0, 0.0))
+    assert fluid.give()["front.position"] == pytest.approx([end])
+    fluid.step(1e-6)
+    assert fluid.give()["front.position"] == pytest.approx([end], abs=1e-6)
+
+
+@pytest.mark.parametrize(("drops", "front"), [(0, 0.2), (1, 0.2), (3, 0.2), (200, 0.3)])
+def test_front_leaves_out_spray_but_not_bulk(drops, front):
+    fluid = fluid_with(front="x", gravity=(0.0, 0.0, 0.0))
+    ahead = fluid.state.place[: fluid.state.fluid, 0].argsort(kind="stable")[::-1][:drops]
+    fluid.state.place[ahead, 0] += 0.1
+    fluid.step(1e-9)
+    assert fluid.give()["front.position"] == pytest.approx([front], abs=1e-6)
+
+
+def test_motion_gauge_agrees_with_the_totals():
+    fluid = fluid_with(motion_gauge=True)
+    for _ in range(5):
+        fluid.step(fluid.stable_dt())
+    found, totals = fluid.give(), fluid.totals()
+    points, velocity = fluid.view()["points"], fluid.view()["velocity"]
+    assert found["motion_gauge.kinetic"] == pytest.approx([totals.kinetic])
+    assert found["motion_gauge.potential"] == pytest.approx([totals.potential])
+    assert found["motion_gauge.centre"] == pytest.approx(points.mean(axis=0)[np.newaxis])
+    fastest = np.linalg.norm(velocity, axis=1).max()
+    assert found["motion_gauge.speed"] == pytest.approx([fastest], rel=1e-6)
+
+
+def test_gauges_do_not_depend_on_what_was_before_a_repeated_window():
+    fluid = fluid_with(front="x", level_gauges=((0.1, 0.1),), pressure_gauges=((0.1, 0.1, 0.1),))
+    kept, first = fluid.save(), fluid.give()
+    for _ in range(3):
+        fluid.step(fluid.stable_dt())
+    fluid.load(kept)
+    again = fluid.give()
+    assert all(np.array_equal(first[key], again[key]) for key in first)
+
+
+def test_only_gauges_that_are_on_have_a_port():
+    base = {"spacing": SPACING, "sound_speed": 30.0, "fluid": (BOX,)}
+    for given, name in (
+        ({}, None),
+        ({"pressure_gauges": ((0.0, 0.0, 0.0),)}, "pressure_gauge"),
+        ({"level_gauges": ((0.0, 0.0),)}, "level_gauge"),
+        ({"front": "x"}, "front"),
+        ({"motion_gauge": True}, "motion_gauge"),
+    ):
+        params = SphFluidParams(**base, **given)
+        names = [port.name for port in MANIFEST.ports(params)[1]]
+        assert names == (["surface_load", name] if name else ["surface_load"])
+
+
+OFF = """
+import sys
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
+assert list(fluid.give()) == ["surface_load.force"]
+assert not [name for name in sys.modules if name.endswith(("gauges", "gauge_kernels"))]
+"""
+
+
+def test_gauges_that_are_off_are_not_imported():
+    subprocess.run([sys.executable, "-c", OFF], check=True)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"front": "w"}, "water.front should be 'x', 'y' or 'z'; found 'w'"),
+        ({"pressure_gauges": [[0.0, 1.0]]}, "water.pressure_gauges.0.2 is needed"),
+        ({"level_gauges": [[0.0, "high"]]}, "water.level_gauges.0.1 should be a valid number"),
+        ({"level_gauge": [[0.0, 0.0]]}, "Did you mean level_gauges?"),
+    ],
+)
+def test_a_wrong_gauge_is_refused_with_a_sentence(given, sentence):
+    base = {"spacing": SPACING, "sound_speed": 30.0, "fluid": [list(map(list, BOX))]}
+    found, mistakes = read(SphFluidParams, base | given, "water")
+    assert found is None and sentence in "\n".join(mistakes), mistakes
+
+
+def test_gauges_read_nothing_that_is_not_finite():
+    fluid = fluid_with(pressure_gauges=((0.1, 0.1, 0.1),), front="x", motion_gauge=True)
+    given = fluid.give()
+    assert all(math.isfinite(value) for array in given.values() for value in array.ravel())

@@ -1,0 +1,27 @@
+"""Running a scene that comes with quintet, as its user would."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from quintet.coupler.cli import main
+
+Run = Callable[..., dict]
+
+
+@pytest.fixture(scope="module")
+def run_scene(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Run a scene without its pictures; return its results, with the expectations by name."""
+
+    def run(scene: str, *options: str) -> dict:
+        out = tmp_path_factory.mktemp(scene)
+        plain = ["--set", "output.interval=0", "--set", "output.pictures=[]"]
+        with pytest.raises(SystemExit) as ended:
+            main(["run", scene, "--out", str(out), *plain, *options])
+        found = json.loads((out / "results.json").read_text())
+        assert ended.value.code in (0, 1), found
+        return found | {"folder": Path(out), "by_name": {e["name"]: e for e in found["expect"]}}
+
+    return run

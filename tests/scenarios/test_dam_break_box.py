@@ -1,0 +1,43 @@
+"""A dam break meets a fixed box, coarse: when it comes, how it presses, and that it goes round."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from quintet.coupler.vtkhdf import read_step, times
+
+pytestmark = pytest.mark.slow
+
+Run = Callable[..., dict]
+
+# At the coarse spacing not even the sign of these is sure: the pressure of single particles jumps
+# between nothing and twenty times the static one.
+NOISE = pytest.mark.xfail(
+    raises=AssertionError, reason="pressures without diffusion of density are noise"
+)
+
+
+@pytest.fixture(scope="module")
+def found(run_scene: Run) -> dict:
+    return run_scene("dam_break_box", "--preset", "quick", "--set", "output.interval=0.25")
+
+
+@pytest.mark.parametrize("name", ["p1.peak", "p1.arrival", "p3.peak", "p3.arrival"])
+@NOISE
+def test_pressure_is_that_of_the_experiment(found: dict, name: str) -> None:
+    one = found["by_name"][name]
+    assert one["met"], one
+
+
+def test_water_reaches_the_box(found: dict) -> None:
+    one = found["by_name"]["front.arrival"]
+    assert one["value"] == pytest.approx(one["reference"], rel=0.2), one
+
+
+def test_water_goes_round_the_box_and_not_into_it(found: dict) -> None:
+    file = found["folder"] / "water.vtkhdf"
+    points = read_step(file, len(times(file)) - 1)[1]["points"]
+    depth = np.minimum(points - [2.3955, 0.2985, -1.0], [2.5565, 0.7015, 0.161] - points)
+    assert depth.min(axis=1).max() < 0.05  # not a spacing deep
+    assert points[:, 0].max() > 2.6

@@ -1,0 +1,36 @@
+"""The front of a dam break, coarse: two experiments, and the bound of Ritter."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from quintet.coupler.record import Recording
+
+Run = Callable[..., dict]
+
+
+@pytest.fixture(scope="module")
+def found(run_scene: Run) -> dict:
+    return run_scene("dam_break_front", "--preset", "quick")
+
+
+@pytest.mark.parametrize("name", ["front.martin_moyce", "front.koshizuka_oka"])
+def test_front_is_that_of_the_experiment(found: dict, name: str) -> None:
+    one = found["by_name"][name]
+    assert one["within"] == 0.08
+    assert one["met"], one
+
+
+def test_front_goes_on_and_is_never_faster_than_ritters(found: dict) -> None:
+    with Recording(found["folder"]) as recording:
+        times = recording.times("water")
+        front = recording.history("water", "front.position", 0)
+    assert front[0] == pytest.approx(1.0)
+    assert front[-1] > 4.0
+    speed = np.diff(front) / np.diff(times)
+    assert speed[times[1:] > 0.3].min() > 0.0
+    # 2 sqrt(g H); readings pass from particle to particle, so over ten of them.
+    smooth = (front[10:] - front[:-10]) / (times[10:] - times[:-10])
+    assert smooth.max() < 2.0 * math.sqrt(9.81 * 2.0)
