@@ -182,7 +182,8 @@ class SphFluid(Component):
         own = np.full(len(state.mirror), -1)
         own[self.rows - state.fluid] = self.listed
         arrays = (own, state.mirror, state.place, state.motion, self.near.arrays)
-        self.team.run(extrapolate, len(own), state.fluid, *arrays, self.fluid)
+        weight = self.params.density * math.hypot(*self.params.gravity) / self.params.sound_speed**2
+        self.team.run(extrapolate, len(own), state.fluid, *arrays, weight, self.fluid)
 
     def _interact(self, dt: float) -> None:
         """Forces and rates of density, and what they do to the samples."""

@@ -27,6 +27,7 @@ OUTERMOST = 2.2  # spacings, between a particle of the first layer and its mirro
 ASIDE = 1.01  # spacings, how far beside each other two facing particles may be
 BESIDE = 1.2  # spacings, between neighbours in a film: those on its square lattice
 MOST = 8  # of them
+LARGEST = 0.1  # of the speed of sound, velocity: a pressure above ρu² is sound, not flow
 RIM = 0.2  # spacings, from a particle of the film to the mean of its neighbours, beyond which
 # it stands at the rim
 SWEEPS = 20  # over the film in each step; it starts from the last step's pressure
@@ -197,6 +198,7 @@ def push(film: Film, state: State, dt: float, params: SphFluidParams) -> None:
     weight = density * np.array(params.gravity)
     outside = term[film.row] * place[film.row, 3] ** 2
     outside = np.where(outside > 0.0, outside + 0.5 * off @ weight, 0.0)
+    outside = np.minimum(outside, density * (LARGEST * params.sound_speed) ** 2)
     driving = max(float(outside[film.rim].max(initial=0.0)), 1.0)
     bound = width * film.size * np.sqrt(2.0 / (density * driving))
     ease = np.minimum(width**3 / (12.0 * WATER), bound)

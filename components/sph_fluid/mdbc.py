@@ -9,6 +9,8 @@ symmetric matrix of this one tells by its pivots along which directions the flui
 fit, as across a film or a plane of particles; the gradient there is none.
 """
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -40,33 +42,38 @@ def mirrors(params: SphFluidParams) -> Array:
 @njit(**FAST)
 def extrapolate(
     first: int, last: int, split: int, own: Whole, mirrors: Array, place: Array, motion: Array,
-    near: List, fluid: Fluid,
+    near: List, weight: float, fluid: Fluid,
 ) -> None:  # fmt: skip
     """Write density and p/ρ² of boundary rows [first, last).
 
     Where a mirror point sees no fluid, as between a body and the floor it stands on, the mean
     density around the particle itself is taken (Adami, Hu & Adams, J. Comput. Phys. 231 (2012)
-    7057), if `own` says which row of the lists that is. Walls never pull.
+    7057), if `own` says which row of the lists that is. Walls never pull, and the fit raises the
+    mean by no more than itself and the fluid's weight, ρ₀g/c₀² = `weight` [kg/m4]: beyond that the
+    gradient is noise.
     """
-    inverse = 1.0 / fluid.smoothing
     for b in range(first, last):
         i = split + b
-        x, y, z = mirrors[b, 0], mirrors[b, 1], mirrors[b, 2]
-        c, p, q, r, weights = fit(i, x, y, z, place, near, fluid)
+        x, y, z, row = mirrors[b, 0], mirrors[b, 1], mirrors[b, 2], i
+        mean, rise, weights = fit(row, x, y, z, place[i], place, near, fluid)
         if weights < NONE and own[b] >= 0:
-            x, y, z = place[i, 0], place[i, 1], place[i, 2]
-            c, p, q, r, weights = fit(own[b], x, y, z, place, near, fluid)
-            p, q, r = 0.0, 0.0, 0.0
-        excess = (
-            c + (p * (place[i, 0] - x) + q * (place[i, 1] - y) + r * (place[i, 2] - z)) * inverse
-        )
+            x, y, z, row = place[i, 0], place[i, 1], place[i, 2], own[b]
+            mean, rise, weights = fit(row, x, y, z, place[i], place, near, fluid)
+            rise = 0.0
+        excess = mean + min(rise, max(mean, 0.0) + weight * distance(place[i], x, y, z))
         place[i, 3] = fluid.density + max(excess, 0.0)
         motion[i, 3] = pressure_term(place[i, 3], fluid)
 
 
+@njit(inline="always")
+def distance(target, x, y, z):  # type: ignore[no-untyped-def]
+    """From a point to a target [m]."""
+    return math.sqrt((target[0] - x) ** 2 + (target[1] - y) ** 2 + (target[2] - z) ** 2)
+
+
 @njit(**FAST)
-def fit(row, x, y, z, place, near, fluid):  # type: ignore[no-untyped-def]
-    """ρ - ρ₀ at a point, its gradient times h, and Σ V W, from the fluid that a row lists."""
+def fit(row, x, y, z, target, place, near, fluid):  # type: ignore[no-untyped-def]
+    """Mean of ρ - ρ₀ around a point, rise from there to a target, and Σ V W, of a row's fluid."""
     begin, _, end, neighbour = near
     inverse = 1.0 / fluid.smoothing
     s, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
@@ -94,7 +101,7 @@ def fit(row, x, y, z, place, near, fluid):  # type: ignore[no-untyped-def]
         by += e * dy
         bz += e * dz
     if s < NONE:
-        return 0.0, 0.0, 0.0, 0.0, s
+        return 0.0, 0.0, s
     mean = b / s
     # About the mean place: three unknowns are left, solved by Cholesky's method.
     mx, my, mz = sx / s, sy / s, sz / s
@@ -115,4 +122,5 @@ def fit(row, x, y, z, place, near, fluid):  # type: ignore[no-untyped-def]
     gz = bz * z_in
     gy = by * y_in - l32 * gz
     gx = bx * x_in - l21 * gy - l31 * gz
-    return mean - gx * mx - gy * my - gz * mz, gx, gy, gz, s
+    rise = gx * ((target[0] - x) * inverse - mx) + gy * ((target[1] - y) * inverse - my)
+    return mean, rise + gz * ((target[2] - z) * inverse - mz), s
