@@ -65,7 +65,8 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("folders", nargs=2, type=Path, metavar="DIR")
     one = command("bench", bench, "throughput of one component, or of the exchange")
     one.add_argument("name", help="exchange, or a kind of component")
-    one.add_argument("--threads", type=int, default=1)
+    one.add_argument("--case", default="", help="one of the component's cases; all if not given")
+    one.add_argument("--threads", type=int, action="append", metavar="N", help=THREADS)
     one.add_argument("--json", type=Path, metavar="FILE")
     one.add_argument(
         "--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given"
@@ -74,6 +75,7 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
 
 
@@ -179,9 +181,13 @@ def diff(given: argparse.Namespace) -> int:
 
 def bench(given: argparse.Namespace) -> int:
     """Measure throughput."""
-    from quintet.coupler.bench import run_bench
+    if given.name == "exchange":
+        from quintet.coupler.bench import run_bench
 
-    return run_bench(given)
+        return run_bench(given)
+    from quintet.coupler.throughput import run_kind
+
+    return run_kind(given)
 
 
 if __name__ == "__main__":

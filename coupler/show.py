@@ -48,9 +48,8 @@ def show(folder: Path, as_json: bool = False) -> None:
     if as_json:
         print(json.dumps(found, indent=2))
         return
-    terminal = sys.stdout.isatty()
-    console = Console(width=None if terminal else PLAIN_WIDTH, highlight=False, markup=False)
-    frame = box.SIMPLE_HEAD if terminal else None
+    console = on_screen()
+    frame = box.SIMPLE_HEAD if sys.stdout.isatty() else None
     console.print(_headline(found))
     for table in (_expectations(found), _ledger(found), _timing(found)):
         if table is not None:
@@ -61,6 +60,12 @@ def show(folder: Path, as_json: bool = False) -> None:
             console.print(line)
     if fault := found.get("fault"):
         console.print(_fault(fault))
+
+
+def on_screen() -> Console:
+    """Where tables are printed; as wide as they like where there is no terminal."""
+    width = None if sys.stdout.isatty() else PLAIN_WIDTH
+    return Console(width=width, highlight=False, markup=False)
 
 
 def _headline(found: Mapping[str, Any]) -> Text:
