@@ -1,5 +1,6 @@
-"""``python -m quintet.coupler.measure KIND NUMBER FILE``: one benchmark case, in a process of its own.
+"""One benchmark case, in a process of its own.
 
+``python -m quintet.coupler.measure KIND NUMBER THREADS FILE`` writes what it found into a file.
 The component is made twice. The first compiles all kernels and is dropped; what the process's
 resident memory grows by until the second has made its lists and come through its first steps is
 the component's own.

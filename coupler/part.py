@@ -28,10 +28,12 @@ class Timing:
     """Where a component's time went."""
 
     compute: float = 0.0  # s, as the component itself measured
+    cpu: float = 0.0  # s of processor time in its windows, all threads
     wait: float = 0.0  # s that the coupler waited for it
     first: float = 0.0  # s, its first window
     steps: int = 0
     items: int = 0
+    memory: int = 0  # bytes, the most that its process held; of one apart that ended well
     recent: deque[float] = field(default_factory=lambda: deque(maxlen=50))
 
     @property
@@ -91,6 +93,7 @@ class Part:
         timing.first = timing.first or took
         timing.wait += took
         timing.compute += float(header["busy"])
+        timing.cpu += float(header["cpu"])
         timing.steps += int(header["steps"])
         timing.recent.append(took)
         return message

@@ -131,6 +131,7 @@ def _timing(found: Mapping[str, Any]) -> Table | None:
         [
             name,
             _number(one.get("compute")),
+            _number(one.get("cpu")),
             _number(one.get("wait")),
             one.get("steps", "-"),
             one.get("items", "-"),
@@ -138,7 +139,15 @@ def _timing(found: Mapping[str, Any]) -> Table | None:
         ]
         for name, one in components.items()
     ]
-    names = ["component", "compute [s]", "wait [s]", "steps", "items", "particle-steps/s"]
+    names = [
+        "component",
+        "compute [s]",
+        "CPU [s]",
+        "wait [s]",
+        "steps",
+        "items",
+        "particle-steps/s",
+    ]
     return _table("Timing", names, 1, rows)
 
 
@@ -149,8 +158,10 @@ def _rate(one: Mapping[str, Any]) -> float | None:
 
 
 def _shares(found: Mapping[str, Any]) -> str:
-    timing = {k: v for k, v in (found.get("timing") or {}).items() if k != "components"}
-    return "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in timing.items()) if timing else ""
+    timing = found.get("timing") or {}
+    times = {k: v for k, v in timing.items() if k not in ("components", "memory")}
+    text = "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in times.items()) if times else ""
+    return text + (f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else "")
 
 
 def _fault(fault: Mapping[str, Any]) -> Text:

@@ -11,7 +11,7 @@ from quintet.coupler.connect import Connection, connect
 from quintet.coupler.exchange import Exchange
 from quintet.coupler.launch import tail
 from quintet.coupler.ledger import Ledger
-from quintet.coupler.part import ComponentFailed, Part
+from quintet.coupler.part import ComponentFailed
 from quintet.coupler.run import Progress, run
 from quintet.coupler.scene import Scene
 from quintet.coupler.schedule import Coupling
@@ -29,13 +29,12 @@ def simulate(scene: Scene, folder: Path) -> int:
     writer = Writer(scene, folder, stop, folder.name)
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
-    parts: dict[str, Part] = {}
+    coupling = Coupling({}, exchange, ledger, 0.0, scene.iteration())
     try:
         with stop.listening():
             connection = connect(scene, folder, stop)
-            parts = connection.parts
-            coupling = Coupling(parts, exchange, ledger, 0.0, scene.iteration())
-            progress = run(scene, parts, coupling, writer)
+            coupling.parts = connection.parts
+            progress = run(scene, coupling.parts, coupling, writer)
             writer.close()
             outcome |= progress_of(progress)
             connection.close(True)
@@ -51,7 +50,7 @@ def simulate(scene: Scene, folder: Path) -> int:
         ledger.close()
     if stop.asked and outcome["status"] != "done":
         outcome["status"] = "interrupted"
-    return conclude(scene, folder, outcome, ledger, parts, clock())
+    return conclude(scene, folder, outcome, coupling, clock())
 
 
 def make_folder(scene: Scene, folder: Path) -> None:
@@ -91,8 +90,7 @@ def conclude(
     scene: Scene,
     folder: Path,
     outcome: dict[str, Any],
-    ledger: Ledger,
-    parts: dict[str, Part],
+    coupling: Coupling,
     wall: float,
 ) -> int:
     """Compare with what was expected, write the results, draw, and choose the exit status."""
@@ -103,8 +101,8 @@ def conclude(
         "transport": scene.transport,
         **outcome,
         "expect": results.expectations(found),
-        "ledger": ledger.summary(),
-        "timing": results.timing(parts, wall),
+        "ledger": coupling.ledger.summary(),
+        "timing": results.timing(coupling.parts, wall, coupling.mapping),
         "machine": results.machine(),
         "command": shlex.join(["quintet", *sys.argv[1:]]),
     }

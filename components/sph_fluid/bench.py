@@ -1,8 +1,8 @@
 """What the throughput of the fluid is measured on.
 
 The dam break has the particles of the one that other codes were measured with: 106 200 of fluid
-and one layer of 36 221 in the walls. Channels, in which a dam breaks across, are the same all along;
-they grow in length alone, so that their rates tell whether the cost grows with the number of particles.
+and one layer of 36 221 in the walls. Channels, in which a dam breaks across, are the same all
+along and grow in length alone: equal rates mean that the cost grows with the number of particles.
 """
 
 import math
