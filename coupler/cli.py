@@ -63,6 +63,12 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("diff", diff, "first difference between two runs; 0 if there is none")
     one.add_argument("folders", nargs=2, type=Path, metavar="DIR")
+    one = command("study", study, "error against run time over the scene's ladder")
+    _scene(one)
+    _report(one, "runs/SCENE-study")
+    one = command("stability", stability, "where a scene breaks, and how")
+    _scene(one)
+    _report(one, "runs/SCENE-stability")
     one = command("bench", bench, "throughput of one component, or of the exchange")
     one.add_argument("name", help="exchange, or a kind of component")
     one.add_argument("--case", default="", help="one of the component's cases; all if not given")
@@ -85,6 +91,11 @@ def _scene(one: argparse.ArgumentParser) -> None:
     one.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", dest="settings")
     one.add_argument("--swap", action="append", default=[], metavar="NAME=KIND", help=SWAP)
     one.add_argument("--transport", choices=["memory", "zenoh", "mpi"], default="")
+
+
+def _report(one: argparse.ArgumentParser, folder: str) -> None:
+    one.add_argument("--json", type=Path, metavar="FILE", help="what was found, for programs")
+    one.add_argument("--out", type=Path, metavar="DIR", help=f"of all runs (default: {folder})")
 
 
 SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME=module:Class"
@@ -177,6 +188,20 @@ def diff(given: argparse.Namespace) -> int:
     found = compare(*given.folders)
     print(sentence(found))
     return 0 if found is None else 1
+
+
+def study(given: argparse.Namespace) -> int:
+    """Run a scene's ladder."""
+    from quintet.coupler.study import run_study
+
+    return run_study(given)
+
+
+def stability(given: argparse.Namespace) -> int:
+    """Find a scene's limits."""
+    from quintet.coupler.stability import run_stability
+
+    return run_stability(given)
 
 
 def bench(given: argparse.Namespace) -> int:

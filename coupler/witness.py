@@ -31,7 +31,7 @@ class Stop:
     asked = False
 
     def __init__(self) -> None:
-        self._starter = int(os.environ.get(STARTER, "0"))  # of an MPI job: who cleans up after it
+        self._starter = int(os.environ.get(STARTER, "0"))  # who cleans up after it
 
     def __call__(self) -> bool:
         """Tell whether to end."""
@@ -105,6 +105,7 @@ class Writer:
         self.scene, self.folder, self.stop, self.run = scene, folder, stop, run
         self.done, self.time = 0, 0.0  # windows, s
         self._every = 0  # windows between two views
+        self._often = 0  # windows between two rows of the ledger
         self._recorder: Recorder | None = None
         self._meter: Meter | None = None
         self._files: dict[str, VtkHdf] = {}
@@ -113,6 +114,8 @@ class Writer:
         """See `Witness.begin`."""
         interval, scene = self.scene.file.output.interval, self.scene
         self._every = max(1, round(interval / coupling.dt)) if interval else 0
+        totals = scene.file.output.totals
+        self._often = max(1, round(totals / coupling.dt)) if totals else 0
         if scene.file.output.record:
             from quintet.coupler.record import Recorder
 
@@ -126,7 +129,7 @@ class Writer:
 
     def due(self, window: int) -> bool:
         """See `Witness.due`."""
-        return bool(self._every) and (window + 1) % self._every == 0
+        return any(often and (window + 1) % often == 0 for often in (self._every, self._often))
 
     def end_window(self, coupling: Coupling, window: int) -> None:
         """See `Witness.end_window`."""
@@ -134,6 +137,8 @@ class Writer:
         self._record(coupling, self.time)
         if self._every and window % self._every == 0:
             self._note(coupling, self.time)
+        elif self._often and window % self._often == 0:
+            coupling.ledger.note(self.time, dict(coupling.ledger.totals))
         if self._meter:
             self._meter.show(window, coupling.ledger.worst)
 
