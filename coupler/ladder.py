@@ -105,5 +105,6 @@ def value_at(table: Table, path: str) -> tuple[Any, str]:
             at = at[part]
         else:
             known = at if isinstance(at, dict) else map(str, range(len(at or ())))
-            return None, unknown(path, part, known if isinstance(at, (dict, list)) else ())
+            said = unknown(path, part, known if isinstance(at, (dict, list)) else ())
+            return None, said.replace("is not known", "has no value in the scene", 1)
     return at, ""

@@ -1,5 +1,6 @@
 """The run loop: window after window, until the end or until something ends it."""
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -7,7 +8,6 @@ from quintet.coupler.part import Part, describe_all
 from quintet.coupler.scene import Scene
 from quintet.coupler.schedule import SCHEMES, Coupling
 from quintet.interfaces.component import Fields
-from quintet.interfaces.errors import SceneError
 
 
 class Witness(Protocol):
@@ -75,11 +75,11 @@ def prepare(coupling: Coupling, described: dict[str, Fields]) -> dict[str, float
 
 def windows_of(scene: Scene, limits: dict[str, float]) -> tuple[int, int, float]:
     """Count the windows, none done, and their length: as asked, or what the slowest steps in."""
-    window = max(limits.values()) if scene.file.window == "auto" else scene.file.window
-    if not 0.0 < window < float("inf"):
-        if scene.file.window == "auto":
-            window = scene.file.end
-        else:
-            raise SceneError(f"scene.window must be positive; it is {window}.")
-    windows = max(1, round(scene.file.end / window))
-    return windows, 0, scene.file.end / windows
+    end = scene.file.end
+    if scene.file.window == "auto":
+        # No longer than that step: a window a little longer would take two.
+        longest = min(max(limits.values()), end)
+        windows = max(1, math.ceil(end / longest - 1e-9)) if longest > 0.0 else 1
+    else:
+        windows = max(1, round(end / scene.file.window))
+    return windows, 0, end / windows

@@ -15,6 +15,8 @@ transport = "memory"
 [components.spring]
 kind = "toy_spring:Spring"
 step = 0.02
+mass = 1.0
+stiffness = 100.0
 [[expect]]
 name = "end"
 component = "spring"

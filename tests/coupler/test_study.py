@@ -1,6 +1,10 @@
 """A study observes the order of an integrator, and recommends the cheapest rung that will do."""
 
 import json
+import signal
+import subprocess
+import sys
+import time
 
 import pytest
 from spring_scene import command, found_by, write
@@ -106,7 +110,7 @@ WRONG = {
     ),
     "size": (
         'label = "a"\nsettings = {}\nsize = "components.spring.stp"',
-        "study.a.size components.spring.stp is not known. Did you mean step?",
+        "study.a.size components.spring.stp has no value in the scene. Did you mean step?",
     ),
     "size that is no number": (
         'label = "a"\nsettings = {}\nsize = "name"',
@@ -146,3 +150,31 @@ def test_all_mistakes_of_scene_and_ladder_are_told_at_once(tmp_path, capsys):
 def test_a_scene_without_a_ladder_says_so(tmp_path, capsys):
     assert command("study", write(tmp_path)) == 2
     assert "there is no ladder. Add a [[study]] for every rung." in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_study_keeps_and_tells_the_rungs_that_ran(tmp_path, number):
+    path = write(tmp_path, ladder(0.005) + RUNG.format(1e-6) + ladder(0.02))
+    line = [sys.executable, "-m", "quintet.coupler.cli", "study", str(path)]
+    line += ["--out", str(tmp_path / "all"), "--json", str(tmp_path / "found.json")]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    running = tmp_path / "all" / "1e-06" / "recording.h5"
+    limit = time.monotonic() + 30.0
+    while not running.is_file() and time.monotonic() < limit:
+        time.sleep(0.02)
+    process.send_signal(number)
+    said, _ = process.communicate(timeout=30.0)
+    assert process.returncode == 130
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert [row["status"] for row in found["rows"]] == ["done", "interrupted"]
+    assert found["recommended"]["label"] == "0.005" and "recommended: 0.005" in said
+    assert json.loads((running.parent / "results.json").read_text())["status"] == "interrupted"
+
+
+def test_a_window_is_never_longer_than_the_step_it_is_made_from(tmp_path):
+    path = write(tmp_path)
+    assert command(
+        "run", path, "--set", "components.spring.step=0.03", "--out", tmp_path / "o"
+    ) in (0, 1)
+    results = json.loads((tmp_path / "o" / "results.json").read_text())
+    assert results["windows"] == results["timing"]["components"]["spring"]["steps"] == 34
