@@ -62,11 +62,12 @@ class Part:
         except LineError as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
 
-    def hear(self, expected: Shapes | None = None) -> Message:
+    def hear(self, expected: Shapes | None = None, finite: bool = True) -> Message:
         """Wait for the answer."""
         try:
             message = self.line.receive(PATIENCE, expected)
-            require_finite(message.fields, "what it gave")
+            if finite:
+                require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
         if message.order == "failed":
@@ -103,6 +104,11 @@ class Part:
         fields = self.ask("give").fields
         self.shapes = {key: array.shape for key, array in fields.items()}
         return fields
+
+    def save(self) -> dict[str, Array]:
+        """Ask for all state; it may hold what is not finite, as a limit that was not met yet."""
+        self.tell("save")
+        return self.hear(finite=False).fields
 
 
 def describe_all(parts: Mapping[str, Part]) -> dict[str, Fields]:

@@ -80,7 +80,10 @@ def load(
         table["transport"] = transport
     if mistakes:
         raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
-    return _check(path, table, preset)
+    made = _check(path, table, preset)
+    asked = {"preset": preset, "settings": list(settings), "swaps": list(swaps)}
+    made.asked = {"scene": str(path.resolve()), "transport": transport, **asked}
+    return made
 
 
 def parse(path: Path) -> dict[str, Any]:

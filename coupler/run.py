@@ -1,6 +1,7 @@
 """The run loop: window after window, until the end or until something ends it."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -25,6 +26,9 @@ class Witness(Protocol):
     def wants_end(self) -> bool:
         """Whether to stop here."""
 
+    def ends_early(self, coupling: Coupling, window: int) -> None:
+        """Take note that it stops at the end of a window, before the last."""
+
 
 @dataclass(slots=True)
 class Progress:
@@ -40,18 +44,27 @@ class Progress:
         return self.done * self.dt
 
 
-def run(scene: Scene, parts: dict[str, Part], coupling: Coupling, witness: Witness) -> Progress:
-    """Couple the components of a scene from start to end."""
+def run(
+    scene: Scene,
+    parts: dict[str, Part],
+    coupling: Coupling,
+    witness: Witness,
+    resume: Callable[[Coupling], int] = lambda _: 0,
+) -> Progress:
+    """Couple the components of a scene to the end, from the start or where `resume` puts them."""
     described = describe_all(parts)
     limits = prepare(coupling, described)
     progress = Progress(*windows_of(scene, limits))
     coupling.dt = progress.dt
+    progress.done = resume(coupling)
     witness.begin(coupling, described, progress.windows)
     step = SCHEMES[scene.file.scheme]
     while progress.done < progress.windows and not witness.wants_end():
         step(coupling, progress.done, witness.due(progress.done))
         progress.done += 1
         witness.end_window(coupling, progress.done)
+    if progress.done < progress.windows:
+        witness.ends_early(coupling, progress.done)
     return progress
 
 

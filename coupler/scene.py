@@ -34,6 +34,7 @@ class OutputSettings:
     interval: NotNegative = 0.0  # s between two pictures' worth of particles; 0: none
     pictures: tuple[NotNegative, ...] = ()  # s, times of the pictures
     totals: NotNegative = 0.0  # s between two rows of the ledger; 0: with the particles
+    snapshots: NotNegative = 0.0  # s between two, to resume from; 0: now and then, and at an end
     record: bool = True  # every exchange
 
 
@@ -86,6 +87,7 @@ class Scene:
     expect: list[Expectation]
     resolved: dict[str, Any]  # the scene as it runs, for scene.toml
     transport: Transport = "zenoh"
+    asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
     study: list[Rung] = field(default_factory=list)
     stability: list[Limit] = field(default_factory=list)
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand

@@ -1,12 +1,14 @@
 """One run from a checked scene to its results, whatever happens on the way."""
 
+import os
 import shlex
 import sys
 import traceback
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler import results
+from quintet.coupler import restart, results
 from quintet.coupler.connect import Connection, connect
 from quintet.coupler.exchange import Exchange
 from quintet.coupler.launch import tail
@@ -21,12 +23,13 @@ from quintet.coupler.witness import Stop, Writer
 OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png", "comparison.png")
 
 
-def simulate(scene: Scene, folder: Path) -> int:
-    """Run a scene into a folder that is ready for it; return the exit status."""
+def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
+    """Run a scene into a folder, ready for it or with a snapshot; return the exit status."""
     clock, stop = results.Clock(), Stop()
     exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
-    ledger = Ledger(exchange, folder / "ledger.csv")
-    writer = Writer(scene, folder, stop, folder.name)
+    size = restart.ledger_size(snapshot) if snapshot else 0
+    ledger = Ledger(exchange, folder / "ledger.csv", size)
+    writer = Writer(scene, folder, stop, restart.window_of(snapshot) if snapshot else None)
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
     coupling = Coupling({}, exchange, ledger, 0.0, scene.iteration())
@@ -34,7 +37,8 @@ def simulate(scene: Scene, folder: Path) -> int:
         with stop.listening():
             connection = connect(scene, folder, stop)
             coupling.parts = connection.parts
-            progress = run(scene, coupling.parts, coupling, writer)
+            resume = partial(restart.restore, path=snapshot) if snapshot else lambda _: 0
+            progress = run(scene, coupling.parts, coupling, writer, resume)
             writer.close()
             outcome |= progress_of(progress)
             connection.close(True)
@@ -60,6 +64,7 @@ def make_folder(scene: Scene, folder: Path) -> None:
         *(folder / name for name in OURS),
         *folder.glob("*.vtkhdf"),
         *folder.glob("log/*"),
+        *restart.snapshots(folder),
     ]:
         path.unlink(missing_ok=True)
     (folder / "scene.toml").write_text(dumps(scene.resolved))
@@ -106,6 +111,11 @@ def conclude(
         "machine": results.machine(),
         "command": shlex.join(["quintet", *sys.argv[1:]]),
     }
+    if outcome["status"] == "done":
+        restart.remove(restart.snapshots(folder))
+    elif restart.snapshots(folder):
+        content["resume"] = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
+        print(f"to go on: {content['resume']}", file=sys.stderr)
     results.write(folder, content)
     if outcome["status"] == "failed":
         return results.FAILED

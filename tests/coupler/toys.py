@@ -71,10 +71,12 @@ class Toy(Component):
         return {"out.number": self.value.copy(), "out.push": self.push.copy()}
 
     def save(self):
-        return {"value": self.value.copy(), "push": self.push.copy()}
+        state = {"value": self.value, "push": self.push, "steps": np.array(self.steps)}
+        return {name: array.copy() for name, array in state.items()}
 
     def load(self, state):
         self.value, self.push = np.array(state["value"]), np.array(state["push"])
+        self.steps = int(state["steps"])
 
     def totals(self):
         return Totals(mass=1.0)
