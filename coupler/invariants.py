@@ -53,6 +53,11 @@ def _breaches(limit: LimitTable, found: dict[str, Any], folder: Path) -> Iterato
         with open(ledger, newline="") as file:
             rows = [row for row in csv.DictReader(file) if None not in row.values()]
         if limit.energy:
+            if found["status"] == "done" and not any(energies(rows).values()):
+                raise SceneError(
+                    "stability: energy must be told by a component that has any; all say 0 J at "
+                    "all times. Give it totals(), or use bounds instead."
+                )
             yield from _energy(limit.energy, rows)
         if limit.momentum is not None:
             yield from _momentum(limit.momentum, rows)

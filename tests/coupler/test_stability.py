@@ -8,6 +8,7 @@ from spring_scene import command, found_by, write
 from quintet.coupler.bisect import narrow
 from quintet.coupler.invariants import judge
 from quintet.coupler.limits import LimitTable
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 
 STEP = 'parameter = "components.spring.step"\n'
@@ -116,6 +117,11 @@ def test_the_first_invariant_that_broke_is_told(tmp_path):
     found = verdict(tmp_path, rows, "failed")
     assert (found.state, found.broke, found.how, found.time) == ("unstable", "failed", "it died", 3)
     assert "takes too long" in verdict(tmp_path, rows, "stalled").how
+
+
+def test_energies_that_nobody_tells_cannot_be_judged(tmp_path):
+    with pytest.raises(SceneError, match=r"all say 0 J at all times. Give it totals\(\), or use"):
+        verdict(tmp_path, "0,a,,0,0,0\n1,a,,0,0,0\n", "done", energy={"factor": 2.0})
 
 
 def test_energies_that_are_not_finite_break(tmp_path):
