@@ -6,6 +6,7 @@ sums over the whole run show it.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -57,6 +58,20 @@ class Balance:
             if taker == name:
                 before = self._applied.get((taker, key), 0.0)
                 self._applied[taker, key] = before + np.asarray(sums.get(key, 0.0))
+
+    def save(self) -> dict[str, Any]:
+        """All sums, for a snapshot."""
+        entries = [one for entries in self._given.values() for one in entries]
+        given = [[run.total.tolist(), run.last.tolist(), run.scale] for *_, run in entries]
+        applied = [[*place, np.asarray(sums).tolist()] for place, sums in self._applied.items()]
+        return {"given": given, "applied": applied}
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to saved sums."""
+        entries = [one for entries in self._given.values() for one in entries]
+        for (*_, run), (total, last, scale) in zip(entries, state["given"], strict=True):
+            run.total, run.last, run.scale = np.array(total), np.array(last), scale
+        self._applied = {(name, key): np.array(sums) for name, key, sums in state["applied"]}
 
     def gaps(
         self, is_late: Callable[[str, str], bool], owed: Mapping[tuple[str, str], Array]

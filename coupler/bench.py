@@ -21,8 +21,6 @@ from quintet.coupler.part import Part
 from quintet.coupler.read import load
 from quintet.coupler.scene import Scene
 from quintet.coupler.simulate import make_folder
-from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import unknown
 
 SIZES = {100: 5000, 10_000: 2000, 100_000: 300}  # items of three doubles: windows measured
 WARM = 100  # windows before the clock starts
@@ -40,8 +38,6 @@ items = {items}
 
 def run_bench(given: argparse.Namespace) -> int:
     """Measure the exchange; print the cases, and write them as JSON where asked."""
-    if given.name != "exchange":
-        raise SceneError(unknown(f"bench {given.name}", given.name, ["exchange"]))
     if given.inside_mpi:
         return inside_mpi(Path(os.environ[FOLDER]))
     found = []

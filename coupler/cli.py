@@ -5,7 +5,7 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quintet.interfaces.errors import QuintetError, SceneError
 
@@ -50,8 +50,9 @@ def parser() -> argparse.ArgumentParser:
     one = command("check", check, "read a scene, print its plan; start no solver")
     _scene(one)
     one = command("run", run, "run a scene, compare it with what it must reproduce")
-    _scene(one)
+    _scene(one, nargs="?")
     one.add_argument("--out", type=Path, help="folder of the run (default: runs/SCENE)")
+    one.add_argument("--resume", type=Path, metavar="DIR", help=RESUME)
     one.add_argument("--elsewhere", action="append", default=[], metavar="NAME", help=ELSEWHERE)
     one.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
     one = command("join", join, "start one component here and join it to a coupler elsewhere")
@@ -63,9 +64,16 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("diff", diff, "first difference between two runs; 0 if there is none")
     one.add_argument("folders", nargs=2, type=Path, metavar="DIR")
+    one = command("study", study, "error against run time over the scene's ladder")
+    _scene(one)
+    _report(one, "runs/SCENE-study")
+    one = command("stability", stability, "where a scene breaks, and how")
+    _scene(one)
+    _report(one, "runs/SCENE-stability")
     one = command("bench", bench, "throughput of one component, or of the exchange")
     one.add_argument("name", help="exchange, or a kind of component")
-    one.add_argument("--threads", type=int, default=1)
+    one.add_argument("--case", default="", help="one of the component's cases; all if not given")
+    one.add_argument("--threads", type=int, action="append", metavar="N", help=THREADS)
     one.add_argument("--json", type=Path, metavar="FILE")
     one.add_argument(
         "--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given"
@@ -74,15 +82,22 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+RESUME = "go on with an interrupted or failed run, from its last snapshot"
+THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
 
 
-def _scene(one: argparse.ArgumentParser) -> None:
-    one.add_argument("scene", help="a name from quintet list, or a TOML file")
+def _scene(one: argparse.ArgumentParser, **more: Any) -> None:
+    one.add_argument("scene", help="a name from quintet list, or a TOML file", **more)
     one.add_argument("--preset", default="", help="a preset of the scene")
     one.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", dest="settings")
     one.add_argument("--swap", action="append", default=[], metavar="NAME=KIND", help=SWAP)
     one.add_argument("--transport", choices=["memory", "zenoh", "mpi"], default="")
+
+
+def _report(one: argparse.ArgumentParser, folder: str) -> None:
+    one.add_argument("--json", type=Path, metavar="FILE", help="what was found, for programs")
+    one.add_argument("--out", type=Path, metavar="DIR", help=f"of all runs (default: {folder})")
 
 
 SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME=module:Class"
@@ -111,16 +126,15 @@ def check(given: argparse.Namespace) -> int:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Run a scene."""
-    scene = _load(given)
+    """Run a scene, from the start or from a snapshot."""
+    scene, folder, snapshot = _resumed(given) if given.resume else _begun(given)
     scene.elsewhere = set(given.elsewhere)
     unknown = scene.elsewhere - set(scene.components)
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
-    folder = (given.out or Path("runs") / scene.file.name).resolve()
     from quintet.coupler.simulate import make_folder, simulate
 
-    if not given.inside_mpi:
+    if not given.inside_mpi and snapshot is None:
         make_folder(scene, folder)
     if scene.transport == "mpi" and not given.inside_mpi:
         from quintet.coupler.mpirun import run_under_mpi
@@ -134,7 +148,7 @@ def run(given: argparse.Namespace) -> int:
     os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
     from quintet.coupler.show import show as tell
 
-    status = simulate(scene, folder)
+    status = simulate(scene, folder, snapshot)
     tell(folder)
     print(f"left in {os.path.relpath(folder)}", flush=True)
     if given.inside_mpi:
@@ -142,6 +156,27 @@ def run(given: argparse.Namespace) -> int:
 
         leave(folder, status)
     return status
+
+
+def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
+    """Read the scene of a new run, and where it goes."""
+    if given.scene is None:
+        raise SceneError("run needs a scene, or --resume DIR. Give one.")
+    scene = _load(given)
+    return scene, (given.out or Path("runs") / scene.file.name).resolve(), None
+
+
+def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
+    """Read the scene of a run that goes on, as it was asked for or as it is given now."""
+    from quintet.coupler import restart
+
+    if given.out:
+        raise SceneError("--resume goes on in the folder of the run. Remove --out.")
+    folder = given.resume.resolve()
+    snapshot = restart.latest(folder)
+    scene = _load(given) if given.scene else restart.scene_of(snapshot, given.transport)
+    restart.check_same(scene, folder)
+    return scene, folder, snapshot
 
 
 def join(given: argparse.Namespace) -> int:
@@ -177,11 +212,29 @@ def diff(given: argparse.Namespace) -> int:
     return 0 if found is None else 1
 
 
+def study(given: argparse.Namespace) -> int:
+    """Run a scene's ladder."""
+    from quintet.coupler.study import run_study
+
+    return run_study(given)
+
+
+def stability(given: argparse.Namespace) -> int:
+    """Find a scene's limits."""
+    from quintet.coupler.stability import run_stability
+
+    return run_stability(given)
+
+
 def bench(given: argparse.Namespace) -> int:
     """Measure throughput."""
-    from quintet.coupler.bench import run_bench
+    if given.name == "exchange":
+        from quintet.coupler.bench import run_bench
 
-    return run_bench(given)
+        return run_bench(given)
+    from quintet.coupler.throughput import run_kind
+
+    return run_kind(given)
 
 
 if __name__ == "__main__":

@@ -194,7 +194,7 @@ def finish(parts: dict[str, Part]) -> None:
     for part in parts.values():
         part.tell("finish")
     for part in parts.values():
-        part.hear()
+        part.timing.memory = int(part.hear().header["memory"])
 
 
 def part_from(parts: dict[str, Part], watches: list[Watch], well: bool) -> None:

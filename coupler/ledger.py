@@ -8,6 +8,7 @@ staggering in time lets it.
 """
 
 import csv
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -66,16 +67,20 @@ class Account:
 class Ledger:
     """Keeps an account for every link; a window is booked when all its components answered."""
 
-    def __init__(self, exchange: Exchange, path: Path | None = None) -> None:
+    def __init__(self, exchange: Exchange, path: Path | None = None, size: int = 0) -> None:
+        """Begin the file, or go on with the first `size` bytes of it."""
         self.exchange = exchange
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy: list[float] = []  # J, sum over the components, at every note
         self._balance = Balance(exchange)
         self._motion = Motion(exchange)
-        self._file = open(path, "w", newline="") if path else None
+        self._file = open(path, "a" if size else "w", newline="") if path else None
         self._rows = csv.writer(self._file) if self._file else None
-        if self._rows:
+        if self._file and size:
+            self._file.truncate(size)
+            self._file.seek(0, os.SEEK_END)
+        elif self._rows:
             self._rows.writerow(COLUMNS)
 
     @property
@@ -193,13 +198,33 @@ class Ledger:
             self._rows.writerow([time, name, *[""] * 7, *held])
         self._file.flush()
 
+    def save(self) -> dict[str, Any]:
+        """All that is in the books, for a snapshot, and the length of the file [bytes]."""
+        if self._file:
+            self._file.flush()
+        return {
+            "accounts": [_as_row(account) for account in self.accounts.values()],
+            "totals": self.totals,
+            "energy": self.energy,
+            "balance": self._balance.save(),
+            "motion": self._motion.save(),
+            "size": self._file.tell() if self._file else 0,
+        }
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to saved books."""
+        for row in state["accounts"]:
+            self.accounts[row["link"]] = Account(**{**row, "impulse": np.array(row["impulse"])})
+        self.totals, self.energy = dict(state["totals"]), list(state["energy"])
+        self._balance.load(state["balance"])
+        self._motion.load(state["motion"])
+
     def summary(self) -> dict[str, Any]:
         """What ``results.json`` says of it."""
-        links = []
-        for account in self.accounts.values():
-            row = {**asdict(account), "energy_residual": account.energy_residual}
-            row["impulse"] = [float(p) for p in account.impulse]
-            links.append(row)
+        links = [
+            {**_as_row(one), "energy_residual": one.energy_residual}
+            for one in self.accounts.values()
+        ]
         return {"links": links, "energy_drift": self._drift()}
 
     def _drift(self) -> float:
@@ -214,6 +239,10 @@ class Ledger:
         """Close the file."""
         if self._file:
             self._file.close()
+
+
+def _as_row(account: Account) -> dict[str, Any]:
+    return {**asdict(account), "impulse": [float(p) for p in account.impulse]}
 
 
 def mean_rate(before: Fields, after: Fields, rate: str, place: str, dt: float) -> Array:

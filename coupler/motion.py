@@ -62,6 +62,33 @@ class Motion:
             else:
                 held[key] = Instant(sums, amount)
 
+    def save(self) -> dict[str, Any]:
+        """All that was sent last, for a snapshot."""
+        held = {
+            name: {
+                key: [
+                    one.start.tolist(),
+                    one.size,
+                    None if one.end is None else one.end.tolist(),
+                    one.end_size,
+                ]
+                for key, one in fields.items()
+            }
+            for name, fields in self._held.items()
+        }
+        return {"held": held, "window": self._window}
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to what was saved."""
+        self._window = dict(state["window"])
+        for name, fields in state["held"].items():
+            self._held[name] = {
+                key: Instant(
+                    np.array(start), amount, None if end is None else np.array(end), end_amount
+                )
+                for key, (start, amount, end, end_amount) in fields.items()
+            }
+
     def residual(self, name: str, handed: Mapping[str, Any]) -> float:
         """Worst difference between what was handed out and what should have been, relative."""
         window, span = self._window[name], float(handed["span"])

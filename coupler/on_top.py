@@ -15,7 +15,7 @@ def put_preset(table: dict[str, Any], preset: str) -> list[str]:
         return [f"presets.{preset} must be a table of paths and values. Write [presets.{preset}]."]
     if preset not in presets:
         return [unknown(f"preset {preset}", preset, presets)]
-    return [m for path, value in presets[preset].items() for m in _place(table, path, value)]
+    return [m for path, value in presets[preset].items() for m in put(table, path, value)]
 
 
 def put_set(table: dict[str, Any], setting: str) -> list[str]:
@@ -27,10 +27,10 @@ def put_set(table: dict[str, Any], setting: str) -> list[str]:
         value = tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         value = text  # a word needs no quotes on the command line
-    return _place(table, path, value)
+    return put(table, path, value)
 
 
-def _place(table: dict[str, Any], path: str, value: Any) -> list[str]:
+def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
     """Set a value at a dotted path; new tables are made only for components' own settings."""
     *heads, last = path.split(".")
     at: Any = table

@@ -28,10 +28,12 @@ class Timing:
     """Where a component's time went."""
 
     compute: float = 0.0  # s, as the component itself measured
+    cpu: float = 0.0  # s of processor time in its windows, all threads
     wait: float = 0.0  # s that the coupler waited for it
     first: float = 0.0  # s, its first window
     steps: int = 0
     items: int = 0
+    memory: int = 0  # bytes, the most that its process held; of one apart that ended well
     recent: deque[float] = field(default_factory=lambda: deque(maxlen=50))
 
     @property
@@ -60,11 +62,12 @@ class Part:
         except LineError as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
 
-    def hear(self, expected: Shapes | None = None) -> Message:
+    def hear(self, expected: Shapes | None = None, finite: bool = True) -> Message:
         """Wait for the answer."""
         try:
             message = self.line.receive(PATIENCE, expected)
-            require_finite(message.fields, "what it gave")
+            if finite:
+                require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
         if message.order == "failed":
@@ -91,6 +94,7 @@ class Part:
         timing.first = timing.first or took
         timing.wait += took
         timing.compute += float(header["busy"])
+        timing.cpu += float(header["cpu"])
         timing.steps += int(header["steps"])
         timing.recent.append(took)
         return message
@@ -100,6 +104,11 @@ class Part:
         fields = self.ask("give").fields
         self.shapes = {key: array.shape for key, array in fields.items()}
         return fields
+
+    def save(self) -> dict[str, Array]:
+        """Ask for all state; it may hold what is not finite, as a limit that was not met yet."""
+        self.tell("save")
+        return self.hear(finite=False).fields
 
 
 def describe_all(parts: Mapping[str, Part]) -> dict[str, Fields]:

@@ -59,7 +59,7 @@ def snapshots(run: Path, out: Path, times: Sequence[float]) -> Path:
         raise SceneError(f"run {run}: a picture needs a .vtkhdf file with steps, and a time.")
     shots = [_shot(files, time) for time in times]
     low, high = _bounds(shots)
-    figure, panels = _panels(len(shots), (high - low)[1] / (high - low)[0])
+    figure, panels = panels_of(len(shots), (high - low)[1] / (high - low)[0])
     drawn = None
     top = max((float(shot.speed.max(initial=0.0)) for shot in shots), default=0.0) or 1.0
     for panel, shot in zip(panels, shots, strict=True):
@@ -69,7 +69,7 @@ def snapshots(run: Path, out: Path, times: Sequence[float]) -> Path:
         drawn = _draw(panel, shot, top) or drawn
     if drawn is not None:
         figure.colorbar(drawn, ax=panels, label="speed [m/s]", shrink=0.8, aspect=30, pad=0.02)
-    return _save(figure, out)
+    return save(figure, out)
 
 
 def comparison(
@@ -100,10 +100,10 @@ def comparison(
     if not wanted:
         return None
     results = {outcome.name: outcome for outcome in outcomes}
-    figure, panels = _panels(len(wanted), 0.62)
+    figure, panels = panels_of(len(wanted), 0.62)
     for panel, one in zip(panels, wanted, strict=True):
         _compare(panel, one, results.get(one.name), recording, Path(folder))
-    return _save(figure, out)
+    return save(figure, out)
 
 
 def _compare(
@@ -138,7 +138,7 @@ def _title(one: Expectation, outcome: Outcome | None) -> str:
     )
 
 
-def _panels(count: int, height: float) -> tuple[Any, list[Any]]:
+def panels_of(count: int, height: float) -> tuple[Any, list[Any]]:
     """Make a figure of panels; `height` is that of one, as part of its width."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -154,7 +154,8 @@ def _panels(count: int, height: float) -> tuple[Any, list[Any]]:
     return figure, panels[:count]
 
 
-def _save(figure: Any, out: Path) -> Path:
+def save(figure: Any, out: Path) -> Path:
+    """Write a figure; the ending of the name says of what kind."""
     Path(out).parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=DOTS)
     return Path(out)

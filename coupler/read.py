@@ -5,12 +5,15 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from quintet.coupler import driven
 from quintet.coupler.exchange import Link
 from quintet.coupler.expect import Expectation, check
+from quintet.coupler.limits import Scope
 from quintet.coupler.links import KINDS
 from quintet.coupler.on_top import put_preset, put_set, put_swap
 from quintet.coupler.scene import ComponentPlan, Scene, SceneFile
@@ -20,7 +23,7 @@ from quintet.interfaces.manifest import Manifest, find, known_kinds
 from quintet.interfaces.params import read, unknown
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component: it names files and lines
-TABLES = ("components", "links", "expect", "presets", "stand_ins")
+TABLES = ("components", "links", "expect", "presets", "stand_ins", *driven.TABLES)
 
 
 def library() -> dict[str, Path]:
@@ -77,7 +80,10 @@ def load(
         table["transport"] = transport
     if mistakes:
         raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
-    return _check(path, table, preset)
+    made = _check(path, table, preset)
+    asked = {"preset": preset, "settings": list(settings), "swaps": list(swaps)}
+    made.asked = {"scene": str(path.resolve()), "transport": transport, **asked}
+    return made
 
 
 def parse(path: Path) -> dict[str, Any]:
@@ -106,10 +112,21 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
                 " Shorten it."
             )
         mistakes += _reachable(file)
+    ladders = [_tables(table, key, mistakes) for key in driven.TABLES]
+    scope, check = None, None
+    if file is not None and not mistakes:
+        gives = {name: one.gives for name, one in components.items()}
+        scope = Scope(file.end, gives, len(links), [one.name for one in expect])
+        check = partial(_check, path, preset=preset)
+    trial = driven.trial_of(table, check)
+    study, stability, wrong_driven = driven.read_driven(ladders[0], ladders[1], trial, scope)
+    mistakes += wrong_driven
     if mistakes or file is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])
-    resolved = {key: value for key, value in table.items() if key != "presets"}
-    return Scene(file, path, preset, components, links, expect, resolved, file.transport)
+    resolved = {k: v for k, v in table.items() if k not in ("presets", *driven.TABLES)}
+    made = Scene(file, path, preset, components, links, expect, resolved, file.transport)
+    made.study, made.stability = study, stability
+    return made
 
 
 def _also_tables(mistake: str) -> str:

@@ -35,6 +35,18 @@ class Recorder:
         self._file.create_group("components", track_order=True)
         self._tracks: dict[str, _Track] = {}
 
+    @classmethod
+    def resume(cls, path: Path, rows: int) -> "Recorder":
+        """Go on with a recording after its first rows; later ones are forgotten."""
+        made = cls.__new__(cls)
+        made._file = h5py.File(path, "r+", locking=False)
+        made._tracks = {}
+        for name, group in made._file["components"].items():
+            ports = from_json(str(group.attrs["ports"]))
+            made._tracks[name] = _Track(group, name, ports)
+            made._tracks[name].go_on(rows)
+        return made
+
     def component(self, name: str, ports: tuple[Port, ...], static: Fields) -> None:
         """Announce a component: the ports it gives, and what it described once."""
         group = self._file["components"].create_group(name)
@@ -87,7 +99,9 @@ class _Track:
     def __init__(self, group: h5py.Group, name: str, ports: tuple[Port, ...]) -> None:
         self.group, self.name = group, name
         self.shapes = {f"{port.name}.{f.name}": f.shape for port in ports for f in port.fields}
-        self.times = group.create_dataset("times", (0,), "f8", maxshape=(None,), chunks=(1024,))
+        if "times" not in group:
+            group.create_dataset("times", (0,), "f8", maxshape=(None,), chunks=(1024,))
+        self.times = group["times"]
         self.data: dict[str, h5py.Dataset] = {}
         self.held: dict[str, Array] = {}  # (batch, n, *shape)
         self.held_times = np.zeros(BATCH)
@@ -118,6 +132,22 @@ class _Track:
         if self.rows % self.batch == 0:
             self.write()
             self.group.file.flush()
+
+    def go_on(self, rows: int) -> None:
+        """Keep the first rows of a file that was there."""
+        if len(self.times) < rows:
+            raise SceneError(
+                f"recording of {self.name}: it must have {rows} rows to go on; found "
+                f"{len(self.times)}. Run the scene again."
+            )
+        self.data = dict(self.group["fields"].items())
+        row = sum(8 * int(np.prod(data.shape[1:])) for data in self.data.values())
+        self.batch = _rows_within(BATCH_BYTES, row)
+        for key, dataset in self.data.items():
+            dataset.resize(rows, axis=0)
+            self.held[key] = np.zeros((self.batch, *dataset.shape[1:]))
+        self.times.resize(rows, axis=0)
+        self.rows = self.written = rows
 
     def write(self) -> None:
         """Append the held rows to the file; the times last, as they say how many rows there are."""

@@ -15,6 +15,7 @@ from quintet.coupler.part import ComponentFailed, Part
 from quintet.coupler.record import Recording
 from quintet.coupler.scene import Scene
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.serve import peak_memory
 
 DONE, UNMET, BAD, FAILED, INTERRUPTED = 0, 1, 2, 3, 130  # exit status
 PACKAGES = ("quintet", "numpy", "numba", "mpi4py", "eclipse-zenoh", "h5py", "msgpack")
@@ -52,17 +53,19 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
             comparison(scene.folder, scene.expect, found, recording, folder / "comparison.png")
 
 
-def timing(parts: dict[str, Part], wall: float) -> dict[str, Any]:
-    """Wall time, and where it went."""
+def timing(parts: dict[str, Part], wall: float, mapping: float) -> dict[str, Any]:
+    """Wall time, and where it went; memory of all processes together at their peaks [bytes]."""
     components = {}
     exchange = compile_time = 0.0
     for name, part in parts.items():
         one = part.timing
         components[name] = {
             "compute": one.compute,
+            "cpu": one.cpu,
             "wait": max(0.0, wall - one.compute),
             "steps": one.steps,
             "items": one.items,
+            "memory": one.memory or None,
         }
         exchange += max(0.0, one.wait - one.compute)
         compile_time += max(0.0, one.first - one.usual)
@@ -71,7 +74,8 @@ def timing(parts: dict[str, Part], wall: float) -> dict[str, Any]:
         "compile": compile_time,
         "components": components,
         "exchange": exchange,
-        "mapping": max(0.0, wall - sum(part.timing.wait for part in parts.values())),
+        "mapping": mapping,
+        "memory": peak_memory() + sum(part.timing.memory for part in parts.values()),
     }
 
 

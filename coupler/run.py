@@ -1,5 +1,7 @@
 """The run loop: window after window, until the end or until something ends it."""
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -7,7 +9,6 @@ from quintet.coupler.part import Part, describe_all
 from quintet.coupler.scene import Scene
 from quintet.coupler.schedule import SCHEMES, Coupling
 from quintet.interfaces.component import Fields
-from quintet.interfaces.errors import SceneError
 
 
 class Witness(Protocol):
@@ -25,6 +26,9 @@ class Witness(Protocol):
     def wants_end(self) -> bool:
         """Whether to stop here."""
 
+    def ends_early(self, coupling: Coupling, window: int) -> None:
+        """Take note that it stops at the end of a window, before the last."""
+
 
 @dataclass(slots=True)
 class Progress:
@@ -40,18 +44,27 @@ class Progress:
         return self.done * self.dt
 
 
-def run(scene: Scene, parts: dict[str, Part], coupling: Coupling, witness: Witness) -> Progress:
-    """Couple the components of a scene from start to end."""
+def run(
+    scene: Scene,
+    parts: dict[str, Part],
+    coupling: Coupling,
+    witness: Witness,
+    resume: Callable[[Coupling], int] = lambda _: 0,
+) -> Progress:
+    """Couple the components of a scene to the end, from the start or where `resume` puts them."""
     described = describe_all(parts)
     limits = prepare(coupling, described)
     progress = Progress(*windows_of(scene, limits))
     coupling.dt = progress.dt
+    progress.done = resume(coupling)
     witness.begin(coupling, described, progress.windows)
     step = SCHEMES[scene.file.scheme]
     while progress.done < progress.windows and not witness.wants_end():
         step(coupling, progress.done, witness.due(progress.done))
         progress.done += 1
         witness.end_window(coupling, progress.done)
+    if progress.done < progress.windows:
+        witness.ends_early(coupling, progress.done)
     return progress
 
 
@@ -75,11 +88,11 @@ def prepare(coupling: Coupling, described: dict[str, Fields]) -> dict[str, float
 
 def windows_of(scene: Scene, limits: dict[str, float]) -> tuple[int, int, float]:
     """Count the windows, none done, and their length: as asked, or what the slowest steps in."""
-    window = max(limits.values()) if scene.file.window == "auto" else scene.file.window
-    if not 0.0 < window < float("inf"):
-        if scene.file.window == "auto":
-            window = scene.file.end
-        else:
-            raise SceneError(f"scene.window must be positive; it is {window}.")
-    windows = max(1, round(scene.file.end / window))
-    return windows, 0, scene.file.end / windows
+    end = scene.file.end
+    if scene.file.window == "auto":
+        # No longer than that step: a window a little longer would take two.
+        longest = min(max(limits.values()), end)
+        windows = max(1, math.ceil(end / longest - 1e-9)) if longest > 0.0 else 1
+    else:
+        windows = max(1, round(end / scene.file.window))
+    return windows, 0, end / windows

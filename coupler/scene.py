@@ -6,6 +6,8 @@ from typing import Any, Literal
 
 from quintet.coupler.exchange import Link
 from quintet.coupler.expect import Expectation
+from quintet.coupler.ladder import Rung
+from quintet.coupler.limits import Limit
 from quintet.coupler.schedule import Iteration
 from quintet.interfaces.component import Port
 from quintet.interfaces.endpoint import Security
@@ -31,6 +33,8 @@ class OutputSettings:
 
     interval: NotNegative = 0.0  # s between two pictures' worth of particles; 0: none
     pictures: tuple[NotNegative, ...] = ()  # s, times of the pictures
+    totals: NotNegative = 0.0  # s between two rows of the ledger; 0: with the particles
+    snapshots: NotNegative = 0.0  # s between two, to resume from; 0: now and then, and at an end
     record: bool = True  # every exchange
 
 
@@ -83,6 +87,9 @@ class Scene:
     expect: list[Expectation]
     resolved: dict[str, Any]  # the scene as it runs, for scene.toml
     transport: Transport = "zenoh"
+    asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
+    study: list[Rung] = field(default_factory=list)
+    stability: list[Limit] = field(default_factory=list)
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand
 
     @property

@@ -4,7 +4,9 @@ Literature: Farhat and Lesoinne (2000) for the staggered schemes; Küttler and W
 Comput. Mech. 43, 61, equation 44, for Aitken's relaxation of a repeated window.
 """
 
-from collections.abc import Callable, Collection
+import contextlib
+import time
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -45,16 +47,25 @@ class Coupling:
     owed: Guess = field(default_factory=dict)  # impulses not yet applied
     sizes: dict[tuple[str, str], float] = field(default_factory=dict)  # largest norms so far
     repetitions: int = 0
+    mapping: float = 0.0  # s spent on carrying and bookkeeping so far
 
     def gather(self, name: str, fresh: Collection[str]) -> Carried:
         """Carry to one component what the others gave last."""
-        carried = self.exchange.inputs(name, self.outputs, fresh)
-        carried.outputs, carried.sent = dict(self.outputs), dict(self.sent)
-        return carried
+        with self._timed():
+            carried = self.exchange.inputs(name, self.outputs, fresh)
+            carried.outputs, carried.sent = dict(self.outputs), dict(self.sent)
+            return carried
 
     def settle(self, is_late: Callable[[str, str], bool]) -> None:
         """End a window's books; `is_late` tells which giver's impulses wait for the next."""
-        self.ledger.settle(is_late, self.owed)
+        with self._timed():
+            self.ledger.settle(is_late, self.owed)
+
+    @contextlib.contextmanager
+    def _timed(self) -> Iterator[None]:
+        began = time.perf_counter()
+        yield
+        self.mapping += time.perf_counter() - began
 
     def agree(self, gap: Guess, found: Guess) -> bool:
         """Whether what was guessed is what was found, to the iteration's tolerance."""
@@ -72,11 +83,12 @@ class Coupling:
     def book(self, name: str, carried: Carried, answer: Message) -> None:
         """Put an answer into the ledger and among the outputs."""
         ledger, header = self.ledger, answer.header
-        ledger.mapped(carried)
-        ledger.given(name, header, answer.fields, self.outputs)
-        ledger.applied(name, carried.fields, header)
-        ledger.moved(name, carried, header["handed"], self.dt)
-        ledger.worked(name, carried.fields, carried.outputs[name], answer.fields, self.dt)
+        with self._timed():
+            ledger.mapped(carried)
+            ledger.given(name, header, answer.fields, self.outputs)
+            ledger.applied(name, carried.fields, header)
+            ledger.moved(name, carried, header["handed"], self.dt)
+            ledger.worked(name, carried.fields, carried.outputs[name], answer.fields, self.dt)
         self.keep(name, answer)
         if header.get("totals"):
             ledger.totals[name] = header["totals"]

@@ -48,9 +48,8 @@ def show(folder: Path, as_json: bool = False) -> None:
     if as_json:
         print(json.dumps(found, indent=2))
         return
-    terminal = sys.stdout.isatty()
-    console = Console(width=None if terminal else PLAIN_WIDTH, highlight=False, markup=False)
-    frame = box.SIMPLE_HEAD if terminal else None
+    console = on_screen()
+    frame = box.SIMPLE_HEAD if sys.stdout.isatty() else None
     console.print(_headline(found))
     for table in (_expectations(found), _ledger(found), _timing(found)):
         if table is not None:
@@ -61,6 +60,12 @@ def show(folder: Path, as_json: bool = False) -> None:
             console.print(line)
     if fault := found.get("fault"):
         console.print(_fault(fault))
+
+
+def on_screen() -> Console:
+    """Where tables are printed; as wide as they like where there is no terminal."""
+    width = None if sys.stdout.isatty() else PLAIN_WIDTH
+    return Console(width=width, highlight=False, markup=False)
 
 
 def _headline(found: Mapping[str, Any]) -> Text:
@@ -126,6 +131,7 @@ def _timing(found: Mapping[str, Any]) -> Table | None:
         [
             name,
             _number(one.get("compute")),
+            _number(one.get("cpu")),
             _number(one.get("wait")),
             one.get("steps", "-"),
             one.get("items", "-"),
@@ -133,7 +139,15 @@ def _timing(found: Mapping[str, Any]) -> Table | None:
         ]
         for name, one in components.items()
     ]
-    names = ["component", "compute [s]", "wait [s]", "steps", "items", "particle-steps/s"]
+    names = [
+        "component",
+        "compute [s]",
+        "CPU [s]",
+        "wait [s]",
+        "steps",
+        "items",
+        "particle-steps/s",
+    ]
     return _table("Timing", names, 1, rows)
 
 
@@ -144,8 +158,10 @@ def _rate(one: Mapping[str, Any]) -> float | None:
 
 
 def _shares(found: Mapping[str, Any]) -> str:
-    timing = {k: v for k, v in (found.get("timing") or {}).items() if k != "components"}
-    return "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in timing.items()) if timing else ""
+    timing = found.get("timing") or {}
+    times = {k: v for k, v in timing.items() if k not in ("components", "memory")}
+    text = "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in times.items()) if times else ""
+    return text + (f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else "")
 
 
 def _fault(fault: Mapping[str, Any]) -> Text:

@@ -1,17 +1,19 @@
 """One run from a checked scene to its results, whatever happens on the way."""
 
+import os
 import shlex
 import sys
 import traceback
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler import results
+from quintet.coupler import restart, results
 from quintet.coupler.connect import Connection, connect
 from quintet.coupler.exchange import Exchange
 from quintet.coupler.launch import tail
 from quintet.coupler.ledger import Ledger
-from quintet.coupler.part import ComponentFailed, Part
+from quintet.coupler.part import ComponentFailed
 from quintet.coupler.run import Progress, run
 from quintet.coupler.scene import Scene
 from quintet.coupler.schedule import Coupling
@@ -21,21 +23,22 @@ from quintet.coupler.witness import Stop, Writer
 OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png", "comparison.png")
 
 
-def simulate(scene: Scene, folder: Path) -> int:
-    """Run a scene into a folder that is ready for it; return the exit status."""
+def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
+    """Run a scene into a folder, ready for it or with a snapshot; return the exit status."""
     clock, stop = results.Clock(), Stop()
     exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
-    ledger = Ledger(exchange, folder / "ledger.csv")
-    writer = Writer(scene, folder, stop, folder.name)
+    size = restart.ledger_size(snapshot) if snapshot else 0
+    ledger = Ledger(exchange, folder / "ledger.csv", size)
+    writer = Writer(scene, folder, stop, restart.window_of(snapshot) if snapshot else None)
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
-    parts: dict[str, Part] = {}
+    coupling = Coupling({}, exchange, ledger, 0.0, scene.iteration())
     try:
         with stop.listening():
             connection = connect(scene, folder, stop)
-            parts = connection.parts
-            coupling = Coupling(parts, exchange, ledger, 0.0, scene.iteration())
-            progress = run(scene, parts, coupling, writer)
+            coupling.parts = connection.parts
+            resume = partial(restart.restore, path=snapshot) if snapshot else lambda _: 0
+            progress = run(scene, coupling.parts, coupling, writer, resume)
             writer.close()
             outcome |= progress_of(progress)
             connection.close(True)
@@ -51,7 +54,7 @@ def simulate(scene: Scene, folder: Path) -> int:
         ledger.close()
     if stop.asked and outcome["status"] != "done":
         outcome["status"] = "interrupted"
-    return conclude(scene, folder, outcome, ledger, parts, clock())
+    return conclude(scene, folder, outcome, coupling, clock())
 
 
 def make_folder(scene: Scene, folder: Path) -> None:
@@ -61,6 +64,7 @@ def make_folder(scene: Scene, folder: Path) -> None:
         *(folder / name for name in OURS),
         *folder.glob("*.vtkhdf"),
         *folder.glob("log/*"),
+        *restart.snapshots(folder),
     ]:
         path.unlink(missing_ok=True)
     (folder / "scene.toml").write_text(dumps(scene.resolved))
@@ -91,8 +95,7 @@ def conclude(
     scene: Scene,
     folder: Path,
     outcome: dict[str, Any],
-    ledger: Ledger,
-    parts: dict[str, Part],
+    coupling: Coupling,
     wall: float,
 ) -> int:
     """Compare with what was expected, write the results, draw, and choose the exit status."""
@@ -103,11 +106,16 @@ def conclude(
         "transport": scene.transport,
         **outcome,
         "expect": results.expectations(found),
-        "ledger": ledger.summary(),
-        "timing": results.timing(parts, wall),
+        "ledger": coupling.ledger.summary(),
+        "timing": results.timing(coupling.parts, wall, coupling.mapping),
         "machine": results.machine(),
         "command": shlex.join(["quintet", *sys.argv[1:]]),
     }
+    if outcome["status"] == "done":
+        restart.remove(restart.snapshots(folder))
+    elif restart.snapshots(folder):
+        content["resume"] = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
+        print(f"to go on: {content['resume']}", file=sys.stderr)
     results.write(folder, content)
     if outcome["status"] == "failed":
         return results.FAILED

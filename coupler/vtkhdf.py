@@ -168,6 +168,17 @@ class VtkHdf:
             _extend(group["Offsets"], want + 1, have + 1)
 
 
+def go_on(path: Path, time: float) -> VtkHdf:
+    """Go on with a file after its steps up to a time [s]; later ones are forgotten."""
+    before = path.replace(path.with_suffix(".before"))
+    made = VtkHdf(path)
+    for k, when in enumerate(times(before)):
+        if when <= time:
+            made.append(*read_step(before, k))
+    before.unlink()
+    return made
+
+
 def _require_points(arrays: dict[str, Array]) -> None:
     points = arrays.get("points")
     if points is None or points.ndim != 2 or points.shape[1] != 3:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from quintet.coupler.record import Recorder
     from quintet.coupler.vtkhdf import VtkHdf
 
+OFTEN = 600.0  # s of wall time between two snapshots, where the scene does not say how often
 EVERY = 5.0  # s between two lines of progress where there is no terminal
 
 
@@ -31,7 +32,7 @@ class Stop:
     asked = False
 
     def __init__(self) -> None:
-        self._starter = int(os.environ.get(STARTER, "0"))  # of an MPI job: who cleans up after it
+        self._starter = int(os.environ.get(STARTER, "0"))  # who cleans up after it
 
     def __call__(self) -> bool:
         """Tell whether to end."""
@@ -58,8 +59,8 @@ class Stop:
 class Meter:
     """Progress with speed, time left and the ledger's residual: a bar, or a line now and then."""
 
-    def __init__(self, windows: int, end: float) -> None:
-        self.windows, self.end = windows, end
+    def __init__(self, windows: int, end: float, first: int = 0) -> None:
+        self.windows, self.end, self.first = windows, end, first
         self._began = self._told = time.monotonic()
         self._bar = self._make_bar() if sys.stdout.isatty() else None
         if self._bar:
@@ -79,7 +80,7 @@ class Meter:
     def show(self, window: int, residual: float) -> None:
         """Tell how far it is."""
         now = time.monotonic()
-        speed = window / max(now - self._began, 1e-9)
+        speed = (window - self.first) / max(now - self._began, 1e-9)
         if self._bar:
             texts = {"speed": f"{speed:.3g} windows/s", "residual": f"momentum {residual:.0e}"}
             self._bar.update(self._task, completed=window, **texts)  # type: ignore[arg-type]
@@ -101,32 +102,49 @@ class Meter:
 class Writer:
     """Writes recording, views and ledger of a run, and moves the meter."""
 
-    def __init__(self, scene: Scene, folder: Path, stop: Stop, run: str) -> None:
-        self.scene, self.folder, self.stop, self.run = scene, folder, stop, run
-        self.done, self.time = 0, 0.0  # windows, s
+    def __init__(self, scene: Scene, folder: Path, stop: Stop, first: int | None = None) -> None:
+        """Write from the start, or go on after the first windows of a run that was there."""
+        self.scene, self.folder, self.stop, self.first = scene, folder, stop, first
+        self.done, self.time = first or 0, 0.0  # windows, s
+        self._kept = time.monotonic()  # when the last snapshot was made
+        self._snapshots = 0  # windows between two; 0: by the clock
         self._every = 0  # windows between two views
+        self._often = 0  # windows between two rows of the ledger
         self._recorder: Recorder | None = None
         self._meter: Meter | None = None
         self._files: dict[str, VtkHdf] = {}
+        self._began = 0.0  # s, simulated
 
     def begin(self, coupling: Coupling, described: dict[str, Fields], windows: int) -> None:
         """See `Witness.begin`."""
         interval, scene = self.scene.file.output.interval, self.scene
         self._every = max(1, round(interval / coupling.dt)) if interval else 0
+        totals = scene.file.output.totals
+        self._often = max(1, round(totals / coupling.dt)) if totals else 0
+        snapshots = scene.file.output.snapshots
+        self._snapshots = max(1, round(snapshots / coupling.dt)) if snapshots else 0
+        self.time = self._began = self.done * coupling.dt
         if scene.file.output.record:
-            from quintet.coupler.record import Recorder
+            self._recorder = self._recording(described)
+        if self.first is None:
+            self._record(coupling, 0.0)
+            self._note(coupling, 0.0)
+        self._meter = Meter(windows, scene.file.end, self.done)
 
-            text = (self.folder / "scene.toml").read_text()
-            self._recorder = Recorder(self.folder / "recording.h5", self.run, text)
-            for name, one in scene.components.items():
-                self._recorder.component(name, one.gives, described[name])
-        self._record(coupling, 0.0)
-        self._note(coupling, 0.0)
-        self._meter = Meter(windows, scene.file.end)
+    def _recording(self, described: dict[str, Fields]) -> "Recorder":
+        from quintet.coupler.record import NAME, Recorder
+
+        path = self.folder / NAME
+        if self.first is not None:
+            return Recorder.resume(path, self.first + 1)
+        made = Recorder(path, self.folder.name, (self.folder / "scene.toml").read_text())
+        for name, one in self.scene.components.items():
+            made.component(name, one.gives, described[name])
+        return made
 
     def due(self, window: int) -> bool:
         """See `Witness.due`."""
-        return bool(self._every) and (window + 1) % self._every == 0
+        return any(often and (window + 1) % often == 0 for often in (self._every, self._often))
 
     def end_window(self, coupling: Coupling, window: int) -> None:
         """See `Witness.end_window`."""
@@ -134,8 +152,26 @@ class Writer:
         self._record(coupling, self.time)
         if self._every and window % self._every == 0:
             self._note(coupling, self.time)
+        elif self._often and window % self._often == 0:
+            coupling.ledger.note(self.time, dict(coupling.ledger.totals))
         if self._meter:
             self._meter.show(window, coupling.ledger.worst)
+        late = time.monotonic() - self._kept > OFTEN
+        if window % self._snapshots == 0 if self._snapshots else late:
+            self._keep(coupling, window)
+
+    def ends_early(self, coupling: Coupling, window: int) -> None:
+        """See `Witness.ends_early`."""
+        self._keep(coupling, window)
+
+    def _keep(self, coupling: Coupling, window: int) -> None:
+        """Make a snapshot, with all rows written that the run had until then."""
+        from quintet.coupler.restart import save
+
+        if self._recorder:
+            self._recorder.flush()
+        save(coupling, self.scene, self.folder, window)
+        self._kept = time.monotonic()
 
     def wants_end(self) -> bool:
         """See `Witness.wants_end`."""
@@ -157,11 +193,14 @@ class Writer:
         coupling.ledger.note(time, totals)
 
     def _file(self, name: str) -> "VtkHdf":
-        from quintet.coupler.vtkhdf import VtkHdf
+        from quintet.coupler.vtkhdf import VtkHdf, go_on
 
         found = self._files.get(name)
         if found is None:
-            found = self._files[name] = VtkHdf(self.folder / f"{name}.vtkhdf")
+            path = self.folder / f"{name}.vtkhdf"
+            is_there = self.first is not None and path.is_file()
+            found = go_on(path, self._began) if is_there else VtkHdf(path)
+            self._files[name] = found
         return found
 
     def close(self) -> None:

@@ -27,10 +27,22 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True)
+class BenchCase:
+    """A component whose throughput is measured, as a scene would make it."""
+
+    name: str
+    params: dict[str, Any]  # a scene's table for this kind
+    warm: int  # steps before the clock starts: kernels are compiled, lists are made
+    steps: int  # measured, each of stable_dt
+    unit: str  # of the rate: "particle-steps/s"
+
+
+@dataclass(frozen=True, slots=True)
 class Manifest:
     """A kind: its parameters, its ports, and where its class is.
 
-    ``ports`` and ``plan`` are functions of the checked parameters.
+    ``ports`` and ``plan`` are functions of the checked parameters; ``bench`` names a function
+    that returns a tuple of `BenchCase`.
     """
 
     kind: str
@@ -39,6 +51,7 @@ class Manifest:
     component: str  # "module:Class"
     ports: Callable[[Any], Ports]
     plan: Callable[[Any], Plan] | None = None
+    bench: str = ""  # "module:function"
 
     def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
@@ -46,6 +59,10 @@ class Manifest:
         if not (isinstance(found, type) and issubclass(found, Component)):
             raise SceneError(f"kind {self.kind}: {self.component} is not a Component.")
         return found
+
+    def cases(self) -> tuple[BenchCase, ...]:
+        """Benchmarks of this kind, none if it declares none."""
+        return tuple(resolve(self.bench)()) if self.bench else ()
 
 
 def resolve(path: str) -> Any:

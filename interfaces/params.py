@@ -84,7 +84,11 @@ def _names_at(params: Any, path: list[str]) -> list[str]:
     for part in path:
         fields = {f.name: f.type for f in dataclasses.fields(found)}
         found = _inner(fields[part]) if part in fields else found
-    return [f.name for f in dataclasses.fields(found)] if dataclasses.is_dataclass(found) else []
+    return (
+        [f.name.rstrip("_") for f in dataclasses.fields(found)]
+        if dataclasses.is_dataclass(found)
+        else []
+    )
 
 
 def _inner(annotation: Any) -> Any:

@@ -19,7 +19,7 @@ from quintet.interfaces.transport import Line
 
 JOINING = 600.0  # s until every other component has joined
 LINGERING = 10.0  # s
-STARTER = "QUINTET_STARTER"  # set where an MPI job was started on this host: the process that did
+STARTER = "QUINTET_STARTER"  # set where a run was started by another process here: which one
 
 
 def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -> None:

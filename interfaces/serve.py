@@ -58,7 +58,7 @@ class Server:
             "save": self._save,
             "load": self._load,
             "view": self._view,
-            "finish": lambda _: ({}, {}),
+            "finish": lambda _: ({"memory": peak_memory()}, {}),
         }
 
     def handle(self, message: Message) -> Answer:
@@ -90,7 +90,7 @@ class Server:
         return {}, self.outputs.collect(self.component.give())
 
     def _advance(self, message: Message) -> Answer:
-        header, began = message.header, time.perf_counter()
+        header, began, spent = message.header, time.perf_counter(), time.process_time()
         window = float(header["dt"])
         require_finite(message.fields, f"window {header['window']}, received")
         self.inputs.arrive(message.fields, header["ends"], window)
@@ -105,6 +105,7 @@ class Server:
             "handed": self.handed.audit(),
             "totals": self._totals() if header.get("totals") else None,
             "busy": time.perf_counter() - began,
+            "cpu": time.process_time() - spent,
         }
         return answer, fields
 
@@ -181,6 +182,12 @@ class Server:
 
     def _view(self, message: Message) -> Answer:
         return {"totals": self._totals()}, self.component.view()
+
+
+def peak_memory() -> int:
+    """Largest resident memory of this process so far [bytes]."""
+    with open("/proc/self/status") as status:
+        return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
 
 
 def failure(error: BaseException) -> dict[str, Any]:

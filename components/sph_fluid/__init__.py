@@ -57,4 +57,5 @@ MANIFEST = Manifest(
     component="quintet.components.sph_fluid.component:SphFluid",
     ports=_ports,
     plan=_plan,
+    bench="quintet.components.sph_fluid.bench:cases",
 )

@@ -23,7 +23,9 @@ RESULTS = {
     },
     "timing": {
         "wall": 100.0, "compile": 20.0, "exchange": 0.4, "mapping": 0.3,
-        "components": {"water": {"compute": 80.0, "wait": 5.0, "steps": 9000, "items": 61000}},
+        "components": {
+            "water": {"compute": 80.0, "cpu": 150.0, "wait": 5.0, "steps": 9000, "items": 61000},
+        },
     },
     "machine": {"cpu": "x", "cores": 2, "versions": {}},
 }  # fmt: skip
@@ -45,7 +47,7 @@ def test_show_tells_expectations_ledger_and_timing(tmp_path, capsys):
     assert _line(text, "top.x") == ["met", "top.x", "[rms]", "m", "0.0437", "0", "0.05"]
     assert _line(text, "late") == ["not", "met", "late", "s", "-", "1.5", "0.1"]
     assert _line(text, "water-cubes") == ["water-cubes", "1e-15", "2e-14"]
-    assert _line(text, "9000") == ["water", "80", "5", "9000", "61000", "6.862e+06"]
+    assert _line(text, "9000") == ["water", "80", "150", "5", "9000", "61000", "6.862e+06"]
     assert "energy drift 0.01" in text and "exchange 0.4 s" in text
 
 

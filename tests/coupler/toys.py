@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from quintet.interfaces.component import Component, Field, Port, Totals
+from quintet.interfaces.manifest import BenchCase, Manifest
 from quintet.interfaces.params import Count, parameters
 
 NUMBER = (Field("number", (3,), "m"), Field("push", (3,), "N", "impulse"))
@@ -70,13 +71,31 @@ class Toy(Component):
         return {"out.number": self.value.copy(), "out.push": self.push.copy()}
 
     def save(self):
-        return {"value": self.value.copy(), "push": self.push.copy()}
+        state = {"value": self.value, "push": self.push, "steps": np.array(self.steps)}
+        return {name: array.copy() for name, array in state.items()}
 
     def load(self, state):
         self.value, self.push = np.array(state["value"]), np.array(state["push"])
+        self.steps = int(state["steps"])
 
     def totals(self):
         return Totals(mass=1.0)
+
+    def items(self):
+        return self.params.items
+
+
+def cases():
+    return (
+        BenchCase("small", {"items": 7, "pause": 0.005}, 3, 20, "toy-steps/s"),
+        BenchCase("large", {"items": 1_000_000}, 2, 2, "toy-steps/s"),
+    )
+
+
+COUNTED = Manifest(
+    "toys:COUNTED", "A toy to be measured", Toy.Params, "toys:Toy",
+    lambda _: (Toy.takes, Toy.gives), bench="toys:cases",
+)  # fmt: skip
 
 
 class Plain:

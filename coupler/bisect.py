@@ -1,0 +1,48 @@
+"""Bisection of a range with one end where something holds and another where it does not."""
+
+import math
+from collections.abc import Callable, Iterable
+
+
+def middle(one: float, other: float, log: bool) -> float:
+    """Arithmetic or geometric mean."""
+    return math.sqrt(one * other) if log else 0.5 * (one + other)
+
+
+def narrow(
+    known: Iterable[float], holds: Callable[[float], bool], log: bool, accuracy: float
+) -> tuple[float, float] | None:
+    """Narrow the range between the last value that holds and the first that does not.
+
+    Parameters
+    ----------
+    known : iterable of float
+        Values looked at before, from the end that should hold on; both ends are among them.
+    holds : callable
+        Looks at a value; of a known one it must be cheap.
+    accuracy : float
+        Width of what is left, relative to its middle.
+
+    Returns
+    -------
+    (float, float) or None
+        The last value that holds and the first that does not; None where the first known value
+        does not hold, or all do.
+    """
+    good = bad = math.nan
+    for value in known:
+        if not holds(value):
+            bad = value
+            break
+        good = value
+    if math.isnan(good) or math.isnan(bad):
+        return None
+    while abs(bad - good) > accuracy * abs(middle(good, bad, log)):
+        value = middle(good, bad, log)
+        if value in (good, bad):  # nothing lies between
+            break
+        if holds(value):
+            good = value
+        else:
+            bad = value
+    return good, bad

@@ -1,0 +1,110 @@
+"""``[[study]]``: the rungs of a scene's ladder, from coarse and cheap to fine and dear.
+
+    [[study]]
+    label = "coarse"
+    settings = { "components.water.spacing" = 0.03, "window" = 6e-4 }
+    size = "components.water.spacing"
+
+A rung that names a `size` takes part in the observed order of the error against it.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from quintet.interfaces.params import parameters, read, unknown
+
+Table = dict[str, Any]
+Trial = Callable[[Table], tuple[Table, list[str]]]  # settings -> the scene under them, mistakes
+
+
+@parameters
+class RungTable:
+    """One rung as it stands in the file."""
+
+    label: str
+    settings: dict[str, Any]  # by dotted path, on top of the scene
+    size: str = ""  # path of what the order is measured against
+
+
+@dataclass(frozen=True, slots=True)
+class Rung:
+    """One rung, checked."""
+
+    label: str
+    settings: dict[str, Any]
+    size: float | None = None  # smaller is finer; of a whole number, a count, its inverse
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder of its run."""
+        return folder_name(self.label)
+
+
+def folder_name(text: str) -> str:
+    """Text as the name of a folder."""
+    return re.sub(r"[^A-Za-z0-9_.+-]+", "_", text).strip("._") or "_"
+
+
+def read_rungs(given: list[Table], trial: Trial) -> tuple[list[Rung], list[str]]:
+    """Check the ladder of a scene; return its rungs, and every mistake."""
+    found, mistakes, sizes = [], [], set()
+    for number, table in enumerate(given):
+        where = f"study.{table.get('label', number)}"
+        one, wrong = read(RungTable, table, where)
+        mistakes += wrong
+        if one is None:
+            continue
+        under, wrong = trial(one.settings)
+        mistakes += [f"{where}: {mistake}" for mistake in wrong]
+        if one.size and not wrong:
+            size, wrong = _size(where, one.size, under)
+            mistakes += wrong
+            sizes.add(one.size)
+            found.append(Rung(one.label, one.settings, size))
+        else:
+            found.append(Rung(one.label, one.settings))
+    return found, [*mistakes, *_clashes(found, sizes)]
+
+
+def _clashes(found: list[Rung], sizes: set[str]) -> list[str]:
+    mistakes = [
+        f"study: {count} rungs have the label {label}. Give each its own, in letters and digits."
+        for label, count in Counter(rung.folder for rung in found).items()
+        if count > 1
+    ]
+    if len(sizes) > 1:
+        mistakes.append(
+            "study: one size must serve all rungs that name one; found "
+            f"{', '.join(sorted(sizes))}. Name the same, or none."
+        )
+    return mistakes
+
+
+def _size(where: str, path: str, table: Table) -> tuple[float | None, list[str]]:
+    value, wrong = value_at(table, path)
+    if wrong:
+        return None, [f"{where}.size {wrong}"]
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
+        return None, [
+            f"{where}.size {path} must be a positive number; found {value!r}. Name what "
+            "the rungs refine."
+        ]
+    return (1.0 / value if isinstance(value, int) else value), []
+
+
+def value_at(table: Table, path: str) -> tuple[Any, str]:
+    """Find the value at a dotted path of a scene's tables, or say that there is none."""
+    at: Any = table
+    for part in path.split("."):
+        if isinstance(at, list) and part.isdigit() and int(part) < len(at):
+            at = at[int(part)]
+        elif isinstance(at, dict) and part in at:
+            at = at[part]
+        else:
+            known = at if isinstance(at, dict) else map(str, range(len(at or ())))
+            said = unknown(path, part, known if isinstance(at, (dict, list)) else ())
+            return None, said.replace("is not known", "has no value in the scene", 1)
+    return at, ""

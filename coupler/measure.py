@@ -1,0 +1,78 @@
+"""One benchmark case, in a process of its own.
+
+``python -m quintet.coupler.measure KIND NUMBER THREADS FILE`` writes what it found into a file.
+The component is made twice. The first compiles all kernels and is dropped; what the process's
+resident memory grows by until the second has made its lists and come through its first steps is
+the component's own.
+"""
+
+import ctypes
+import gc
+import json
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from quintet.interfaces.component import Component
+from quintet.interfaces.manifest import BenchCase, Manifest, find
+from quintet.interfaces.process import build
+
+
+def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]:
+    """Time one case; return what ``quintet bench --json`` says of it."""
+    order = {"params": case.params, "threads": threads}
+    component = begin(manifest, order)
+    advance(component, case.warm)
+    del component
+    before = resident()
+    component = begin(manifest, order)
+    advance(component, case.warm)
+    grown = resident() - before
+    items = component.items()
+    spent, began = time.process_time(), time.perf_counter()
+    advance(component, case.steps)
+    wall, cpu = time.perf_counter() - began, time.process_time() - spent
+    return {
+        "name": manifest.kind,
+        "case": case.name,
+        "items": items,
+        "threads": threads,
+        "rate": items * case.steps / cpu,  # per second of processor time, that of all threads
+        "wall_rate": items * case.steps / wall,
+        "unit": case.unit,
+        "cpu_seconds": cpu,
+        "wall_seconds": wall,
+        "bytes_per_item": grown / items,
+        "options": {"steps": case.steps, "warm": case.warm, "params": case.params},
+    }
+
+
+def begin(manifest: Manifest, order: dict[str, Any]) -> Component:
+    """Make the component, joined to nothing."""
+    component = build(manifest, order)
+    component.bind({})
+    component.take({})
+    return component
+
+
+def advance(component: Component, steps: int) -> None:
+    """Step so many times, each as far as the state allows."""
+    for _ in range(steps):
+        component.step(component.stable_dt())
+
+
+def resident() -> int:
+    """Resident memory of this process, what was freed given back [bytes]."""
+    gc.collect()
+    ctypes.CDLL(None).malloc_trim(0)
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+if __name__ == "__main__":
+    kind, number, threads, file = sys.argv[1:]
+    known = find(kind)
+    found = measure(known, known.cases()[int(number)], int(threads))
+    Path(file).write_text(json.dumps(found))

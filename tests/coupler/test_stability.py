@@ -1,0 +1,227 @@
+"""A limit that is known exactly is found, with runs on both sides of it told apart."""
+
+import json
+
+import pytest
+from spring_scene import command, found_by, write
+
+from quintet.coupler.bisect import narrow
+from quintet.coupler.invariants import judge
+from quintet.coupler.limits import LimitTable
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import read
+
+STEP = 'parameter = "components.spring.step"\n'
+ENERGY = "energy = { factor = 100.0 }\n"
+INSIDE = 'bounds = [{ component = "spring", field = "motion.position", low = -1.5, high = 1.5 }]\n'
+
+
+def limits(*tables):
+    return "".join(f"[[stability]]\n{table}\n" for table in tables)
+
+
+def test_the_limit_of_leap_frog_is_found_and_both_sides_are_told_apart(tmp_path, capsys):
+    rest = 'from = 0.15\nto = 0.25\nlog = true\npredicted = 0.2\nsource = "2/ω"\nend = 20.0\n'
+    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + ENERGY)))
+    (limit,) = found["limits"]
+    assert status == 0
+    assert limit["found"] == pytest.approx(0.2, rel=0.05) and limit["predicted"] == 0.2
+    assert limit["ratio"] == pytest.approx(limit["found"] / 0.2)
+    assert limit["holds"] < 0.2 < limit["breaks"] < 1.05 * limit["holds"]
+    assert (limit["broke"], limit["state"], limit["source"]) == ("energy", "unstable", "2/ω")
+    assert 4 < len(limit["runs"]) < 8
+    for run in limit["runs"]:
+        assert run["state"] == ("stable" if run["value"] < 0.2 else "unstable")
+    assert json.loads((tmp_path / "all" / "stability.json").read_text()) == found
+    said = capsys.readouterr().out
+    assert "energy: the total energy rose from 50 J" in said and "1.0" in said
+
+
+def test_a_limit_is_found_for_each_value_of_a_second_parameter(tmp_path):
+    rest = 'from = 0.15\nto = 0.45\naccuracy = 0.5\nend = 12.0\nsource = "2/ω"\n'
+    rest += "predicted = [0.2, 0.4]\n"
+    rest += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0] }\n'
+    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + INSIDE)))
+    assert status == 0
+    for limit, mass, exact in zip(found["limits"], (1.0, 4.0), (0.2, 0.4), strict=True):
+        assert limit["against"] == {"components.spring.mass": mass}
+        assert limit["predicted"] == exact and limit["broke"] == "bounds"
+        assert limit["holds"] < exact < limit["breaks"]
+
+
+def test_several_paths_are_scaled_together_and_a_range_may_fall(tmp_path):
+    # k and 1/m: with a step of 0.02 s the limit ω = 100 rad/s is k = 10⁴ N/m, or m = 0.01 kg.
+    paths = 'parameter = ["components.spring.stiffness"]\nfrom = 60.0\nto = 150.0\nlog = true\n'
+    mass = 'parameter = "components.spring.mass"\nfrom = 0.016\nto = 0.007\nlog = true\n'
+    both = limits(paths + ENERGY + "accuracy = 0.5\n", mass + ENERGY + "accuracy = 0.5\n")
+    status, found = found_by("stability", write(tmp_path, both))
+    stiffness, light = found["limits"]
+    assert status == 0 and stiffness["parameter"] == ["components.spring.stiffness"]
+    assert stiffness["holds"] <= 100.0 <= stiffness["breaks"]
+    assert light["holds"] >= 0.01 >= light["breaks"]
+
+
+def test_what_only_misses_its_expectation_is_degraded(tmp_path):
+    rest = 'from = 0.005\nto = 0.3\nlog = true\naccuracy = 0.5\nend = 5.0\nexpectation = ["end"]\n'
+    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + INSIDE)))
+    (limit,) = found["limits"]
+    assert status == 0 and limit["state"] == "unstable"
+    assert limit["holds"] < 0.2 < limit["breaks"]
+    # The error at the end is 0.544 · 1000 dt² / 24, to be within 2e-3.
+    assert limit["degraded"] == pytest.approx(0.0094, rel=0.3)
+    states = [run["state"] for run in limit["runs"]]
+    assert states == sorted(states, key=["stable", "degraded", "unstable"].index)
+    assert set(states) == {"stable", "degraded", "unstable"}
+
+
+def test_a_run_that_fails_is_unstable_whatever_is_asked_for(tmp_path):
+    rest = "from = 0.15\nto = 0.6\naccuracy = 0.5\nend = 200.0\n"
+    status, found = found_by("stability", write(tmp_path, limits(STEP + rest)))
+    (limit,) = found["limits"]
+    assert status == 0 and limit["broke"] == "failed" and "finite" in limit["how"]
+
+
+def test_a_range_without_a_limit_says_so(tmp_path, capsys):
+    both = limits(
+        STEP + "from = 0.01\nto = 0.02\n" + ENERGY,
+        STEP + 'name = "late"\nfrom = 0.3\nto = 0.4\nend = 10.0\n' + ENERGY,
+    )
+    status, found = found_by("stability", write(tmp_path, both))
+    assert status == 1 and [one["found"] for one in found["limits"]] == [None, None]
+    said = " ".join(capsys.readouterr().out.split())
+    assert "holds from 0.01 to 0.02" in said and "at 0.3 already: energy" in said
+
+
+HEAD = "time,name,momentum_residual,kinetic,potential,internal\n"
+
+
+def verdict(folder, rows, status="done", **rules):
+    (folder / "ledger.csv").write_text(HEAD + rows)
+    given = {"parameter": "window", "from": 1.0, "to": 2.0, **rules}
+    limit, mistakes = read(LimitTable, given, "limit")
+    assert not mistakes
+    results = {"status": status, "time": 3.0, "fault": {"cause": "it died"}}
+    return judge(limit, results, folder)
+
+
+def test_the_first_invariant_that_broke_is_told(tmp_path):
+    rows = "0,link,1e-16,,,\n0,a,,1,1,0\n0,b,,1,0,0\n1,link,1e-3,,,\n1,a,,4,1,0\n1,b,,1,0,0\n"
+    rules = {"energy": {"amount": 2.5}, "momentum": 1e-9}
+    assert verdict(tmp_path, rows).state == "stable"
+    assert verdict(tmp_path, rows, energy={"amount": 3.5}).state == "stable"
+    assert verdict(tmp_path, rows, energy={"factor": 1.5}).how.endswith("from 3 J to 6 J")
+    assert verdict(tmp_path, rows, "failed", **rules).broke == "energy"
+    later = rows.replace("1,link,1e-3", "1,link,1e-16") + "2,link,1e-3,,,\n2,a,,1,1,0\n"
+    found = verdict(tmp_path, later, "failed", momentum=1e-9)
+    assert (found.broke, found.time) == ("momentum", 2.0)
+    found = verdict(tmp_path, rows, "failed")
+    assert (found.state, found.broke, found.how, found.time) == ("unstable", "failed", "it died", 3)
+    assert "takes too long" in verdict(tmp_path, rows, "stalled").how
+
+
+def test_energies_that_nobody_tells_cannot_be_judged(tmp_path):
+    with pytest.raises(SceneError, match=r"all say 0 J at all times. Give it totals\(\), or use"):
+        verdict(tmp_path, "0,a,,0,0,0\n1,a,,0,0,0\n", "done", energy={"factor": 2.0})
+
+
+def test_energies_that_are_not_finite_break(tmp_path):
+    for value in ("nan", "inf"):
+        rows = f"0,a,,1,0,0\n1,a,,{value},0,0\n"
+        assert verdict(tmp_path, rows, energy={"factor": 2.0}).broke == "energy"
+
+
+@pytest.mark.parametrize("log", [False, True])
+@pytest.mark.parametrize("ends", [(1.0, 100.0), (100.0, 1.0)])
+def test_bisection_brackets_what_it_looks_for(log, ends):
+    def holds(value):
+        return value < 7.3 if ends[0] < ends[1] else value > 7.3
+
+    good, bad = narrow(ends, holds, log, 0.01)
+    assert holds(good) and not holds(bad) and abs(bad - good) <= 0.01 * 7.4
+    assert narrow((1.0, 2.0), lambda _: True, log, 0.01) is None
+    assert narrow((1.0, 2.0), lambda _: False, log, 0.01) is None
+
+
+RANGE = "from = 0.1\nto = 0.3\n"
+WRONG = {
+    "unknown key": (STEP + RANGE + "ende = 1.0", "0.ende is not known. Did you mean end?"),
+    "misspelt from": (
+        STEP + "form = 0.1\nto = 0.3",
+        "0.form is not known. Did you mean from?",
+        "0.from is needed. Add from to it.",
+    ),
+    "unknown path": (
+        'parameter = "components.spring.stp"\n' + RANGE,
+        "0: components.spring.stp is not known. Did you mean step?",
+    ),
+    "unknown scaled path": (
+        'parameter = ["components.spring.stp"]\n' + RANGE,
+        "0: components.spring.stp has no value in the scene. Did you mean step?",
+    ),
+    "scaled text": (
+        'parameter = ["name"]\n' + RANGE,
+        "0: name must be a number to be scaled; found 'spring'. Name another.",
+    ),
+    "end of the range": (
+        STEP + "from = 0.1\nto = -0.3",
+        "0: components.spring.step should be greater than 0; found -0.3. Correct it.",
+    ),
+    "no range": (STEP + "from = 0.1\nto = 0.1", "0: from and to must differ; both are 0.1."),
+    "log": (
+        STEP + "from = -0.1\nto = 0.1\nlog = true",
+        "0: log needs positive ends; found -0.1 and 0.1. Remove log.",
+    ),
+    "accuracy": (
+        STEP + RANGE + "accuracy = 0.0",
+        "0.accuracy should be greater than 0; found 0.0. Correct it.",
+    ),
+    "no source": (STEP + RANGE + "predicted = 1.0", "0: predicted needs a source."),
+    "predictions": (
+        STEP + RANGE + 'predicted = [1.0, 2.0]\nsource = "x"',
+        "0: predicted must be one number, or one for each of against.values; found 2 for 0.",
+    ),
+    "against": (
+        STEP + RANGE + 'against = { parameter = "components.spring.mas", values = [1.0] }',
+        "0: components.spring.mas is not known. Did you mean mass?",
+    ),
+    "energy": (
+        STEP + RANGE + "energy = { factor = 0.5 }",
+        "0: energy.factor must be above 1; found 0.5. Raise it.",
+    ),
+    "momentum": (
+        STEP + RANGE + "momentum = 1e-9",
+        "0: momentum is that of links; the scene has none. Remove it.",
+    ),
+    "expectation": (
+        STEP + RANGE + 'expectation = ["ende"]',
+        "0: expectation ende is not known. Did you mean end?",
+    ),
+    "bounds": (
+        STEP + RANGE + 'bounds = [{ component = "spring", field = "motion.positon", low = 0.0 }]',
+        "0: bounds.field motion.positon is not known. Did you mean motion.position?",
+    ),
+    "bounds axis": (
+        STEP + RANGE + 'bounds = [{ component = "spring", field = "motion.position", axis = 3 }]',
+        "0: bounds.axis must be below 3; found 3.",
+        "0: bounds must have low or high; found neither. Give one.",
+    ),
+    "windows": (
+        'parameter = "window"\nfrom = 0.01\nto = 0.1',
+        "0: end must be 20 windows or more, as windows are whole; found 1 s for windows up to "
+        "0.1 s. Raise end.",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_limit_is_refused_with_the_scene(tmp_path, capsys, case):
+    text, *sentences = WRONG[case]
+    assert command("check", write(tmp_path, limits(text))) == 2
+    said = capsys.readouterr().err
+    for sentence in sentences:
+        assert f"quintet: scene.toml: stability.{sentence}\n" in said
+
+
+def test_a_scene_without_limits_says_so(tmp_path, capsys):
+    assert command("stability", write(tmp_path)) == 2
+    assert "Add a [[stability]] for each." in capsys.readouterr().err

@@ -1,0 +1,69 @@
+"""The benchmark of a component counts its own steps, items and processor time, and no others."""
+
+import json
+
+import pytest
+import toys
+
+from quintet.coupler.cli import main
+from quintet.interfaces.manifest import find, known_kinds
+from quintet.interfaces.params import read
+
+KIND = "toys:COUNTED"
+KEYS = {"name", "case", "items", "threads", "rate", "unit", "cpu_seconds", "wall_seconds"}
+
+
+def bench(*arguments):
+    with pytest.raises(SystemExit) as ended:
+        main(["bench", *map(str, arguments)])
+    return ended.value.code
+
+
+@pytest.fixture
+def beside_the_toys(monkeypatch):
+    monkeypatch.chdir(toys.__file__.rpartition("/")[0])
+
+
+def test_a_case_is_measured_in_steps_of_its_items(tmp_path, capsys, beside_the_toys):
+    file = tmp_path / "found.json"
+    assert bench(KIND, "--case", "small", "--threads", 1, "--json", file) == 0
+    (found,) = json.loads(file.read_text())
+    assert found.keys() >= {*KEYS, "bytes_per_item", "options", "wall_rate"}
+    assert (found["case"], found["items"], found["unit"]) == ("small", 7, "toy-steps/s")
+    assert found["options"] == {"steps": 20, "warm": 3, "params": {"items": 7, "pause": 0.005}}
+    # Each step sleeps for 5 ms: by the clock they take that long, on the processor far less.
+    assert 0.1 <= found["wall_seconds"] and found["cpu_seconds"] < found["wall_seconds"]
+    assert found["wall_rate"] == pytest.approx(7 * 20 / found["wall_seconds"])
+    assert found["rate"] == pytest.approx(7 * 20 / found["cpu_seconds"])
+    assert "toy-steps/s" in capsys.readouterr().out
+
+
+def test_memory_is_what_the_component_holds(tmp_path, beside_the_toys):
+    file = tmp_path / "found.json"
+    assert bench(KIND, "--case", "large", "--threads", 1, "--json", file) == 0
+    (found,) = json.loads(file.read_text())
+    # A million items of two arrays of three doubles; a step makes a third, and drops one.
+    assert found["bytes_per_item"] == pytest.approx(48.0, rel=0.05)
+
+
+def test_more_threads_are_compared_with_one(tmp_path, capsys, beside_the_toys):
+    assert bench(KIND, "--case", "small", "--threads", 1, "--threads", 2) == 0
+    row = capsys.readouterr().out.splitlines()[-1].split()
+    assert row[:3] == ["small", "7", "2"] and 0.5 < float(row[5]) < 2.0
+
+
+def test_what_cannot_be_measured_is_refused(capsys, beside_the_toys):
+    assert bench(KIND, "--case", "smal") == 2
+    assert "case smal is not known. Did you mean small?" in capsys.readouterr().err
+    assert bench("toys:Toy") == 2
+    assert "it declares no case. Name a function as Manifest.bench." in capsys.readouterr().err
+    assert bench(KIND, "--threads", 0) == 2
+    assert "--threads must be a whole number from 1; found 0." in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", [kind for kind in known_kinds() if find(kind).bench])
+def test_the_cases_of_every_kind_are_valid(kind):
+    known = find(kind)
+    assert known.cases()
+    for case in known.cases():
+        assert not read(known.params, case.params, case.name)[1]
