@@ -27,15 +27,15 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 
 from quintet.components.dem_bodies import build
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
-from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
 from quintet.interfaces.manifest import Manifest, Plan, Ports
 from quintet.interfaces.ports import LOAD, MOTION
 
 __all__ = ["MANIFEST", "DemBodiesParams"]
 
 
-def _ports(_: DemBodiesParams) -> Ports:
-    return (LOAD,), (MOTION,)
+def _ports(params: DemBodiesParams) -> Ports:
+    return (LOAD,), (MOTION, CONTACT) if params.contact_forces else (MOTION,)
 
 
 def _plan(params: DemBodiesParams) -> Plan:

@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.dem_bodies import build, kernels, search
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
-from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
 from quintet.components.dem_bodies.state import empty_contacts
 from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
@@ -38,10 +38,10 @@ class DemBodies(Component):
     """
 
     takes = (LOAD,)
-    gives = (MOTION,)
 
     def __init__(self, params: DemBodiesParams) -> None:
         self.params = params
+        self.gives = (MOTION, CONTACT) if params.contact_forces else (MOTION,)
         self.solids = [build.solid(body) for body in params.bodies]
         self.model = build.model(params, self.solids)
         self.state = build.state(params, self.solids)
@@ -126,14 +126,18 @@ class DemBodies(Component):
         )
 
     def give(self) -> Fields:
-        """Copy out the motion of all bodies."""
+        """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
         s, m = self.state, self.count
-        return {
+        motion = {
             "motion.position": s.position[:m].copy(),
             "motion.velocity": s.velocity[:m].copy(),
             "motion.orientation": s.orientation[:m].copy(),
             "motion.angular_velocity": s.angular_velocity[:m].copy(),
         }
+        if not self.params.contact_forces:
+            return motion
+        mean = 0.5 * (s.before + s.contact)  # gives the change of momentum to rounding
+        return {**motion, "contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
 
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, what was added up."""

@@ -7,7 +7,9 @@ import numpy as np
 from pydantic import Field
 
 from quintet.components.dem_bodies import placement
+from quintet.interfaces.component import Port
 from quintet.interfaces.params import (
+    Count,
     NotNegative,
     Number,
     Positive,
@@ -15,6 +17,7 @@ from quintet.interfaces.params import (
     Vector,
     parameters,
 )
+from quintet.interfaces.ports import LOAD
 
 Poisson = Annotated[float, Field(ge=0, le=0.5)]
 # Below 0.01 the damping would be stiffer than the contact itself.
@@ -24,6 +27,8 @@ SIZES = {
     "sphere": ("diameter",),
     "spheres": ("centres", "radii"),
 }
+# What all contacts of a body do to it; the last item is what the planes together bear.
+CONTACT = Port("contact", LOAD.fields)
 
 
 @parameters
@@ -55,6 +60,9 @@ class Body:
 
     The centres may be given in any frame along the body's axes: they are moved so that the
     centre of mass of the union is the origin. Give either `density` or `mass`.
+
+    `copies` sets a lattice of such bodies: the first at `position`, others `apart` from it. They
+    count as bodies in the lattice's order, x slowest; `scatter` breaks its regularity.
     """
 
     shape: Literal["box", "sphere", "spheres"]
@@ -70,6 +78,10 @@ class Body:
     orientation: tuple[Number, Number, Number, Number] = (1.0, 0.0, 0.0, 0.0)  # w, x, y, z
     velocity: Vector = (0.0, 0.0, 0.0)  # m/s
     angular_velocity: Vector = (0.0, 0.0, 0.0)  # rad/s, world axes
+    copies: tuple[Count, Count, Count] | None = None  # along x, y, z; x changes slowest
+    apart: PositiveVector | None = None  # m, from one copy to the next
+    scatter: NotNegative = 0.0  # m, by which each copy at most is moved along each axis
+    seed: int = 0  # of the scatter
 
     @property
     def round(self) -> float:
@@ -99,10 +111,12 @@ class DemBodiesParams:
     speed: Positive = 1.0  # m/s, of the impacts to be expected
     steps_per_contact: Annotated[int, Field(ge=10)] = 40  # in the duration of such an impact
     longest_step: Positive = 1e-3  # s, while nothing is about to touch
+    contact_forces: bool = False  # whether they are given, as port `contact`
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be run."""
+        """Refuse what cannot be run, and put every copy among the bodies."""
         for k, body in enumerate(self.bodies):
+            check_copies(f"bodies[{k}]", body)
             check_body(f"bodies[{k}]", body)
             self._known(f"bodies[{k}].material", body.material)
         for k, plane in enumerate(self.planes):
@@ -115,6 +129,7 @@ class DemBodiesParams:
         for k, pair in enumerate(self.pairs):
             for name in pair.between:
                 self._known(f"pairs[{k}].between", name)
+        object.__setattr__(self, "bodies", placement.copied(self.bodies))
         placement.check(self.bodies, self.planes)
 
     def _known(self, where: str, name: str) -> None:
@@ -161,3 +176,17 @@ def check_body(where: str, body: Body) -> None:
                 f"{where}: spheres need one radius for each centre, and at least one; found "
                 f"{len(body.centres)} centres and {len(body.radii)} radii. Complete them."
             )
+
+
+def check_copies(where: str, body: Body) -> None:
+    """Refuse copies that have no place of their own."""
+    if (body.copies is None) != (body.apart is None):
+        raise ValueError(
+            f"{where}: copies and apart belong together; found copies {body.copies}, apart "
+            f"{body.apart}. Give both or none."
+        )
+    if body.copies is None and body.scatter > 0.0:
+        raise ValueError(
+            f"{where}.scatter is for copies; found {body.scatter:g} m on a single body. "
+            "Leave it out, or give copies."
+        )

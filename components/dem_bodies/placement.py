@@ -1,6 +1,7 @@
 """Where bodies stand at the start: none inside another, none below a plane."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,24 @@ if TYPE_CHECKING:
 ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what touches exactly
 
 Ball = tuple[Array, float]  # centre (3,) m, radius m
+
+
+def copied(bodies: "Sequence[Body]") -> "tuple[Body, ...]":
+    """Put the copies of each body in its place, on their lattice."""
+    return tuple(one for body in bodies for one in copies(body))
+
+
+def copies(body: "Body") -> "Iterator[Body]":
+    """One body, or all that stand on its lattice."""
+    if body.copies is None:
+        yield body
+        return
+    numbers = np.stack(np.meshgrid(*map(np.arange, body.copies), indexing="ij"), axis=-1)
+    places = np.array(body.position) + numbers.reshape(-1, 3) * np.array(body.apart)  # (n, 3) m
+    random = np.random.default_rng(body.seed)
+    places += body.scatter * random.uniform(-1.0, 1.0, places.shape)
+    for x, y, z in places.tolist():
+        yield replace(body, position=(x, y, z), copies=None, apart=None, scatter=0.0)
 
 
 def rotation(orientation: tuple[float, float, float, float]) -> Array:
