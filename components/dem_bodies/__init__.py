@@ -1,4 +1,4 @@
-"""Rigid bodies in frictional contact: spheres, rounded boxes, clumps of spheres, and planes.
+"""Rigid bodies in frictional contact: spheres, rounded boxes, clumps and planes.
 
     m dv/dt = Σ F + m g + load,   dL/dt = Σ r × F + torque,   ω = R I⁻¹ Rᵀ L,   dq/dt = ½ (0, ω) ∘ q
     F_n = 4/3 E* √R* δ^{3/2} + 2√(5/6) ζ √(S_n m*) dδ/dt ≥ 0          Hertz, damped

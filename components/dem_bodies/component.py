@@ -16,7 +16,8 @@ from quintet.interfaces.ports import LOAD, MOTION
 
 SKIN = 0.4  # over the smallest contact radius
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
-SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0}  # as ports.MOTION gives them; 2 is our own
+# As ports.MOTION gives them; 2 is our own.
+SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
 
 
 @dataclass(slots=True)
@@ -54,7 +55,7 @@ class DemBodies(Component):
         self._move(0.0)
 
     def describe(self) -> Fields:
-        """State shapes, sizes and masses; a clump is shape 2 with the box that holds it."""
+        """State shapes, sizes, masses; a clump of any kind is shape 2 with the box that holds it."""
         return {
             "motion.shape": np.array([SHAPES[body.shape] for body in self.params.bodies]),
             "motion.size": np.array([one.size for one in self.solids]),

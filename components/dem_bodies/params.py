@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from quintet.components.dem_bodies import placement
+from quintet.components.dem_bodies.agglomerate import Agglomerate, agglomerate
 from quintet.interfaces.component import Port
 from quintet.interfaces.params import (
     Count,
@@ -26,6 +27,7 @@ SIZES = {
     "box": ("size",),
     "sphere": ("diameter",),
     "spheres": ("centres", "radii"),
+    "agglomerate": ("file", "dim", "radius"),
 }
 # What all contacts of a body do to it; the last item is what the planes together bear.
 CONTACT = Port("contact", LOAD.fields)
@@ -59,17 +61,23 @@ class Body:
     """One rigid body: `size` for a box, `diameter` for a sphere, `centres` and `radii` for spheres.
 
     The centres may be given in any frame along the body's axes: they are moved so that the
-    centre of mass of the union is the origin. Give either `density` or `mass`.
+    centre of mass of the union is the origin. An agglomerate is the shape in a `file`, covered by
+    spheres of one `radius` on a lattice with `dim` places along its longest edge; its centre of
+    mass is the origin too. Give either `density` or `mass`.
 
     `copies` sets a lattice of such bodies: the first at `position`, others `apart` from it. They
     count as bodies in the lattice's order, x slowest; `scatter` breaks its regularity.
     """
 
-    shape: Literal["box", "sphere", "spheres"]
+    shape: Literal["box", "sphere", "spheres", "agglomerate"]
     size: PositiveVector | None = None  # m, edges
     diameter: Positive | None = None  # m
     centres: tuple[Vector, ...] | None = None  # m
     radii: tuple[Positive, ...] | None = None  # m
+    file: str | None = None  # STL, OBJ, PLY, or voxels as .npy; beside the scene
+    scale: Positive = 1.0  # m, that one unit of length in the file, or one voxel, stands for
+    dim: Annotated[int, Field(ge=2)] | None = None
+    radius: Positive | None = None  # m
     rounding: Positive | None = None  # m, radius of a box's edges; 5 % of the smallest edge
     density: Positive | None = None  # kg/m3
     mass: Positive | None = None  # kg
@@ -88,6 +96,14 @@ class Body:
         """Radius of a box's edges [m]."""
         assert self.size is not None
         return 0.05 * min(self.size) if self.rounding is None else self.rounding
+
+    @property
+    def agglomerate(self) -> Agglomerate | None:
+        """What the file, dim and radius make, of a body that is an agglomerate."""
+        if self.file is None:
+            return None
+        assert self.dim is not None and self.radius is not None
+        return agglomerate(self.file, self.scale, self.dim, self.radius)
 
 
 @parameters
@@ -143,7 +159,7 @@ class DemBodiesParams:
 def check_body(where: str, body: Body) -> None:
     """Refuse a body whose description is incomplete or contradicts itself."""
     wanted = SIZES[body.shape]
-    known = {"size", "diameter", "centres", "radii"}
+    known = {name for names in SIZES.values() for name in names}
     found = sorted(name for name in known if getattr(body, name) is not None)
     if found != sorted(wanted):
         raise ValueError(
@@ -165,6 +181,15 @@ def check_body(where: str, body: Body) -> None:
         raise ValueError(
             f"{where}.rounding is for boxes; found it on a {body.shape}. Leave it out."
         )
+    if body.scale != 1.0 and body.file is None:
+        raise ValueError(
+            f"{where}.scale is for what is read from a file; found it on a {body.shape}. "
+            "Leave it out."
+        )
+    try:
+        body.agglomerate  # noqa: B018  (the mistakes that are in the file)
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}") from error
     if body.size is not None and not body.round < 0.5 * min(body.size):
         raise ValueError(
             f"{where}.rounding must be less than half the smallest edge, "
