@@ -2,15 +2,16 @@
 
 Centres stand on a lattice of `dim` places along the longest edge of the box that holds the shape,
 set in by R, so that the outermost spheres touch its faces from within. Along the other edges
-there are as few places as leave them no further apart. Of these centres are kept
+there are as few places as leave them no further apart. Of these centres are kept, the first first,
+and none that is closer to a kept one than half the lattice's distance:
 
-    - those whose depth below the surface is R to R + one distance of the lattice: the outermost
-      layer. What lies deeper touches nothing, as spheres of one layer overlap or touch;
-    - those of the next layer out, moved along the normal to the depth R, which gives curved and
-      slanted faces spheres that touch them too. Where two come closer than half the lattice's
-      distance, one is left out.
+    - those that lie at the depth R below the surface;
+    - those nearer to the surface or a little outside, moved along the normal to the depth R, so
+      that spheres touch curved and slanted faces and those that fall between two places;
+    - those up to one distance of the lattice deeper. What lies deeper still touches nothing, as
+      spheres of one layer overlap or touch.
 
-Mass, centre and inertia are those of the shape itself, exact for what the file describes, not those
+Parts of a shape that are thinner than 2 R get no spheres. Mass, centre and inertia are those of the shape itself, exact for what the file describes, not those
 of the spheres, which overlap and leave corners empty.
 """
 
@@ -24,6 +25,7 @@ from quintet.components.dem_bodies.shapes import Shape, inside, nearest, read
 from quintet.interfaces.component import Array
 
 MOST = 2000  # spheres of one body
+PLACES = 15  # of the lattice for each sphere, at most; more would take long to sort out
 ROUNDS = 4  # in which a centre is moved to its depth
 CLOSE = 1e-3  # of R, by which a depth may differ
 
@@ -58,19 +60,29 @@ def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate
     require_fit(file, scale, size, dim, radius)
     apart = (size.max() - 2.0 * radius) / (dim - 1)
     counts = np.ceil((size - 2.0 * radius) / apart - 1e-9).astype(int) + 1
+    require_few(file, dim, radius, int(counts.prod()) // PLACES)
     axes = [
         np.linspace(a + radius, b - radius, n) if n > 1 else np.array([0.5 * (a + b)])
         for a, b, n in zip(low, high, counts, strict=True)
     ]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     centres = covering(places, shape, radius, apart)
-    if not 1 <= len(centres) <= MOST:
+    require_few(file, dim, radius, len(centres))
+    if not len(centres):
         raise ValueError(
-            f"file {file}: an agglomerate must have 1 to {MOST} spheres; dim {dim} and radius "
-            f"{radius:g} m give {len(centres)}. "
-            + ("Make dim smaller." if len(centres) else "Make radius smaller.")
+            f"file {file}: the shape must have room for a sphere within; at radius {radius:g} m "
+            "it has none. Make radius smaller."
         )
     return Agglomerate(shape.volume, shape.inertia, centres - shape.centre, radius, size)
+
+
+def require_few(file: str, dim: int, radius: float, count: int) -> None:
+    """Refuse more spheres than are of use to a body."""
+    if count > MOST:
+        raise ValueError(
+            f"file {file}: an agglomerate must have at most {MOST} spheres; dim {dim} and radius "
+            f"{radius:g} m give more. Make dim smaller."
+        )
 
 
 def require_fit(file: str, scale: float, size: Array, dim: int, radius: float) -> None:
@@ -98,10 +110,11 @@ def covering(places: Array, shape: Shape, radius: float, apart: float) -> Array:
     near = away < radius + apart * (1.0 - CLOSE)  # others are too deep or outside
     places, foot = places[near], foot[near]
     depth = signed(places, away[near], shape)
-    deep = depth >= radius * (1.0 - CLOSE)
-    outer = ~deep & (depth > radius - apart)
-    kept = places[deep]
-    for centre in moved_in(places[outer], foot[outer], depth[outer], shape, radius):
+    above, deep = depth < radius * (1.0 - CLOSE), depth > radius * (1.0 + CLOSE)
+    outer = above & (depth > radius - apart)
+    moved = moved_in(places[outer], foot[outer], depth[outer], shape, radius)
+    kept = np.zeros((0, 3))
+    for centre in np.concatenate([places[~above & ~deep], moved, places[deep]]):
         if not len(kept) or np.linalg.norm(kept - centre, axis=1).min() > 0.5 * apart:
             kept = np.vstack([kept, centre])
     return kept

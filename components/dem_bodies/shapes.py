@@ -50,12 +50,14 @@ def surface(path: Path, scale: float) -> Shape:
     try:
         mesh = trimesh.load_mesh(path)
         corners = np.asarray(mesh.triangles, np.float64)
+        if not len(corners):
+            raise ValueError("no triangles")
     except Exception as error:  # of any kind: each format has its own
         raise ValueError(
             f"file {path.name} must be a surface of triangles (STL, OBJ, PLY) or an array of "
             f"voxels (.npy); reading it found {type(error).__name__}: {error}. Convert it."
         ) from error
-    if not (len(corners) and mesh.is_watertight and mesh.is_winding_consistent):
+    if not (mesh.is_watertight and mesh.is_winding_consistent):
         raise ValueError(
             f"file {path.name} must be a closed surface whose triangles all look outwards; found "
             f"{open_edges(mesh)} edges of {len(corners)} triangles without a partner. Close it, as "
@@ -118,7 +120,7 @@ def sides(cells: Array, axis: int, side: int) -> Array:
 
 
 def inside(points: Array, triangles: Array) -> Array:
-    """Whether points (n, 3) lie within a surface: a ray along x leaves it once more than it enters."""
+    """Whether points (n, 3) lie in a surface: a ray along x leaves it once more than it enters."""
     low, high = triangles[:, :, 1:].min(axis=1), triangles[:, :, 1:].max(axis=1)
     # A little off the lattice, so that no ray meets an edge.
     aside = AWRY * float(np.ptp(triangles, axis=(0, 1)).max()) * np.sqrt([2.0, 3.0])
