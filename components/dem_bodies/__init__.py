@@ -15,8 +15,13 @@ rounded boxes) and where two edges cross; that is all that convex polyhedra can 
 clumps touch boxes by their exact distance. Contacts along an edge or face thus need no row of
 small spheres, whose bumps would add to the friction.
 
+An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
+cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.
+
 Velocity Verlet, of second order also with dampers: their velocities are foreseen at the end of
-the step. Angular momentum is advanced in world axes, so that it is exact for a free body.
+the step. Angular momentum is advanced in world axes, so that it is exact for a free body. The
+step is a share of a contact's duration, and shorter where many contacts hold one body, as their
+springs and dampers add up.
 
 Papers: Hertz, J. reine angew. Math. 92 (1881) 156; Mindlin & Deresiewicz, J. Appl. Mech. 20 (1953)
 327; Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239 (damping); Antypov & Elliott, EPL 94

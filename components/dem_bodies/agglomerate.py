@@ -11,8 +11,9 @@ and none that is closer to a kept one than half the lattice's distance:
     - those up to one distance of the lattice deeper. What lies deeper still touches nothing, as
       spheres of one layer overlap or touch.
 
-Parts of a shape that are thinner than 2 R get no spheres. Mass, centre and inertia are those of the shape itself, exact for what the file describes, not those
-of the spheres, which overlap and leave corners empty.
+Parts of a shape that are thinner than 2 R get no spheres. Mass, centre and inertia are those of the
+shape itself, exact for what the file describes, not those of the spheres, which overlap and leave
+corners empty.
 """
 
 import math

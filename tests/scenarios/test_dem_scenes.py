@@ -40,7 +40,9 @@ def test_spheres_settle_into_a_random_packing(tmp_path: Path) -> None:
     assert kinetic[-1] < 1e-6 * kinetic.max()
     i, j = cKDTree(x).query_pairs(d, output_type="ndarray").T
     overlap = d - np.linalg.norm(x[i] - x[j], axis=1)  # m
-    # No pair bears more than the column of spheres above it: Hertz's law of that weight.
+    # By Hertz's law of the weight that stands on one sphere of the floor. Forces in a packing fall
+    # off as exp(-1.5 f / mean) (Mueth, Jaeger & Nagel, Phys. Rev. E 57 (1998) 3164): of some
+    # thousands none is above 8.
     modulus, column = 2e6 / (2.0 * 0.91), 9.81 * mass.sum() * d**2 / (box[0] * box[1])
     deepest = (0.75 * column / (modulus * np.sqrt(0.25 * d))) ** (2.0 / 3.0)
     assert overlap.mean() < deepest
