@@ -8,7 +8,7 @@ from quintet.components.dem_bodies.state import EDGE, SPHERE, Numbers, Whole
 from quintet.components.shared.rotations import PURE
 
 DAMPING = 2.0 * math.sqrt(5.0 / 6.0)  # as in laws: damper over ζ √(S m*)
-SHARE = 0.5  # of the limits; the sums below may be short by a body's neighbours
+SHARE = 0.75  # of the limits: the sums leave out how neighbours move
 
 
 @njit(**PURE)

@@ -138,6 +138,18 @@ def test_many_dampers_on_one_body_are_stable():
     assert np.abs(body.give()["motion.velocity"]).max() < 1e-9
 
 
+def test_damped_balls_in_a_heap_come_to_rest():
+    """Each has up to twelve dampers on it, every one of which would be stable alone."""
+    walls = [([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])]
+    walls += [([0.041, 0.0, 0.0], [-1.0, 0.0, 0.0]), ([0.0, 0.041, 0.0], [0.0, -1.0, 0.0])]
+    planes = [FLOOR] + [{"point": p, "normal": n, "material": "a"} for p, n in walls]
+    ball = sphere([0.0055, 0.0055, 0.006], 0.01, copies=[4, 4, 8], apart=[0.0101] * 3)
+    stuff = {"a": material(young=2e6, restitution=0.05, friction=0.3)}
+    heap = build([ball | {"scatter": 2e-5}], stuff, planes=planes, speed=0.5)
+    run(heap, 0.4)
+    assert np.median(np.linalg.norm(heap.give()["motion.velocity"], axis=1)) < 1e-5
+
+
 def test_a_damped_stack_of_cubes_stands_still():
     bodies = [box([0.0, 0.0, 0.075 + 0.15 * k]) for k in range(4)]
     stuff = {"a": material(young=3e9, restitution=0.05, friction=0.4)}
