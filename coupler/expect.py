@@ -41,7 +41,7 @@ class Expectation:
     name: str
     component: str
     field: str  # "port.field"
-    item: Index = 0
+    item: Index | Literal["mean", "max", "min"] = 0  # its number, or what to take of all
     axis: Index | None = None  # of a vector; None: its magnitude, or the field is scalar
     offset: Number = 0.0  # added to the recorded value
     scale: Number = 1.0  # then multiplied with it
@@ -134,8 +134,7 @@ def _check_field(expectation: Expectation, fields: Mapping[str, Field]) -> list[
     if expectation.field not in fields:
         place = f"{where}: field {expectation.component}.{expectation.field}"
         return [unknown(place, expectation.field, fields)]
-    shape = fields[expectation.field].shape
-    axis = expectation.axis
+    shape, axis = fields[expectation.field].shape, expectation.axis
     if axis is not None and (len(shape) != 1 or axis >= shape[0]):
         allowed = f"0 to {shape[0] - 1}" if len(shape) == 1 else "left out"
         return [f"{where}: axis of {expectation.field} must be {allowed}; found {axis}."]
@@ -148,16 +147,21 @@ def curve(expectation: Expectation, recording: Recording) -> Curve:
     fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
     if mistakes := _check_field(expectation, fields):
         raise SceneError(mistakes)
-    times = recording.times(expectation.component)
-    values = recording.history(expectation.component, expectation.field, expectation.item)
-    if fields[expectation.field].centring == "impulse":
+    name, key, item = expectation.component, expectation.field, expectation.item
+    times = recording.times(name)
+    if isinstance(item, int):
+        values = recording.history(name, key, item)[:, None]
+    else:
+        values = recording.field(name, key)
+    if fields[key].centring == "impulse":
         spans = np.diff(times).reshape(-1, *[1] * (values.ndim - 1))
         values = values[1:] / spans
         times = (times[1:] + times[:-1]) / 2
     if expectation.axis is not None:
-        values = values[:, expectation.axis]
-    elif values.ndim > 1:
-        values = np.linalg.norm(values.reshape(len(values), -1), axis=1)
+        values = values[..., expectation.axis]
+    elif values.ndim > 2:
+        values = np.linalg.norm(values.reshape(*values.shape[:2], -1), axis=2)
+    values = values[:, 0] if isinstance(item, int) else getattr(values, item)(axis=1)
     return Curve(times, expectation.scale * (values + expectation.offset))
 
 
@@ -216,14 +220,13 @@ def evaluate(expectation: Expectation, recording: Recording, folder: Path) -> Ou
     """Compare a run with an expectation; one that ended too early does not meet it."""
     reference = reference_value(expectation, folder)
     value = _value(expectation, recording, folder)
-    is_known = math.isfinite(value)
     return Outcome(
         expectation.name,
-        value if is_known else None,
+        value if math.isfinite(value) else None,
         reference,
         expectation.within,
         expectation.unit,
-        is_known and abs(value - reference) <= expectation.within,
+        abs(value - reference) <= expectation.within,  # not so of nan
         expectation.source,
     )
 

@@ -1,4 +1,4 @@
-"""Rigid bodies in frictional contact: spheres, rounded boxes, clumps of spheres, and planes.
+"""Rigid bodies in frictional contact: spheres, rounded boxes, clumps and planes.
 
     m dv/dt = Σ F + m g + load,   dL/dt = Σ r × F + torque,   ω = R I⁻¹ Rᵀ L,   dq/dt = ½ (0, ω) ∘ q
     F_n = 4/3 E* √R* δ^{3/2} + 2√(5/6) ζ √(S_n m*) dδ/dt ≥ 0          Hertz, damped
@@ -15,8 +15,13 @@ rounded boxes) and where two edges cross; that is all that convex polyhedra can 
 clumps touch boxes by their exact distance. Contacts along an edge or face thus need no row of
 small spheres, whose bumps would add to the friction.
 
+An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
+cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.
+
 Velocity Verlet, of second order also with dampers: their velocities are foreseen at the end of
-the step. Angular momentum is advanced in world axes, so that it is exact for a free body.
+the step. Angular momentum is advanced in world axes, so that it is exact for a free body. The
+step is a share of a contact's duration, and shorter where many contacts hold one body, as their
+springs and dampers add up.
 
 Papers: Hertz, J. reine angew. Math. 92 (1881) 156; Mindlin & Deresiewicz, J. Appl. Mech. 20 (1953)
 327; Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239 (damping); Antypov & Elliott, EPL 94
@@ -27,15 +32,15 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 
 from quintet.components.dem_bodies import build
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
-from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
 from quintet.interfaces.manifest import Manifest, Plan, Ports
 from quintet.interfaces.ports import LOAD, MOTION
 
 __all__ = ["MANIFEST", "DemBodiesParams"]
 
 
-def _ports(_: DemBodiesParams) -> Ports:
-    return (LOAD,), (MOTION,)
+def _ports(params: DemBodiesParams) -> Ports:
+    return (LOAD,), (MOTION, CONTACT) if params.contact_forces else (MOTION,)
 
 
 def _plan(params: DemBodiesParams) -> Plan:

@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.dem_bodies import materials
 from quintet.components.dem_bodies.clump import union
 from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
-from quintet.components.dem_bodies.placement import centred, reach, rotation
+from quintet.components.dem_bodies.placement import reach, rotation, spheres
 from quintet.components.dem_bodies.state import Model, Numbers, State, Whole
 
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
@@ -31,23 +31,24 @@ class Solid(NamedTuple):
 
 
 def solid(body: Body) -> Solid:
-    """Measure a body: a sphere and a box exactly, a clump by voxels."""
+    """Measure a body: a clump of spheres by voxels, all others exactly."""
     if body.size is not None:
         size = np.array(body.size)
         volume = float(size.prod())
         inertia = (np.eye(3) * (size**2).sum() - np.diag(size**2)) / 12.0 * volume
         centres = CORNERS * (0.5 * size - body.round)
         radii = np.full(8, body.round)
-    elif body.diameter is not None:
-        size = np.full(3, body.diameter)
-        volume = np.pi / 6.0 * body.diameter**3
-        inertia = np.eye(3) * volume * body.diameter**2 / 10.0
-        centres, radii = np.zeros((1, 3)), np.array([0.5 * body.diameter])
     else:
-        assert body.centres is not None and body.radii is not None
-        volume, _, inertia = union((body.centres, body.radii))
-        centres, radii = centred(body), np.array(body.radii)
+        centres, radii = spheres(body)
         size = np.ptp(np.vstack([centres - radii[:, None], centres + radii[:, None]]), axis=0)
+        if body.diameter is not None:
+            volume = np.pi / 6.0 * body.diameter**3
+            inertia = np.eye(3) * volume * body.diameter**2 / 10.0
+        elif body.agglomerate is not None:
+            volume, inertia = body.agglomerate.volume, body.agglomerate.inertia
+        else:
+            assert body.centres is not None and body.radii is not None
+            volume, _, inertia = union((body.centres, body.radii))
     density = body.density if body.mass is None else body.mass / volume
     assert density is not None
     return Solid(density * volume, density * inertia, centres, radii, size)

@@ -7,8 +7,9 @@ import numpy as np
 
 from quintet.components.dem_bodies import build, kernels, search
 from quintet.components.dem_bodies import state as rows
+from quintet.components.dem_bodies.crowd import crowd_step, crowding
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
-from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
 from quintet.components.dem_bodies.state import empty_contacts
 from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
@@ -16,7 +17,8 @@ from quintet.interfaces.ports import LOAD, MOTION
 
 SKIN = 0.4  # over the smallest contact radius
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
-SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0}  # as ports.MOTION gives them; 2 is our own
+# As ports.MOTION gives them; 2 is our own.
+SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
 
 
 @dataclass(slots=True)
@@ -38,10 +40,10 @@ class DemBodies(Component):
     """
 
     takes = (LOAD,)
-    gives = (MOTION,)
 
     def __init__(self, params: DemBodiesParams) -> None:
         self.params = params
+        self.gives = (MOTION, CONTACT) if params.contact_forces else (MOTION,)
         self.solids = [build.solid(body) for body in params.bodies]
         self.model = build.model(params, self.solids)
         self.state = build.state(params, self.solids)
@@ -51,10 +53,13 @@ class DemBodies(Component):
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.skin = SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
+        self.damping = float(self.model.law[:, :, 2].max())  # ζ of the most damped contact
+        self.held = np.zeros(self.count + 1, np.int64)  # contacts of each body
+        self.before = np.zeros_like(self.state.contact)  # N and N m, as the last step began
         self._move(0.0)
 
     def describe(self) -> Fields:
-        """State shapes, sizes and masses; a clump is shape 2 with the box that holds it."""
+        """State shapes, sizes, masses; all clumps are shape 2 with the box that holds them."""
         return {
             "motion.shape": np.array([SHAPES[body.shape] for body in self.params.bodies]),
             "motion.size": np.array([one.size for one in self.solids]),
@@ -64,13 +69,20 @@ class DemBodies(Component):
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
         report, longest = self.state.report, self.params.longest_step
-        ω = max(self.frequency, math.sqrt(report[rows.STIFFEST]))
+        stiffest = math.sqrt(report[rows.STIFFEST])  # rad/s
+        ω = max(self.frequency, stiffest)
         contact = DURATION * SPEED_UP / ω / self.params.steps_per_contact
+        contact = min(contact, crowd_step(self._crowd(), stiffest, self.damping))
         # Pairs that are not listed were further apart than the skin, and may have come nearer.
         gap = min(report[rows.GAP], self.skin - 2.0 * math.sqrt(report[rows.WAY]))
         speed = report[rows.FASTEST] + report[rows.HARDEST] * longest
         free = gap / (2.0 * speed) if speed > 0.0 else longest
         return float(min(longest, max(free, contact)))
+
+    def _crowd(self) -> int:
+        pairs, model = self.contacts, self.model
+        ends = (pairs.ends, pairs.begin, model.sphere_body, model.edge_ends)
+        return crowding(pairs.history, *ends, self.held)
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; without them there is none."""
@@ -83,6 +95,7 @@ class DemBodies(Component):
         """Advance by exactly dt [s]: half kick, drift, contacts, half kick."""
         report = self.state.report
         held = report[rows.ELASTIC]
+        self.before[:] = self.state.contact
         self._move(dt)
         self.books.time += dt
         self.books.given += float(report[rows.GIVEN])
@@ -126,20 +139,25 @@ class DemBodies(Component):
         )
 
     def give(self) -> Fields:
-        """Copy out the motion of all bodies."""
+        """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
         s, m = self.state, self.count
-        return {
+        motion = {
             "motion.position": s.position[:m].copy(),
             "motion.velocity": s.velocity[:m].copy(),
             "motion.orientation": s.orientation[:m].copy(),
             "motion.angular_velocity": s.angular_velocity[:m].copy(),
         }
+        if not self.params.contact_forces:
+            return motion
+        mean = 0.5 * (self.before + s.contact)  # gives the change of momentum to rounding
+        return {**motion, "contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
 
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, what was added up."""
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         kept["pairs.key"] = self.contacts.key.copy()
         kept["pairs.history"] = self.contacts.history.copy()
+        kept["step.before"] = self.before.copy()
         books = self.books
         kept["books"] = np.array([books.time, books.dissipated, books.given])
         return kept
@@ -152,6 +170,7 @@ class DemBodies(Component):
         kept.key[:] = state["pairs.key"]
         kept.history[:] = state["pairs.history"]
         self.contacts = search.contacts_from(kept.key, kept)
+        self.before[:] = state["step.before"]
         self.books = Books(*state["books"].tolist())
 
     def totals(self) -> Totals:

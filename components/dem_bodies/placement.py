@@ -1,6 +1,7 @@
 """Where bodies stand at the start: none inside another, none below a plane."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,25 @@ if TYPE_CHECKING:
 
 ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what touches exactly
 
-Ball = tuple[Array, float]  # centre (3,) m, radius m
+Balls = tuple[Array, Array]  # centres (n, 3) m, radii (n,) m
+
+
+def copied(bodies: "Sequence[Body]") -> "tuple[Body, ...]":
+    """Put the copies of each body in its place, on their lattice."""
+    return tuple(one for body in bodies for one in copies(body))
+
+
+def copies(body: "Body") -> "Iterator[Body]":
+    """One body, or all that stand on its lattice."""
+    if body.copies is None:
+        yield body
+        return
+    numbers = np.stack(np.meshgrid(*map(np.arange, body.copies), indexing="ij"), axis=-1)
+    places = np.array(body.position) + numbers.reshape(-1, 3) * np.array(body.apart)  # (n, 3) m
+    random = np.random.default_rng(body.seed)
+    places += body.scatter * random.uniform(-1.0, 1.0, places.shape)
+    for x, y, z in places.tolist():
+        yield replace(body, position=(x, y, z), copies=None, apart=None, scatter=0.0)
 
 
 def rotation(orientation: tuple[float, float, float, float]) -> Array:
@@ -23,29 +42,29 @@ def rotation(orientation: tuple[float, float, float, float]) -> Array:
     return np.asarray(np.eye(3) + 2.0 * w * skew + 2.0 * skew @ skew)
 
 
-def centred(body: "Body") -> Array:
-    """Centres (n, 3) m of a clump's spheres about its centre of mass, in body axes."""
-    assert body.centres is not None and body.radii is not None
-    return np.asarray(np.array(body.centres) - union((body.centres, body.radii))[1])
-
-
-def balls(body: "Body") -> list[Ball]:
-    """Spheres of a body that is not a box, in the world."""
-    middle = np.array(body.position)
+def spheres(body: "Body") -> Balls:
+    """Contact spheres of a body that is not a box, in body axes about its centre of mass."""
     if body.diameter is not None:
-        return [(middle, 0.5 * body.diameter)]
-    assert body.radii is not None
-    centres = middle + centred(body) @ rotation(body.orientation).T
-    return list(zip(centres, body.radii, strict=True))
+        return np.zeros((1, 3)), np.array([0.5 * body.diameter])
+    if body.agglomerate is not None:
+        one = body.agglomerate
+        return one.centres, np.full(len(one.centres), one.radius)
+    assert body.centres is not None and body.radii is not None
+    return np.array(body.centres) - union((body.centres, body.radii))[1], np.array(body.radii)
+
+
+def balls(body: "Body") -> Balls:
+    """Find the same spheres in the world."""
+    centres, radii = spheres(body)
+    return np.array(body.position) + centres @ rotation(body.orientation).T, radii
 
 
 def reach(body: "Body") -> float:
     """Radius [m] about the centre of mass that holds the body."""
     if body.size is not None:
         return 0.5 * float(np.linalg.norm(body.size))
-    if body.diameter is not None:
-        return 0.5 * body.diameter
-    return float((np.linalg.norm(centred(body), axis=1) + np.array(body.radii)).max())
+    centres, radii = spheres(body)
+    return float((np.linalg.norm(centres, axis=1) + radii).max())
 
 
 def check(bodies: "Sequence[Body]", planes: "Sequence[Plane]") -> None:
@@ -74,7 +93,8 @@ def above(body: "Body", plane: "Plane") -> float:
     if body.size is not None:
         down = np.abs(normal @ rotation(body.orientation)) @ (0.5 * np.array(body.size))
         return float(normal @ (np.array(body.position) - origin) - down)
-    return float(min(normal @ (centre - origin) - radius for centre, radius in balls(body)))
+    centres, radii = balls(body)
+    return float(((centres - origin) @ normal - radii).min())
 
 
 def near(bodies: "Sequence[Body]") -> Iterator[tuple[int, int]]:
@@ -100,15 +120,18 @@ def between(a: "Body", b: "Body") -> float:
         return separation(a, b)
     if a.size is not None or b.size is not None:
         box, other = (a, b) if a.size is not None else (b, a)
-        return min(outside(box, centre) - radius for centre, radius in balls(other))
-    return min(float(np.linalg.norm(c - d)) - r - s for c, r in balls(a) for d, s in balls(b))
+        centres, radii = balls(other)
+        return float((outside(box, centres) - radii).min())
+    (c, r), (d, s) = balls(a), balls(b)
+    return float((np.linalg.norm(c[:, None] - d, axis=2) - r[:, None] - s).min())
 
 
-def outside(box: "Body", point: Array) -> float:
-    """Signed distance [m] of a point from a box."""
-    local = rotation(box.orientation).T @ (point - np.array(box.position))
+def outside(box: "Body", points: Array) -> Array:
+    """Signed distances (n,) m of points (n, 3) m from a box."""
+    local = (points - np.array(box.position)) @ rotation(box.orientation)
     beyond = np.abs(local) - 0.5 * np.array(box.size)
-    return float(np.linalg.norm(np.maximum(beyond, 0.0)) + min(beyond.max(), 0.0))
+    far = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
+    return np.asarray(far + np.minimum(beyond.max(axis=1), 0.0))
 
 
 def separation(a: "Body", b: "Body") -> float:

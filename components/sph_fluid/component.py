@@ -15,6 +15,7 @@ from quintet.components.sph_fluid.kernels import advance, interact, press, push_
 from quintet.components.sph_fluid.laws import AHEAD, constants, diffusion, guard
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.components.sph_fluid.sums import failure, totals
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
@@ -215,34 +216,10 @@ class SphFluid(Component):
         numbers = (state.fluid, dt, ahead, self.params.spacing, self.fluid)
         moved = self.team.run(advance, self._advancing, *numbers, *arrays)
         if any(failed for _, failed in moved):
-            raise StepError(self._failure(dt))
+            raise StepError(failure(self.state, self.params, dt))
         state.moved = math.sqrt(max(distance for distance, _ in moved))
         state.last_dt = dt
         state.steps += 1
-
-    def _failure(self, dt: float) -> str:
-        state, spacing = self.state, self.params.spacing
-        worst = self._worst(dt)
-        x, y, z, density = state.place[worst].tolist()
-        speed = math.hypot(*state.motion[worst, :3].tolist())
-        return (
-            f"step {state.steps} of {dt:.3g} s: a fluid particle must stay finite, have a positive "
-            f"density and move less than a spacing ({spacing:.3g} m); particle "
-            f"{state.identity[worst]} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {speed:.4g} m/s and "
-            f"{density:.4g} kg/m3. Lower courant (now {self.params.courant}), raise viscosity or "
-            "sound_speed, or look for a surface that moves too fast."
-        )
-
-    def _worst(self, dt: float) -> int:
-        """Row of the fluid particle that is not finite, or the fastest, or the thinnest."""
-        rows = slice(self.state.fluid)
-        place, motion = self.state.place[rows], self.state.motion[rows]
-        finite = np.isfinite(place).all(axis=1) & np.isfinite(motion).all(axis=1)
-        if not finite.all():
-            return int(np.argmin(finite))
-        speed = np.linalg.norm(motion[:, :3], axis=1)
-        fast = float(speed.max()) * dt > self.params.spacing
-        return int(np.argmax(speed) if fast else np.argmin(place[:, 3]))
 
     def give(self) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
@@ -269,28 +246,7 @@ class SphFluid(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left."""
-        mass, rows = self.fluid.mass * self.params.thickness, slice(self.state.fluid)
-        points, velocity = self.state.place[rows, :3], self.state.motion[rows, :3]
-        return Totals(
-            mass=mass * len(points),
-            momentum=mass * velocity.sum(axis=0),
-            angular_momentum=mass * np.cross(points, velocity).sum(axis=0),
-            kinetic=0.5 * mass * float(np.einsum("nd,nd->", velocity, velocity)),
-            potential=-mass * float((points @ np.array(self.params.gravity)).sum()),
-            internal=mass * float(self._elastic(self.state.place[rows, 3]).sum()),
-        )
-
-    def _elastic(self, density: Array) -> Array:
-        """∫ p/ρ² dρ from ρ₀ [J/kg]."""
-        ratio = density / self.fluid.density
-        if not self.params.tension:
-            ratio = np.maximum(ratio, 1.0)
-        power = build.TAIT - 1
-        return (
-            self.fluid.stiffness
-            / self.fluid.density
-            * ((ratio**power - 1.0) / power + 1.0 / ratio - 1.0)
-        )
+        return totals(self.state, self.params, self.fluid)
 
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""

@@ -112,6 +112,13 @@ CASES = {
         scale={"load.force": 1.0, "load.torque": 0.1},
         dt=1e-4,
     ),
+    "dem_bodies, contact forces": Case(
+        "dem_bodies",
+        {**BOXES, "contact_forces": True},
+        rest={"load.force": TWO, "load.torque": TWO},
+        scale={"load.force": 1.0, "load.torque": 0.1},
+        dt=1e-4,
+    ),
     "echo": Case(
         "echo", {"items": 4}, rest={"passed.value": np.zeros((4, 3))}, scale={"passed.value": 1.0}
     ),

@@ -105,6 +105,20 @@ def test_a_vector_without_axis_is_its_magnitude_and_an_impulse_its_mean_rate(tmp
 
 
 @pytest.mark.parametrize(
+    ("item", "axis", "value"),
+    [
+        ("max", 0, 1.5), ("min", 0, 0.0), ("mean", 0, 0.75),
+        ("mean", None, 0.5 * np.hypot(1.5, np.sin(0.5))),
+    ],
+)  # fmt: skip
+def test_all_items_come_to_one_number(tmp_path, recording, item, axis, value):
+    one = _expectation(item=item, axis=axis, measure="at", begin=0.5, value=value, within=1e-12)
+    assert evaluate(one, recording, tmp_path).met
+    push = {"field": "load.force", "axis": None, "measure": "mean", "value": 5.0, "unit": "N"}
+    assert evaluate(_expectation(item=item, **push), recording, tmp_path).met
+
+
+@pytest.mark.parametrize(
     "settings",
     [
         {"measure": "at", "begin": 2.1, "value": 3.1},

@@ -74,6 +74,25 @@ def test_energy_balance_closes_and_contacts_only_take():
     assert dissipated > 0.2 * start
 
 
+def test_contact_forces_are_what_changes_momentum():
+    """To rounding, of each body and of the planes together, at whatever steps."""
+    bodies = [box([0.0, 0.0, 0.0751]), box([0.03, 0.0, 0.2252], angular_velocity=[0.0, 2.0, 0.0])]
+    scene = build(bodies, planes=[FLOOR], contact_forces=True)
+    force, torque, time = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
+    start, spin = scene.give(), scene.state.spin.copy()
+    while time < 0.2:
+        dt = scene.stable_dt()
+        scene.step(dt)
+        given, time = scene.give(), time + dt
+        force, torque = force + dt * given["contact.force"], torque + dt * given["contact.torque"]
+    gained = scene.mass[:, None] * (given["motion.velocity"] - start["motion.velocity"])
+    gained[:, 2] += 9.81 * time * scene.mass
+    np.testing.assert_allclose(force[:2], gained, atol=1e-12 * np.abs(gained).max())
+    np.testing.assert_allclose(torque[:2], (scene.state.spin - spin)[:2], atol=1e-12)
+    np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-12 * np.abs(force).max())
+    assert force[0, 2] > 0.0 > force[2, 2]
+
+
 def elastic_error(steps):
     """Largest energy error of a slender box that bounces without loss."""
     stuff = {"a": material(young=1e10, friction=0.0, restitution=1.0)}

@@ -3,10 +3,12 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from dem_scenes import FLOOR, about, box, mistakes, params, sphere
 
 from quintet.components.dem_bodies import MANIFEST
+from quintet.components.dem_bodies.params import CONTACT
 from quintet.interfaces.ports import LOAD, MOTION
 
 LOOSE = {"shape": "spheres", "density": 1.0, "material": "a", "position": [0.0, 0.0, 0.0]}
@@ -33,6 +35,9 @@ LOOSE = {"shape": "spheres", "density": 1.0, "material": "a", "position": [0.0, 
         ([], {}, "bodies"),
         ([box([0, 0, 0])], {"steps_per_contact": 5}, "steps_per_contact"),
         ([box([0, 0, 0], densty=1.0)], {}, "Did you mean density?"),
+        ([sphere([0, 0, 0], copies=[2, 1, 1])], {}, "copies and apart belong together"),
+        ([sphere([0, 0, 0], scatter=0.1)], {}, "scatter is for copies; found 0.1 m"),
+        ([sphere([0, 0, 0], copies=[2, 1, 1], apart=[0.01] * 3)], {}, "must not overlap"),
     ],
 )
 def test_wrong_scenes_are_refused(bodies, given, sentence):
@@ -44,6 +49,22 @@ def test_touching_is_allowed_at_every_orientation():
     bodies = [box([0, 0, 0.075], orientation=turned), box([0, 0, 0.225])]
     bodies += [sphere([0, 0, 0.31]), box([0.15, 0, 0.225])]
     assert params(bodies, planes=[FLOOR]).bodies[3].density == 800.0
+
+
+def test_copies_stand_on_a_lattice_and_scatter_the_same_way_each_time():
+    one = sphere([1.0, 2.0, 3.0], copies=[2, 1, 3], apart=[0.1, 0.2, 0.3])
+    plain = np.array([body.position for body in params([one]).bodies])
+    expected = [[1.0 + x, 2.0, 3.0 + z] for x in (0.0, 0.1) for z in (0.0, 0.3, 0.6)]
+    np.testing.assert_allclose(plain, expected)
+    loose = [params([one | {"scatter": 0.01, "seed": seed}]).bodies for seed in (1, 1, 2)]
+    assert loose[0] == loose[1] != loose[2]
+    moved = np.array([body.position for body in loose[0]]) - expected
+    assert 0.005 < np.abs(moved).max() <= 0.01
+
+
+def test_contact_forces_are_a_port_only_if_asked_for():
+    given = params([box([0.0, 0.0, 0.0])], contact_forces=True)
+    assert MANIFEST.ports(given) == ((LOAD,), (MOTION, CONTACT))
 
 
 def test_manifest_needs_no_solver():

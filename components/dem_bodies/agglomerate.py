@@ -1,0 +1,147 @@
+"""Agglomerates P(dim, R): a shape from a file, its surface covered by equal spheres.
+
+Centres stand on a lattice of `dim` places along the longest edge of the box that holds the shape,
+set in by R, so that the outermost spheres touch its faces from within. Along the other edges
+there are as few places as leave them no further apart. Of these centres are kept, the first first,
+and none that is closer to a kept one than half the lattice's distance:
+
+    - those that lie at the depth R below the surface;
+    - those nearer to the surface or a little outside, moved along the normal to the depth R, so
+      that spheres touch curved and slanted faces and those that fall between two places;
+    - those up to one distance of the lattice deeper. What lies deeper still touches nothing, as
+      spheres of one layer overlap or touch.
+
+Parts of a shape that are thinner than 2 R get no spheres. Mass, centre and inertia are those of the
+shape itself, exact for what the file describes, not those of the spheres, which overlap and leave
+corners empty.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.components.dem_bodies.shapes import Shape, inside, nearest, read
+from quintet.interfaces.component import Array
+
+MOST = 2000  # spheres of one body
+PLACES = 15  # of the lattice for each sphere, at most; more would take long to sort out
+ROUNDS = 4  # in which a centre is moved to its depth
+CLOSE = 1e-3  # of R, by which a depth may differ
+
+
+class Agglomerate(NamedTuple):
+    """A body of equal spheres, about its centre of mass."""
+
+    volume: float  # m3
+    inertia: Array  # (3, 3) m5, at unit density
+    centres: Array  # (n, 3) m
+    radius: float  # m
+    size: Array  # (3,) m, edges of the box that holds it
+
+
+@lru_cache(maxsize=16)
+def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate:
+    """Cover the shape in a file with spheres.
+
+    Parameters
+    ----------
+    file : str
+        STL, OBJ, PLY, or voxels as .npy.
+    scale : float, m
+        What one unit of length in the file, or one voxel, stands for.
+    dim : int
+        Places of the lattice along the longest edge.
+    radius : float, m
+    """
+    shape = read(file, scale)
+    low, high = shape.triangles.min(axis=(0, 1)), shape.triangles.max(axis=(0, 1))
+    size = high - low
+    require_fit(file, scale, size, dim, radius)
+    apart = (size.max() - 2.0 * radius) / (dim - 1)
+    counts = np.ceil((size - 2.0 * radius) / apart - 1e-9).astype(int) + 1
+    require_few(file, dim, radius, int(counts.prod()) // PLACES)
+    axes = [
+        np.linspace(a + radius, b - radius, n) if n > 1 else np.array([0.5 * (a + b)])
+        for a, b, n in zip(low, high, counts, strict=True)
+    ]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    centres = covering(places, shape, radius, apart)
+    require_few(file, dim, radius, len(centres))
+    if not len(centres):
+        raise ValueError(
+            f"file {file}: the shape must have room for a sphere within; at radius {radius:g} m "
+            "it has none. Make radius smaller."
+        )
+    return Agglomerate(shape.volume, shape.inertia, centres - shape.centre, radius, size)
+
+
+def require_few(file: str, dim: int, radius: float, count: int) -> None:
+    """Refuse more spheres than are of use to a body."""
+    if count > MOST:
+        raise ValueError(
+            f"file {file}: an agglomerate must have at most {MOST} spheres; dim {dim} and radius "
+            f"{radius:g} m give more. Make dim smaller."
+        )
+
+
+def require_fit(file: str, scale: float, size: Array, dim: int, radius: float) -> None:
+    """Refuse spheres that do not fit into the shape, or leave gaps between them."""
+    edges = " x ".join(f"{edge:.4g}" for edge in size)
+    found = f"found {radius:g} m for {file} of {edges} m at scale {scale:g}."
+    if 2.0 * radius > size.min() * (1.0 + 1e-9):
+        raise ValueError(
+            "radius must be at most half the shape's shortest edge, "
+            f"{0.5 * size.min():.4g} m; {found} Make it smaller, or correct scale: it is 0.001 for "
+            "a file in mm."
+        )
+    least = math.ceil(0.5 * float(size.max()) / radius - 1e-9)
+    if dim < max(2, least):
+        raise ValueError(
+            "the spheres must touch, which dim * 2 * radius >= the longest edge gives; "
+            f"{found} dim is {dim}. Make dim {max(2, least)} or larger, or radius larger, or "
+            "correct scale: it is 0.001 for a file in mm."
+        )
+
+
+def covering(places: Array, shape: Shape, radius: float, apart: float) -> Array:
+    """Centres (n, 3) m of the outermost layer: lattice places, and outer ones moved in."""
+    foot, away = distances(places, shape)
+    near = away < radius + apart * (1.0 - CLOSE)  # others are too deep or outside
+    places, foot = places[near], foot[near]
+    depth = signed(places, away[near], shape)
+    above, deep = depth < radius * (1.0 - CLOSE), depth > radius * (1.0 + CLOSE)
+    outer = above & (depth > radius - apart)
+    moved = moved_in(places[outer], foot[outer], depth[outer], shape, radius)
+    kept = np.zeros((0, 3))
+    for centre in np.concatenate([places[~above & ~deep], moved, places[deep]]):
+        if not len(kept) or np.linalg.norm(kept - centre, axis=1).min() > 0.5 * apart:
+            kept = np.vstack([kept, centre])
+    return kept
+
+
+def distances(points: Array, shape: Shape) -> tuple[Array, Array]:
+    """Nearest points (n, 3) m of the surface, and how far (n,) m they are."""
+    foot = nearest(points, shape.triangles)
+    return foot, np.linalg.norm(points - foot, axis=1)
+
+
+def signed(points: Array, away: Array, shape: Shape) -> Array:
+    """Depths (n,) m of points so far away from the surface, negative outside."""
+    return np.where(inside(points, shape.triangles), away, -away)
+
+
+def moved_in(points: Array, foot: Array, depth: Array, shape: Shape, radius: float) -> Array:
+    """Move points along their normals to a depth of R; return those that come to it."""
+    found = [np.zeros((0, 3))]
+    for _ in range(ROUNDS):
+        sound = np.abs(depth) > 1e-9 * radius  # on the surface itself there is no direction
+        inward = (points[sound] - foot[sound]) / depth[sound, None]
+        points = foot[sound] + radius * inward
+        foot, away = distances(points, shape)
+        depth = signed(points, away, shape)
+        there = np.abs(depth - radius) <= CLOSE * radius
+        found.append(points[there])
+        points, foot, depth = points[~there], foot[~there], depth[~there]
+    return np.concatenate(found)

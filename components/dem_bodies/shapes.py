@@ -1,0 +1,153 @@
+"""Shapes of bodies that stand in files: closed surfaces of triangles, and arrays of voxels.
+
+Surfaces are read by trimesh (STL, OBJ, PLY and others); voxels are an array in a .npy file, its
+axes x, y, z, what is not zero being solid. Nothing is imported unless a scene names a file.
+"""
+
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.interfaces.component import Array
+
+AWRY = 1e-8  # of a shape's size
+PAIRS = ((1, 2), (2, 0), (0, 1))  # the corners opposite each corner
+
+
+class Shape(NamedTuple):
+    """A closed surface of triangles that look outwards, and what it encloses."""
+
+    triangles: Array  # (t, 3, 3) m
+    volume: float  # m3
+    centre: Array  # (3,) m, of mass
+    inertia: Array  # (3, 3) m5, about it, at unit density
+
+
+def located(name: str) -> Path:
+    """Find a file as scenes name it: from the working folder, or beside the scene."""
+    # The scene's folder is on the path, so that components beside the scene are found.
+    for folder in (".", *sys.path):
+        if (Path(folder) / name).is_file():
+            return Path(folder) / name
+    raise ValueError(
+        f"file {name} must be in the working folder or beside the scene; it is not. Put it there, "
+        "or correct its name."
+    )
+
+
+def read(name: str, scale: float) -> Shape:
+    """Read a shape; one unit of length in the file, or one voxel, stands for `scale` [m]."""
+    path = located(name)
+    return voxels(path, scale) if path.suffix == ".npy" else surface(path, scale)
+
+
+def surface(path: Path, scale: float) -> Shape:
+    """Read a closed surface of triangles; trimesh measures it exactly."""
+    import trimesh
+
+    try:
+        mesh = trimesh.load_mesh(path)
+        corners = np.asarray(mesh.triangles, np.float64)
+        if not len(corners):
+            raise ValueError("no triangles")
+    except Exception as error:  # of any kind: each format has its own
+        raise ValueError(
+            f"file {path.name} must be a surface of triangles (STL, OBJ, PLY) or an array of "
+            f"voxels (.npy); reading it found {type(error).__name__}: {error}. Convert it."
+        ) from error
+    if not (mesh.is_watertight and mesh.is_winding_consistent):
+        raise ValueError(
+            f"file {path.name} must be a closed surface whose triangles all look outwards; found "
+            f"{open_edges(mesh)} edges of {len(corners)} triangles without a partner. Close it, as "
+            "trimesh.repair can."
+        )
+    if mesh.volume < 0.0:
+        mesh.invert()
+    corners = np.asarray(mesh.triangles, np.float64)
+    return Shape(
+        scale * corners,
+        scale**3 * float(mesh.volume),
+        scale * np.asarray(mesh.center_mass),
+        scale**5 * np.asarray(mesh.moment_inertia),
+    )
+
+
+def open_edges(mesh: object) -> int:
+    """Count the edges that are not passed once in either direction."""
+    edges = np.asarray(getattr(mesh, "edges", np.zeros((0, 2))), np.int64)
+    count = int(edges.max(initial=0)) + 1
+    there, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
+    return int((~np.isin(there, back)).sum())
+
+
+def voxels(path: Path, width: float) -> Shape:
+    """Read voxels of a width [m]; their sides towards what is not solid are the surface."""
+    try:
+        array = np.load(path, allow_pickle=False)
+    except (OSError, ValueError) as error:
+        raise ValueError(
+            f"file {path.name} must be one array: {error}. Write it by numpy.save."
+        ) from error
+    if getattr(array, "ndim", 0) != 3 or array.dtype.kind not in "biuf" or not array.any():
+        raise ValueError(
+            f"file {path.name} must have three axes of numbers, of which not all are zero; found "
+            f"shape {getattr(array, 'shape', None)}. Write it by numpy.save."
+        )
+    solid = np.pad(array != 0, 1)
+    squares = [
+        sides(np.argwhere(solid & ~np.roll(solid, 1 - 2 * side, axis=axis)) - 1, axis, side)
+        for axis in range(3)
+        for side in (0, 1)
+    ]
+    corners = width * np.concatenate(squares).astype(np.float64)
+    triangles = np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+    middles, volume = width * (np.argwhere(array) + 0.5), width**3 * np.count_nonzero(array)
+    centre = middles.mean(axis=0)
+    second = (middles - centre).T @ (middles - centre) * width**3
+    second = second + np.eye(3) * (width**2 / 12.0 * volume)  # of each about its own middle
+    return Shape(triangles, volume, centre, np.trace(second) * np.eye(3) - second)
+
+
+def sides(cells: Array, axis: int, side: int) -> Array:
+    """Corners (n, 4, 3) of one side of each cell, turned so that it looks outwards."""
+    ring = np.zeros((4, 3), np.int64)
+    ring[:, (axis + 1) % 3] = [0, 1, 1, 0]
+    ring[:, (axis + 2) % 3] = [0, 0, 1, 1]
+    ring[:, axis] = side
+    return cells[:, None] + (ring if side else ring[::-1])
+
+
+def inside(points: Array, triangles: Array) -> Array:
+    """Whether points (n, 3) lie in a surface: a ray along x leaves it once more than it enters."""
+    low, high = triangles[:, :, 1:].min(axis=1), triangles[:, :, 1:].max(axis=1)
+    # A little off the lattice, so that no ray meets an edge.
+    aside = AWRY * float(np.ptp(triangles, axis=(0, 1)).max()) * np.sqrt([2.0, 3.0])
+    found = np.zeros(len(points), bool)
+    for k, point in enumerate(points):
+        place = point[1:] + aside
+        met = triangles[((low <= place) & (place <= high)).all(axis=1)]
+        y, z = (met[:, :, 1:] - place).transpose(2, 0, 1)
+        # Twice the area, across x, of the place with each pair of corners: opposite a, b, c.
+        part = np.column_stack([y[:, i] * z[:, j] - z[:, i] * y[:, j] for i, j in PAIRS])
+        whole = part.sum(axis=1)
+        through = (part * whole[:, None] > 0.0).all(axis=1)
+        beyond = ((met[:, :, 0] - point[0]) * part).sum(axis=1) * whole > 0.0
+        found[k] = np.sign(whole[through & beyond]).sum() > 0.0
+    return found
+
+
+def nearest(points: Array, triangles: Array) -> Array:
+    """Nearest point (n, 3) of a surface to each point."""
+    from trimesh.triangles import closest_point
+
+    middle = triangles.mean(axis=1)
+    reach = np.linalg.norm(triangles - middle[:, None], axis=2).max(axis=1)
+    found = np.empty_like(points)
+    for k, point in enumerate(points):
+        apart = np.linalg.norm(middle - point, axis=1)
+        near = triangles[apart - reach <= apart.min()]  # no other can be nearer than a middle
+        all_near = closest_point(near, np.broadcast_to(point, (len(near), 3)))
+        found[k] = all_near[np.argmin(((all_near - point) ** 2).sum(axis=1))]
+    return found

@@ -1,0 +1,1 @@
+"""Friction on a slope and a floor: rest, slide and roll."""

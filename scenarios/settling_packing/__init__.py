@@ -1,0 +1,1 @@
+"""Spheres settle in a box: weight, packing fraction, rest."""

@@ -1,0 +1,179 @@
+"""Agglomerates: measured as the shape in the file, covered by spheres, refused with a reason."""
+
+import numpy as np
+import pytest
+import trimesh
+from dem_scenes import FLOOR, NOTHING, build, material, mistakes, run
+
+from quintet.components.dem_bodies.agglomerate import agglomerate
+from quintet.components.dem_bodies.shapes import voxels
+from quintet.components.dem_bodies.state import ELASTIC, WHICH
+from quintet.coupler.shapes import fill
+from quintet.interfaces.errors import LinkError
+
+EDGE = 0.15  # m
+
+
+@pytest.fixture
+def files(tmp_path):
+    """A cube, a ball and an L in several formats; the L is 3 x 3 x 3 less 2 x 3 x 2 voxels."""
+    cube = trimesh.creation.box((1e3 * EDGE,) * 3)
+    cube.apply_translation((7.0, -3.0, 1.0))
+    cube.export(tmp_path / "cube.stl")  # mm
+    trimesh.creation.icosphere(4, EDGE / 2).export(tmp_path / "ball.ply")
+    array = np.ones((3, 3, 3), np.uint8)
+    array[1:, :, 1:] = 0
+    np.save(tmp_path / "l.npy", array)
+    corners = voxels(tmp_path / "l.npy", EDGE / 3).triangles.reshape(-1, 3)
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    trimesh.Trimesh(corners, faces[:, ::-1]).export(tmp_path / "l.obj")  # inside out
+    grid = (np.indices((64, 64, 64)) + 0.5) / 64 - 0.5
+    np.save(tmp_path / "ball.npy", (grid**2).sum(axis=0) < 0.25)
+    return tmp_path
+
+
+def body(file, dim=8, radius=0.0125, **given):
+    plain = {"shape": "agglomerate", "density": 800.0, "material": "a", "position": NOTHING}
+    return plain | {"file": str(file), "dim": dim, "radius": radius} | given
+
+
+def exact_l():
+    """Volume, centre from the corner, and inertia of the L, from its two bars."""
+    w = EDGE / 3
+    bars = [((w, EDGE, EDGE), (0.5 * w, 1.5 * w, 1.5 * w))]
+    bars += [((2 * w, EDGE, w), (2 * w, 1.5 * w, 0.5 * w))]
+    volumes = np.array([np.prod(size) for size, _ in bars])
+    centre = sum(v * np.array(c) for v, (_, c) in zip(volumes, bars, strict=True)) / volumes.sum()
+    inertia = np.zeros((3, 3))
+    for v, (size, middle) in zip(volumes, bars, strict=True):
+        square, r = np.array(size) ** 2, np.array(middle) - centre
+        inertia += v / 12 * np.diag(square.sum() - square) + v * (
+            r @ r * np.eye(3) - np.outer(r, r)
+        )
+    return volumes.sum(), centre, inertia
+
+
+def exact_ball():
+    volume = np.pi / 6 * EDGE**3
+    return volume, NOTHING, volume * EDGE**2 / 10 * np.eye(3)
+
+
+@pytest.mark.parametrize(
+    ("file", "scale", "exact", "within"),
+    [
+        ("cube.stl", 1e-3, (EDGE**3, NOTHING, EDGE**5 / 6 * np.eye(3)), 1e-6),
+        ("ball.ply", 1.0, exact_ball(), 1e-2),
+        ("ball.npy", EDGE / 64, exact_ball(), 1e-2),
+        ("l.obj", 1.0, exact_l(), 1e-6),
+        ("l.npy", EDGE / 3, exact_l(), 1e-12),
+    ],
+)
+def test_volume_and_inertia_are_those_of_the_shape(files, file, scale, exact, within):
+    found = agglomerate(str(files / file), scale, 8, 0.0125)
+    volume, _, inertia = exact
+    assert found.volume == pytest.approx(volume, rel=within)
+    np.testing.assert_allclose(found.inertia, inertia, atol=within * np.abs(inertia).max())
+    assert 50 < len(found.centres) < 500
+    scene = build([body(files / file, scale=scale)])
+    assert scene.mass[0] == pytest.approx(800.0 * volume, rel=within)
+
+
+def test_spheres_touch_a_cube_from_within(files):
+    one = agglomerate(str(files / "cube.stl"), 1e-3, 8, 0.0125)
+    assert len(one.centres) == 8**3 - 6**3
+    np.testing.assert_allclose(np.abs(one.centres).max(axis=1), 0.5 * EDGE - 0.0125, rtol=1e-6)
+
+
+def test_spheres_of_an_l_lie_in_it_and_its_centre_is_its_own(files):
+    one = agglomerate(str(files / "l.obj"), 1.0, 8, 0.0125)
+    x, y, z = (one.centres + exact_l()[1]).T
+    assert min(x.min(), y.min(), z.min()) == pytest.approx(0.0125, rel=1e-3)
+    assert max(x.max(), y.max(), z.max()) == pytest.approx(EDGE - 0.0125, rel=1e-3)
+    notch = np.hypot(np.maximum(EDGE / 3 - x, 0.0), np.maximum(EDGE / 3 - z, 0.0))  # m, from it
+    assert notch.min() > 0.0125 * 0.999
+    assert np.isclose(notch, 0.0125, rtol=1e-3).sum() > 30  # spheres touch it
+
+
+def test_spheres_touch_a_ball_on_every_side(files):
+    one = agglomerate(str(files / "ball.ply"), 1.0, 8, 0.0125)
+    ways = np.random.default_rng(1).normal(size=(500, 3))
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    reach = (ways @ one.centres.T).max(axis=1) + one.radius  # m, how far it stretches each way
+    assert reach.max() < 0.5 * EDGE * 1.001
+    assert reach.min() > 0.5 * EDGE * 0.97
+
+
+def test_spheres_of_one_body_never_touch(files):
+    """They overlap by a fifth; a free body yet keeps its momentum, spin and energy."""
+    free = build(
+        [body(files / "l.obj", radius=0.0125, angular_velocity=[3.0, 2.0, 1.0])], gravity=NOTHING
+    )
+    start = free.totals()
+    run(free, 0.5)
+    assert free.state.report[WHICH] == -1 and free.state.report[ELASTIC] == 0.0
+    np.testing.assert_allclose(free.totals().angular_momentum, start.angular_momentum, rtol=1e-12)
+    assert free.totals().kinetic == pytest.approx(start.kinetic, rel=1e-4)
+
+
+def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
+    stuff = {"a": material(young=1e7, restitution=0.2, friction=0.4)}
+    bodies = [body(files / "ball.ply", position=[0.0, 0.0, 0.0755])]
+    bodies += [body(files / "cube.stl", scale=1e-3, position=[0.16, 0.0, 0.0755])]
+    pile = build(bodies, stuff, planes=[FLOOR], contact_forces=True, speed=0.5)
+    run(pile, 0.3)
+    given = pile.give()
+    assert given["motion.position"][1, 2] == pytest.approx(0.075, abs=2e-4)
+    assert np.abs(given["motion.velocity"]).max() < 1e-4
+    np.testing.assert_allclose(given["contact.force"][:2, 2], 9.81 * pile.mass, rtol=1e-3)
+    np.testing.assert_allclose(given["contact.force"].sum(axis=0), 0.0, atol=1e-9)
+
+
+def test_an_agglomerate_cannot_be_sampled_for_a_fluid(files):
+    described = build([body(files / "ball.ply")]).describe()
+    with pytest.raises(
+        LinkError, match=r"must be 0 \(sphere\) or 1 \(box\) to be sampled; found 2"
+    ):
+        fill(int(described["motion.shape"][0]), described["motion.size"][0], 0.02, 0.05)
+
+
+def test_what_is_wrong_with_a_file_is_told(files):
+    cube = trimesh.creation.box((EDGE,) * 3)
+    cube.update_faces(np.arange(12) != 5)
+    cube.export(files / "open.stl")
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    pyramid = trimesh.Trimesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    pyramid.export(files / "pyramid.ply")
+    (files / "text.stl").write_text("no triangles here")
+    (files / "text.npy").write_text("no array here")
+    np.save(files / "flat.npy", np.ones((3, 3)))
+    np.save(files / "none.npy", np.zeros((3, 3, 3)))
+    wrong = {
+        "bodies[0]: file none.stl must be in the working folder or beside": body("none.stl"),
+        "must be a closed surface": body(files / "open.stl"),
+        "found 3 edges of 11 triangles without a partner": body(files / "open.stl"),
+        "text.stl must be a surface of triangles (STL, OBJ, PLY)": body(files / "text.stl"),
+        "text.npy must be one array": body(files / "text.npy"),
+        "must have three axes of numbers": body(files / "flat.npy"),
+        "of which not all are zero": body(files / "none.npy"),
+        "radius must be at most half the shape's shortest edge, 0.075 m": body(
+            files / "ball.ply", radius=0.08
+        ),
+        "found 0.0125 m for": body(files / "cube.stl"),
+        "Make dim 6000 or larger, or radius larger, or correct scale": body(files / "cube.stl"),
+        "must have at most 2000 spheres; dim 40": body(files / "l.npy", 40, scale=0.05),
+        "must have room for a sphere within": body(files / "pyramid.ply", 3, 0.3),
+        "described by file and dim and radius alone; found diameter": body("x", diameter=1.0),
+        "scale is for what is read from a file": {
+            "shape": "sphere", "diameter": 1.0, "density": 1.0, "material": "a",
+            "position": NOTHING, "scale": 0.1,
+        },
+        "bodies.0.dim should be greater than or equal to 2": body("x", 1),
+    }  # fmt: skip
+    for sentence, given in wrong.items():
+        assert sentence in " ".join(mistakes([given])), (sentence, mistakes([given]))
+
+
+def test_bodies_that_start_in_one_another_are_refused(files):
+    pair = [body(files / "ball.ply"), body(files / "ball.ply", position=[0.14, 0.0, 0.0])]
+    assert "bodies[0] and bodies[1] must not overlap" in " ".join(mistakes(pair))
+    assert not mistakes([pair[0], pair[1] | {"position": [0.16, 0.0, 0.0]}])

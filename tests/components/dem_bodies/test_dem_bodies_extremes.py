@@ -1,0 +1,177 @@
+"""Stiff, fast, crowded and lost bodies: stable, or ended with a reason."""
+
+import math
+
+import numpy as np
+import pytest
+from dem_scenes import FLOOR, NOTHING, about, box, build, energy, material, run, sphere
+
+from quintet.components.dem_bodies.crowd import DAMPING
+from quintet.components.dem_bodies.materials import DURATION
+from quintet.components.dem_bodies.state import DEEPEST, WHICH
+from quintet.interfaces.errors import StepError
+
+STIFF = [3.0e9, 6.5e10, 2.1e11]  # Pa: plastic, glass, steel
+RADIUS = 0.05  # m
+
+
+def dropped(young, speed, restitution, **given):
+    """A ball that is about to touch the floor, without weight."""
+    body = sphere([0.0, 0.0, RADIUS + 1e-6], 2 * RADIUS, velocity=[0.0, 0.0, -speed])
+    stuff = {"a": material(young=young, restitution=restitution)}
+    return build([body], stuff, gravity=NOTHING, planes=[FLOOR], speed=speed, **given)
+
+
+def hertz_depth(ball, young, speed, share=1.0):
+    """Deepest overlap [m] of an elastic impact (Johnson, Contact Mechanics (1985), 11.23).
+
+    `share` is 1 on the floor; m* and R* are half as large where two such balls meet.
+    """
+    mass, radius = share * ball.mass[0], share * RADIUS
+    modulus = young / (2.0 * (1.0 - 0.3**2))
+    return (15.0 * mass * speed**2 / (16.0 * modulus * math.sqrt(radius))) ** 0.4
+
+
+@pytest.mark.parametrize("young", STIFF)
+@pytest.mark.parametrize("speed", [1.0, 20.0])
+def test_overlap_is_hertzs_up_to_steel_and_20_metres_per_second(young, speed):
+    ball = dropped(young, speed, 1.0)
+    depth, deepest = hertz_depth(ball, young, speed), [0.0]
+    start, energies = energy(ball), []
+
+    def watch(_):
+        deepest.append(ball.state.report[DEEPEST] * RADIUS)
+        energies.append(energy(ball))
+
+    run(ball, 4.0 * depth / speed, watch)
+    assert max(deepest) == pytest.approx(depth, rel=2e-3)
+    assert max(energies) < start * (1.0 + 1e-3)  # of a step's error; it does not stay
+    assert energies[-1] == pytest.approx(start, rel=2e-4)
+
+
+@pytest.mark.parametrize("young", STIFF)
+@pytest.mark.parametrize("speed", [1.0, 20.0])
+def test_energy_never_grows_where_contacts_damp(young, speed):
+    ball = dropped(young, speed, 0.6)
+    energies = [energy(ball)]
+    run(
+        ball, 5.0 * hertz_depth(ball, young, speed) / speed, lambda _: energies.append(energy(ball))
+    )
+    assert ball.state.report[WHICH] == -1  # apart again
+    assert np.diff(energies).max() <= 0.0
+    assert energies[-1] == pytest.approx(0.36 * energies[0], rel=5e-3)
+
+
+@pytest.mark.parametrize("young", STIFF)
+def test_the_step_is_the_stated_share_of_the_quickest_impact(young):
+    """That is of two balls, whether or not there is a second one."""
+    ball = dropped(young, 20.0, 1.0)
+    duration = DURATION * hertz_depth(ball, young, 20.0, 0.5) / 20.0
+    steps = []
+    run(ball, 1.2 * duration, lambda _: steps.append(ball.stable_dt()))
+    assert min(steps) == pytest.approx(duration / 40, rel=1e-2)
+
+
+@pytest.mark.parametrize("turned", [[1.0, 0.0, 0.0, 0.0], about([1, -1, 0], 0.9553166)])
+def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(turned):
+    """On its face, and on its corner."""
+    high = 0.0751 if turned[0] == 1.0 else 0.1301
+    body = box([0.0, 0.0, high], orientation=turned, velocity=[0.0, 0.0, -20.0])
+    stuff = {"a": material(young=2.1e11, restitution=0.6)}
+    cube = build([body], stuff, gravity=NOTHING, planes=[FLOOR], speed=20.0)
+    energies = [energy(cube)]
+    run(cube, 2e-3, lambda _: energies.append(energy(cube)))
+    assert cube.give()["motion.velocity"][0, 2] == pytest.approx(12.0, rel=5e-2)
+    assert np.diff(energies).max() <= 0.0
+
+
+def test_an_impact_too_hard_for_hertz_is_refused():
+    """A plastic cube at 20 m/s sinks in by half the radius of its corners."""
+    stuff = {"a": material(young=3e9, restitution=0.6)}
+    body = box([0.0, 0.0, 0.0751], velocity=[0.0, 0.0, -20.0])
+    cube = build([body], stuff, planes=[FLOOR], speed=20.0)
+    with pytest.raises(
+        StepError, match=r"body 0 is 0\.5.* deep in a plane.*Make young or rounding"
+    ):
+        run(cube, 1e-3)
+
+
+def swing(young, restitution, step):
+    """How fast a ball that lies on the floor and is nudged becomes; `step` in 1/ω of its contact.
+
+    Returns the largest speed within 400 steps over that of the nudge, and ζ.
+    """
+    stuff = {"a": material(young=young, restitution=restitution, friction=0.0)}
+    ball = build([sphere([0.0, 0.0, RADIUS], 2 * RADIUS)], stuff, planes=[FLOOR])
+    modulus, ζ = ball.model.law[0, 0, 0], ball.damping
+    weight = 9.81 * ball.mass[0]
+    depth = (0.75 * weight / (modulus * math.sqrt(RADIUS))) ** (2.0 / 3.0)
+    ω = math.sqrt(2.0 * modulus * math.sqrt(RADIUS * depth) / ball.mass[0])
+    ball.state.position[0, 2] = RADIUS - depth
+    ball.step(0.0)  # the contact comes to bear the weight
+    nudge = 1e-5 * ω * depth
+    ball.state.velocity[0, 2] = nudge
+    speeds = []
+    run(ball, 400 * step / ω, lambda _: speeds.append(abs(ball.state.velocity[0, 2])), step / ω)
+    return max(speeds) / nudge, ζ
+
+
+@pytest.mark.parametrize("young", STIFF)
+@pytest.mark.parametrize("restitution", [1.0, 0.5, 0.1])
+def test_the_limit_of_the_step_is_where_it_is_predicted(young, restitution):
+    """γ dt + (ω dt)²/4 = 1 with γ = 2√(5/6) ζ ω: 2/ω without a damper; stable below, not above."""
+    γ = DAMPING * swing(young, restitution, 0.01)[1]  # over ω
+    limit = 2.0 * (math.sqrt(γ * γ + 1.0) - γ)  # over 1/ω
+    assert swing(young, restitution, 0.97 * limit)[0] < 2.0
+    assert swing(young, restitution, 1.03 * limit)[0] > 100.0
+
+
+def test_many_dampers_on_one_body_are_stable():
+    """A slab lies on 64 spheres of its own, strongly damped, and is borne with its weight."""
+    places = [[0.03 * i, 0.03 * j, 0.0] for i in range(8) for j in range(8)]
+    slab = {"shape": "spheres", "centres": places, "radii": [0.0125] * 64, "material": "a"}
+    slab |= {"density": 800.0, "position": [0.0, 0.0, 0.0126]}
+    stuff = {"a": material(young=1e7, restitution=0.05)}
+    body = build([slab], stuff, planes=[FLOOR], speed=0.5, contact_forces=True)
+    run(body, 0.3)
+    assert body.give()["contact.force"][0, 2] == pytest.approx(9.81 * body.mass[0], rel=1e-6)
+    assert np.abs(body.give()["motion.velocity"]).max() < 1e-9
+
+
+def test_damped_balls_in_a_heap_come_to_rest():
+    """Each has up to twelve dampers on it, every one of which would be stable alone."""
+    walls = [([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])]
+    walls += [([0.041, 0.0, 0.0], [-1.0, 0.0, 0.0]), ([0.0, 0.041, 0.0], [0.0, -1.0, 0.0])]
+    planes = [FLOOR] + [{"point": p, "normal": n, "material": "a"} for p, n in walls]
+    ball = sphere([0.0055, 0.0055, 0.006], 0.01, copies=[4, 4, 8], apart=[0.0101] * 3)
+    stuff = {"a": material(young=2e6, restitution=0.05, friction=0.3)}
+    heap = build([ball | {"scatter": 2e-5}], stuff, planes=planes, speed=0.5)
+    run(heap, 0.4)
+    assert np.median(np.linalg.norm(heap.give()["motion.velocity"], axis=1)) < 1e-5
+
+
+def test_a_damped_stack_of_cubes_stands_still():
+    bodies = [box([0.0, 0.0, 0.075 + 0.15 * k]) for k in range(4)]
+    stuff = {"a": material(young=3e9, restitution=0.05, friction=0.4)}
+    stack = build(bodies, stuff, planes=[FLOOR], speed=0.1)
+    run(stack, 0.3)
+    assert np.abs(stack.give()["motion.velocity"]).max() < 1e-6
+
+
+def test_a_body_that_leaves_disturbs_nobody():
+    """One flies off at 1e5 m/s, far beyond all cells; the other's bits stay the same."""
+    stays = sphere([0.0, 0.0, 0.06], 0.1)
+    found = []
+    for others in ([], [sphere([9.0, 0.0, 0.5], 0.1, velocity=[1e5, 0.0, 1e5])]):
+        scene = build([stays, *others], planes=[FLOOR])
+        run(scene, 0.1, dt=1e-4)
+        found.append({key: array[0].copy() for key, array in scene.give().items()})
+    for key in found[0]:
+        np.testing.assert_array_equal(found[0][key], found[1][key], err_msg=key)
+    assert scene.give()["motion.position"][1, 0] == pytest.approx(1e4 + 9.0)
+
+
+def test_a_body_that_falls_out_of_the_scene_falls_on():
+    ball = build([sphere([0.0, 0.0, 0.0], 0.1)])
+    run(ball, 2.0)
+    assert ball.give()["motion.position"][0, 2] == pytest.approx(-0.5 * 9.81 * 2.0**2, rel=1e-9)

@@ -1,0 +1,49 @@
+"""The scenes of rigid bodies, coarse: each reproduces its references."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from quintet.coupler.cli import main
+from quintet.coupler.record import Recording
+
+
+def run(scene: str, out: Path) -> dict:
+    with pytest.raises(SystemExit) as ended:
+        main(["run", scene, "--preset", "quick", "--out", str(out)])
+    found = json.loads((out / "results.json").read_text())
+    assert ended.value.code == 0, found["expect"]
+    return found
+
+
+@pytest.mark.parametrize(("scene", "count"), [("sphere_rebound", 17), ("block_on_slope", 7)])
+def test_scene_reproduces_its_exact_solutions(scene: str, count: int, tmp_path: Path) -> None:
+    assert [one["met"] for one in run(scene, tmp_path)["expect"]] == [True] * count
+
+
+def test_spheres_settle_into_a_random_packing(tmp_path: Path) -> None:
+    """Its fraction away from the walls, its overlaps, and the way in which it loses its energy."""
+    assert [one["met"] for one in run("settling_packing", tmp_path)["expect"]] == [True] * 3
+    with Recording(tmp_path) as recording:
+        x = recording.field("spheres", "motion.position", slice(-1, None))[0]  # (n, 3) m
+        speed = np.linalg.norm(recording.field("spheres", "motion.velocity"), axis=2)
+        mass = recording.static("spheres")["motion.mass"]
+    d, box = 0.01, np.array([0.1, 0.1, np.quantile(x[:, 2], 0.95)])  # m
+    low, high = np.full(3, 1.5 * d), box - 1.5 * d
+    points = low + np.random.default_rng(0).random((50_000, 3)) * (high - low)
+    fraction = (cKDTree(x).query(points)[0] < 0.5 * d).mean()
+    assert 0.55 < fraction < 0.64
+    kinetic = 0.5 * (mass * speed**2).sum(axis=1)
+    assert kinetic[-1] < 1e-6 * kinetic.max()
+    i, j = cKDTree(x).query_pairs(d, output_type="ndarray").T
+    overlap = d - np.linalg.norm(x[i] - x[j], axis=1)  # m
+    # By Hertz's law of the weight that stands on one sphere of the floor. Forces in a packing fall
+    # off as exp(-1.5 f / mean) (Mueth, Jaeger & Nagel, Phys. Rev. E 57 (1998) 3164): of some
+    # thousands none is above 8.
+    modulus, column = 2e6 / (2.0 * 0.91), 9.81 * mass.sum() * d**2 / (box[0] * box[1])
+    deepest = (0.75 * column / (modulus * np.sqrt(0.25 * d))) ** (2.0 / 3.0)
+    assert overlap.mean() < deepest
+    assert overlap.max() < 8.0 ** (2.0 / 3.0) * deepest
