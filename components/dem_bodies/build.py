@@ -93,6 +93,7 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
         if body.size is not None:
             half[k], rounding[k] = 0.5 * np.array(body.size) - body.round, body.round
             edges[k + 1] = len(EDGES)
+    balls = [body.diameter is not None for body in bodies]
     first = np.cumsum(counts)
     boxes = [int(first[k]) + EDGES for k, body in enumerate(bodies) if body.size is not None]
     normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
@@ -102,7 +103,10 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
     return Model(
         inverse_mass=np.array([1.0 / one.mass for one in solids] + [0.0]),
         inverse_inertia=np.array([packed(one) for one in inverses] + [np.zeros(6)]),
+        inverse_turn=np.array([one[0, 0] for one in inverses] + [0.0]),
         isotropic=np.array([isotropic(one.inertia) for one in solids] + [True]),
+        ball=np.array([*balls, False]),
+        others=np.flatnonzero(~np.array(balls)),
         half=half,
         rounding=rounding,
         reach=np.array([reach(body) for body in bodies]),
@@ -116,7 +120,7 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
         plane=np.column_stack([normals, (normals * points).sum(axis=1)]),
         plane_material=as_whole([names[plane.material] for plane in planes]),
         law=laws(params),
-        gravity=np.array(params.gravity),
+        fall=np.array([params.gravity]),
     )
 
 
@@ -139,10 +143,12 @@ def state(params: DemBodiesParams, solids: list[Solid]) -> State:
     """Arrays of all that moves, as it is at the start."""
     bodies, n = params.bodies, len(params.bodies) + 1
     spheres = sum(len(one.radii) for one in solids)
-    spins = []
+    spins, inverses = [], []
     for body, one in zip(bodies, solids, strict=True):
         turn = rotation(body.orientation)
-        spins.append(turn @ one.inertia @ turn.T @ np.array(body.angular_velocity))
+        inertia = turn @ one.inertia @ turn.T
+        spins.append(inertia @ np.array(body.angular_velocity))
+        inverses.append(np.asarray(np.linalg.inv(inertia), np.float64))
     still = [(0.0, 0.0, 0.0)]
     orientations = np.array([body.orientation for body in bodies] + [(1.0, 0.0, 0.0, 0.0)])
     return State(
@@ -152,11 +158,9 @@ def state(params: DemBodiesParams, solids: list[Solid]) -> State:
         spin=np.array([*spins, np.zeros(3)]),
         angular_velocity=np.array([body.angular_velocity for body in bodies] + still),
         contact=np.zeros((n, 6)),
-        before=np.zeros((n, 6)),
         load=np.zeros((n, 6)),
-        axes=np.zeros((n, 9)),
-        mobility=np.zeros((n, 6)),
-        rates=np.zeros((n, 12)),
+        axes=np.tile(np.eye(3).reshape(9), (n, 1)),
+        mobility=np.array([packed(world) for world in inverses] + [np.zeros(6)]),
         centre=np.zeros((spheres, 3)),
         listed=np.full((spheres, 3), np.inf),
         report=np.zeros(10),

@@ -5,17 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.components.dem_bodies import build, kernels, search
+from quintet.components.dem_bodies import ball_search, build, kernels, search
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.state import empty_contacts
+from quintet.components.dem_bodies.state import empty_contacts, empty_scratch
+from quintet.components.shared.team import Team, threads_wanted
 from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import LOAD, MOTION
 
 SKIN = 0.4  # over the smallest contact radius
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
+FEWEST = 8  # blocks of rows that are worth handing to another thread
+KEPT = ("begin", "partner", "held")  # of the balls' pairs; the rest follows from these
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0}  # as ports.MOTION gives them; 2 is our own
 
 
@@ -45,9 +48,14 @@ class DemBodies(Component):
         self.solids = [build.solid(body) for body in params.bodies]
         self.model = build.model(params, self.solids)
         self.state = build.state(params, self.solids)
+        self.scratch = empty_scratch(self.model)
+        self.balls = ball_search.no_balls(self.model, self.scratch)
         self.contacts = empty_contacts(0)
+        self.loaded = False  # whether any body has a load
         self.books = Books()
         self.count = len(self.solids)
+        several = threads_wanted() > 1 and len(self.scratch.tally) >= 2 * FEWEST
+        self.team = Team(threads_wanted(), FEWEST, 1) if several else None
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.skin = SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
@@ -78,6 +86,7 @@ class DemBodies(Component):
         force, torque = fields.get("load.force"), fields.get("load.torque")
         load[: self.count, :3] = 0.0 if force is None else force
         load[: self.count, 3:] = 0.0 if torque is None else torque
+        self.loaded = bool(load.any())
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, contacts, half kick."""
@@ -89,18 +98,37 @@ class DemBodies(Component):
         self.books.dissipated += float(held - report[rows.WORK] - report[rows.ELASTIC])
 
     def _move(self, dt: float) -> None:
-        state = self.state
-        if not kernels.advance(self.model, state, self.contacts, dt, 0.25 * self.skin**2):
+        state, loaded, limit = self.state, self.loaded, 0.25 * self.skin**2
+        if self.team is not None:
+            self._move_together(self.team, dt, limit)
+        elif not kernels.advance(*self._arrays(), dt, loaded, limit):
             self._list()
-            kernels.resolve(self.model, state, self.contacts, dt)
+            kernels.resolve(*self._arrays(), dt, loaded)
         report = state.report
-        if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.FASTEST])):
+        if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.WORK])):
             self._refuse(dt)
+
+    def _move_together(self, team: Team, dt: float, limit: float) -> None:
+        """Do as kernels.advance does, with the blocks of rows shared out among threads."""
+        model, state, scratch, loaded = self.model, self.state, self.scratch, self.loaded
+        blocks = len(scratch.tally)
+        team.run(kernels.drift, blocks, model, state, scratch, dt, loaded)
+        if not kernels.furthest(state, scratch) <= limit:
+            self._list()
+        team.run(kernels.press_blocks, blocks, model, self.balls, scratch, dt)
+        kernels.press_others(*self._arrays(), dt)
+        team.run(kernels.finish, blocks, model, state, self.balls, scratch, dt, loaded)
+        kernels.close(state, scratch)
+
+    def _arrays(self) -> tuple[rows.Model, rows.State, rows.Balls, rows.Contacts, rows.Scratch]:
+        return self.model, self.state, self.balls, self.contacts, self.scratch
 
     def _list(self) -> None:
         if not np.isfinite(self.state.position).all():
             self._refuse(0.0)
-        self.contacts = search.listed(self.model, self.state, self.contacts, self.skin)
+        self.balls, self.contacts = search.listed(
+            self.model, self.state, self.scratch, self.balls, self.contacts, self.skin
+        )
         self.state.report[rows.WAY] = 0.0
 
     def _refuse(self, dt: float) -> None:
@@ -115,15 +143,23 @@ class DemBodies(Component):
                 f"with {s.velocity[k].tolist()} m/s under a load of {s.load[k].tolist()} N, N m. "
                 "Look at the load it was given, or make steps_per_contact larger."
             )
-        deepest, pair = s.report[rows.DEEPEST], int(s.report[rows.WHICH])
-        touching = self.contacts.touching
-        i, j = touching[touching[:, 0] == pair][0, 1:3]
+        deepest, (i, j) = s.report[rows.DEEPEST], self._pair(int(s.report[rows.WHICH]))
         other = f"body {j}" if j < m else "a plane"
         raise StepError(
             f"{after}: a contact may be {DEEPEST} of its radius deep; body {i} is {deepest:.3g} of "
             f"it deep in {other}, near {s.position[i].round(4).tolist()} m. Make young or rounding "
             "larger, or speed nearer to that of the impacts."
         )
+
+    def _pair(self, which: int) -> tuple[int, int]:
+        """Bodies of a pair as the report numbers them; planes are beyond all bodies."""
+        count = len(self.balls.partner)
+        if which < count:
+            first, second = ball_search.ends(self.balls, self.scratch.body)
+            return int(first[which]), int(second[which])
+        touching = self.contacts.touching
+        i, j = touching[touching[:, 0] == which - count][0, 1:3]
+        return int(i), int(j)
 
     def give(self) -> Fields:
         """Copy out the motion of all bodies."""
@@ -140,6 +176,8 @@ class DemBodies(Component):
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         kept["pairs.key"] = self.contacts.key.copy()
         kept["pairs.history"] = self.contacts.history.copy()
+        kept["rows.body"] = self.scratch.body.copy()
+        kept |= {f"balls.{name}": getattr(self.balls, name).copy() for name in KEPT}
         books = self.books
         kept["books"] = np.array([books.time, books.dissipated, books.given])
         return kept
@@ -152,6 +190,12 @@ class DemBodies(Component):
         kept.key[:] = state["pairs.key"]
         kept.history[:] = state["pairs.history"]
         self.contacts = search.contacts_from(kept.key, kept)
+        self.scratch.body[:] = state["rows.body"]
+        self.scratch.row[self.scratch.body] = np.arange(self.count + 1)
+        begin, partner = np.array(state["balls.begin"]), np.array(state["balls.partner"])
+        self.balls = ball_search.balls_from(self.model, self.scratch.body, begin, partner)
+        self.balls.held[:] = state["balls.held"]
+        self.loaded = bool(self.state.load.any())
         self.books = Books(*state["books"].tolist())
 
     def totals(self) -> Totals:
@@ -163,7 +207,7 @@ class DemBodies(Component):
             momentum=momentum.sum(axis=0),
             angular_momentum=(s.spin[:m] + np.cross(s.position[:m], momentum)).sum(axis=0),
             kinetic=kernels.kinetic(self.model, s),
-            potential=-float(mass @ (s.position[:m] @ self.model.gravity)),
+            potential=-float(mass @ (s.position[:m] @ self.model.fall[0])),
             internal=float(s.report[rows.ELASTIC]),
         )
 
