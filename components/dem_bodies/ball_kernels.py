@@ -114,7 +114,7 @@ def approach(
         if held[k, 3] == 0.0:
             room[FIRST + c] = beginning(0.0, depth, -dot(end, n), dt)
         for d in range(7):
-            room[LAW + d * ROOM + c] = constants[k, d]
+            room[LAW + d * ROOM + c] = constants[balls.law[k], d]
 
 
 @njit(**INNER)

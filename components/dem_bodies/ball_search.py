@@ -68,26 +68,40 @@ def meet(
 
 
 @njit(**PURE)
-def constants_of(model: Model, body: Short, begin: Whole, partner: Short) -> Numbers:
-    """Constants of all pairs: a plane is a partner without end."""
+def laws_of(model: Model, body: Short, row: Short, partner: Short) -> Whole:
+    """Number of the law of each pair, by the kinds of its balls, or of a ball and a plane."""
+    rows, kinds = body.shape[0], max(model.kind.max() + 1, model.law.shape[0])
+    numbers = np.empty(partner.shape[0], np.int64)
+    for k in range(partner.shape[0]):
+        i, b = model.kind[body[row[k]]], partner[k]
+        if b < rows:
+            j = model.kind[body[b]]
+            numbers[k] = min(i, j) * kinds + max(i, j)
+        else:
+            numbers[k] = kinds * (kinds + i) + model.plane_material[b - rows]
+    return numbers
+
+
+@njit(**PURE)
+def constants_of(model: Model, body: Short, row: Short, partner: Short, some: Whole) -> Numbers:
+    """Constants of some of the pairs: a plane is a partner without end."""
     rows = body.shape[0]
-    table = np.empty((partner.shape[0], 7))
-    for a in range(begin.shape[0] - 1):
-        i = body[a]
-        for k in range(begin[a], begin[a + 1]):
-            b, radius, inverse = partner[k], model.reach[i], model.inverse_mass[i]
-            if b < rows:
-                j = body[b]
-                other, radius = model.material[j], 1.0 / (1.0 / radius + 1.0 / model.reach[j])
-                inverse += model.inverse_mass[j]
-            else:
-                other = model.plane_material[b - rows]
-            m = model.material[i]
-            modulus, shear = model.law[m, other, 0], model.law[m, other, 1]
-            ζ, μ = model.law[m, other, 2], model.law[m, other, 3]
-            c = constants(modulus, shear, ζ, μ, radius, 1.0 / inverse)
-            for c7 in range(7):
-                table[k, c7] = c[c7]
+    table = np.empty((some.shape[0], 7))
+    for s in range(some.shape[0]):
+        k = some[s]
+        i, b = body[row[k]], partner[k]
+        radius, inverse, a = model.reach[i], model.inverse_mass[i], model.material[i]
+        if b < rows:
+            other, radius = (
+                model.material[body[b]],
+                1.0 / (1.0 / radius + 1.0 / model.reach[body[b]]),
+            )
+            inverse += model.inverse_mass[body[b]]
+        else:
+            other = model.plane_material[b - rows]
+        modulus, shear = model.law[a, other, 0], model.law[a, other, 1]
+        ζ, μ = model.law[a, other, 2], model.law[a, other, 3]
+        table[s] = constants(modulus, shear, ζ, μ, radius, 1.0 / inverse)
     return table
 
 
@@ -121,12 +135,17 @@ def carry(old: Balls, old_body: Short, new: Balls, body: Short) -> None:
 def balls_from(model: Model, body: Short, begin: Whole, partner: Short) -> Balls:
     """Pairs of given partners, without history."""
     rows, pairs = len(body), len(partner)
+    row = np.repeat(np.arange(len(begin) - 1, dtype=np.uint32), np.diff(begin))
+    _, some, law = np.unique(
+        laws_of(model, body, row, partner), return_index=True, return_inverse=True
+    )
     towards = np.minimum(partner, rows - 1)  # what planes bear the ground gets
     return Balls(
         begin=begin,
-        row=np.repeat(np.arange(len(begin) - 1, dtype=np.uint32), np.diff(begin)),
+        row=row,
         partner=partner,
-        constants=constants_of(model, body, begin, partner),
+        law=law.astype(np.uint32),
+        constants=constants_of(model, body, row, partner, some),
         held=np.zeros((pairs, 4)),
         push=np.zeros((pairs, 7)),
         come=np.concatenate([[0], np.cumsum(np.bincount(towards, minlength=rows))]),

@@ -93,6 +93,7 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
         if body.size is not None:
             half[k], rounding[k] = 0.5 * np.array(body.size) - body.round, body.round
             edges[k + 1] = len(EDGES)
+    material = [names[body.material] for body in bodies] + [0]
     balls = [body.diameter is not None for body in bodies]
     first = np.cumsum(counts)
     boxes = [int(first[k]) + EDGES for k, body in enumerate(bodies) if body.size is not None]
@@ -110,7 +111,8 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
         half=half,
         rounding=rounding,
         reach=np.array([reach(body) for body in bodies]),
-        material=np.array([names[body.material] for body in bodies] + [0]),
+        material=np.array(material),
+        kind=kinds(solids, material),
         sphere_from=first,
         sphere_body=np.repeat(np.arange(n), counts[1:]),
         sphere_centre=np.vstack([one.centres for one in solids]),
@@ -122,6 +124,13 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
         law=laws(params),
         fall=np.array([params.gravity]),
     )
+
+
+def kinds(solids: list[Solid], material: list[int]) -> Whole:
+    """Number the kinds of bodies, which differ in mass, radius or material; and the ground."""
+    of = [(one.mass, float(one.radii[0]), a) for one, a in zip(solids, material, strict=False)]
+    number = {kind: k for k, kind in enumerate(dict.fromkeys(of))}
+    return np.array([number[kind] for kind in of] + [len(number)])
 
 
 def as_whole(numbers: list[int]) -> Whole:

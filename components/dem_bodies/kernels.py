@@ -243,14 +243,18 @@ def finish(
     first: int, last: int, model: Model, state: State, balls: Balls, scratch: Scratch, dt: float,
     loaded: bool,
 ) -> None:  # fmt: skip
-    """Half kick with the new forces, of the blocks [first, last); tally how fast points move."""
+    """Half kick with the new forces, of the rows of blocks [first, last); tally how fast all move.
+
+    Rows get forces from rows before them only, so that blocks may be finished one by one.
+    """
     half, bodies = 0.5 * dt, model.reach.shape[0]
     load, fall, tally = state.load, vector(model.fall, 0), scratch.tally
     for block in range(first, last):
         work, given = 0.0, 0.0
         moving, spinning, pulled, spinup, curved = 0.0, 0.0, dot(fall, fall), 0.0, 0.0
-        for i in range(block * BLOCK, min((block + 1) * BLOCK, bodies)):
-            gather(balls, scratch, scratch.row[i], state.contact, i)
+        for a in range(block * BLOCK, min((block + 1) * BLOCK, bodies)):
+            i = scratch.body[a]
+            gather(balls, scratch, a, state.contact, i)
             _, _, w, done, gave = kick(model, state, i, half, loaded)
             work, given = work + done, given + gave
             write(state.angular_velocity, i, 0, w)
@@ -339,9 +343,12 @@ def resolve(
 ) -> None:  # fmt: skip
     """Let contacts press on the bodies where they now are, and end the step."""
     blocks = scratch.tally.shape[0]
-    press_balls(0, blocks, model, balls, scratch, dt)
-    press_others(model, state, balls, contacts, scratch, dt)
-    finish(0, blocks, model, state, balls, scratch, dt, loaded)
+    each = 1 if contacts.key.shape[0] == 0 else blocks  # finished while still in cache
+    for block in range(0, blocks, each):
+        press_balls(block, block + each, model, balls, scratch, dt)
+        if block + each == blocks:
+            press_others(model, state, balls, contacts, scratch, dt)
+        finish(block, block + each, model, state, balls, scratch, dt, loaded)
     close(state, scratch)
 
 

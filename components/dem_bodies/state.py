@@ -31,6 +31,7 @@ class Model(NamedTuple):
     rounding: Numbers  # (n,) m, of a box's edges; 0 for others
     reach: Numbers  # (m,) m, radius of a sphere about the centre that holds the body
     material: Whole  # (n,) number of the material
+    kind: Whole  # (n,) number that bodies of one radius, mass and material share
     sphere_from: Whole  # (n + 1,) spheres of body i: sphere_from[i] ... sphere_from[i + 1] - 1
     sphere_body: Whole  # (s,)
     sphere_centre: Numbers  # (s, 3) m, body axes
@@ -81,7 +82,8 @@ class Balls(NamedTuple):
     begin: Whole  # (b + 1,) pairs of row a: begin[a] ... begin[a + 1] - 1
     row: Short  # (pairs,)
     partner: Short  # (pairs,) row of the other ball, or n + number of the plane
-    constants: Numbers  # (pairs, 7) see laws
+    law: Short  # (pairs,) row of the constants
+    constants: Numbers  # (laws, 7) see laws
     held: Numbers  # (pairs, 4) elastic tangential force on the ball [N], 1/√δ; 0 if apart
     push: Numbers  # (pairs, 6) N and N m, force and torque on the partner
     come: (
