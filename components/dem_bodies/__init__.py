@@ -52,4 +52,5 @@ MANIFEST = Manifest(
     component="quintet.components.dem_bodies.component:DemBodies",
     ports=_ports,
     plan=_plan,
+    bench="quintet.components.dem_bodies.bench:cases",
 )

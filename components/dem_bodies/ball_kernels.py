@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.geometry import FAR, vector
+from quintet.components.dem_bodies.geometry import FAR, scaled, three, vector
 from quintet.components.dem_bodies.laws import LEAST, beginning, contact
 from quintet.components.dem_bodies.state import (
     BLOCK,
@@ -29,18 +29,6 @@ MEAN, END, HELD, BEFORE, LAW, FORCE, ENERGY = (
     10 * ROOM, 13 * ROOM, 16 * ROOM, 19 * ROOM, 20 * ROOM, 27 * ROOM, 30 * ROOM,
 )  # fmt: skip
 NUMBERS = 31
-
-
-@njit(**INNER)
-def three(rows: Numbers, k: int, first: int) -> Vector:
-    """Return three numbers of a row."""
-    return rows[k, first], rows[k, first + 1], rows[k, first + 2]
-
-
-@njit(**INNER)
-def scaled(scale: float, a: Vector) -> Vector:
-    """Return scale a."""
-    return scale * a[0], scale * a[1], scale * a[2]
 
 
 @njit(**INNER)
@@ -156,9 +144,12 @@ def share(first: int, last: int, balls: Balls, scratch: Scratch, room: Numbers, 
         force = column(room, FORCE + c)
         t = cross(force, n)
         i, j = motion[a, 3] - 0.5 * depth, motion[b, 3] - 0.5 * depth
+        turn = scaled(j, t)
+        if partner[k] >= rows:  # the ground's is about the origin
+            turn = cross(force, beside(vector(motion, a), -i, n))
         for d in range(3):
             held[k, d] = room[HELD + d * ROOM + c]
-            push[k, d], push[k, 3 + d] = -force[d], j * t[d]
+            push[k, d], push[k, 3 + d] = -force[d], turn[d]
             sums[a, d] += force[d]
             sums[a, 3 + d] += i * t[d]
         held[k, 3] = room[WEIGHT + c] if depth > 0.0 else 0.0

@@ -28,6 +28,16 @@ ROW, LAYER = 1 << BITS, 1 << 2 * BITS
 AHEAD = ((0, 1), (ROW - 1, 2), (LAYER - ROW - 1, 2), (LAYER - 1, 2), (LAYER + ROW - 1, 2))
 
 
+class Touched(NamedTuple):
+    """Pairs of balls that touch, and of balls and planes."""
+
+    bodies: Whole  # (k, 2); planes are the ground
+    point: Numbers  # (k, 3) m
+    normal: Numbers  # (k, 3) to the first body
+    force: Numbers  # (k, 3) N, on the first body
+    depth: Numbers  # (k,) m
+
+
 class Sorted(NamedTuple):
     """Balls in the order of their cells."""
 
@@ -129,7 +139,11 @@ def carry(old: Balls, old_body: Short, new: Balls, body: Short) -> None:
     source = place[known]
     new.held[known] = old.held[touching[source]]
     # The force is that on the pair's first body, which may have become its second.
-    new.held[known[first[source] != new_first[known]], :3] *= -1.0
+    swapped = known[first[source] != new_first[known]]
+    new.held[swapped, :3] *= -1.0
+    if new.roll.size and len(old.roll):
+        new.roll[known] = old.roll[touching[source]]
+        new.roll[swapped] *= -1.0
 
 
 def balls_from(model: Model, body: Short, begin: Whole, partner: Short) -> Balls:
@@ -147,6 +161,7 @@ def balls_from(model: Model, body: Short, begin: Whole, partner: Short) -> Balls
         law=law.astype(np.uint32),
         constants=constants_of(model, body, row, partner, some),
         held=np.zeros((pairs, 4)),
+        roll=np.zeros((pairs if model.law[:, :, 4].any() else 0, 3)),
         push=np.zeros((pairs, 7)),
         come=np.concatenate([[0], np.cumsum(np.bincount(towards, minlength=rows))]),
         coming=np.argsort(towards, kind="stable").astype(np.uint32),
@@ -186,3 +201,18 @@ def listed_balls(
     new = balls_from(model, scratch.body.copy(), begin, partner[:count].copy())
     carry(old, old_body, new, scratch.body)
     return new
+
+
+def touched(model: Model, balls: Balls, scratch: Scratch) -> Touched:
+    """List the pairs that touched in the last step."""
+    pairs, ground = np.flatnonzero(balls.held[:, 3]), len(scratch.body) - 1
+    row, partner = balls.row[pairs], balls.partner[pairs].astype(np.int64)
+    on_ground = partner > ground
+    x, other = scratch.motion[row], scratch.motion[np.minimum(partner, ground)]
+    way = x[:, :3] - other[:, :3]
+    normal = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
+    normal[on_ground] = model.plane[partner[on_ground] - ground - 1, :3]
+    depth = balls.held[pairs, 3] ** -2
+    bodies = scratch.body[np.column_stack([row, np.minimum(partner, ground)])].astype(np.int64)
+    point = x[:, :3] - (x[:, 3] - 0.5 * depth)[:, None] * normal
+    return Touched(bodies, point, normal, -balls.push[pairs, :3], depth)

@@ -54,29 +54,32 @@ def solid(body: Body) -> Solid:
 
 
 def laws(params: DemBodiesParams) -> Numbers:
-    """Table (materials, materials, 4) of E* [Pa], G* [Pa], ζ and μ."""
+    """Table (materials, materials, 5) of E* [Pa], G* [Pa], ζ, μ and μ_r."""
     names = list(params.materials)
-    table = np.zeros((len(names), len(names), 4))
+    table = np.zeros((len(names), len(names), 5))
     for (i, a), (j, b) in product(enumerate(params.materials.values()), repeat=2):
-        table[i, j] = law(a, b, min(a.restitution, b.restitution), min(a.friction, b.friction))
+        table[i, j] = law(a, b)
     for pair in params.pairs:
         i, j = (names.index(name) for name in pair.between)
         if pair.restitution is not None:
             table[i, j, 2] = table[j, i, 2] = materials.damping_ratio(pair.restitution)
         if pair.friction is not None:
             table[i, j, 3] = table[j, i, 3] = pair.friction
+        if pair.rolling is not None:
+            table[i, j, 4] = table[j, i, 4] = pair.rolling
     return table
 
 
-def law(a: Material, b: Material, restitution: float, friction: float) -> Numbers:
-    """E* [Pa], G* [Pa], ζ and μ of two materials."""
+def law(a: Material, b: Material) -> Numbers:
+    """E* [Pa], G* [Pa], ζ, μ and μ_r of two materials: the lower of both where they differ."""
     young, poisson = (a.young, b.young), (a.poisson, b.poisson)
     return np.array(
         [
             materials.effective_modulus(young, poisson),
             materials.effective_shear(young, poisson),
-            materials.damping_ratio(restitution),
-            friction,
+            materials.damping_ratio(min(a.restitution, b.restitution)),
+            min(a.friction, b.friction),
+            min(a.rolling, b.rolling),
         ]
     )
 
@@ -172,7 +175,7 @@ def state(params: DemBodiesParams, solids: list[Solid]) -> State:
         mobility=np.array([packed(world) for world in inverses] + [np.zeros(6)]),
         centre=np.zeros((spheres, 3)),
         listed=np.full((spheres, 3), np.inf),
-        report=np.zeros(10),
+        report=np.zeros(11),
     )
 
 

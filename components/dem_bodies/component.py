@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.components.dem_bodies import ball_search, build, kernels, search
+from quintet.components.dem_bodies import ball_search, build, kernels, rolling, search
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
@@ -18,7 +18,7 @@ from quintet.interfaces.ports import LOAD, MOTION
 SKIN = 0.4  # over the smallest contact radius
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 FEWEST = 8  # blocks of rows that are worth handing to another thread
-KEPT = ("begin", "partner", "held")  # of the balls' pairs; the rest follows from these
+KEPT = ("begin", "partner", "held", "roll")  # of the balls' pairs; the rest follows from these
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0}  # as ports.MOTION gives them; 2 is our own
 
 
@@ -55,7 +55,8 @@ class DemBodies(Component):
         self.books = Books()
         self.count = len(self.solids)
         several = threads_wanted() > 1 and len(self.scratch.tally) >= 2 * FEWEST
-        self.team = Team(threads_wanted(), FEWEST, 1) if several else None
+        self.rolling = bool(self.model.law[:, :, 4].any() and self.model.ball.any())
+        self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.skin = SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
@@ -99,8 +100,8 @@ class DemBodies(Component):
 
     def _move(self, dt: float) -> None:
         state, loaded, limit = self.state, self.loaded, 0.25 * self.skin**2
-        if self.team is not None:
-            self._move_together(self.team, dt, limit)
+        if self.team.size > 1 or self.rolling:
+            self._move_by_passes(dt, limit)
         elif not kernels.advance(*self._arrays(), dt, loaded, limit):
             self._list()
             kernels.resolve(*self._arrays(), dt, loaded)
@@ -108,17 +109,20 @@ class DemBodies(Component):
         if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.WORK])):
             self._refuse(dt)
 
-    def _move_together(self, team: Team, dt: float, limit: float) -> None:
+    def _move_by_passes(self, dt: float, limit: float) -> None:
         """Do as kernels.advance does, with the blocks of rows shared out among threads."""
         model, state, scratch, loaded = self.model, self.state, self.scratch, self.loaded
+        team = self.team
         blocks = len(scratch.tally)
         team.run(kernels.drift, blocks, model, state, scratch, dt, loaded)
         if not kernels.furthest(state, scratch) <= limit:
             self._list()
         team.run(kernels.press_blocks, blocks, model, self.balls, scratch, dt)
+        if self.rolling:
+            team.run(rolling.resist, blocks, model, self.balls, scratch, dt)
         kernels.press_others(*self._arrays(), dt)
         team.run(kernels.finish, blocks, model, state, self.balls, scratch, dt, loaded)
-        kernels.close(state, scratch)
+        kernels.close(state, self.balls, scratch)
 
     def _arrays(self) -> tuple[rows.Model, rows.State, rows.Balls, rows.Contacts, rows.Scratch]:
         return self.model, self.state, self.balls, self.contacts, self.scratch
@@ -171,6 +175,28 @@ class DemBodies(Component):
             "motion.angular_velocity": s.angular_velocity[:m].copy(),
         }
 
+    def contact_points(self) -> Fields:
+        """List what touched in the last step: nothing is computed for it before it is asked for.
+
+        Returns
+        -------
+        bodies : (k, 2) the first body and the other; `count` is the ground, which all planes are
+        point, normal : (k, 3) m and 1, the normal towards the first body
+        force : (k, 3) N on the first body
+        depth : (k,) m, overlap
+        """
+        other = self.contacts
+        count = int(self.state.report[rows.TOUCHING])
+        geometry, bodies = other.geometry[:count], other.touching[:count, 1:3]
+        found = ball_search.touched(self.model, self.balls, self.scratch)
+        return {
+            "bodies": np.vstack([found.bodies, bodies]),
+            "point": np.vstack([found.point, geometry[:, 3:6]]),
+            "normal": np.vstack([found.normal, geometry[:, :3]]),
+            "force": np.vstack([found.force, geometry[:, 8:]]),
+            "depth": np.append(found.depth, geometry[:, 6]),
+        }
+
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, what was added up."""
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
@@ -195,6 +221,7 @@ class DemBodies(Component):
         begin, partner = np.array(state["balls.begin"]), np.array(state["balls.partner"])
         self.balls = ball_search.balls_from(self.model, self.scratch.body, begin, partner)
         self.balls.held[:] = state["balls.held"]
+        self.balls.roll[:] = state["balls.roll"]
         self.loaded = bool(self.state.load.any())
         self.books = Books(*state["books"].tolist())
 

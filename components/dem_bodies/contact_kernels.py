@@ -161,7 +161,8 @@ def press(
             bearing = grown(history, pair, depth, -dot(end, n), dt)
         history[pair, 3] = depth
         if bearing <= 0.0:
-            history[pair, 0], history[pair, 1], history[pair, 2] = 0.0, 0.0, 0.0
+            for d in range(3):
+                history[pair, d], geometry[k, 8 + d] = 0.0, 0.0
             continue
         p, q = law // kinds, law % kinds
         c = constants(table[p, q, 0], table[p, q, 1], table[p, q, 2], table[p, q, 3], radius, mass)
@@ -183,7 +184,7 @@ def press(
         )
         torque_i, torque_j = cross(arm_i, force), cross(arm_j, force)
         for d in range(3):
-            history[pair, d] = held[d]
+            history[pair, d], geometry[k, 8 + d] = held[d], force[d]
             sums[a, d] += force[d]
             sums[b, d] -= force[d]
             sums[a, 3 + d] += torque_i[d]

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.ball_kernels import END_V, V, press_balls, scaled, three
+from quintet.components.dem_bodies.ball_kernels import END_V, V, press_balls
 from quintet.components.dem_bodies.contact_kernels import find, press
-from quintet.components.dem_bodies.geometry import FAR, axes_of, vector
+from quintet.components.dem_bodies.geometry import FAR, add, axes_of, scaled, three, vector, write
 from quintet.components.dem_bodies.state import (
     BLOCK,
     CURVED,
@@ -22,6 +22,7 @@ from quintet.components.dem_bodies.state import (
     SPINNING,
     SPUN,
     STIFFEST,
+    TOUCHING,
     WAY,
     WHICH,
     WORK,
@@ -32,104 +33,16 @@ from quintet.components.dem_bodies.state import (
     Scratch,
     State,
 )
+from quintet.components.dem_bodies.turning import roll, spun, times, turn
 from quintet.components.shared.rotations import (
     INNER,
     PURE,
-    Matrix,
-    Quaternion,
     Vector,
-    backward,
     beside,
     dot,
     forward,
     less,
-    matrix,
-    turned,
 )
-
-ROUNDS = 20  # of the implicit midpoint rule, at most
-
-
-@njit(**INNER)
-def times(s: Numbers, i: int, x: float, y: float, z: float) -> Vector:
-    """Symmetric matrix xx yy zz xy xz yz in row i times a vector."""
-    return (
-        s[i, 0] * x + s[i, 3] * y + s[i, 4] * z,
-        s[i, 3] * x + s[i, 1] * y + s[i, 5] * z,
-        s[i, 4] * x + s[i, 5] * y + s[i, 2] * z,
-    )
-
-
-@njit(**INNER)
-def turning(inverse: Numbers, i: int, r: Matrix, x: float, y: float, z: float) -> Vector:
-    """Angular velocity [rad/s] of a body with axes r and angular momentum (x, y, z)."""
-    a, b, c = backward(r, x, y, z)
-    a, b, c = times(inverse, i, a, b, c)
-    return forward(r, a, b, c)
-
-
-@njit(**INNER)
-def midpoint(inverse: Numbers, i: int, q: Quaternion, spin: Vector, half: float) -> Vector:
-    """Angular velocity in the middle of a step by the implicit midpoint rule.
-
-    The rule is symmetric in time, so that the energy of a free body stays bounded.
-    """
-    x, y, z = spin
-    w = turning(inverse, i, matrix(q), x, y, z)
-    for _ in range(ROUNDS):
-        r = matrix(turned(q, half * w[0], half * w[1], half * w[2]))
-        new = turning(inverse, i, r, x, y, z)
-        change = abs(new[0] - w[0]) + abs(new[1] - w[1]) + abs(new[2] - w[2])
-        w = new
-        if change <= 1e-15 * (abs(w[0]) + abs(w[1]) + abs(w[2])):
-            break
-    return w
-
-
-@njit(**INNER)
-def spun(model: Model, state: State, i: int) -> Vector:
-    """Angular velocity [rad/s] of body i with its present angular momentum and axes."""
-    x, y, z = vector(state.spin, i)
-    if model.ball[i]:
-        inverse = model.inverse_turn[i]
-        return inverse * x, inverse * y, inverse * z
-    return times(state.mobility, i, x, y, z)
-
-
-@njit(**INNER)
-def turn(model: Model, state: State, i: int, dt: float) -> Vector:
-    """Turn a body that is no ball with its angular momentum; return ω, keep axes and R I⁻¹ Rᵀ."""
-    inverse, orientation = model.inverse_inertia, state.orientation
-    q = (orientation[i, 0], orientation[i, 1], orientation[i, 2], orientation[i, 3])
-    spin = (state.spin[i, 0], state.spin[i, 1], state.spin[i, 2])
-    if model.isotropic[i]:
-        w = times(inverse, i, spin[0], spin[1], spin[2])
-    else:
-        w = midpoint(inverse, i, q, spin, 0.5 * dt)
-    q = turned(q, dt * w[0], dt * w[1], dt * w[2])
-    r = matrix(q)
-    for k in range(4):
-        orientation[i, k] = q[k]
-    for k in range(9):
-        state.axes[i, k] = r[k]
-    if not model.isotropic[i]:
-        x = turning(inverse, i, r, 1.0, 0.0, 0.0)
-        y = turning(inverse, i, r, 0.0, 1.0, 0.0)
-        z = turning(inverse, i, r, 0.0, 0.0, 1.0)
-        world = (x[0], y[1], z[2], y[0], z[0], z[1])
-        for k in range(6):
-            state.mobility[i, k] = world[k]
-    return w
-
-
-@njit(**INNER)
-def roll(state: State, i: int, w: Vector, dt: float) -> None:
-    """Turn a ball."""
-    orientation = state.orientation
-    q = (orientation[i, 0], orientation[i, 1], orientation[i, 2], orientation[i, 3])
-    q = turned(q, dt * w[0], dt * w[1], dt * w[2])
-    for k in range(4):
-        orientation[i, k] = q[k]
 
 
 @njit(**INNER)
@@ -147,20 +60,6 @@ def place(model: Model, state: State, i: int, keep: bool) -> float:
         way = less(c, vector(listed, s))
         furthest = max(furthest, dot(way, way))
     return furthest
-
-
-@njit(**INNER)
-def write(rows: Numbers, i: int, first: int, a: Vector) -> None:
-    """Write three numbers of a row."""
-    rows[i, first], rows[i, first + 1], rows[i, first + 2] = a
-
-
-@njit(**INNER)
-def add(rows: Numbers, i: int, a: Vector) -> None:
-    """Add a vector to a row."""
-    rows[i, 0] += a[0]
-    rows[i, 1] += a[1]
-    rows[i, 2] += a[2]
 
 
 @njit(**INNER)
@@ -293,8 +192,10 @@ def found(state: State, scratch: Scratch) -> None:
 
 
 @njit(**PURE)
-def close(state: State, scratch: Scratch) -> None:
-    """Report work done, and how fast points may move."""
+def close(state: State, balls: Balls, scratch: Scratch) -> None:
+    """Report work done, and how fast points may move; give the ground what planes bear."""
+    ground = state.contact.shape[0] - 1
+    gather(balls, scratch, ground, state.contact, ground)
     report, tally = state.report, scratch.tally
     report[WORK], report[GIVEN] = 0.0, 0.0
     most = np.zeros(5)
@@ -333,6 +234,7 @@ def press_others(
     """Report on the pairs of balls, and press all other pairs."""
     found(state, scratch)
     count = find(model, state, contacts, balls.partner.shape[0])
+    state.report[TOUCHING] = count
     press(model, state, contacts, scratch, count, dt)
 
 
@@ -349,7 +251,7 @@ def resolve(
         if block + each == blocks:
             press_others(model, state, balls, contacts, scratch, dt)
         finish(block, block + each, model, state, balls, scratch, dt, loaded)
-    close(state, scratch)
+    close(state, balls, scratch)
 
 
 @njit(**PURE)

@@ -40,7 +40,7 @@ class Model(NamedTuple):
     edge_ends: Whole  # (e, 2) spheres at the ends of each edge
     plane: Numbers  # (p, 4) unit normal and offset: normal·x = offset
     plane_material: Whole  # (p,)
-    law: Numbers  # (materials, materials, 4) E* Pa, G* Pa, ζ, μ
+    law: Numbers  # (materials, materials, 5) E* Pa, G* Pa, ζ, μ, μ_r
     fall: Numbers  # (1, 3) m/s2, gravity
 
 
@@ -58,7 +58,7 @@ class State(NamedTuple):
     mobility: Numbers  # (n, 6) 1/(kg m2), inverse inertia in world axes
     centre: Numbers  # (s, 3) m, of the spheres; of balls kept up only beside other bodies
     listed: Numbers  # (s, 3) m, where they were when pairs were last listed
-    report: Numbers  # (10,) on the last step, see below
+    report: Numbers  # (11,) on the last step, see below
 
 
 class Scratch(NamedTuple):
@@ -85,6 +85,7 @@ class Balls(NamedTuple):
     law: Short  # (pairs,) row of the constants
     constants: Numbers  # (laws, 7) see laws
     held: Numbers  # (pairs, 4) elastic tangential force on the ball [N], 1/√δ; 0 if apart
+    roll: Numbers  # (pairs, 3) N m, elastic moment against rolling; (0, 3) if nothing resists it
     push: Numbers  # (pairs, 6) N and N m, force and torque on the partner
     come: (
         Whole  # (n + 1,) pairs whose partner is row a: coming[come[a]] ... coming[come[a + 1] - 1]
@@ -102,7 +103,7 @@ class Contacts(NamedTuple):
     # because the pair was already that deep when it came into being.
     history: Numbers  # (pairs, 5)
     touching: Whole  # (pairs, 4) pair, body, body, law
-    geometry: Numbers  # (pairs, 8) normal, point [m], depth [m], R* [m]
+    geometry: Numbers  # (pairs, 11) normal, point [m], depth [m], R* [m], force [N]
 
 
 # What stands in the report.
@@ -116,10 +117,11 @@ FASTEST = 6  # m/s, bound of the speed of any point
 HARDEST = 7  # m/s2, bound of the acceleration of any point by gravity and load
 GIVEN = 8  # J, work of the loads in the step
 WAY = 9  # m2, square of the longest way of any sphere since pairs were listed
+TOUCHING = 10  # number of contacts that touch, those of balls not counted
 
 # What else a block tallies: squares of the largest speeds and accelerations.
-MOVING, SPINNING, PULLED, SPUN, CURVED = range(10, 15)
-TALLIES = 15
+MOVING, SPINNING, PULLED, SPUN, CURVED = range(11, 16)
+TALLIES = 16
 BLOCK = 512  # rows
 
 
@@ -136,7 +138,7 @@ def empty_contacts(pairs: int) -> Contacts:
         ends=np.zeros((pairs, 2), np.int64),
         history=np.zeros((pairs, 5)),
         touching=np.zeros((pairs, 4), np.int64),
-        geometry=np.zeros((pairs, 8)),
+        geometry=np.zeros((pairs, 11)),
     )
 
 
