@@ -28,7 +28,8 @@ X, Y, Z, SQUARE, REACH, DEPTH, ROOT, QUARTER, WEIGHT, FIRST = range(0, 10 * ROOM
 MEAN, END, HELD, BEFORE, LAW, FORCE, ENERGY = (
     10 * ROOM, 13 * ROOM, 16 * ROOM, 19 * ROOM, 20 * ROOM, 27 * ROOM, 30 * ROOM,
 )  # fmt: skip
-NUMBERS = 31
+WHOSE = 31 * ROOM
+NUMBERS = 32
 
 
 @njit(**INNER)
@@ -101,8 +102,10 @@ def approach(
         room[BEFORE + c], room[FIRST + c] = held[k, 3], 1.0
         if held[k, 3] == 0.0:
             room[FIRST + c] = beginning(0.0, depth, -dot(end, n), dt)
-        for d in range(7):
-            room[LAW + d * ROOM + c] = constants[balls.law[k], d]
+        if room[WHOSE + c] != balls.law[k]:  # mostly still that of the pair before in this place
+            room[WHOSE + c] = balls.law[k]
+            for d in range(7):
+                room[LAW + d * ROOM + c] = constants[balls.law[k], d]
 
 
 @njit(**INNER)
@@ -163,7 +166,8 @@ def press_balls(
 ) -> None:
     """Press the blocks [first, last) of rows; rows that are no balls have no such pairs."""
     begin, tally, motion = balls.begin, scratch.tally, scratch.motion
-    count, room = begin.shape[0] - 1, np.zeros(NUMBERS * ROOM)
+    count = begin.shape[0] - 1
+    room = np.full(NUMBERS * ROOM if begin[count] > 0 else 0, -1.0)
     for block in range(first, last):
         scratch.sums[block * BLOCK : (block + 1) * BLOCK] = 0.0
         tally[block, GAP], tally[block, DEEPEST], tally[block, WHICH] = FAR, 0.0, -1.0

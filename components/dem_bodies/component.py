@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.components.dem_bodies import ball_search, build, kernels, rolling, search
+from quintet.components.dem_bodies import ball_search, build, kernels, passes, rolling, search
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
@@ -114,15 +114,15 @@ class DemBodies(Component):
         model, state, scratch, loaded = self.model, self.state, self.scratch, self.loaded
         team = self.team
         blocks = len(scratch.tally)
-        team.run(kernels.drift, blocks, model, state, scratch, dt, loaded)
-        if not kernels.furthest(state, scratch) <= limit:
+        team.run(passes.drift, blocks, model, state, scratch, dt, loaded)
+        if not passes.furthest(state, scratch) <= limit:
             self._list()
-        team.run(kernels.press_blocks, blocks, model, self.balls, scratch, dt)
+        team.run(passes.press_balls, blocks, model, self.balls, scratch, dt)
         if self.rolling:
             team.run(rolling.resist, blocks, model, self.balls, scratch, dt)
-        kernels.press_others(*self._arrays(), dt)
-        team.run(kernels.finish, blocks, model, state, self.balls, scratch, dt, loaded)
-        kernels.close(state, self.balls, scratch)
+        passes.press_others(*self._arrays(), dt)
+        team.run(passes.finish, blocks, model, state, self.balls, scratch, dt, loaded)
+        passes.close(state, self.balls, scratch)
 
     def _arrays(self) -> tuple[rows.Model, rows.State, rows.Balls, rows.Contacts, rows.Scratch]:
         return self.model, self.state, self.balls, self.contacts, self.scratch

@@ -86,7 +86,7 @@ def kick(
     return change, before, after, half * (dot(force, v) + 0.5 * dot(torque, w)), given
 
 
-@njit(**PURE)
+@njit(**INNER)
 def drift(
     first: int, last: int, model: Model, state: State, scratch: Scratch, dt: float, loaded: bool
 ) -> None:
@@ -137,7 +137,7 @@ def gather(balls: Balls, scratch: Scratch, a: int, total: Numbers, i: int) -> No
     total[i, 3], total[i, 4], total[i, 5] = sums[a, 3] + tx, sums[a, 4] + ty, sums[a, 5] + tz
 
 
-@njit(**PURE)
+@njit(**INNER)
 def finish(
     first: int, last: int, model: Model, state: State, balls: Balls, scratch: Scratch, dt: float,
     loaded: bool,
@@ -170,14 +170,14 @@ def finish(
         tally[block, PULLED], tally[block, SPUN], tally[block, CURVED] = pulled, spinup, curved
 
 
-@njit(**PURE)
+@njit(**INNER)
 def furthest(state: State, scratch: Scratch) -> float:
     """Report and return the square of the longest way [m²] since pairs were listed."""
     state.report[WAY] = scratch.tally[:, WAY].max()
     return float(state.report[WAY])
 
 
-@njit(**PURE)
+@njit(**INNER)
 def found(state: State, scratch: Scratch) -> None:
     """Report what the pairs of balls tallied."""
     report, tally = state.report, scratch.tally
@@ -191,7 +191,7 @@ def found(state: State, scratch: Scratch) -> None:
         report[STIFFEST] = max(report[STIFFEST], tally[b, STIFFEST])
 
 
-@njit(**PURE)
+@njit(**INNER)
 def close(state: State, balls: Balls, scratch: Scratch) -> None:
     """Report work done, and how fast points may move; give the ground what planes bear."""
     ground = state.contact.shape[0] - 1
@@ -219,15 +219,7 @@ def kinetic(model: Model, state: State) -> float:
     return energy
 
 
-@njit(**PURE)
-def press_blocks(
-    first: int, last: int, model: Model, balls: Balls, scratch: Scratch, dt: float
-) -> None:
-    """Press the pairs of balls of the blocks [first, last), for one thread of several."""
-    press_balls(first, last, model, balls, scratch, dt)
-
-
-@njit(**PURE)
+@njit(**INNER)
 def press_others(
     model: Model, state: State, balls: Balls, contacts: Contacts, scratch: Scratch, dt: float
 ) -> None:
