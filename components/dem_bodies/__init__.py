@@ -18,6 +18,15 @@ small spheres, whose bumps would add to the friction.
 An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
 cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.
 
+Two materials in contact have the lower of their frictions, restitutions and rolling coefficients;
+`pairs` in a scene overrides each of them for two materials, or for one and itself. Rolling
+resistance is that of `rolling.py`, between spheres, and spheres and planes.
+
+Spheres on their own, the many of a packing, have a list of pairs and kernels of their own: rows
+sorted in space, several contacts computed at once, blocks of rows shared out among threads. All
+sums have one order, so that the number of threads changes no bit. `contact_points` lists point,
+normal, force and depth of each contact; `state.contact` is what they do to each body together.
+
 Velocity Verlet, of second order also with dampers: their velocities are foreseen at the end of
 the step. Angular momentum is advanced in world axes, so that it is exact for a free body. The
 step is a share of a contact's duration, and shorter where many contacts hold one body, as their
@@ -47,7 +56,9 @@ def _plan(params: DemBodiesParams) -> Plan:
     solids = [build.solid(body) for body in params.bodies]
     ω = build.expected_frequency(params, solids)
     dt = min(params.longest_step, DURATION * SPEED_UP / ω / params.steps_per_contact)
-    return Plan(len(solids), dt, rate=2e5, bytes_per_item=2000.0)
+    count = len(solids)
+    # Of a step, some time is for calling it, and some for each body.
+    return Plan(count, dt, rate=count / (1.5e-5 + 2.5e-7 * count), bytes_per_item=4000.0)
 
 
 MANIFEST = Manifest(
@@ -57,4 +68,5 @@ MANIFEST = Manifest(
     component="quintet.components.dem_bodies.component:DemBodies",
     ports=_ports,
     plan=_plan,
+    bench="quintet.components.dem_bodies.bench:cases",
 )

@@ -55,29 +55,32 @@ def solid(body: Body) -> Solid:
 
 
 def laws(params: DemBodiesParams) -> Numbers:
-    """Table (materials, materials, 4) of E* [Pa], G* [Pa], ζ and μ."""
+    """Table (materials, materials, 5) of E* [Pa], G* [Pa], ζ, μ and μ_r."""
     names = list(params.materials)
-    table = np.zeros((len(names), len(names), 4))
+    table = np.zeros((len(names), len(names), 5))
     for (i, a), (j, b) in product(enumerate(params.materials.values()), repeat=2):
-        table[i, j] = law(a, b, min(a.restitution, b.restitution), min(a.friction, b.friction))
+        table[i, j] = law(a, b)
     for pair in params.pairs:
         i, j = (names.index(name) for name in pair.between)
         if pair.restitution is not None:
             table[i, j, 2] = table[j, i, 2] = materials.damping_ratio(pair.restitution)
         if pair.friction is not None:
             table[i, j, 3] = table[j, i, 3] = pair.friction
+        if pair.rolling is not None:
+            table[i, j, 4] = table[j, i, 4] = pair.rolling
     return table
 
 
-def law(a: Material, b: Material, restitution: float, friction: float) -> Numbers:
-    """E* [Pa], G* [Pa], ζ and μ of two materials."""
+def law(a: Material, b: Material) -> Numbers:
+    """E* [Pa], G* [Pa], ζ, μ and μ_r of two materials: the lower of both where they differ."""
     young, poisson = (a.young, b.young), (a.poisson, b.poisson)
     return np.array(
         [
             materials.effective_modulus(young, poisson),
             materials.effective_shear(young, poisson),
-            materials.damping_ratio(restitution),
-            friction,
+            materials.damping_ratio(min(a.restitution, b.restitution)),
+            min(a.friction, b.friction),
+            min(a.rolling, b.rolling),
         ]
     )
 
@@ -94,6 +97,8 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
         if body.size is not None:
             half[k], rounding[k] = 0.5 * np.array(body.size) - body.round, body.round
             edges[k + 1] = len(EDGES)
+    material = [names[body.material] for body in bodies] + [0]
+    balls = [body.diameter is not None for body in bodies]
     first = np.cumsum(counts)
     boxes = [int(first[k]) + EDGES for k, body in enumerate(bodies) if body.size is not None]
     normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
@@ -103,11 +108,15 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
     return Model(
         inverse_mass=np.array([1.0 / one.mass for one in solids] + [0.0]),
         inverse_inertia=np.array([packed(one) for one in inverses] + [np.zeros(6)]),
+        inverse_turn=np.array([one[0, 0] for one in inverses] + [0.0]),
         isotropic=np.array([isotropic(one.inertia) for one in solids] + [True]),
+        ball=np.array([*balls, False]),
+        others=np.flatnonzero(~np.array(balls)),
         half=half,
         rounding=rounding,
         reach=np.array([reach(body) for body in bodies]),
-        material=np.array([names[body.material] for body in bodies] + [0]),
+        material=np.array(material),
+        kind=kinds(solids, material),
         sphere_from=first,
         sphere_body=np.repeat(np.arange(n), counts[1:]),
         sphere_centre=np.vstack([one.centres for one in solids]),
@@ -117,8 +126,15 @@ def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
         plane=np.column_stack([normals, (normals * points).sum(axis=1)]),
         plane_material=as_whole([names[plane.material] for plane in planes]),
         law=laws(params),
-        gravity=np.array(params.gravity),
+        fall=np.array([params.gravity]),
     )
+
+
+def kinds(solids: list[Solid], material: list[int]) -> Whole:
+    """Number the kinds of bodies, which differ in mass, radius or material; and the ground."""
+    of = [(one.mass, float(one.radii[0]), a) for one, a in zip(solids, material, strict=False)]
+    number = {kind: k for k, kind in enumerate(dict.fromkeys(of))}
+    return np.array([number[kind] for kind in of] + [len(number)])
 
 
 def as_whole(numbers: list[int]) -> Whole:
@@ -140,10 +156,12 @@ def state(params: DemBodiesParams, solids: list[Solid]) -> State:
     """Arrays of all that moves, as it is at the start."""
     bodies, n = params.bodies, len(params.bodies) + 1
     spheres = sum(len(one.radii) for one in solids)
-    spins = []
+    spins, inverses = [], []
     for body, one in zip(bodies, solids, strict=True):
         turn = rotation(body.orientation)
-        spins.append(turn @ one.inertia @ turn.T @ np.array(body.angular_velocity))
+        inertia = turn @ one.inertia @ turn.T
+        spins.append(inertia @ np.array(body.angular_velocity))
+        inverses.append(np.asarray(np.linalg.inv(inertia), np.float64))
     still = [(0.0, 0.0, 0.0)]
     orientations = np.array([body.orientation for body in bodies] + [(1.0, 0.0, 0.0, 0.0)])
     return State(
@@ -153,14 +171,12 @@ def state(params: DemBodiesParams, solids: list[Solid]) -> State:
         spin=np.array([*spins, np.zeros(3)]),
         angular_velocity=np.array([body.angular_velocity for body in bodies] + still),
         contact=np.zeros((n, 6)),
-        before=np.zeros((n, 6)),
         load=np.zeros((n, 6)),
-        axes=np.zeros((n, 9)),
-        mobility=np.zeros((n, 6)),
-        rates=np.zeros((n, 12)),
+        axes=np.tile(np.eye(3).reshape(9), (n, 1)),
+        mobility=np.array([packed(world) for world in inverses] + [np.zeros(6)]),
         centre=np.zeros((spheres, 3)),
         listed=np.full((spheres, 3), np.inf),
-        report=np.zeros(10),
+        report=np.zeros(11),
     )
 
 

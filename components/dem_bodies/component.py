@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.components.dem_bodies import build, kernels, search
+from quintet.components.dem_bodies import ball_search, build, kernels, passes, rolling, search
 from quintet.components.dem_bodies import state as rows
-from quintet.components.dem_bodies.crowd import crowd_step, crowding
+from quintet.components.dem_bodies.crowd import crowd_step, crowding, crowding_of_balls
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
-from quintet.components.dem_bodies.state import empty_contacts
+from quintet.components.dem_bodies.state import empty_contacts, empty_scratch
+from quintet.components.shared.team import Team, threads_wanted
 from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import LOAD, MOTION
@@ -19,6 +20,8 @@ SKIN = 0.4  # over the smallest contact radius
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 # As ports.MOTION gives them; 2 is our own.
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
+FEWEST = 8  # blocks of rows that are worth handing to another thread
+KEPT = ("begin", "partner", "held", "roll")  # of the balls' pairs; the rest follows from these
 
 
 @dataclass(slots=True)
@@ -47,9 +50,15 @@ class DemBodies(Component):
         self.solids = [build.solid(body) for body in params.bodies]
         self.model = build.model(params, self.solids)
         self.state = build.state(params, self.solids)
+        self.scratch = empty_scratch(self.model)
+        self.balls = ball_search.no_balls(self.model, self.scratch)
         self.contacts = empty_contacts(0)
+        self.loaded = False  # whether any body has a load
         self.books = Books()
         self.count = len(self.solids)
+        several = threads_wanted() > 1 and len(self.scratch.tally) >= 2 * FEWEST
+        self.rolling = bool(self.model.law[:, :, 4].any() and self.model.ball.any())
+        self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.skin = SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
@@ -82,7 +91,9 @@ class DemBodies(Component):
     def _crowd(self) -> int:
         pairs, model = self.contacts, self.model
         ends = (pairs.ends, pairs.begin, model.sphere_body, model.edge_ends)
-        return crowding(pairs.history, *ends, self.held)
+        crowding(pairs.history, *ends, self.held)
+        balls = (self.balls.row, self.balls.partner, self.balls.held)
+        return crowding_of_balls(*balls, self.scratch.body, self.held)
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; without them there is none."""
@@ -90,6 +101,7 @@ class DemBodies(Component):
         force, torque = fields.get("load.force"), fields.get("load.torque")
         load[: self.count, :3] = 0.0 if force is None else force
         load[: self.count, 3:] = 0.0 if torque is None else torque
+        self.loaded = bool(load.any())
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, contacts, half kick."""
@@ -102,18 +114,40 @@ class DemBodies(Component):
         self.books.dissipated += float(held - report[rows.WORK] - report[rows.ELASTIC])
 
     def _move(self, dt: float) -> None:
-        state = self.state
-        if not kernels.advance(self.model, state, self.contacts, dt, 0.25 * self.skin**2):
+        state, loaded, limit = self.state, self.loaded, 0.25 * self.skin**2
+        if self.team.size > 1 or self.rolling:
+            self._move_by_passes(dt, limit)
+        elif not kernels.advance(*self._arrays(), dt, loaded, limit):
             self._list()
-            kernels.resolve(self.model, state, self.contacts, dt)
+            kernels.resolve(*self._arrays(), dt, loaded)
         report = state.report
-        if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.FASTEST])):
+        if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.WORK])):
             self._refuse(dt)
+
+    def _move_by_passes(self, dt: float, limit: float) -> None:
+        """Do as kernels.advance does, with the blocks of rows shared out among threads."""
+        model, state, scratch, loaded = self.model, self.state, self.scratch, self.loaded
+        team = self.team
+        blocks = len(scratch.tally)
+        team.run(passes.drift, blocks, model, state, scratch, dt, loaded)
+        if not passes.furthest(state, scratch) <= limit:
+            self._list()
+        team.run(passes.press_balls, blocks, model, self.balls, scratch, dt)
+        if self.rolling:
+            team.run(rolling.resist, blocks, model, self.balls, scratch, dt)
+        passes.press_others(*self._arrays(), dt)
+        team.run(passes.finish, blocks, model, state, self.balls, scratch, dt, loaded)
+        passes.close(state, self.balls, scratch)
+
+    def _arrays(self) -> tuple[rows.Model, rows.State, rows.Balls, rows.Contacts, rows.Scratch]:
+        return self.model, self.state, self.balls, self.contacts, self.scratch
 
     def _list(self) -> None:
         if not np.isfinite(self.state.position).all():
             self._refuse(0.0)
-        self.contacts = search.listed(self.model, self.state, self.contacts, self.skin)
+        self.balls, self.contacts = search.listed(
+            self.model, self.state, self.scratch, self.balls, self.contacts, self.skin
+        )
         self.state.report[rows.WAY] = 0.0
 
     def _refuse(self, dt: float) -> None:
@@ -128,15 +162,23 @@ class DemBodies(Component):
                 f"with {s.velocity[k].tolist()} m/s under a load of {s.load[k].tolist()} N, N m. "
                 "Look at the load it was given, or make steps_per_contact larger."
             )
-        deepest, pair = s.report[rows.DEEPEST], int(s.report[rows.WHICH])
-        touching = self.contacts.touching
-        i, j = touching[touching[:, 0] == pair][0, 1:3]
+        deepest, (i, j) = s.report[rows.DEEPEST], self._pair(int(s.report[rows.WHICH]))
         other = f"body {j}" if j < m else "a plane"
         raise StepError(
             f"{after}: a contact may be {DEEPEST} of its radius deep; body {i} is {deepest:.3g} of "
             f"it deep in {other}, near {s.position[i].round(4).tolist()} m. Make young or rounding "
             "larger, or speed nearer to that of the impacts."
         )
+
+    def _pair(self, which: int) -> tuple[int, int]:
+        """Bodies of a pair as the report numbers them; planes are beyond all bodies."""
+        count = len(self.balls.partner)
+        if which < count:
+            first, second = ball_search.ends(self.balls, self.scratch.body)
+            return int(first[which]), int(second[which])
+        touching = self.contacts.touching
+        i, j = touching[touching[:, 0] == which - count][0, 1:3]
+        return int(i), int(j)
 
     def give(self) -> Fields:
         """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
@@ -152,12 +194,36 @@ class DemBodies(Component):
         mean = 0.5 * (self.before + s.contact)  # gives the change of momentum to rounding
         return {**motion, "contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
 
+    def contact_points(self) -> Fields:
+        """List what touched in the last step: nothing is computed for it before it is asked for.
+
+        Returns
+        -------
+        bodies : (k, 2) the first body and the other; `count` is the ground, which all planes are
+        point, normal : (k, 3) m and 1, the normal towards the first body
+        force : (k, 3) N on the first body
+        depth : (k,) m, overlap
+        """
+        other = self.contacts
+        count = int(self.state.report[rows.TOUCHING])
+        geometry, bodies = other.geometry[:count], other.touching[:count, 1:3]
+        found = ball_search.touched(self.model, self.balls, self.scratch)
+        return {
+            "bodies": np.vstack([found.bodies, bodies]),
+            "point": np.vstack([found.point, geometry[:, 3:6]]),
+            "normal": np.vstack([found.normal, geometry[:, :3]]),
+            "force": np.vstack([found.force, geometry[:, 8:]]),
+            "depth": np.append(found.depth, geometry[:, 6]),
+        }
+
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, what was added up."""
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         kept["pairs.key"] = self.contacts.key.copy()
         kept["pairs.history"] = self.contacts.history.copy()
         kept["step.before"] = self.before.copy()
+        kept["rows.body"] = self.scratch.body.copy()
+        kept |= {f"balls.{name}": getattr(self.balls, name).copy() for name in KEPT}
         books = self.books
         kept["books"] = np.array([books.time, books.dissipated, books.given])
         return kept
@@ -171,6 +237,13 @@ class DemBodies(Component):
         kept.history[:] = state["pairs.history"]
         self.contacts = search.contacts_from(kept.key, kept)
         self.before[:] = state["step.before"]
+        self.scratch.body[:] = state["rows.body"]
+        self.scratch.row[self.scratch.body] = np.arange(self.count + 1)
+        begin, partner = np.array(state["balls.begin"]), np.array(state["balls.partner"])
+        self.balls = ball_search.balls_from(self.model, self.scratch.body, begin, partner)
+        self.balls.held[:] = state["balls.held"]
+        self.balls.roll[:] = state["balls.roll"]
+        self.loaded = bool(self.state.load.any())
         self.books = Books(*state["books"].tolist())
 
     def totals(self) -> Totals:
@@ -182,7 +255,7 @@ class DemBodies(Component):
             momentum=momentum.sum(axis=0),
             angular_momentum=(s.spin[:m] + np.cross(s.position[:m], momentum)).sum(axis=0),
             kinetic=kernels.kinetic(self.model, s),
-            potential=-float(mass @ (s.position[:m] @ self.model.gravity)),
+            potential=-float(mass @ (s.position[:m] @ self.model.fall[0])),
             internal=float(s.report[rows.ELASTIC]),
         )
 

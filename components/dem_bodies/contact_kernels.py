@@ -5,7 +5,6 @@ import math
 from numba import njit
 
 from quintet.components.dem_bodies.geometry import (
-    FAR,
     Found,
     across,
     axes_of,
@@ -14,13 +13,7 @@ from quintet.components.dem_bodies.geometry import (
     on_plane,
     vector,
 )
-from quintet.components.dem_bodies.laws import (
-    DAMPING,
-    carried,
-    first_weight,
-    friction,
-    normal_force,
-)
+from quintet.components.dem_bodies.laws import beginning, constants, contact
 from quintet.components.dem_bodies.state import (
     BOX,
     DEEPEST,
@@ -34,16 +27,17 @@ from quintet.components.dem_bodies.state import (
     Contacts,
     Model,
     Numbers,
+    Scratch,
     State,
     Whole,
 )
-from quintet.components.shared.rotations import INNER, Vector, beside, cross, dot, less
+from quintet.components.shared.rotations import INNER, Vector, cross, dot, less
 
 
 @njit(**INNER)
 def note(
     report: Numbers, history: Numbers, touching: Whole, geometry: Numbers, count: int, pair: int,
-    i: int, j: int, law: int, found: Found, radius: float, smallest: float,
+    ahead: int, i: int, j: int, law: int, found: Found, radius: float, smallest: float,
 ) -> int:  # fmt: skip
     """Write down a pair if it touches, forget its history if not; return the number noted."""
     gap, n, point = found
@@ -55,7 +49,7 @@ def note(
         return count
     if -gap > report[DEEPEST] * smallest:
         report[DEEPEST] = -gap / smallest
-        report[WHICH] = pair
+        report[WHICH] = ahead + pair
     touching[count, 0], touching[count, 1] = pair, i
     touching[count, 2], touching[count, 3] = j, law
     for k in range(3):
@@ -66,8 +60,8 @@ def note(
 
 
 @njit(**INNER)
-def find(model: Model, state: State, contacts: Contacts) -> int:
-    """Note all pairs that touch; return how many."""
+def find(model: Model, state: State, contacts: Contacts, ahead: int) -> int:
+    """Note all pairs that touch, numbered after those of balls; return how many."""
     count, kinds, ground = 0, model.law.shape[0], model.reach.shape[0]
     begin, ends, history = contacts.begin, contacts.ends, contacts.history
     touching, geometry, report = contacts.touching, contacts.geometry, state.report
@@ -75,27 +69,30 @@ def find(model: Model, state: State, contacts: Contacts) -> int:
         model.material, model.sphere_body, model.sphere_radius, model.rounding,
     )  # fmt: skip
     centre, plane, edge = state.centre, model.plane, model.edge_ends
-    report[GAP], report[DEEPEST], report[WHICH] = FAR, 0.0, -1.0
     for k in range(begin[PLANE], begin[PLANE + 1]):
         s, p = ends[k, 0], ends[k, 1]
         i, r = body[s], size[s]
         law = material[i] * kinds + model.plane_material[p]
         found = on_plane(vector(centre, s), r, vector(plane, p), plane[p, 3])
-        count = note(report, history, touching, geometry, count, k, i, ground, law, found, r, r)
+        count = note(
+            report, history, touching, geometry, count, k, ahead, i, ground, law, found, r, r
+        )
     for k in range(begin[SPHERE], begin[SPHERE + 1]):
         s, p = ends[k, 0], ends[k, 1]
         i, j, r, q = body[s], body[p], size[s], size[p]
         law = material[i] * kinds + material[j]
         found = facing(vector(centre, s), vector(centre, p), r, q)
         mean, low = r * q / (r + q), min(r, q)
-        count = note(report, history, touching, geometry, count, k, i, j, law, found, mean, low)
+        count = note(
+            report, history, touching, geometry, count, k, ahead, i, j, law, found, mean, low
+        )
     for k in range(begin[BOX], begin[BOX + 1]):
         s, j = ends[k, 0], ends[k, 1]
         i, r = body[s], size[s]
         law, q, o = material[i] * kinds + material[j], round_[j], vector(state.position, j)
         half, low = vector(model.half, j), min(r, q)
         found = on_box(vector(centre, s), r, o, axes_of(state.axes, j), half, q)
-        count = note(report, history, touching, geometry, count, k, i, j, law, found, r, low)
+        count = note(report, history, touching, geometry, count, k, ahead, i, j, law, found, r, low)
     for k in range(begin[EDGE], begin[EDGE + 1]):
         e, f = ends[k, 0], ends[k, 1]
         i, j = body[edge[e, 0]], body[edge[f, 0]]
@@ -105,16 +102,18 @@ def find(model: Model, state: State, contacts: Contacts) -> int:
         found = across(a, along, b, other, r, q)
         # Crossed cylinders: as a sphere on a plane, of the mean radius.
         mean, low = math.sqrt(r * q), min(r, q)
-        count = note(report, history, touching, geometry, count, k, i, j, law, found, mean, low)
+        count = note(
+            report, history, touching, geometry, count, k, ahead, i, j, law, found, mean, low
+        )
     return count
 
 
 @njit(**INNER)
-def slip(rates: Numbers, i: int, first: int, arm: Vector) -> Vector:
-    """Velocity [m/s] of a body's point at an arm from its centre; `first` 0 mean, 6 at the end."""
-    a, b, c = first + 3, first + 4, first + 5
-    x, y, z = cross((rates[i, a], rates[i, b], rates[i, c]), arm)
-    return rates[i, first] + x, rates[i, first + 1] + y, rates[i, first + 2] + z
+def slip(motion: Numbers, a: int, first: int, arm: Vector) -> Vector:
+    """Velocity [m/s] of row a's point at an arm from its centre; `first` 4 mean, 10 at the end."""
+    turn = (motion[a, first + 3], motion[a, first + 4], motion[a, first + 5])
+    x, y, z = cross(turn, arm)
+    return motion[a, first] + x, motion[a, first + 1] + y, motion[a, first + 2] + z
 
 
 @njit(**INNER)
@@ -140,54 +139,56 @@ def grown(history: Numbers, pair: int, depth: float, closing: float, dt: float) 
 
 
 @njit(**INNER)
-def press(model: Model, state: State, contacts: Contacts, count: int, dt: float) -> None:
+def press(
+    model: Model, state: State, contacts: Contacts, scratch: Scratch, count: int, dt: float
+) -> None:
     """Forces and torques of all noted contacts: what one body gets the other loses."""
     table, inverse_mass, mobility = model.law, model.inverse_mass, state.mobility
-    position, rates, contact = state.position, state.rates, state.contact
+    position, motion, sums, row = state.position, scratch.motion, scratch.sums, scratch.row
     touching, geometry, history = contacts.touching, contacts.geometry, contacts.history
     kinds, edges = table.shape[0], contacts.begin[EDGE]
-    contact[:] = 0.0
-    energy, stiffest = 0.0, 0.0
-    for c in range(count):
-        pair, i, j, law = touching[c, 0], touching[c, 1], touching[c, 2], touching[c, 3]
-        a, b = law // kinds, law % kinds
-        modulus, shear, ζ, μ = table[a, b, 0], table[a, b, 1], table[a, b, 2], table[a, b, 3]
-        n, depth, radius = vector(geometry, c), geometry[c, 6], geometry[c, 7]
-        point = (geometry[c, 3], geometry[c, 4], geometry[c, 5])
+    energy, stiffest = state.report[ELASTIC], state.report[STIFFEST]
+    for k in range(count):
+        pair, i, j, law = touching[k, 0], touching[k, 1], touching[k, 2], touching[k, 3]
+        n, depth, radius = vector(geometry, k), geometry[k, 6], geometry[k, 7]
+        point, a, b = (geometry[k, 3], geometry[k, 4], geometry[k, 5]), row[i], row[j]
         arm_i, arm_j = less(point, vector(position, i)), less(point, vector(position, j))
         yield_i = yielding(inverse_mass[i], mobility, i, arm_i, n)
         mass = 1.0 / (yield_i + yielding(inverse_mass[j], mobility, j, arm_j, n))
-        v = less(slip(rates, i, 6, arm_i), slip(rates, j, 6, arm_j))
-        opening = dot(v, n)
+        end = less(slip(motion, a, 10, arm_i), slip(motion, b, 10, arm_j))
         before, bearing = history[pair, 3] - history[pair, 4], depth
         if pair >= edges:
-            bearing = grown(history, pair, depth, -opening, dt)
+            bearing = grown(history, pair, depth, -dot(end, n), dt)
         history[pair, 3] = depth
         if bearing <= 0.0:
-            history[pair, 0], history[pair, 1], history[pair, 2] = 0.0, 0.0, 0.0
+            for d in range(3):
+                history[pair, d], geometry[k, 8 + d] = 0.0, 0.0
             continue
-        root = math.sqrt(radius * bearing)
-        ratio = ζ
-        if before == 0.0 and -opening * dt > 0.0:
-            ratio *= first_weight(min(1.0, bearing / (-opening * dt)))
-        normal, elastic = normal_force(modulus, root, bearing, ratio, mass, -opening)
-        # Tangential: the elastic part turns with the contact, shrinks with its area on
-        # unloading (Walton & Braun 1986) and grows with the mean slip of the step.
-        shrink = math.sqrt(bearing / before) if bearing < before else 1.0
-        held = carried(vector(history, pair), n, shrink)
-        mean = less(slip(rates, i, 0, arm_i), slip(rates, j, 0, arm_j))
-        stiffness = 8.0 * shear * root
-        held = beside(held, -stiffness * dt, beside(mean, -dot(mean, n), n))
-        damping = DAMPING * ζ * math.sqrt(stiffness * mass)
-        side, held = friction(held, beside(v, -opening, n), damping, μ * normal)
-        force = beside(side, normal, n)
+        p, q = law // kinds, law % kinds
+        c = constants(table[p, q, 0], table[p, q, 1], table[p, q, 2], table[p, q, 3], radius, mass)
+        mean = less(slip(motion, a, 4, arm_i), slip(motion, b, 4, arm_j))
+        weight = 1.0 / math.sqrt(before) if before > 0.0 else 0.0
+        root = math.sqrt(bearing)
+        roots = (root, math.sqrt(root), 1.0 / root)
+        force, held, elastic = contact(
+            c,
+            vector(history, pair),
+            weight,
+            n,
+            bearing,
+            roots,
+            beginning(weight, bearing, -dot(end, n), dt),
+            mean,
+            end,
+            dt,
+        )
         torque_i, torque_j = cross(arm_i, force), cross(arm_j, force)
-        for k in range(3):
-            history[pair, k] = held[k]
-            contact[i, k] += force[k]
-            contact[j, k] -= force[k]
-            contact[i, 3 + k] += torque_i[k]
-            contact[j, 3 + k] -= torque_j[k]
-        energy += 0.4 * elastic * bearing + 0.5 * dot(held, held) / stiffness
-        stiffest = max(stiffest, 2.0 * modulus * root / mass)
+        for d in range(3):
+            history[pair, d], geometry[k, 8 + d] = held[d], force[d]
+            sums[a, d] += force[d]
+            sums[b, d] -= force[d]
+            sums[a, 3 + d] += torque_i[d]
+            sums[b, 3 + d] -= torque_j[d]
+        energy += elastic
+        stiffest = max(stiffest, c[5] * root)
     state.report[ELASTIC], state.report[STIFFEST] = energy, stiffest

@@ -4,7 +4,7 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.state import EDGE, SPHERE, Numbers, Whole
+from quintet.components.dem_bodies.state import EDGE, SPHERE, Numbers, Short, Whole
 from quintet.components.shared.rotations import PURE
 
 DAMPING = 2.0 * math.sqrt(5.0 / 6.0)  # as in laws: damper over ζ √(S m*)
@@ -14,8 +14,8 @@ SHARE = 0.75  # of the limits: the sums leave out how neighbours move
 @njit(**PURE)
 def crowding(
     history: Numbers, ends: Whole, begin: Whole, body: Whole, edge: Whole, count: Whole
-) -> int:
-    """Largest number of contacts of any body; `count` (n,) is overwritten with each body's."""
+) -> None:
+    """Write the number of contacts of each body but those of balls into `count` (n,)."""
     count[:] = 0
     for k in range(begin[EDGE + 1]):
         if history[k, 3] > 0.0:
@@ -27,6 +27,16 @@ def crowding(
                 count[body[j]] += 1
             elif k >= begin[SPHERE + 1]:  # a sphere and a box
                 count[j] += 1
+
+
+@njit(**PURE)
+def crowding_of_balls(row: Short, partner: Short, held: Numbers, body: Short, count: Whole) -> int:
+    """Add the contacts of balls to `count` (n,); return the largest of any body."""
+    for k in range(row.shape[0]):
+        if held[k, 3] > 0.0:
+            count[body[row[k]]] += 1
+            if partner[k] < body.shape[0]:
+                count[body[partner[k]]] += 1
     return int(count.max())
 
 

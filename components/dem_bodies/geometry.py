@@ -1,4 +1,4 @@
-"""Gaps of one pair: spheres, planes, rounded boxes and edges."""
+"""Gaps of one pair: spheres, planes, rounded boxes and edges; and vectors in rows of arrays."""
 
 import math
 
@@ -25,6 +25,32 @@ FAR = 1e300  # m, of edges that do not cross
 def vector(rows: Numbers, k: int) -> Vector:
     """Return the first three numbers of a row."""
     return rows[k, 0], rows[k, 1], rows[k, 2]
+
+
+@njit(**INNER)
+def write(rows: Numbers, i: int, first: int, a: Vector) -> None:
+    """Write three numbers of a row."""
+    rows[i, first], rows[i, first + 1], rows[i, first + 2] = a
+
+
+@njit(**INNER)
+def add(rows: Numbers, i: int, a: Vector) -> None:
+    """Add a vector to a row."""
+    rows[i, 0] += a[0]
+    rows[i, 1] += a[1]
+    rows[i, 2] += a[2]
+
+
+@njit(**INNER)
+def three(rows: Numbers, k: int, first: int) -> Vector:
+    """Return three numbers of a row."""
+    return rows[k, first], rows[k, first + 1], rows[k, first + 2]
+
+
+@njit(**INNER)
+def scaled(scale: float, a: Vector) -> Vector:
+    """Return scale a."""
+    return scale * a[0], scale * a[1], scale * a[2]
 
 
 @njit(**INNER)

@@ -2,6 +2,9 @@
 
 F_n = 4/3 E* √R* δ^{3/2} + 2√(5/6) ζ √(S_n m*) dδ/dt ≥ 0,     S_n = 2 E* √(R* δ)
 dF_t = -S_t v_t dt, with 2√(5/6) ζ √(S_t m*) v_t, |F_t| ≤ μ F_n,  S_t = 8 G* √(R* δ)
+
+What does not change while two bodies touch is gathered in one row, so that a step of a contact
+needs few roots: F_n = k_n δ^{3/2} + c_n δ^{1/4} dδ/dt, S_t = k_t √δ, damped by c_t δ^{1/4}.
 """
 
 import math
@@ -11,16 +14,29 @@ from numba import njit
 from quintet.components.shared.rotations import INNER, Vector, beside, dot
 
 DAMPING = 2.0 * math.sqrt(5.0 / 6.0)
+LEAST = 1e-200  # what is smaller counts as nothing
+
+# k_n, k_t, c_n, c_t, μ, S_n/(m* √δ) and 1/k_t of a pair.
+Constants = tuple[float, float, float, float, float, float, float]
 
 
 @njit(**INNER)
-def normal_force(
-    modulus: float, root: float, depth: float, damping: float, mass: float, closing: float
-) -> tuple[float, float]:
-    """Force [N], never a pull, and its elastic part; root = √(R* δ), damping = ζ."""
-    elastic = 4.0 / 3.0 * modulus * root * depth
-    damped = DAMPING * damping * math.sqrt(2.0 * modulus * root * mass) * closing
-    return max(0.0, elastic + damped), elastic
+def constants(
+    modulus: float, shear: float, ζ: float, μ: float, radius: float, mass: float
+) -> Constants:
+    """Row of a pair with E*, G* [Pa], R* [m] and m* [kg]."""
+    root = math.sqrt(radius)
+    normal, side = 2.0 * modulus * root, 8.0 * shear * root
+    damping = DAMPING * ζ * math.sqrt(mass)
+    return (
+        2.0 / 3.0 * normal,
+        side,
+        damping * math.sqrt(normal),
+        damping * math.sqrt(side),
+        μ,
+        normal / mass,
+        1.0 / side,
+    )
 
 
 @njit(**INNER)
@@ -38,21 +54,52 @@ def first_weight(share: float) -> float:
 def carried(force: Vector, normal: Vector, scale: float) -> Vector:
     """Elastic tangential force after the contact plane has turned, times a scale."""
     x, y, z = beside(force, -dot(force, normal), normal)
-    before, after = dot(force, force), x * x + y * y + z * z
-    if after > 0.0:
-        scale *= math.sqrt(before / after)
+    scale *= math.sqrt(dot(force, force) / max(x * x + y * y + z * z, LEAST))
     return scale * x, scale * y, scale * z
 
 
 @njit(**INNER)
 def friction(elastic: Vector, slip: Vector, damping: float, limit: float) -> tuple[Vector, Vector]:
-    """Tangential force [N] and its elastic part, within Coulomb's limit; slip velocity in m/s."""
+    """Tangential force [N] and its elastic part, within Coulomb's limit; slip velocity in m/s.
+
+    Spring and damper slip by the same share. To give the spring the whole force would store
+    energy that only the damper has taken.
+    """
     x, y, z = beside(elastic, -damping, slip)
-    size = math.sqrt(x * x + y * y + z * z)
-    if size <= limit:
-        return (x, y, z), elastic
-    # Spring and damper slip by the same share. To give the spring the whole force would store
-    # energy that only the damper has taken.
-    scale = limit / size
-    held = scale * elastic[0], scale * elastic[1], scale * elastic[2]
-    return (scale * x, scale * y, scale * z), held
+    share = limit / max(max(math.sqrt(x * x + y * y + z * z), limit), LEAST)
+    held = share * elastic[0], share * elastic[1], share * elastic[2]
+    return (share * x, share * y, share * z), held
+
+
+@njit(**INNER)
+def beginning(before: float, depth: float, closing: float, dt: float) -> float:
+    """Weight of the damping force: 1, but in the step in which a contact begins."""
+    if before == 0.0 and depth > 0.0 and closing * dt > 0.0:
+        return first_weight(min(1.0, depth / (closing * dt)))
+    return 1.0
+
+
+@njit(inline="always", **INNER)
+def contact(
+    c: Constants, held: Vector, before: float, n: Vector, depth: float, roots: Vector,
+    first: float, mean: Vector, end: Vector, dt: float,
+) -> tuple[Vector, Vector, float]:  # fmt: skip
+    """Force [N] on the first of two bodies, its elastic tangential part, and energy [J].
+
+    There are no branches, so that several contacts can be computed at once: without depth all is
+    zero. `held` is the elastic tangential part of the last step and `before` its 1/√δ, both 0
+    in a contact that begins; `roots` are √δ, its root, and 1/√δ; `first` weighs the damping;
+    `mean` and `end` are relative velocities [m/s] of the point of contact, the mean of the step
+    and at its end; the normal n points to the first body.
+    """
+    root, quarter, inverse = roots
+    opening = dot(end, n)
+    elastic = c[0] * root * depth
+    normal = max(0.0, elastic - first * c[2] * quarter * opening)
+    # Tangential: the elastic part turns with the contact, shrinks with its area on unloading
+    # (Walton & Braun 1986) and grows with the mean slip of the step.
+    spring = carried(held, n, min(1.0, root * before))
+    spring = beside(spring, -c[1] * root * dt, beside(mean, -dot(mean, n), n))
+    side, spring = friction(spring, beside(end, -opening, n), c[3] * quarter, c[4] * normal)
+    energy = 0.4 * elastic * depth + 0.5 * dot(spring, spring) * inverse * c[6]
+    return beside(side, normal, n), spring, energy

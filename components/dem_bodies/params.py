@@ -37,23 +37,27 @@ CONTACT = Port("contact", LOAD.fields)
 class Material:
     """An elastic material with its friction and restitution against itself.
 
-    Two materials in contact have the lower of their frictions and restitutions, unless `pairs`
-    says otherwise.
+    `rolling` is the coefficient of rolling resistance of spheres, the tangent of the slope on
+    which they begin to roll; boxes and clumps have none but their shape.
+    Two materials in contact have the lower of their frictions, restitutions and rolling
+    coefficients, unless `pairs` says otherwise.
     """
 
     young: Positive  # Pa
     poisson: Poisson
     restitution: Restitution
     friction: NotNegative
+    rolling: NotNegative = 0.0
 
 
 @parameters
 class Pair:
-    """Friction and restitution between two materials, in place of the lower of both."""
+    """What holds between two materials, or one and itself, in place of the lower of both."""
 
     between: tuple[str, str]
     friction: NotNegative | None = None
     restitution: Restitution | None = None
+    rolling: NotNegative | None = None
 
 
 @parameters
@@ -146,6 +150,7 @@ class DemBodiesParams:
             for name in pair.between:
                 self._known(f"pairs[{k}].between", name)
         object.__setattr__(self, "bodies", placement.copied(self.bodies))
+        check_pairs(self.pairs)
         placement.check(self.bodies, self.planes)
 
     def _known(self, where: str, name: str) -> None:
@@ -153,6 +158,23 @@ class DemBodiesParams:
             raise ValueError(
                 f"{where} must be one of the materials {', '.join(self.materials)}; "
                 f"found {name!r}. Add it to materials, or correct the name."
+            )
+
+
+def check_pairs(pairs: tuple[Pair, ...]) -> None:
+    """Refuse pairs that say nothing, or that are said twice."""
+    known: dict[frozenset[str], int] = {}
+    for k, pair in enumerate(pairs):
+        if pair.friction is None and pair.restitution is None and pair.rolling is None:
+            raise ValueError(
+                f"pairs[{k}] must say friction, restitution or rolling; found none. "
+                "Add one of them, or leave the pair out."
+            )
+        first = known.setdefault(frozenset(pair.between), k)
+        if first != k:
+            raise ValueError(
+                f"pairs[{k}] must be of other materials than pairs[{first}]; found "
+                f"{' and '.join(pair.between)} in both. Join them into one."
             )
 
 

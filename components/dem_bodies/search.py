@@ -1,14 +1,18 @@
 """Listing the pairs that may touch before some point has moved by half the skin.
 
-Bodies are sorted into cells that are numbered along x, then y, then z, so that the cells next
-to one another along x are one range of the sorted numbers, wherever in space the bodies are.
+Here are those of which one body at least is no ball; what two balls, or a ball and a plane, may
+do is listed in ball_search.
 """
-
-import math
 
 import numpy as np
 from numba import njit
 
+from quintet.components.dem_bodies.ball_search import (
+    Sorted,
+    listed_balls,
+    sort_rows,
+)
+from quintet.components.dem_bodies.cells import BITS, cell_of, number
 from quintet.components.dem_bodies.geometry import (
     axes_of,
     on_box,
@@ -23,34 +27,17 @@ from quintet.components.dem_bodies.state import (
     KIND,
     PLANE,
     SPHERE,
+    Balls,
     Contacts,
     Model,
     Numbers,
+    Scratch,
+    Short,
     State,
     Whole,
     empty_contacts,
 )
 from quintet.components.shared.rotations import INNER, PURE, dot, less
-
-BITS = 21  # of a cell's number along each axis
-MIDDLE = 1 << (BITS - 1)
-
-
-@njit(**INNER)
-def cell_of(x: float, width: float) -> int:
-    """Return the number of the cell along one axis; what is very far shares the last one."""
-    return int(min(max(math.floor(x / width), 2.0 - MIDDLE), MIDDLE - 2.0)) + MIDDLE
-
-
-@njit(**PURE)
-def number(position: Numbers, bodies: int, width: float) -> Whole:
-    """Return the cell of each body, as one number."""
-    cells = np.empty(bodies, np.int64)
-    for i in range(bodies):
-        x, y, z = vector(position, i)
-        cells[i] = (cell_of(z, width) << 2 * BITS) + (cell_of(y, width) << BITS)
-        cells[i] += cell_of(x, width)
-    return cells
 
 
 @njit(**INNER)
@@ -107,35 +94,68 @@ def list_bodies(
     return count
 
 
-@njit(**PURE)
-def list_pairs(
-    model: Model, state: State, cells: Whole, order: Whole, skin: float, keys: Whole
-) -> int:
-    """Write the keys of all pairs nearer than the skin [m]; return their number.
-
-    `cells` (m,) is sorted, `order` (m,) are the bodies in that order. If there is not room for
-    all keys, only their number is right.
-    """
-    count = 0
-    for s in range(model.sphere_body.shape[0]):
+@njit(**INNER)
+def list_planes(model: Model, state: State, i: int, skin: float, keys: Whole, count: int) -> int:
+    """List the planes that the spheres of a body are near."""
+    for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
         for p in range(model.plane.shape[0]):
             normal, c = vector(model.plane, p), vector(state.centre, s)
             if on_plane(c, model.sphere_radius[s], normal, model.plane[p, 3])[0] < skin:
                 count = emit(keys, count, PLANE, s, p)
+    return count
+
+
+@njit(**INNER)
+def list_near(
+    model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
+) -> int:
+    """List what is near of two bodies, if they are near one another."""
+    d = less(vector(state.position, i), vector(state.position, j))
+    near = model.reach[i] + model.reach[j] + skin
+    if dot(d, d) < near * near:
+        return list_bodies(model, state, min(i, j), max(i, j), skin, keys, count)
+    return count
+
+
+@njit(**INNER)
+def list_balls(
+    model: Model, state: State, i: int, cells: Whole, body: Short, width: float, skin: float,
+    keys: Whole, count: int,
+) -> int:  # fmt: skip
+    """List what body i is near of balls, which are sorted by cells (b,) of a width [m]."""
+    x, far = vector(state.position, i), model.reach[i] + 0.5 * width + 0.5 * skin
+    for z in range(cell_of(x[2] - far, width), cell_of(x[2] + far, width) + 1):
+        for y in range(cell_of(x[1] - far, width), cell_of(x[1] + far, width) + 1):
+            row = (z << 2 * BITS) + (y << BITS)
+            last = np.searchsorted(cells, row + cell_of(x[0] + far, width), side="right")
+            for b in range(np.searchsorted(cells, row + cell_of(x[0] - far, width)), last):
+                count = list_near(model, state, i, body[b], skin, keys, count)
+    return count
+
+
+@njit(**PURE)
+def list_pairs(
+    model: Model, state: State, cells: Whole, order: Whole, ball_cells: Whole, body: Short,
+    width: float, skin: float, keys: Whole,
+) -> int:  # fmt: skip
+    """Write the keys of all pairs nearer than the skin [m]; return their number.
+
+    `cells` (o,) is sorted, `order` (o,) are the bodies in that order; `ball_cells` (b,) and
+    `body` (n,) are those of the balls, and `width` [m] that of their cells. If there is not room
+    for all keys, only their number is right.
+    """
+    count = 0
     for a in range(order.shape[0]):
         i = order[a]
+        count = list_planes(model, state, i, skin, keys, count)
+        count = list_balls(model, state, i, ball_cells, body, width, skin, keys, count)
         for z in range(-1, 2):
             for y in range(-1, 2):
                 row = cells[a] + (z << 2 * BITS) + (y << BITS)
                 last = np.searchsorted(cells, row + 1, side="right")
                 for b in range(np.searchsorted(cells, row - 1), last):
-                    j = order[b]
-                    if j <= i:
-                        continue
-                    d = less(vector(state.position, i), vector(state.position, j))
-                    near = model.reach[i] + model.reach[j] + skin
-                    if dot(d, d) < near * near:
-                        count = list_bodies(model, state, i, j, skin, keys, count)
+                    if order[b] > i:
+                        count = list_near(model, state, i, order[b], skin, keys, count)
     return count
 
 
@@ -161,15 +181,39 @@ def contacts_from(keys: Whole, old: Contacts) -> Contacts:
     return new
 
 
-def listed(model: Model, state: State, old: Contacts, skin: float) -> Contacts:
-    """List anew all pairs nearer than the skin [m]."""
-    width = 2.0 * float(model.reach.max()) + skin
-    cells = number(state.position, len(model.reach), width)
+def listed_others(
+    model: Model, state: State, scratch: Scratch, around: Sorted, old: Contacts, skin: float
+) -> Contacts:
+    """List anew all pairs nearer than the skin [m] that are not of balls and planes alone."""
+    width = 2.0 * float(model.reach[model.others].max(initial=0.0)) + skin
+    cells = number(state.position, model.others, width)
     order = np.argsort(cells, kind="stable")
+    given = (model, state, cells[order], model.others[order], around.cells, scratch.body)
     keys = np.empty(2 * len(old.key) + 64, np.int64)
-    count = list_pairs(model, state, cells[order], order, skin, keys)
+    count = list_pairs(*given, around.width, skin, keys)
     if count > len(keys):
         keys = np.empty(count, np.int64)
-        list_pairs(model, state, cells[order], order, skin, keys)
-    state.listed[:] = state.centre
+        list_pairs(*given, around.width, skin, keys)
     return contacts_from(np.sort(keys[:count]), old)
+
+
+def listed(
+    model: Model, state: State, scratch: Scratch, balls: Balls, contacts: Contacts, skin: float
+) -> tuple[Balls, Contacts]:
+    """List anew all pairs nearer than the skin [m], and sort the rows."""
+    body = scratch.body.copy()
+    around = sort_rows(model, state, scratch, skin)
+    balls = listed_balls(model, scratch, around, balls, body, skin)
+    contacts = listed_others(model, state, scratch, around, contacts, skin)
+    mark(model, state)
+    return balls, contacts
+
+
+@njit(**PURE)
+def mark(model: Model, state: State) -> None:
+    """Write down where spheres are."""
+    for i in range(model.reach.shape[0]):
+        for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
+            for k in range(3):
+                at = state.position[i, k] if model.ball[i] else state.centre[s, k]
+                state.listed[s, k] = at

@@ -43,16 +43,14 @@ def exponential(x: float, y: float, z: float) -> Quaternion:
 
 
 @njit(**INNER)
-def normalised(q: Quaternion) -> Quaternion:
-    """Return q with unit length."""
-    scale = 1.0 / math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    return scale * q[0], scale * q[1], scale * q[2], scale * q[3]
-
-
-@njit(**INNER)
 def turned(q: Quaternion, x: float, y: float, z: float) -> Quaternion:
-    """Orientation q after turning by a rotation vector [rad], in world axes."""
-    return normalised(product(exponential(x, y, z), q))
+    """Orientation q after turning by a rotation vector [rad], in world axes.
+
+    One step of Newton's method keeps the length at one: q is off by rounding only.
+    """
+    a, b, c, d = product(exponential(x, y, z), q)
+    scale = 1.5 - 0.5 * (a * a + b * b + c * c + d * d)
+    return scale * a, scale * b, scale * c, scale * d
 
 
 @njit(**INNER)

@@ -21,15 +21,15 @@ def threads_wanted() -> int:
 
 
 class Team:
-    """A fixed number of threads."""
+    """A fixed number of threads, and what they are given: at least `fewest` rows, in `shares`."""
 
-    def __init__(self, size: int) -> None:
-        self.size = size
+    def __init__(self, size: int, fewest: int = FEWEST, shares: int = SHARES) -> None:
+        self.size, self.fewest, self.shares = size, fewest, shares
         self._pool = ThreadPoolExecutor(size) if size > 1 else None
 
     def run(self, kernel: Callable[..., Any], rows: int, *arguments: Any) -> list[Any]:
         """Call ``kernel(first, last, *arguments)`` on shares of the rows; return every result."""
-        shares = min(SHARES * self.size, rows // FEWEST)
+        shares = min(self.shares * self.size, rows // self.fewest)
         if self._pool is None or shares < 2:
             return [kernel(0, rows, *arguments)]
         ends = [rows * share // shares for share in range(shares + 1)]

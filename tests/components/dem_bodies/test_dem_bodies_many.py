@@ -1,0 +1,155 @@
+"""Many spheres: threads, sorting, contacts one by one, and what pairs of materials say."""
+
+import numpy as np
+import pytest
+from dem_scenes import FLOOR, box, build, energy, material, mistakes, run, sphere
+
+from quintet.components.dem_bodies import MANIFEST
+from quintet.components.dem_bodies.bench import lattice
+from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.params import read
+
+
+def crowd(seed=0, count=9000, **given):
+    """Spheres on a loose lattice in random order and motion, above a corner."""
+    random = np.random.default_rng(seed)
+    size = int(np.ceil(count ** (1 / 3)))
+    places = np.stack(np.meshgrid(*[np.arange(size)] * 3), axis=-1).reshape(-1, 3)[:count]
+    places = random.permutation(places)
+    bodies = [
+        sphere(x.tolist(), 0.01, velocity=v.tolist())
+        for x, v in zip((places + 0.5) * 0.0101, random.normal(size=places.shape), strict=True)
+    ]
+    normals = np.eye(3).tolist()
+    stuff = {"a": material(young=5e6, friction=0.5, **given)}
+    return build(bodies, stuff, planes=[FLOOR | {"normal": n} for n in normals], speed=2.0)
+
+
+@pytest.fixture(scope="module")
+def mixed():
+    """A crowd that has met and been listed anew, its rows far from the bodies' order."""
+    scene = crowd()
+    run(scene, 4e-3, dt=2e-5)
+    return scene
+
+
+def test_threads_change_no_bit(mixed, monkeypatch):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "2")
+    shared = crowd()
+    assert shared.team.size == 2 and mixed.team.size == 1
+    run(shared, 4e-3, dt=2e-5)
+    for name, array in mixed.save().items():
+        np.testing.assert_array_equal(array, shared.save()[name], err_msg=name)
+
+
+def test_energy_and_contacts_of_many_are_as_summed_one_by_one(mixed):
+    found, m = mixed.contact_points(), mixed.count
+    i, j = found["bodies"].T
+    assert len(i) > 1000 and (j == m).sum() > 10  # also on planes
+    forces = np.zeros((m + 1, 3))
+    np.add.at(forces, i, found["force"])
+    np.add.at(forces, j, -found["force"])
+    scale = np.abs(forces).max()
+    np.testing.assert_allclose(forces, mixed.state.contact[:, :3], atol=1e-12 * scale)
+    x = mixed.state.position[:m]
+    apart = np.linalg.norm(x[i[j < m]] - x[j[j < m]], axis=1)
+    np.testing.assert_allclose(found["depth"][j < m], 0.01 - apart, atol=1e-12)
+
+
+def test_all_that_touch_are_listed(mixed):
+    """Against a search of its own, by a tree."""
+    from scipy.spatial import KDTree
+
+    x = mixed.state.position[: mixed.count]
+    expected = {tuple(sorted(pair)) for pair in KDTree(x).query_pairs(0.01 * (1.0 - 1e-9))}
+    found = mixed.contact_points()["bodies"]
+    assert {tuple(sorted(pair)) for pair in found[found[:, 1] < mixed.count].tolist()} == expected
+    assert len(expected) > 1000
+
+
+def test_many_go_on_with_the_same_bits_when_loaded(mixed):
+    kept = mixed.save()
+    run(mixed, 4e-4, dt=2e-5)
+    first = mixed.save()
+    fresh = crowd(seed=5)
+    fresh.load(kept)
+    run(fresh, 4e-4, dt=2e-5)
+    for name, array in fresh.save().items():
+        np.testing.assert_array_equal(array, first[name], err_msg=name)
+    mixed.load(kept)
+
+
+def test_listing_anew_changes_no_contact():
+    """The same spheres, listed anew in every step: history is carried, also of swapped rows."""
+    ends = []
+    for often in (False, True):
+        scene = crowd(count=600, rolling=0.1, restitution=0.8)
+        start = energy(scene)
+        for _ in range(200):
+            if often:
+                scene.state.listed[:] = 1e9
+            scene.step(2e-5)
+        assert energy(scene) + scene.books.dissipated == pytest.approx(start, rel=1e-6)
+        ends.append(scene.give()["motion.position"])
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
+
+
+def test_contact_forces_of_a_block_at_rest_are_its_weight():
+    cube = build([box([0.0, 0.0, 0.075])], {"a": material(young=1e7)}, planes=[FLOOR], speed=0.5)
+    run(cube, 1.5)
+    found, weight = cube.contact_points(), 9.81 * cube.mass[0]
+    assert len(found["depth"]) == 4 and (found["depth"] > 0.0).all()
+    np.testing.assert_array_equal(found["bodies"], np.tile([0, 1], (4, 1)))
+    np.testing.assert_allclose(found["force"].sum(axis=0), [0.0, 0.0, weight], atol=1e-5 * weight)
+    np.testing.assert_array_equal(found["force"].sum(axis=0), cube.state.contact[0, :3])
+    np.testing.assert_allclose(found["point"][:, 2], -0.5 * found["depth"], atol=1e-9)
+    np.testing.assert_allclose(cube.state.contact[1, :3], -cube.state.contact[0, :3])
+
+
+def test_spheres_and_a_box_stand_on_each_other():
+    bodies = [box([0.0, 0.0, 0.26], (0.3, 0.3, 0.1))]
+    bodies += [sphere([x, y, 0.105], 0.21) for x in (-0.11, 0.11) for y in (-0.11, 0.11)]
+    pile = build(bodies, {"a": material(young=1e8, friction=0.5)}, planes=[FLOOR], speed=0.5)
+    run(pile, 1.0)
+    weight = 9.81 * pile.mass.sum()
+    assert pile.state.contact[-1, 2] == pytest.approx(-weight, rel=1e-3)
+    assert pile.give()["motion.position"][0, 2] == pytest.approx(0.26, abs=1e-3)
+
+
+def test_restitution_follows_the_pair():
+    stuff = {"a": material(young=1e9, restitution=0.9), "b": material(young=1e9, restitution=0.5)}
+    laws = [{"between": ["b", "a"], "restitution": 0.8}]
+    given = {"planes": [FLOOR | {"material": "b"}], "gravity": [0.0, 0.0, 0.0], "speed": 1.0}
+    for pairs, expected in (([], 0.5), (laws, 0.8)):
+        body = sphere([0.0, 0.0, 0.0101], velocity=[0.0, 0.0, -1.0])
+        ball = build([body], stuff, pairs=pairs, **given)
+        run(ball, 1e-3)
+        assert ball.give()["motion.velocity"][0, 2] == pytest.approx(expected, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "sentence"),
+    [
+        ([{"between": ["a", "a"]}], "pairs[0] must say friction, restitution or rolling"),
+        (
+            [{"between": ["a", "b"], "rolling": 0.1}, {"between": ["b", "a"], "friction": 0.1}],
+            "pairs[1] must be of other materials than pairs[0]; found b and a in both",
+        ),
+        ([{"between": ["a", "a"], "friction": -0.1}], "pairs.0.friction"),
+    ],
+)
+def test_wrong_pairs_are_refused(pairs, sentence):
+    stuff = {"a": material(), "b": material()}
+    found = mistakes([sphere([0.0, 0.0, 0.0])], materials=stuff, pairs=pairs)
+    assert sentence in " ".join(found)
+
+
+def test_benchmark_touches_its_six_neighbours():
+    assert {case.unit for case in MANIFEST.cases()} == {"sphere-steps/s"}
+    params, wrong = read(DemBodiesParams, lattice(6, 6, 6), "bodies")
+    assert not wrong
+    scene = DemBodies(params)
+    for _ in range(20):
+        scene.step(scene.stable_dt())
+    assert len(scene.contact_points()["depth"]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
