@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from quintet.coupler.shapes import BOX, SPHERE, fill
+from quintet.coupler.shapes import BOX, SPHERE, fill, mirrors
 from quintet.interfaces.errors import LinkError
 
 DEEP = 1e9
@@ -82,3 +82,18 @@ def test_a_body_smaller_than_the_spacing_has_one_sample(shape):
 def test_an_unknown_shape_is_refused():
     with pytest.raises(LinkError, match="must be 0 \\(sphere\\) or 1 \\(box\\)"):
         fill(3, np.full(3, 1.0), 0.1, DEEP)
+
+
+@pytest.mark.parametrize(("shape", "size"), [(BOX, (0.4, 0.3, 0.2)), (SPHERE, (0.4,) * 3)])
+def test_mirror_points_lie_as_far_outside(shape, size):
+    size = np.array(size)
+    arm, normal, _ = fill(shape, size, 0.05, 0.1)
+    image = mirrors(shape, size, arm, normal)
+    middle = 0.5 * (arm + image)
+    if shape == BOX:
+        assert np.isclose(np.abs(middle), 0.5 * size).any(axis=1).all()
+        assert (np.abs(middle) <= 0.5 * size + 1e-12).all()
+    else:
+        np.testing.assert_allclose(np.linalg.norm(middle, axis=1), 0.2, rtol=1e-12)
+    outside = np.abs(image) > 0.5 * size if shape == BOX else np.linalg.norm(image, axis=1) > 0.2
+    assert (outside.any(axis=1) if shape == BOX else outside).all()
