@@ -10,6 +10,7 @@ from quintet.components.shared.neighbours import FAST
 from quintet.components.sph_fluid.laws import (
     Diffusion,
     Fluid,
+    Friction,
     Guard,
     approach,
     flatten,
@@ -43,14 +44,14 @@ def number(bits):  # type: ignore[no-untyped-def]
 def interact(
     first: int, last: int, split: int, place: Array, motion: Array, near: List,
     fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
-    diffusion: Diffusion | None, friction: float | None, guard: Guard | None,
+    diffusion: Diffusion | None, friction: Friction | None, guard: Guard | None,
 ) -> tuple[float, float]:  # fmt: skip
     """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r².
 
     With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); with
-    `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, 4ν
-    [m2/s], let the fluid be viscous (Lo & Shao 2002); with `guard`, let walls repel what is about
-    to pass between their particles. Of what is None, numba leaves the lines out.
+    `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, let the
+    fluid be viscous (Lo & Shao 2002); with `guard`, let walls repel what is about to pass between
+    their particles. Of what is None, numba leaves the lines out.
     """
     begin, _, end, neighbour = near
     greatest, fastest = 0.0, bits(0.0)
@@ -83,10 +84,10 @@ def interact(
                     more = spread(place[j, 3] - density, dx, dy, dz, diffusion)
                     growth -= inside * more * (slope * flatten(r2, fluid)) / both
                 if friction is not None:
-                    shear = friction * share * (slope * flatten(r2, fluid)) / both
-                    ax += shear * du
-                    ay += shear * dv
-                    az += shear * dw
+                    shear = share * (slope * flatten(r2, fluid)) / both
+                    ax += friction.strength * shear * (u - friction.seen[j, 0])
+                    ay += friction.strength * shear * (v - friction.seen[j, 1])
+                    az += friction.strength * shear * (w - friction.seen[j, 2])
                 if drift is not None:
                     weight = inside * kernel(r2, fluid) / both
                     mx -= weight * du
@@ -116,7 +117,7 @@ def interact(
 @njit(**FAST)
 def push_samples(
     first: int, last: int, row: Whole, listed: Whole, place: Array, motion: Array, near: List,
-    fluid: Fluid, friction: float | None, guard: Guard | None, force: Array,
+    fluid: Fluid, friction: Friction | None, guard: Guard | None, force: Array,
 ) -> None:  # fmt: skip
     """Write the force on surface samples: pair by pair, minus that on the fluid [N]."""
     begin, _, end, neighbour = near
@@ -141,10 +142,10 @@ def push_samples(
             fy -= size * dy
             fz -= size * dz
             if friction is not None:
-                shear = friction * fluid.grip * (slope * flatten(r2, fluid)) / both
-                fx += shear * du
-                fy += shear * dv
-                fz += shear * dw
+                shear = fluid.grip * (slope * flatten(r2, fluid)) / both
+                fx += friction.strength * shear * (friction.seen[i, 0] - motion[j, 0])
+                fy += friction.strength * shear * (friction.seen[i, 1] - motion[j, 1])
+                fz += friction.strength * shear * (friction.seen[i, 2] - motion[j, 2])
         force[s, 0] = fluid.mass * fluid.mass * fx
         force[s, 1] = fluid.mass * fluid.mass * fy
         force[s, 2] = fluid.mass * fluid.mass * fz

@@ -3,7 +3,9 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from quintet.components.shared.cubic_spline import normalisation, shape, slope
 from quintet.components.sph_fluid.build import TAIT
@@ -50,8 +52,15 @@ def diffusion(params: SphFluidParams) -> Diffusion | None:
     if params.diffusion == 0.0:
         return None
     sound = params.sound_speed
-    x, y, z = (params.density * pull / sound**2 for pull in params.gravity)
+    x, y, z = (params.density * pull / sound**2 for pull in params.weight)
     return Diffusion(4.0 * params.diffusion * params.length * sound, x, y, z)
+
+
+class Friction(NamedTuple):
+    """The numbers that viscosity of the fluid itself needs."""
+
+    strength: float  # m2/s, 4 ν
+    seen: NDArray[np.float64]  # (n, 4) m/s, velocities as friction sees them, and a column unused
 
 
 class Guard(NamedTuple):

@@ -1,6 +1,7 @@
 """What a scene may say of a weakly compressible fluid."""
 
 import math
+from dataclasses import field
 from typing import Literal, get_args
 
 from pydantic import NonNegativeInt
@@ -31,6 +32,7 @@ class SphFluidParams:
     dimensions: Literal[2, 3] = 3  # 2: x and z
     walls: Box | None = None  # m, the inside of a tank
     open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
+    wall_velocity: dict[Face, Vector] = field(default_factory=dict)  # m/s, of faces like belts
     obstacles: tuple[Box, ...] = ()  # m, boxes that stand still in the tank
     smoothing: Positive = 1.5  # 1, smoothing length / spacing
     density: Positive = 1000.0  # kg/m3, at no pressure
@@ -102,6 +104,13 @@ class SphFluidParams:
                         f"{box[1][axis]} m. Move the box, or add the face to open."
                     )
 
+        for face, velocity in self.wall_velocity.items():
+            if face not in self.shut or velocity["xyz".index(face[0])] != 0.0:
+                raise ValueError(
+                    f"wall_velocity.{face} must lie in a face that the tank has, "
+                    f"{', '.join(self.shut)}; found {velocity} m/s. Shut the face, or leave its "
+                    f"{face[0]} 0."
+                )
         if self.gaps and not self.mirrored:
             raise ValueError(
                 "gaps needs boundary mdbc, whose samples know the pressure at a gap's rim; found "
@@ -170,7 +179,7 @@ class SphFluidParams:
         )
 
     def _check_sound(self) -> None:
-        needed = 10.0 * math.sqrt(math.hypot(*self.gravity) * self.depth)
+        needed = 10.0 * math.sqrt(math.hypot(*self.weight) * self.depth)
         if self.sound_speed < needed:
             raise ValueError(
                 f"sound_speed must be at least 10 sqrt(g depth) = {needed:.4g} m/s for the fluid's "
@@ -185,16 +194,29 @@ class SphFluidParams:
 
     @property
     def depth(self) -> float:
-        """Extent of all the fluid along gravity [m]; none without gravity."""
-        if not any(self.gravity):
+        """Extent of all the fluid along its weight [m]; none without any."""
+        if not any(self.weight):
             return 0.0
         levels = [level for box in self.fluid for level in self.levels(box)]
         return max(levels) - min(levels)
 
+    @property
+    def weight(self) -> Vector:
+        """Gravity [m/s2], but none along axes on which the tank is open below: fluid falls."""
+        if self.walls is None:
+            return self.gravity
+        below = [
+            f"{axis}{'+' if g > 0.0 else '-'}" for axis, g in zip("xyz", self.gravity, strict=True)
+        ]
+        x, y, z = (
+            g if face in self.shut else 0.0 for face, g in zip(below, self.gravity, strict=True)
+        )
+        return x, y, z
+
     def levels(self, box: Box) -> tuple[float, float]:
-        """Lowest and highest level of a box, measured against gravity [m]."""
-        size = math.hypot(*self.gravity) or 1.0
-        pairs = [(-low * g, -high * g) for low, high, g in zip(*box, self.gravity, strict=True)]
+        """Lowest and highest level of a box, measured against its weight [m]."""
+        size = math.hypot(*self.weight) or 1.0
+        pairs = [(-low * g, -high * g) for low, high, g in zip(*box, self.weight, strict=True)]
         return sum(map(min, pairs)) / size, sum(map(max, pairs)) / size
 
 
