@@ -101,6 +101,8 @@ def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
 def wall_density(wall: Array, params: SphFluidParams) -> Array:
     """Density (n,) kg/m3 of wall particles (n, 3) m: that of the fluid they touch, or ρ₀."""
     density = np.full(len(wall), params.density)
+    if params.boundary == "potential":
+        return density
     for box in params.fluid:
         low, high = np.array(box)
         near = (params.standoff + 0.51) * params.spacing

@@ -2,9 +2,9 @@
 
 import math
 from dataclasses import field
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
-from pydantic import NonNegativeInt
+from pydantic import Field, NonNegativeInt
 
 from quintet.components.sph_fluid.wave import Wave
 from quintet.interfaces.params import Fraction, NotNegative, Number, Positive, Vector, parameters
@@ -13,6 +13,8 @@ Box = tuple[Vector, Vector]  # lowest and highest corner, m
 Spot = tuple[Number, Number]  # x and y, m
 Axis = Literal["x", "y", "z"]
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
+
+Exponent = Annotated[int, Field(ge=1, le=8)]
 
 FACES = get_args(Face)
 
@@ -41,7 +43,10 @@ class SphFluidParams:
     laminar: NotNegative = 0.0  # m2/s, kinematic viscosity of the fluid itself
     diffusion: NotNegative = 0.0  # 1, δ of Fourtakas' diffusion of density; 0.1 is usual
     grip: Fraction = 1.0  # 1, share of the viscosity that acts between fluid and walls or samples
-    boundary: Literal["dbc", "mdbc"] = "dbc"  # dynamic wall particles, or mirrored ones
+    boundary: Literal["dbc", "mdbc", "potential"] = "dbc"  # dynamic wall particles, or mirrored
+    # ones, or a contact potential in place of their pressure
+    potential_stiffness: Positive | None = None  # Pa, K Δpᵈ; else what holds ρ(c/10)² at a spacing
+    potential_exponent: Exponent = 4  # 1, n: how much it steepens towards the wall
     gaps: bool = False  # whether films in gaps narrower than particles carry pressure; with mdbc
     roughness: Positive = 5e-4  # m, least width that a film has between faces that touch
     standoff: Positive = 0.5  # 1, spacings from a wall's face out to its particles
@@ -73,6 +78,11 @@ class SphFluidParams:
             raise ValueError(
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
+            )
+        if self.potential_stiffness is not None and self.boundary != "potential":
+            raise ValueError(
+                f"potential_stiffness belongs to boundary potential; found {self.boundary}. Remove "
+                "it, or set boundary."
             )
         if self.wave is not None:
             self.wave.check(self.fluid, self.gravity)
@@ -147,7 +157,7 @@ class SphFluidParams:
     @property
     def layers(self) -> int:
         """Layers of wall particles: one that repels, or as many as a kernel meets."""
-        return math.ceil(2.0 * self.smoothing) if self.mirrored else 1
+        return 1 if self.boundary == "dbc" else math.ceil(2.0 * self.smoothing)
 
     def _check_obstacles(self) -> None:
         least = 2.0 * self.standoff * self.spacing
