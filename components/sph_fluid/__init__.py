@@ -8,7 +8,8 @@
 
 Walls and moving surface samples are particles that obey the continuity equation (from
 fluid neighbours alone) and Tait's, but move as they are told; their density never falls below
-ρ₀, so that they never pull.
+ρ₀, so that they never pull. With `boundary` "mdbc" their density is the fluid's, mirrored
+(`mdbc.py`); with "potential" they have no pressure, and a contact potential pushes (`contact.py`).
 
 In time, a particle's momentum changes in a step by exactly dt times the force of that step,
 uⁿ⁺¹ = uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past

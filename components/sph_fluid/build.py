@@ -38,6 +38,7 @@ def state(params: SphFluidParams) -> State:
     made = State.empty(sum(map(len, boxes)), len(wall))
     made.place[:, :3] = np.concatenate([*boxes, wall])
     made.place[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
+    made.motion[made.fluid :, :3] = wall_velocity(wall, params)
     if params.wave is not None:
         moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
         made.motion[: len(moves), :3] = moves
@@ -63,6 +64,17 @@ def wall_points(params: SphFluidParams) -> Array:
     return points[((points < low) | (points > high)).any(axis=1)]
 
 
+def wall_velocity(wall: Array, params: SphFluidParams) -> Array:
+    """Velocity (n, 3) m/s of wall particles (n, 3) m, which stay where they are."""
+    found = np.zeros_like(wall)
+    for face, velocity in params.wall_velocity.items():
+        assert params.walls is not None
+        (low, high), axis = params.walls, "xyz".index(face[0])
+        beyond = wall[:, axis] > high[axis] if face[1] == "+" else wall[:, axis] < low[axis]
+        found[beyond] = velocity
+    return found
+
+
 def _shut(params: SphFluidParams) -> list[tuple[int, int]]:
     beyond = {face: params.layers if face in params.shut else 0 for face in FACES}
     return [(beyond[f"{x}-"], beyond[f"{x}+"]) for x in "xyz"]
@@ -79,8 +91,8 @@ def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int
 
 def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
     """Density (n,) kg/m3 at points (n, 3) m below the surface of a box of fluid at rest."""
-    pull = math.hypot(*params.gravity)
-    depth = params.levels(box)[1] + points @ np.array(params.gravity) / (pull or 1.0)
+    pull = math.hypot(*params.weight)
+    depth = params.levels(box)[1] + points @ np.array(params.weight) / (pull or 1.0)
     pressure = params.density * pull * np.maximum(depth, 0.0)
     stiffness = params.sound_speed**2 * params.density / TAIT  # Pa
     return params.density * (1.0 + pressure / stiffness) ** (1.0 / TAIT)
@@ -89,6 +101,8 @@ def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
 def wall_density(wall: Array, params: SphFluidParams) -> Array:
     """Density (n,) kg/m3 of wall particles (n, 3) m: that of the fluid they touch, or ρ₀."""
     density = np.full(len(wall), params.density)
+    if params.boundary == "potential":
+        return density
     for box in params.fluid:
         low, high = np.array(box)
         near = (params.standoff + 0.51) * params.spacing

@@ -12,7 +12,7 @@ from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
-from quintet.components.sph_fluid.laws import AHEAD, constants, diffusion, guard
+from quintet.components.sph_fluid.laws import AHEAD, Friction, constants, diffusion, guard
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, totals
@@ -34,7 +34,7 @@ class SphFluid(Component):
         self.fluid = constants(params)
         self.diffusion = diffusion(params)
         self.guard = guard(params)
-        self.friction = 4.0 * params.laminar if params.laminar > 0.0 else None
+        self.contact, self.steepest = None, math.inf
         self.team = Team(threads_wanted())
         self.state = build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
@@ -49,6 +49,10 @@ class SphFluid(Component):
             from quintet.components.sph_fluid.mdbc import mirrors
 
             self.state.mirror = mirrors(params)
+        if params.boundary == "potential":
+            from quintet.components.sph_fluid.contact import contact, step_limit
+
+            self.contact, self.steepest = contact(params), step_limit(params)
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
@@ -78,7 +82,7 @@ class SphFluid(Component):
         sound = h / (self.params.sound_speed + h * state.approach)
         pull = math.sqrt(h / state.acceleration) if state.acceleration > 0.0 else math.inf
         viscous = 0.5 * h * h / self.params.laminar if self.params.laminar > 0.0 else math.inf
-        return min(self.params.courant * min(sound, pull), 0.25 * viscous)
+        return min(self.params.courant * min(sound, pull), 0.25 * viscous, self.steepest)
 
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
@@ -139,8 +143,8 @@ class SphFluid(Component):
 
     @property
     def _advancing(self) -> int:
-        """Rows whose density has a rate: all, or the fluid's where walls are mirrored."""
-        return self.state.fluid if self.params.mirrored else len(self.state.place)
+        """Rows whose density has a rate: all where walls are dynamic, or the fluid's."""
+        return len(self.state.place) if self.params.boundary == "dbc" else self.state.fluid
 
     @property
     def _reach(self) -> float:
@@ -155,6 +159,9 @@ class SphFluid(Component):
             # they are as well.
             seekers = np.concatenate([state.reference[len(points) :], points[self.rows]])
             self.listed = len(points) + np.arange(len(self.rows))
+        elif self.contact is not None:
+            seekers = points[self.rows]
+            self.listed = state.fluid + np.arange(len(self.rows))
         self.near = neighbours_within(self._reach, points, state.fluid, self.team, seekers)
         if len(state.film):
             from quintet.components.sph_fluid.gap import film
@@ -183,25 +190,40 @@ class SphFluid(Component):
         own = np.full(len(state.mirror), -1)
         own[self.rows - state.fluid] = self.listed
         arrays = (own, state.mirror, state.place, state.motion, self.near.arrays)
-        weight = self.params.density * math.hypot(*self.params.gravity) / self.params.sound_speed**2
+        weight = self.params.density * math.hypot(*self.params.weight) / self.params.sound_speed**2
         self.team.run(extrapolate, len(own), state.fluid, *arrays, weight, self.fluid)
 
     def _interact(self, dt: float) -> None:
         """Forces and rates of density, and what they do to the samples."""
         state, gravity = self.state, self.params.gravity
         pairs = (state.place, state.motion, self.near.arrays, self.fluid)
-        terms = (self.rate, self.drift, self.diffusion, self.friction, self.guard)
+        friction = self._friction()
+        terms = (self.rate, self.drift, self.diffusion, friction, self.guard, self.contact)
         found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
         if len(self.rows):
             rows = (self.rows, self.listed)
-            on_samples = (self.friction, self.guard, state.force)
+            on_samples = (friction, self.guard, self.contact, state.force)
             self.team.run(push_samples, len(self.rows), *rows, *pairs, *on_samples)
         if len(state.film):
             from quintet.components.sph_fluid.gap import push
 
             push(self.film, state, dt, self.params)
+
+    def _friction(self) -> Friction | None:
+        """Viscosity of the fluid itself, and the velocities that it sees in mirrored walls."""
+        params, state = self.params, self.state
+        if params.laminar == 0.0:
+            return None
+        seen = state.motion
+        if params.mirrored and params.grip > 0.0:
+            from quintet.components.sph_fluid.mdbc import reflect
+
+            seen = seen.copy()
+            arrays = (state.mirror, state.place, state.motion, self.near.arrays, self.fluid)
+            self.team.run(reflect, len(state.mirror), state.fluid, *arrays, seen)
+        return Friction(4.0 * params.laminar, seen)
 
     def _drift(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity."""

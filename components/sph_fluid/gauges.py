@@ -39,6 +39,10 @@ class Gauges:
         self.params, self.fluid = params, fluid
         self.points = np.array(params.pressure_gauges).reshape(-1, 3)  # (m, 3) m
         self.spots = np.array(params.level_gauges).reshape(-1, 2)  # (m, 2) m
+        if params.dimensions == 2:
+            self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
+                corner[1] for corner in params.fluid[0]
+            )
         boxes = [params.walls] if params.walls else params.fluid
         self.floor = min(box[0][2] for box in boxes)  # m
         self.lone = fluid.mass / fluid.density * 4.0 * fluid.height  # 1, V W(0)
@@ -93,10 +97,11 @@ class Gauges:
     def _motion(self, state: State) -> Fields:
         points, velocity = state.place[: state.fluid, :3], state.motion[: state.fluid, :3]
         squares = np.einsum("nd,nd->n", velocity, velocity)
-        centre, mass = points.mean(axis=0), self.fluid.mass * len(points)
+        one = self.fluid.mass * self.params.thickness  # kg
+        centre, mass = points.mean(axis=0), one * len(points)
         return {
             "motion_gauge.speed": np.sqrt(squares.max(keepdims=True)),
-            "motion_gauge.kinetic": 0.5 * self.fluid.mass * squares.sum(keepdims=True),
+            "motion_gauge.kinetic": 0.5 * one * squares.sum(keepdims=True),
             "motion_gauge.potential": np.array([-mass * float(centre @ self.params.gravity)]),
             "motion_gauge.centre": centre[np.newaxis],
         }

@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 
 from quintet.components.shared.neighbours import FAST
 from quintet.components.sph_fluid.laws import (
+    Contact,
     Diffusion,
     Fluid,
+    Friction,
     Guard,
     approach,
+    bear,
     flatten,
     gradient,
     kernel,
@@ -43,16 +46,18 @@ def number(bits):  # type: ignore[no-untyped-def]
 def interact(
     first: int, last: int, split: int, place: Array, motion: Array, near: List,
     fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
-    diffusion: Diffusion | None, friction: float | None, guard: Guard | None,
+    diffusion: Diffusion | None, friction: Friction | None, guard: Guard | None,
+    contact: Contact | None,
 ) -> tuple[float, float]:  # fmt: skip
     """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r².
 
     With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); with
-    `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, 4ν
-    [m2/s], let the fluid be viscous (Lo & Shao 2002); with `guard`, let walls repel what is about
-    to pass between their particles. Of what is None, numba leaves the lines out.
+    `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, let the
+    fluid be viscous (Lo & Shao 2002); with `guard`, let walls repel what is about to pass between
+    their particles; with `contact`, let the contact potential alone push walls and fluid apart. Of
+    what is None, numba leaves the lines out.
     """
-    begin, _, end, neighbour = near
+    begin, middle, end, neighbour = near
     greatest, fastest = 0.0, bits(0.0)
     for i in range(first, last):
         x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
@@ -60,7 +65,7 @@ def interact(
         ax, ay, az, growth = 0.0, 0.0, 0.0, 0.0
         mx, my, mz = 0.0, 0.0, 0.0
         if i < split:
-            for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+            for k in range(np.uint64(begin[i]), np.uint64(middle[i])):
                 j = np.uint64(neighbour[k])
                 dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
                 du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
@@ -69,11 +74,7 @@ def interact(
                 both = density + place[j, 3]
                 closing = approach(dot, r2, fluid)
                 slope = gradient(r2, fluid)
-                inside = int(j < np.uint64(split))
-                share = fluid.grip + (1.0 - fluid.grip) * inside
-                force = slope * push(term, motion[j, 3], share * closing, both, fluid)
-                if guard is not None:
-                    force -= (1 - inside) * repel(r2, guard)
+                force = slope * push(term + motion[j, 3], closing, both, fluid)
                 fastest = max(fastest, bits(abs(closing)))
                 growth += dot * slope
                 ax -= force * dx
@@ -81,17 +82,43 @@ def interact(
                 az -= force * dz
                 if diffusion is not None:
                     more = spread(place[j, 3] - density, dx, dy, dz, diffusion)
-                    growth -= inside * more * (slope * flatten(r2, fluid)) / both
+                    growth -= more * (slope * flatten(r2, fluid)) / both
                 if friction is not None:
-                    shear = friction * share * (slope * flatten(r2, fluid)) / both
+                    shear = friction.strength * (slope * flatten(r2, fluid)) / both
                     ax += shear * du
                     ay += shear * dv
                     az += shear * dw
                 if drift is not None:
-                    weight = inside * kernel(r2, fluid) / both
+                    weight = kernel(r2, fluid) / both
                     mx -= weight * du
                     my -= weight * dv
                     mz -= weight * dw
+            for k in range(np.uint64(middle[i]), np.uint64(end[i])):
+                j = np.uint64(neighbour[k])
+                dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
+                du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
+                r2 = dx * dx + dy * dy + dz * dz
+                dot = dx * du + dy * dv + dz * dw
+                both = density + place[j, 3]
+                closing = approach(dot, r2, fluid)
+                slope = gradient(r2, fluid)
+                fastest = max(fastest, bits(abs(closing)))
+                if contact is None:
+                    terms = term + motion[j, 3]
+                    growth += dot * slope
+                else:
+                    terms = bear(r2, density * place[j, 3], contact, fluid)
+                force = slope * push(terms, fluid.grip * closing, both, fluid)
+                if guard is not None:
+                    force -= repel(r2, guard)
+                ax -= force * dx
+                ay -= force * dy
+                az -= force * dz
+                if friction is not None:
+                    shear = friction.strength * fluid.grip * (slope * flatten(r2, fluid)) / both
+                    ax += shear * (u - friction.seen[j, 0])
+                    ay += shear * (v - friction.seen[j, 1])
+                    az += shear * (w - friction.seen[j, 2])
             ax = fluid.mass * ax + gravity[0]
             ay = fluid.mass * ay + gravity[1]
             az = fluid.mass * az + gravity[2]
@@ -116,7 +143,8 @@ def interact(
 @njit(**FAST)
 def push_samples(
     first: int, last: int, row: Whole, listed: Whole, place: Array, motion: Array, near: List,
-    fluid: Fluid, friction: float | None, guard: Guard | None, force: Array,
+    fluid: Fluid, friction: Friction | None, guard: Guard | None, contact: Contact | None,
+    force: Array,
 ) -> None:  # fmt: skip
     """Write the force on surface samples: pair by pair, minus that on the fluid [N]."""
     begin, _, end, neighbour = near
@@ -134,17 +162,21 @@ def push_samples(
             closing = fluid.grip * approach(dot, r2, fluid)
             slope = gradient(r2, fluid)
             both = density + place[j, 3]
-            size = slope * push(term, motion[j, 3], closing, both, fluid)
+            if contact is None:
+                terms = term + motion[j, 3]
+            else:
+                terms = bear(r2, density * place[j, 3], contact, fluid)
+            size = slope * push(terms, closing, both, fluid)
             if guard is not None:
                 size -= repel(r2, guard)
             fx -= size * dx
             fy -= size * dy
             fz -= size * dz
             if friction is not None:
-                shear = friction * fluid.grip * (slope * flatten(r2, fluid)) / both
-                fx += shear * du
-                fy += shear * dv
-                fz += shear * dw
+                shear = fluid.grip * (slope * flatten(r2, fluid)) / both
+                fx += friction.strength * shear * (friction.seen[i, 0] - motion[j, 0])
+                fy += friction.strength * shear * (friction.seen[i, 1] - motion[j, 1])
+                fz += friction.strength * shear * (friction.seen[i, 2] - motion[j, 2])
         force[s, 0] = fluid.mass * fluid.mass * fx
         force[s, 1] = fluid.mass * fluid.mass * fy
         force[s, 2] = fluid.mass * fluid.mass * fz

@@ -3,7 +3,9 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from quintet.components.shared.cubic_spline import normalisation, shape, slope
 from quintet.components.sph_fluid.build import TAIT
@@ -50,8 +52,15 @@ def diffusion(params: SphFluidParams) -> Diffusion | None:
     if params.diffusion == 0.0:
         return None
     sound = params.sound_speed
-    x, y, z = (params.density * pull / sound**2 for pull in params.gravity)
+    x, y, z = (params.density * pull / sound**2 for pull in params.weight)
     return Diffusion(4.0 * params.diffusion * params.length * sound, x, y, z)
+
+
+class Friction(NamedTuple):
+    """The numbers that viscosity of the fluid itself needs."""
+
+    strength: float  # m2/s, 4 ν
+    seen: NDArray[np.float64]  # (n, 4) m/s, velocities as friction sees them, and a column unused
 
 
 class Guard(NamedTuple):
@@ -68,6 +77,16 @@ def guard(params: SphFluidParams) -> Guard | None:
     mass = params.density * params.spacing**params.dimensions
     stiffness = GUARD * (params.sound_speed / params.spacing) ** 2 / mass
     return Guard(stiffness, (NEAREST * params.spacing) ** 2)
+
+
+class Contact(NamedTuple):
+    """The numbers that the contact potential needs; n - 1 = once + 2 twice + 4 four."""
+
+    strength: float  # Pa, K n / W(Δp)
+    inverse: float  # m3, 1 / W(Δp)
+    once: float  # 1, or 0
+    twice: float
+    four: float
 
 
 def constants(params: SphFluidParams) -> Fluid:
@@ -124,9 +143,9 @@ def approach(dot, r2, fluid):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def push(term_i, term_j, closing, density_sum, fluid):  # type: ignore[no-untyped-def]
+def push(terms, closing, density_sum, fluid):  # type: ignore[no-untyped-def]
     """p_i/ρ_i² + p_j/ρ_j² + Π_ij; Monaghan 1992, eq. (3.3) and (4.2) with β = 0."""
-    return term_i + term_j - fluid.drag * min(closing, 0.0) / density_sum
+    return terms - fluid.drag * min(closing, 0.0) / density_sum
 
 
 @njit(inline="always")
@@ -150,3 +169,12 @@ def spread(difference, dx, dy, dz, diffusion):  # type: ignore[no-untyped-def]
 def repel(r2, guard):  # type: ignore[no-untyped-def]
     """Force of a wall particle on one of fluid over m² r, of finite reach."""
     return guard.stiffness * max(1.0 - r2 / guard.reach2, 0.0)
+
+
+@njit(inline="always")
+def bear(r2, density_product, contact, fluid):  # type: ignore[no-untyped-def]
+    """K n W^(n-1)/(W(Δp)^n ρ_i ρ_j), what the contact potential has for p_i/ρ_i² + p_j/ρ_j²."""
+    one = kernel(r2, fluid) * contact.inverse
+    two = one * one
+    power = (1.0 + contact.once * (one - 1.0)) * (1.0 + contact.twice * (two - 1.0))
+    return contact.strength * power * (1.0 + contact.four * (two * two - 1.0)) / density_product

@@ -65,6 +65,37 @@ def extrapolate(
         motion[i, 3] = pressure_term(place[i, 3], fluid)
 
 
+@njit(**FAST)
+def reflect(
+    first: int, last: int, split: int, mirrors: Array, place: Array, motion: Array, near: List,
+    fluid: Fluid, seen: Array,
+) -> None:  # fmt: skip
+    """Write velocities of boundary rows [first, last) that bring the fluid to rest at the face.
+
+    2u_wall - u(mirror point), with the fluid's velocity there from a plane through its
+    neighbours', so that a linear profile is met exactly; the wall's own where there is no fluid.
+    """
+    begin, _, end, neighbour = near
+    for b in range(first, last):
+        i = split + b
+        x, y, z = mirrors[b, 0], mirrors[b, 1], mirrors[b, 2]
+        s, mx, my, mz, ax, ay, az = level(i, x, y, z, place, near, fluid)
+        if s < NONE:
+            continue
+        u, v, w = 0.0, 0.0, 0.0
+        for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+            j = np.uint64(neighbour[k])
+            dx, dy, dz = place[j, 0] - x, place[j, 1] - y, place[j, 2] - z
+            share = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / (place[j, 3] * s)
+            share *= 1.0 + ax * (dx - mx) + ay * (dy - my) + az * (dz - mz)
+            u += share * motion[j, 0]
+            v += share * motion[j, 1]
+            w += share * motion[j, 2]
+        seen[i, 0] = 2.0 * motion[i, 0] - u
+        seen[i, 1] = 2.0 * motion[i, 1] - v
+        seen[i, 2] = 2.0 * motion[i, 2] - w
+
+
 @njit(inline="always")
 def distance(target, x, y, z):  # type: ignore[no-untyped-def]
     """From a point to a target [m]."""
@@ -103,11 +134,55 @@ def fit(row, x, y, z, target, place, near, fluid):  # type: ignore[no-untyped-de
     if s < NONE:
         return 0.0, 0.0, s
     mean = b / s
-    # About the mean place: three unknowns are left, solved by Cholesky's method.
+    # About the mean place three unknowns are left.
     mx, my, mz = sx / s, sy / s, sz / s
     xx, xy, xz = xx / s - mx * mx, xy / s - mx * my, xz / s - mx * mz
     yy, yz, zz = yy / s - my * my, yz / s - my * mz, zz / s - mz * mz
     bx, by, bz = bx / s - mx * mean, by / s - my * mean, bz / s - mz * mean
+    gx, gy, gz = solve(xx, xy, xz, yy, yz, zz, bx, by, bz)
+    rise = gx * ((target[0] - x) * inverse - mx) + gy * ((target[1] - y) * inverse - my)
+    return mean, rise + gz * ((target[2] - z) * inverse - mz), s
+
+
+@njit(**FAST)
+def level(row, x, y, z, place, near, fluid):  # type: ignore[no-untyped-def]
+    """Σ V W of a row's fluid around a point, m and a: numbers that fit a plane to any field f.
+
+    Its value at the point is Σ V W (1 + a·(r - m)) f / Σ V W, r from the point.
+    """
+    begin, _, end, neighbour = near
+    inverse = 1.0 / fluid.smoothing
+    s, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
+    xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(np.uint64(begin[row]), np.uint64(end[row])):
+        j = np.uint64(neighbour[k])
+        dx, dy, dz = place[j, 0] - x, place[j, 1] - y, place[j, 2] - z
+        w = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / place[j, 3]
+        dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
+        s += w
+        wx, wy, wz = w * dx, w * dy, w * dz
+        sx += wx
+        sy += wy
+        sz += wz
+        xx += wx * dx
+        xy += wx * dy
+        xz += wx * dz
+        yy += wy * dy
+        yz += wy * dz
+        zz += wz * dz
+    if s < NONE:
+        return s, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    mx, my, mz = sx / s, sy / s, sz / s
+    xx, xy, xz = xx / s - mx * mx, xy / s - mx * my, xz / s - mx * mz
+    yy, yz, zz = yy / s - my * my, yz / s - my * mz, zz / s - mz * mz
+    ax, ay, az = solve(xx, xy, xz, yy, yz, zz, -mx, -my, -mz)
+    h = fluid.smoothing
+    return s, mx * h, my * h, mz * h, ax * inverse, ay * inverse, az * inverse
+
+
+@njit(inline="always")
+def solve(xx, xy, xz, yy, yz, zz, bx, by, bz):  # type: ignore[no-untyped-def]
+    """Gradient of a plane by Cholesky's method, none along directions that are thin."""
     x_in, l21, l31 = 0.0, 0.0, 0.0
     if xx > THIN:
         x_in, l21, l31 = 1.0 / xx, xy / xx, xz / xx
@@ -122,5 +197,4 @@ def fit(row, x, y, z, target, place, near, fluid):  # type: ignore[no-untyped-de
     gz = bz * z_in
     gy = by * y_in - l32 * gz
     gx = bx * x_in - l21 * gy - l31 * gz
-    rise = gx * ((target[0] - x) * inverse - mx) + gy * ((target[1] - y) * inverse - my)
-    return mean, rise + gz * ((target[2] - z) * inverse - mz), s
+    return gx, gy, gz

@@ -1,9 +1,10 @@
 """What a scene may say of a weakly compressible fluid."""
 
 import math
-from typing import Literal, get_args
+from dataclasses import field
+from typing import Annotated, Literal, get_args
 
-from pydantic import NonNegativeInt
+from pydantic import Field, NonNegativeInt
 
 from quintet.components.sph_fluid.wave import Wave
 from quintet.interfaces.params import Fraction, NotNegative, Number, Positive, Vector, parameters
@@ -12,6 +13,8 @@ Box = tuple[Vector, Vector]  # lowest and highest corner, m
 Spot = tuple[Number, Number]  # x and y, m
 Axis = Literal["x", "y", "z"]
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
+
+Exponent = Annotated[int, Field(ge=1, le=8)]
 
 FACES = get_args(Face)
 
@@ -31,6 +34,7 @@ class SphFluidParams:
     dimensions: Literal[2, 3] = 3  # 2: x and z
     walls: Box | None = None  # m, the inside of a tank
     open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
+    wall_velocity: dict[Face, Vector] = field(default_factory=dict)  # m/s, of faces like belts
     obstacles: tuple[Box, ...] = ()  # m, boxes that stand still in the tank
     smoothing: Positive = 1.5  # 1, smoothing length / spacing
     density: Positive = 1000.0  # kg/m3, at no pressure
@@ -39,7 +43,10 @@ class SphFluidParams:
     laminar: NotNegative = 0.0  # m2/s, kinematic viscosity of the fluid itself
     diffusion: NotNegative = 0.0  # 1, δ of Fourtakas' diffusion of density; 0.1 is usual
     grip: Fraction = 1.0  # 1, share of the viscosity that acts between fluid and walls or samples
-    boundary: Literal["dbc", "mdbc"] = "dbc"  # dynamic wall particles, or mirrored ones
+    boundary: Literal["dbc", "mdbc", "potential"] = "dbc"  # dynamic wall particles, or mirrored
+    # ones, or a contact potential in place of their pressure
+    potential_stiffness: Positive | None = None  # Pa, K Δpᵈ; else what holds ρ(c/10)² at a spacing
+    potential_exponent: Exponent = 4  # 1, n: how much it steepens towards the wall
     gaps: bool = False  # whether films in gaps narrower than particles carry pressure; with mdbc
     roughness: Positive = 5e-4  # m, least width that a film has between faces that touch
     standoff: Positive = 0.5  # 1, spacings from a wall's face out to its particles
@@ -72,6 +79,11 @@ class SphFluidParams:
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
             )
+        if self.potential_stiffness is not None and self.boundary != "potential":
+            raise ValueError(
+                f"potential_stiffness belongs to boundary potential; found {self.boundary}. Remove "
+                "it, or set boundary."
+            )
         if self.wave is not None:
             self.wave.check(self.fluid, self.gravity)
 
@@ -102,6 +114,13 @@ class SphFluidParams:
                         f"{box[1][axis]} m. Move the box, or add the face to open."
                     )
 
+        for face, velocity in self.wall_velocity.items():
+            if face not in self.shut or velocity["xyz".index(face[0])] != 0.0:
+                raise ValueError(
+                    f"wall_velocity.{face} must lie in a face that the tank has, "
+                    f"{', '.join(self.shut)}; found {velocity} m/s. Shut the face, or leave its "
+                    f"{face[0]} 0."
+                )
         if self.gaps and not self.mirrored:
             raise ValueError(
                 "gaps needs boundary mdbc, whose samples know the pressure at a gap's rim; found "
@@ -138,7 +157,7 @@ class SphFluidParams:
     @property
     def layers(self) -> int:
         """Layers of wall particles: one that repels, or as many as a kernel meets."""
-        return math.ceil(2.0 * self.smoothing) if self.mirrored else 1
+        return 1 if self.boundary == "dbc" else math.ceil(2.0 * self.smoothing)
 
     def _check_obstacles(self) -> None:
         least = 2.0 * self.standoff * self.spacing
@@ -170,7 +189,7 @@ class SphFluidParams:
         )
 
     def _check_sound(self) -> None:
-        needed = 10.0 * math.sqrt(math.hypot(*self.gravity) * self.depth)
+        needed = 10.0 * math.sqrt(math.hypot(*self.weight) * self.depth)
         if self.sound_speed < needed:
             raise ValueError(
                 f"sound_speed must be at least 10 sqrt(g depth) = {needed:.4g} m/s for the fluid's "
@@ -185,16 +204,29 @@ class SphFluidParams:
 
     @property
     def depth(self) -> float:
-        """Extent of all the fluid along gravity [m]; none without gravity."""
-        if not any(self.gravity):
+        """Extent of all the fluid along its weight [m]; none without any."""
+        if not any(self.weight):
             return 0.0
         levels = [level for box in self.fluid for level in self.levels(box)]
         return max(levels) - min(levels)
 
+    @property
+    def weight(self) -> Vector:
+        """Gravity [m/s2], but none along axes on which the tank is open below: fluid falls."""
+        if self.walls is None:
+            return self.gravity
+        below = [
+            f"{axis}{'+' if g > 0.0 else '-'}" for axis, g in zip("xyz", self.gravity, strict=True)
+        ]
+        x, y, z = (
+            g if face in self.shut else 0.0 for face, g in zip(below, self.gravity, strict=True)
+        )
+        return x, y, z
+
     def levels(self, box: Box) -> tuple[float, float]:
-        """Lowest and highest level of a box, measured against gravity [m]."""
-        size = math.hypot(*self.gravity) or 1.0
-        pairs = [(-low * g, -high * g) for low, high, g in zip(*box, self.gravity, strict=True)]
+        """Lowest and highest level of a box, measured against its weight [m]."""
+        size = math.hypot(*self.weight) or 1.0
+        pairs = [(-low * g, -high * g) for low, high, g in zip(*box, self.weight, strict=True)]
         return sum(map(min, pairs)) / size, sum(map(max, pairs)) / size
 
 

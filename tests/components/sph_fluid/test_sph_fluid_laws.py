@@ -45,7 +45,7 @@ def rates(
     lists = near(points, fluid.smoothing / 1.5).arrays
     rate = np.empty_like(place)
     count = len(points)
-    terms = ((0.0, 0.0, 0.0), rate, None, None, None, None)
+    terms = ((0.0, 0.0, 0.0), rate, None, None, None, None, None)
     interact(0, count, count, place, motion, lists, fluid, *terms)
     return rate
 
@@ -116,8 +116,8 @@ def test_pressure_gradient_converges_at_second_order() -> None:
 
 def test_viscosity_acts_on_approach_only() -> None:
     fluid = law(0.1)._replace(drag=1.0)
-    assert laws.push.py_func(0.0, 0.0, -2.0, 2000.0, fluid) == pytest.approx(1e-3)
-    assert laws.push.py_func(0.0, 0.0, 2.0, 2000.0, fluid) == 0.0
+    assert laws.push.py_func(0.0, -2.0, 2000.0, fluid) == pytest.approx(1e-3)
+    assert laws.push.py_func(0.0, 2.0, 2000.0, fluid) == 0.0
 
 
 def test_pressure_is_cut_unless_tension_is_allowed() -> None:

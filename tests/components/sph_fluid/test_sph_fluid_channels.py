@@ -1,0 +1,91 @@
+"""Viscous flow between two walls, from rest: Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214.
+
+A slab six channels long, open at both ends, stands for an endless one: no pressure drives it, and
+in half a channel's time of viscosity its ends are felt two channels away. Lengths are those of
+the channel's height, times those of height²/ν; the Reynolds number is 0.2.
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.params import read
+
+LENGTH, SPEED, SPACING = 6.0, 0.2, 0.05
+TIMES = (0.05, 0.1, 0.2, 0.4)
+TABLE: dict[str, Any] = {
+    "spacing": SPACING,
+    "dimensions": 2,
+    "sound_speed": 40.0 * SPEED,
+    "fluid": [[[0.0, 0.0, 0.0], [LENGTH, 1.0, 1.0]]],
+    "walls": [[-1.0, 0.0, 0.0], [LENGTH + 1.0, 1.0, 1.0]],
+    "open": ["x-", "x+"],
+    "gravity": [0.0, 0.0, 0.0],
+    "boundary": "mdbc",
+    "tension": True,
+    "diffusion": 0.1,
+    "viscosity": 0.0,
+    "laminar": 1.0,
+}
+
+
+def channel(**given: Any) -> SphFluid:
+    params, mistakes = read(SphFluidParams, TABLE | given, "water")
+    assert not mistakes
+    return SphFluid(params)
+
+
+def poiseuille(z: np.ndarray, t: float) -> np.ndarray:
+    """Morris, Fox & Zhu, eq. (31), of a flow that comes to SPEED."""
+    k = (2 * np.arange(60)[:, None] + 1) * np.pi
+    start = (32.0 / k**3 * np.sin(k * z) * np.exp(-(k**2) * t)).sum(axis=0)
+    return SPEED * (4.0 * z * (1.0 - z) - start)
+
+
+def couette(z: np.ndarray, t: float) -> np.ndarray:
+    """Morris, Fox & Zhu, eq. (29)."""
+    k = np.arange(1, 200)[:, None] * np.pi
+    return SPEED * (z + (2.0 / k * np.cos(k) * np.sin(k * z) * np.exp(-(k**2) * t)).sum(axis=0))
+
+
+@pytest.mark.parametrize(
+    ("given", "exact"),
+    [
+        ({"gravity": [8.0 * SPEED, 0.0, 0.0]}, poiseuille),
+        ({"wall_velocity": {"z+": [SPEED, 0.0, 0.0]}}, couette),
+    ],
+)
+def test_flow_starts_as_the_series_says(given: dict[str, Any], exact: Any) -> None:
+    fluid, now, errors = channel(**given), 0.0, []
+    for time in TIMES:
+        while now < time - 1e-12:
+            dt = min(fluid.stable_dt(), time - now)
+            fluid.step(dt)
+            now += dt
+        found = fluid.view()
+        middle = np.abs(found["points"][:, 0] - 0.5 * LENGTH) < 0.5
+        wanted = exact(found["points"][middle, 2], now)
+        errors.append(np.abs(found["velocity"][middle, 0] - wanted).max() / wanted.max())
+    assert max(errors) < 0.02, errors
+
+
+def test_fluid_that_nothing_bears_has_no_weight() -> None:
+    """It falls along an open axis, and starts without a pressure that would burst it."""
+    fluid = channel(gravity=[1.6, 0.0, -1.6], sound_speed=40.0)
+    assert fluid.params.weight == (0.0, 0.0, -1.6)
+    assert fluid.params.depth == 1.0
+    pressure, depth = fluid.view()["pressure"], 1.0 - fluid.view()["points"][:, 2]
+    assert pressure == pytest.approx(1600.0 * depth, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("face", "velocity"),
+    [("x+", [0.0, 0.0, 1.0]), ("z+", [0.0, 0.0, 1.0]), ("y-", [1.0, 0.0, 0.0])],
+)
+def test_a_wall_moves_only_in_its_own_plane(face: str, velocity: list[float]) -> None:
+    found, mistakes = read(SphFluidParams, TABLE | {"wall_velocity": {face: velocity}}, "water")
+    assert found is None
+    assert f"wall_velocity.{face} must lie in a face that the tank has, z-, z+" in mistakes[0]

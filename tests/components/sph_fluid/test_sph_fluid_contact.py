@@ -1,0 +1,165 @@
+"""The contact potential: opposite forces, and the clearance that a pressure leaves."""
+
+import math
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.contact import (
+    SAFE,
+    contact,
+    held,
+    push_of_wall,
+    step_limit,
+    stiffness,
+)
+from quintet.components.sph_fluid.kernels import interact
+from quintet.components.sph_fluid.laws import constants
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.interfaces.component import Fields
+from quintet.interfaces.params import read
+
+Make = Callable[..., SphFluid]
+Join = Callable[..., Fields]
+SPACING = 0.02  # m, of the fixtures too
+EDGE = 8 * SPACING
+
+
+def run(fluid: SphFluid, time: float) -> None:
+    """Step for a time [s] or a little more."""
+    while time > 0.0:
+        dt = fluid.stable_dt()
+        fluid.step(dt)
+        time -= dt
+
+
+def params(**given: Any) -> SphFluidParams:
+    box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
+    settings = {"spacing": SPACING, "sound_speed": 20.0 * math.sqrt(9.81 * EDGE), "fluid": (box,)}
+    return SphFluidParams(boundary="potential", **(settings | given))
+
+
+# σ/(K Δp³) between two facing cubic lattices, summed independently of this code.
+@pytest.mark.parametrize(
+    ("smoothing", "exponent", "pressures"),
+    [
+        (1.5, 1, (14.2, 9.64, 4.77, 1.66, 0.263)),
+        (1.5, 2, (11.5, 6.71, 1.93, 0.224, 4.4e-3)),
+        (1.5, 4, (20.1, 6.62, 0.425, 4.5e-3, 1.9e-6)),
+        (1.5, 6, (54.6, 7.93, 0.107, 1.0e-4, 7.7e-10)),
+        (2.09, 4, (11.9, 6.85, 2.08, 0.274, 0.015)),
+    ],
+)
+def test_pressure_between_lattices_is_the_tabled_one(
+    smoothing: float, exponent: int, pressures: tuple[float, ...]
+) -> None:
+    one = params(smoothing=smoothing, potential_exponent=exponent)
+    found = [held(apart, one) for apart in (0.5, 1.0, 1.5, 2.0, 2.5)]
+    assert found == pytest.approx(pressures, rel=0.05)  # its digits
+
+
+@pytest.mark.parametrize("exponent", range(1, 9))
+def test_force_on_a_plate_is_that_of_the_lattices(drop: Make, plate: Join, exponent: int) -> None:
+    fluid = drop(boundary="potential", potential_exponent=exponent, gravity=(0.0, 0.0, 0.0))
+    fluid.state.place[:216, :3] += SPACING * np.array([0.5, 0.5, -0.5])  # above samples, from z = 0
+    fluid.take(plate(fluid, height=-1.3 * SPACING, speed=0.0))
+    fluid.step(1e-9)
+    force = fluid.give()["surface_load.force"].reshape(7, 7, 3)[3, 3]
+    # One layer of samples: less than a thick wall by what the layers below it would push.
+    pressure = stiffness(fluid.params) * (held(1.3, fluid.params) - held(2.3, fluid.params))
+    assert force[2] / SPACING**2 == pytest.approx(-pressure, rel=1e-6)
+
+
+def test_contact_gives_and_takes_the_same_impulse(drop: Make, plate: Join) -> None:
+    fluid = drop(boundary="potential", gravity=(0.0, 0.0, 0.0), laminar=1e-3)
+    fluid.take(plate(fluid))
+    fluid.step(1e-4)
+    before = fluid.totals().momentum
+    fluid.step(0.7e-4)
+    impulse = 0.7e-4 * fluid.give()["surface_load.force"]
+    gained = fluid.totals().momentum - before
+    assert np.abs(impulse[:, 2]).sum() > 0.0
+    assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())
+
+
+def test_contact_needs_no_density(drop: Make, plate: Join) -> None:
+    # A plate that moves in changes no density, as it would by continuity, and its own stays.
+    fluid = drop(boundary="potential", gravity=(0.0, 0.0, 0.0))
+    fluid.take(plate(fluid))
+    fluid.step(1e-5)
+    assert (fluid.state.place[:, 3] == 1000.0).all()
+
+
+@pytest.mark.parametrize("ease", [0.15, 0.3, 1.0])
+def test_water_settles_where_the_potential_holds_its_weight(ease: float) -> None:
+    width, depth = 40 * SPACING, 10 * SPACING
+    weight = 1000.0 * 9.81 * depth
+    law = params(
+        dimensions=2,
+        fluid=(((0.0, 0.0, 0.0), (width, SPACING, depth)),),
+        walls=((0.0, 0.0, 0.0), (width, SPACING, 2.0 * depth)),
+        sound_speed=20.0 * math.sqrt(9.81 * depth),
+        potential_stiffness=ease * weight,
+        grip=0.0,
+        viscosity=1.0,
+        tension=True,
+    )
+    fluid = SphFluid(law)
+    run(fluid, 0.8)
+    lowest = np.sort(fluid.view()["points"][:, 2])[:40]
+    apart = np.linspace(0.5, 2.0, 151)
+    pressures = [ease * held(one, law) for one in apart]
+    expected = np.interp(-1.0, -np.array(pressures), apart)
+    assert lowest.mean() / SPACING + 0.5 == pytest.approx(expected, rel=0.03)
+
+
+def test_default_stiffness_holds_a_fast_flow_at_one_spacing() -> None:
+    law = params()
+    flow = 1000.0 * (2.0 * math.sqrt(9.81 * EDGE)) ** 2
+    assert stiffness(law) * held(1.0, law) == pytest.approx(flow)
+    assert stiffness(params(potential_stiffness=3e3)) == 3e3
+
+
+def wander(step: float) -> float:
+    """Hold a particle where the potential is steepest, in steps of so many √(m/k); how far it gets.
+
+    In spacings, from a start 1e-3 off.
+    """
+    law = params(gravity=(0.0, 0.0, 0.0), viscosity=0.0)
+    line = np.linspace(0.3, 2.0, 171)
+    push = np.array([push_of_wall(one, law) for one in line])
+    steepest = int(np.gradient(push, line).argmin())
+    pull = stiffness(law) * push[steepest] / (1000.0 * SPACING)  # m/s2
+    wall = np.arange(-4, 5) * SPACING
+    z, y, x = (grid.ravel() for grid in np.meshgrid(SPACING * np.arange(-2, 1), wall, wall))
+    held_at = line[steepest] * SPACING
+    particle = np.array([0.0, 0.0, held_at + 1e-3 * SPACING, 1000.0])
+    place = np.vstack([particle, np.column_stack([x, y, z, np.full(x.size, 1000.0)])])
+    motion, rate, dt = np.zeros_like(place), np.zeros_like(place), step * step_limit(law) / SAFE
+    zero, one, all_of_them = np.array([0]), np.array([1]), np.array([len(place)])
+    lists = (zero, one, all_of_them, np.arange(len(place), dtype=np.int32))
+    furthest = 0.0
+    for _ in range(60):
+        gravity, terms = (0.0, 0.0, -pull), (None, None, None, None, contact(law))
+        interact(0, 1, 1, place, motion, lists, constants(law), gravity, rate, *terms)
+        motion[0, :3] += dt * rate[0, :3]
+        place[0, :3] += dt * motion[0, :3]
+        furthest = max(furthest, abs(place[0, 2] - held_at) / SPACING)
+    return furthest
+
+
+def test_step_limit_is_a_tenth_of_where_rest_becomes_unstable() -> None:
+    assert SAFE == 0.1 * 2.0
+    assert wander(1.9) < 0.01
+    assert wander(2.1) > 0.1
+
+
+def test_a_stiffness_without_the_potential_is_a_mistake() -> None:
+    given = {"spacing": 0.1, "sound_speed": 60.0, "fluid": [[[0, 0, 0], [1, 1, 1]]]}
+    found = read(SphFluidParams, given | {"potential_stiffness": 1e3}, "water")[1]
+    sentence = r"potential_stiffness belongs to boundary potential; found dbc. Remove it, or set"
+    assert re.search(sentence, "\n".join(found))
