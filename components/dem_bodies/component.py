@@ -222,8 +222,9 @@ class DemBodies(Component):
         kept["pairs.key"] = self.contacts.key.copy()
         kept["pairs.history"] = self.contacts.history.copy()
         kept["step.before"] = self.before.copy()
-        kept["rows.body"] = self.scratch.body.copy()
+        kept["rows.body"] = self.scratch.body.astype(np.int64)
         kept |= {f"balls.{name}": getattr(self.balls, name).copy() for name in KEPT}
+        kept["balls.partner"] = self.balls.partner.astype(np.int64)  # messages know no uint32
         books = self.books
         kept["books"] = np.array([books.time, books.dissipated, books.given])
         return kept
@@ -239,7 +240,7 @@ class DemBodies(Component):
         self.before[:] = state["step.before"]
         self.scratch.body[:] = state["rows.body"]
         self.scratch.row[self.scratch.body] = np.arange(self.count + 1)
-        begin, partner = np.array(state["balls.begin"]), np.array(state["balls.partner"])
+        begin, partner = np.array(state["balls.begin"]), state["balls.partner"].astype(np.uint32)
         self.balls = ball_search.balls_from(self.model, self.scratch.body, begin, partner)
         self.balls.held[:] = state["balls.held"]
         self.balls.roll[:] = state["balls.roll"]

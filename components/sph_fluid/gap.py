@@ -48,10 +48,14 @@ class Film:
 
 
 def film(state: State, body: Array, params: SphFluidParams) -> Film:
-    """Find where samples face walls, or samples of a body with a lower number."""
+    """Find where samples face walls, or samples of a body with a lower number.
+
+    As the neighbour lists do, it goes by where all was when they were made, so that a state that
+    is loaded finds the same films.
+    """
     spacing, split = params.spacing, state.fluid
-    place, mirror = state.place[split:, :3], state.mirror
-    off = mirror - place
+    place = state.reference[split : len(state.place)]
+    off = state.reference[len(state.place) :] - place
     outer = np.einsum("nd,nd->n", off, off) < (OUTERMOST * spacing) ** 2
     samples = np.flatnonzero(outer & (state.sample >= 0))
     samples = samples[np.argsort(state.sample[samples])]

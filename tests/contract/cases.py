@@ -85,6 +85,7 @@ BESIDE = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])
 # Two boxes without weight that hover over a floor.
 STUFF = {"young": 1e7, "poisson": 0.3, "restitution": 0.5, "friction": 0.4}
 FLOAT = {**BODY, "density": 500.0, "material": "wood"}
+BALL = {"shape": "sphere", "diameter": 0.1, "density": 500.0, "material": "wood"}
 BOXES = {
     "gravity": [0.0, 0.0, 0.0],
     "materials": {"wood": STUFF},
@@ -103,6 +104,25 @@ CASES = {
         },
         rest={"surface.position": BESIDE, "surface.velocity": TWO},
         scale={"surface.velocity": 1.0},
+        dt=1e-4,
+    ),
+    "sph_fluid, mirrored": Case(
+        "sph_fluid",
+        {**DROP, "boundary": "mdbc", "diffusion": 0.1, "tension": True, "gaps": True},
+        static={
+            "surface.normal": np.tile([0.0, 0.0, 1.0], (2, 1)),
+            "surface.volume": np.full(2, 1.25e-4),
+            "surface.body": np.array([0.0, 1.0]),
+        },
+        rest={"surface.position": BESIDE, "surface.velocity": TWO, "surface.mirror": BESIDE},
+        scale={"surface.velocity": 1.0},
+        dt=1e-4,
+    ),
+    "dem_bodies, spheres": Case(
+        "dem_bodies",
+        {**BOXES, "bodies": [{**BALL, "position": [1.0, 2.0, z]} for z in (3.0, 3.15)]},
+        rest={"load.force": TWO, "load.torque": TWO},
+        scale={"load.force": 1.0, "load.torque": 0.1},
         dt=1e-4,
     ),
     "dem_bodies": Case(

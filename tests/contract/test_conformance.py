@@ -6,6 +6,7 @@ from cases import CASES, frozen
 
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.manifest import known_kinds
+from quintet.interfaces.message import decode, encode
 from quintet.interfaces.units import UNITS
 
 
@@ -152,6 +153,12 @@ def test_load_then_repeat_gives_the_same_bits(component, case, tmp_path):
     for other in (component, fresh):
         for one, again in zip(first, _move(other, case, case.dt, seed=9), strict=True):
             _same_bits(one, again)
+
+
+def test_what_is_saved_goes_over_a_line(component, case):
+    _move(component, case, case.dt)
+    saved = {key: np.array(array) for key, array in component.save().items()}
+    _same_bits(decode(bytes(encode({"order": "done"}, saved, None))).fields, saved)
 
 
 def test_what_is_saved_does_not_change_afterwards(component, case):

@@ -126,3 +126,16 @@ def test_a_dry_rim_lets_nothing_in():
     pressure, share = squeeze(0.0, 1.0, outside=0.0)
     assert (pressure == 0.0).all()
     assert (share == 0.0).all()
+
+
+def test_a_loaded_state_goes_on_with_the_same_bits():
+    one, other = standing(True), standing(True)
+    for _ in range(12):
+        one.step(one.stable_dt())
+    other.load(one.save())
+    for _ in range(12):
+        one.step(one.stable_dt())
+        other.step(other.stable_dt())
+    for name, array in one.save().items():
+        np.testing.assert_array_equal(array, other.save()[name], err_msg=name)
+    assert one.state.film.any()
