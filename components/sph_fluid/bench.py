@@ -40,6 +40,7 @@ def cases() -> tuple[BenchCase, ...]:
         BenchCase("dam break, XSPH", dam | {"xsph": 0.5}, 10, 600, UNIT),
         BenchCase("dam break, diffusion", dam | {"diffusion": 0.1}, 10, 600, UNIT),
         BenchCase("dam break, mdbc", dam | ALL, 10, 600, UNIT),
+        BenchCase("dam break, float32", dam | {"precision": "float32"}, 10, 600, UNIT),
         BenchCase("dam break, coupled", dam | {"fluid": NOTCHED}, 10, 600, UNIT, *cube()),
         *channels,
     )
