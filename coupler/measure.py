@@ -23,16 +23,16 @@ from quintet.interfaces.process import build
 def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]:
     """Time one case; return what ``quintet bench --json`` says of it."""
     order = {"params": case.params, "threads": threads}
-    component = begin(manifest, order)
-    advance(component, case.warm)
+    component = begin(manifest, order, case)
+    advance(component, case.warm, case)
     del component
     before = resident()
-    component = begin(manifest, order)
-    advance(component, case.warm)
+    component = begin(manifest, order, case)
+    advance(component, case.warm, case)
     grown = resident() - before
     items = component.items()
     spent, began = time.process_time(), time.perf_counter()
-    advance(component, case.steps)
+    advance(component, case.steps, case)
     wall, cpu = time.perf_counter() - began, time.process_time() - spent
     return {
         "name": manifest.kind,
@@ -49,18 +49,20 @@ def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]
     }
 
 
-def begin(manifest: Manifest, order: dict[str, Any]) -> Component:
-    """Make the component, joined to nothing."""
+def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase) -> Component:
+    """Make the component, joined to what the case says."""
     component = build(manifest, order)
-    component.bind({})
-    component.take({})
+    component.bind(case.static)
+    component.take(case.fields)
     return component
 
 
-def advance(component: Component, steps: int) -> None:
-    """Step so many times, each as far as the state allows."""
+def advance(component: Component, steps: int, case: BenchCase) -> None:
+    """Step so many times, each as far as the state allows, and exchange at every step."""
     for _ in range(steps):
+        component.take(case.fields)
         component.step(component.stable_dt())
+        component.give()
 
 
 def resident() -> int:

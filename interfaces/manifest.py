@@ -5,12 +5,12 @@ entry-point group ``quintet.components``, or as ``module:Class``.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any
 
-from quintet.interfaces.component import Component, Port
+from quintet.interfaces.component import Component, Fields, Port
 from quintet.interfaces.errors import SceneError
 
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
@@ -35,6 +35,8 @@ class BenchCase:
     warm: int  # steps before the clock starts: kernels are compiled, lists are made
     steps: int  # measured, each of stable_dt
     unit: str  # of the rate: "particle-steps/s"
+    static: Fields = field(default_factory=dict)  # what its partners tell it once
+    fields: Fields = field(default_factory=dict)  # what it takes before each step
 
 
 @dataclass(frozen=True, slots=True)

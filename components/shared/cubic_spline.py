@@ -8,9 +8,13 @@ dimensions; W = 0 for q ≥ 2.
 
 import math
 
+import numpy as np
 from numba import njit
 
 SUPPORT = 2.0  # radius of the kernel over the smoothing length
+
+# Whole numbers this small leave a number of single precision single; 2.0 would make it double.
+ZERO, ONE, TWO, FOUR = np.int8(0), np.int8(1), np.int8(2), np.int8(4)
 
 
 def normalisation(dimensions: int, smoothing: float) -> float:
@@ -21,12 +25,12 @@ def normalisation(dimensions: int, smoothing: float) -> float:
 @njit(inline="always")
 def shape(q):  # type: ignore[no-untyped-def]
     """W over α/4."""
-    outer, inner = max(2.0 - q, 0.0), max(1.0 - q, 0.0)
-    return outer * outer * outer - 4.0 * inner * inner * inner
+    outer, inner = max(TWO - q, ZERO), max(ONE - q, ZERO)
+    return outer * outer * outer - FOUR * inner * inner * inner
 
 
 @njit(inline="always")
 def slope(q):  # type: ignore[no-untyped-def]
     """dW/dr over -3α/(4h)."""
-    outer, inner = max(2.0 - q, 0.0), max(1.0 - q, 0.0)
-    return outer * outer - 4.0 * inner * inner
+    outer, inner = max(TWO - q, ZERO), max(ONE - q, ZERO)
+    return outer * outer - FOUR * inner * inner

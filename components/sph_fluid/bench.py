@@ -3,16 +3,29 @@
 The dam break has the particles of the one that other codes were measured with: 106 200 of fluid
 and one layer of 36 221 in the walls. Channels, in which a dam breaks across, are the same all
 along and grow in length alone: equal rates mean that the cost grows with the number of particles.
+In the coupled case a cube of samples stands still in the front of the column.
 """
 
 import math
 from typing import Any
 
+import numpy as np
+
+from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.interfaces.component import Fields
 from quintet.interfaces.manifest import BenchCase
 
 SPACING = 0.01  # m
 UNIT = "particle-steps/s"
 LENGTHS = {"10k": 16, "100k": 199, "1M": 2028}  # spacings, of the channels of so many particles
+ALL = {"boundary": "mdbc", "diffusion": 0.1, "xsph": 0.5}  # what pairs of fluid may have
+CUBE = 0.2  # m
+NOTCHED = [
+    [[0.0, 0.0, 0.0], [0.4, 0.59, 0.3]],
+    [[0.4, 0.0, 0.0], [0.6, 0.2, 0.3]],
+    [[0.4, 0.4, 0.0], [0.6, 0.59, 0.3]],
+    [[0.4, 0.2, 0.2], [0.6, 0.4, 0.3]],
+]  # m, the column without the cube
 
 
 def cases() -> tuple[BenchCase, ...]:
@@ -25,6 +38,10 @@ def cases() -> tuple[BenchCase, ...]:
     return (
         BenchCase("dam break", dam, 10, 600, UNIT),
         BenchCase("dam break, XSPH", dam | {"xsph": 0.5}, 10, 600, UNIT),
+        BenchCase("dam break, diffusion", dam | {"diffusion": 0.1}, 10, 600, UNIT),
+        BenchCase("dam break, mdbc", dam | ALL, 10, 600, UNIT),
+        BenchCase("dam break, float32", dam | {"precision": "float32"}, 10, 600, UNIT),
+        BenchCase("dam break, coupled", dam | {"fluid": NOTCHED}, 10, 600, UNIT, *cube()),
         *channels,
     )
 
@@ -43,3 +60,19 @@ def tank(inside: tuple[int, int, int], fluid: tuple[int, int, int], sound: float
         "fluid": [[start, [SPACING * n for n in fluid]]],
         "walls": [start, [SPACING * n for n in inside]],
     }
+
+
+def cube() -> tuple[Fields, Fields]:
+    """What a link tells of a cube of samples at rest: once, and before each step."""
+    line = SPACING * (np.arange(round(CUBE / SPACING)) + 0.5)
+    arm = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)
+    near = np.minimum(arm, CUBE - arm).min(axis=1)
+    arm = arm[near < SUPPORT * 1.5 * SPACING]
+    ones = np.ones(len(arm))
+    static = {
+        "surface.normal": np.tile([0.0, 0.0, 1.0], (len(arm), 1)),
+        "surface.volume": ones * SPACING**3,
+        "surface.body": ones,
+    }
+    corner = np.array(NOTCHED[3][0]) * [1.0, 1.0, 0.0]
+    return static, {"surface.position": corner + arm, "surface.velocity": np.zeros_like(arm)}

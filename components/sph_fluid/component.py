@@ -12,10 +12,11 @@ from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
-from quintet.components.sph_fluid.laws import AHEAD, Friction, constants, diffusion, guard
+from quintet.components.sph_fluid.laws import AHEAD, Friction, constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, totals
+from quintet.components.sph_fluid.terms import terms
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
@@ -32,9 +33,8 @@ class SphFluid(Component):
     def __init__(self, params: SphFluidParams) -> None:
         self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
         self.fluid = constants(params)
-        self.diffusion = diffusion(params)
-        self.guard = guard(params)
-        self.contact, self.steepest = None, math.inf
+        self.terms = terms(params)
+        self.steepest = math.inf  # s, step that a contact potential allows
         self.team = Team(threads_wanted())
         self.state = build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
@@ -50,9 +50,9 @@ class SphFluid(Component):
 
             self.state.mirror = mirrors(params)
         if params.boundary == "potential":
-            from quintet.components.sph_fluid.contact import contact, step_limit
+            from quintet.components.sph_fluid.contact import step_limit
 
-            self.contact, self.steepest = contact(params), step_limit(params)
+            self.steepest = step_limit(params)
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
@@ -159,7 +159,7 @@ class SphFluid(Component):
             # they are as well.
             seekers = np.concatenate([state.reference[len(points) :], points[self.rows]])
             self.listed = len(points) + np.arange(len(self.rows))
-        elif self.contact is not None:
+        elif self.terms.contact is not None:
             seekers = points[self.rows]
             self.listed = state.fluid + np.arange(len(self.rows))
         self.near = neighbours_within(self._reach, points, state.fluid, self.team, seekers)
@@ -167,6 +167,10 @@ class SphFluid(Component):
             from quintet.components.sph_fluid.gap import film
 
             self.film = film(state, self.body, self.params)
+        if self.params.precision == "float32":
+            from quintet.components.sph_fluid.single import Single
+
+            self.single = Single(state, self.fluid.density)
         self.rate = np.empty_like(state.place)
         if self.params.xsph > 0.0:
             self.drift = np.empty((state.fluid, 3))
@@ -195,16 +199,21 @@ class SphFluid(Component):
 
     def _interact(self, dt: float) -> None:
         """Forces and rates of density, and what they do to the samples."""
-        state, gravity = self.state, self.params.gravity
-        pairs = (state.place, state.motion, self.near.arrays, self.fluid)
+        state, law, gravity = self.state, self.terms, self.params.gravity
         friction = self._friction()
-        terms = (self.rate, self.drift, self.diffusion, friction, self.guard, self.contact)
+        arrays: tuple[Any, Any] = state.place, state.motion
+        if self.params.precision == "float32":
+            from quintet.components.sph_fluid.single import rounded
+
+            friction, arrays = rounded(friction), self.single.of(state, self.team)
+        pairs = (*arrays, self.near.arrays, law.fluid)
+        terms = (self.rate, self.drift, law.diffusion, friction, law.guard, law.contact)
         found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
         if len(self.rows):
             rows = (self.rows, self.listed)
-            on_samples = (friction, self.guard, self.contact, state.force)
+            on_samples = (friction, law.guard, law.contact, state.force)
             self.team.run(push_samples, len(self.rows), *rows, *pairs, *on_samples)
         if len(state.film):
             from quintet.components.sph_fluid.gap import push

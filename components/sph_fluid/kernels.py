@@ -3,9 +3,11 @@
 import math
 
 import numpy as np
-from numba import njit
+from numba import njit, types
+from numba.extending import overload
 from numpy.typing import NDArray
 
+from quintet.components.shared.cubic_spline import ONE
 from quintet.components.shared.neighbours import FAST
 from quintet.components.sph_fluid.laws import (
     Contact,
@@ -13,10 +15,9 @@ from quintet.components.sph_fluid.laws import (
     Fluid,
     Friction,
     Guard,
-    approach,
     bear,
-    flatten,
     gradient,
+    inverses,
     kernel,
     pressure_term,
     push,
@@ -30,16 +31,26 @@ List = tuple[Whole, Whole, Whole, NDArray[np.int32]]
 
 # Numbers from 0 on are in the order of their bits, and the compiler makes vectors of the greatest
 # of integers, but not of that of floats: with it the loop would be half as fast.
-@njit(inline="always")
 def bits(number):  # type: ignore[no-untyped-def]
-    """Bits of a number, as an integer."""
-    return np.float64(number).view(np.int64)
+    """Bits of a number, as an integer as wide."""
 
 
-@njit(inline="always")
 def number(bits):  # type: ignore[no-untyped-def]
     """Number that has these bits."""
-    return np.int64(bits).view(np.float64)
+
+
+@overload(bits, inline="always")
+def _bits(number):  # type: ignore[no-untyped-def]
+    if number == types.float32:
+        return lambda number: np.float32(number).view(np.int32)
+    return lambda number: np.float64(number).view(np.int64)
+
+
+@overload(number, inline="always")
+def _number(bits):  # type: ignore[no-untyped-def]
+    if bits == types.int32:
+        return lambda bits: np.int32(bits).view(np.float32)
+    return lambda bits: np.int64(bits).view(np.float64)
 
 
 @njit(**FAST)
@@ -58,12 +69,14 @@ def interact(
     what is None, numba leaves the lines out.
     """
     begin, middle, end, neighbour = near
-    greatest, fastest = 0.0, bits(0.0)
+    nil = place.dtype.type(0)  # sums are as precise as what they are summed from
+    greatest, fastest = 0.0, bits(nil)
     for i in range(first, last):
         x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
         u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
-        ax, ay, az, growth = 0.0, 0.0, 0.0, 0.0
-        mx, my, mz = 0.0, 0.0, 0.0
+        more = density + fluid.base + fluid.base
+        ax, ay, az, growth = nil, nil, nil, nil
+        mx, my, mz = nil, nil, nil
         if i < split:
             for k in range(np.uint64(begin[i]), np.uint64(middle[i])):
                 j = np.uint64(neighbour[k])
@@ -71,25 +84,26 @@ def interact(
                 du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
                 r2 = dx * dx + dy * dy + dz * dz
                 dot = dx * du + dy * dv + dz * dw
-                both = density + place[j, 3]
-                closing = approach(dot, r2, fluid)
-                slope = gradient(r2, fluid)
-                force = slope * push(term + motion[j, 3], closing, both, fluid)
+                both = more + place[j, 3]
+                per_r, per_r2, per_both = inverses(r2, both, fluid)
+                closing = dot * per_r2
+                slope = gradient(r2, per_r, fluid)
+                force = slope * push(term + motion[j, 3], closing, per_both, fluid)
                 fastest = max(fastest, bits(abs(closing)))
                 growth += dot * slope
                 ax -= force * dx
                 ay -= force * dy
                 az -= force * dz
                 if diffusion is not None:
-                    more = spread(place[j, 3] - density, dx, dy, dz, diffusion)
-                    growth -= more * (slope * flatten(r2, fluid)) / both
+                    flux = spread(place[j, 3] - density, dx, dy, dz, diffusion)
+                    growth -= flux * slope * (r2 * per_r2 * per_both)
                 if friction is not None:
-                    shear = friction.strength * (slope * flatten(r2, fluid)) / both
+                    shear = friction.strength * slope * (r2 * per_r2 * per_both)
                     ax += shear * du
                     ay += shear * dv
                     az += shear * dw
                 if drift is not None:
-                    weight = kernel(r2, fluid) / both
+                    weight = kernel(r2, fluid) * per_both
                     mx -= weight * du
                     my -= weight * dv
                     mz -= weight * dw
@@ -99,30 +113,35 @@ def interact(
                 du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
                 r2 = dx * dx + dy * dy + dz * dz
                 dot = dx * du + dy * dv + dz * dw
-                both = density + place[j, 3]
-                closing = approach(dot, r2, fluid)
-                slope = gradient(r2, fluid)
+                both = more + place[j, 3]
+                per_r, per_r2, per_both = inverses(r2, both, fluid)
+                closing = dot * per_r2
+                slope = gradient(r2, per_r, fluid)
                 fastest = max(fastest, bits(abs(closing)))
                 if contact is None:
                     terms = term + motion[j, 3]
                     growth += dot * slope
                 else:
-                    terms = bear(r2, density * place[j, 3], contact, fluid)
-                force = slope * push(terms, fluid.grip * closing, both, fluid)
+                    product = (density + fluid.base) * (place[j, 3] + fluid.base)
+                    terms = bear(r2, product, contact, fluid)
+                force = slope * push(terms, fluid.grip * closing, per_both, fluid)
                 if guard is not None:
                     force -= repel(r2, guard)
                 ax -= force * dx
                 ay -= force * dy
                 az -= force * dz
                 if friction is not None:
-                    shear = friction.strength * fluid.grip * (slope * flatten(r2, fluid)) / both
+                    shear = friction.strength * fluid.grip * slope * (r2 * per_r2 * per_both)
                     ax += shear * (u - friction.seen[j, 0])
                     ay += shear * (v - friction.seen[j, 1])
                     az += shear * (w - friction.seen[j, 2])
-            ax = fluid.mass * ax + gravity[0]
-            ay = fluid.mass * ay + gravity[1]
-            az = fluid.mass * az + gravity[2]
-            greatest = max(greatest, ax * ax + ay * ay + az * az)
+            fx = fluid.mass * ax + gravity[0]
+            fy = fluid.mass * ay + gravity[1]
+            fz = fluid.mass * az + gravity[2]
+            greatest = max(greatest, fx * fx + fy * fy + fz * fz)
+            rate[i, 0] = fx
+            rate[i, 1] = fy
+            rate[i, 2] = fz
             if drift is not None:
                 drift[i, 0] = 2.0 * fluid.mass * mx
                 drift[i, 1] = 2.0 * fluid.mass * my
@@ -132,10 +151,9 @@ def interact(
                 j = np.uint64(neighbour[k])
                 dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
                 dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
-                growth += dot * gradient(dx * dx + dy * dy + dz * dz, fluid)
-        rate[i, 0] = ax
-        rate[i, 1] = ay
-        rate[i, 2] = az
+                r2 = dx * dx + dy * dy + dz * dz
+                per_r = ONE / math.sqrt(r2 + fluid.tiny)
+                growth += dot * gradient(r2, per_r, fluid)
         rate[i, 3] = fluid.mass * growth
     return greatest, number(fastest)
 
@@ -148,32 +166,35 @@ def push_samples(
 ) -> None:  # fmt: skip
     """Write the force on surface samples: pair by pair, minus that on the fluid [N]."""
     begin, _, end, neighbour = near
+    nil = place.dtype.type(0)
     for s in range(first, last):
         i = row[s]
         x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
         u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
-        fx, fy, fz = 0.0, 0.0, 0.0
+        fx, fy, fz = nil, nil, nil
         for k in range(np.uint64(begin[listed[s]]), np.uint64(end[listed[s]])):
             j = np.uint64(neighbour[k])
             dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
             r2 = dx * dx + dy * dy + dz * dz
             du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
             dot = dx * du + dy * dv + dz * dw
-            closing = fluid.grip * approach(dot, r2, fluid)
-            slope = gradient(r2, fluid)
-            both = density + place[j, 3]
+            both = density + place[j, 3] + fluid.base + fluid.base
+            per_r, per_r2, per_both = inverses(r2, both, fluid)
+            closing = fluid.grip * dot * per_r2
+            slope = gradient(r2, per_r, fluid)
             if contact is None:
                 terms = term + motion[j, 3]
             else:
-                terms = bear(r2, density * place[j, 3], contact, fluid)
-            size = slope * push(terms, closing, both, fluid)
+                product = (density + fluid.base) * (place[j, 3] + fluid.base)
+                terms = bear(r2, product, contact, fluid)
+            size = slope * push(terms, closing, per_both, fluid)
             if guard is not None:
                 size -= repel(r2, guard)
             fx -= size * dx
             fy -= size * dy
             fz -= size * dz
             if friction is not None:
-                shear = fluid.grip * (slope * flatten(r2, fluid)) / both
+                shear = fluid.grip * slope * (r2 * per_r2 * per_both)
                 fx += friction.strength * shear * (friction.seen[i, 0] - motion[j, 0])
                 fy += friction.strength * shear * (friction.seen[i, 1] - motion[j, 1])
                 fz += friction.strength * shear * (friction.seen[i, 2] - motion[j, 2])

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from quintet.components.shared.cubic_spline import normalisation, shape, slope
+from quintet.components.shared.cubic_spline import ONE, ZERO, normalisation, shape, slope
 from quintet.components.sph_fluid.build import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams
 
@@ -21,7 +21,7 @@ AHEAD = 1.25
 GUARD = 0.2
 NEAREST = 0.9
 
-TINY = 1e-12  # h², added to r² so that a particle does not divide by its distance from itself
+TINY = 1e-12  # h²
 
 
 class Fluid(NamedTuple):
@@ -29,6 +29,8 @@ class Fluid(NamedTuple):
 
     mass: float  # kg, of every particle; kg/m in two dimensions
     smoothing: float  # m, h
+    tiny: float  # m2, added to r² so that a particle does not divide by its distance from itself
+    soft: float  # m2, 0.01h², added to r² where velocities are divided by it
     height: float  # 1/m3, α/4: scale of W
     slope: float  # 1/m4, -3α/(4h): scale of dW/dr
     density: float  # kg/m3, ρ₀
@@ -36,6 +38,7 @@ class Fluid(NamedTuple):
     lowest: float  # Pa, pressure is cut below
     drag: float  # m2/s, 2 α c₀ h
     grip: float  # 1, share of it between fluid and boundary
+    base: float  # kg/m3, above which pairs are given densities
 
 
 class Diffusion(NamedTuple):
@@ -96,6 +99,8 @@ def constants(params: SphFluidParams) -> Fluid:
     return Fluid(
         mass=params.density * params.spacing**dimensions,
         smoothing=h,
+        tiny=TINY * h * h,
+        soft=0.01 * h * h,
         height=0.25 * alpha,
         slope=-0.75 * alpha / h,
         density=params.density,
@@ -103,6 +108,7 @@ def constants(params: SphFluidParams) -> Fluid:
         lowest=-math.inf if params.tension else 0.0,
         drag=2.0 * params.viscosity * params.sound_speed * h,
         grip=params.grip,
+        base=0.0,
     )
 
 
@@ -121,37 +127,33 @@ def pressure_term(density, fluid):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def gradient(r2, fluid):  # type: ignore[no-untyped-def]
+def inverses(r2, both, fluid):  # type: ignore[no-untyped-def]
+    """1/r, 1/(r² + 0.01h²) and 1/(ρ_i + ρ_j), all by one division, the slowest operation here."""
+    r2 = r2 + fluid.tiny
+    soft = r2 + fluid.soft
+    inverse = ONE / (r2 * soft * both)
+    return math.sqrt(r2) * soft * both * inverse, r2 * both * inverse, r2 * soft * inverse
+
+
+@njit(inline="always")
+def gradient(r2, per_r, fluid):  # type: ignore[no-untyped-def]
     """(dW/dr)/r, so that ∇_iW_ij = gradient · r_ij; finite where particles coincide."""
-    r2 = r2 + TINY * fluid.smoothing * fluid.smoothing
-    inverse = 1.0 / math.sqrt(r2)
-    return fluid.slope * slope(r2 * inverse / fluid.smoothing) * inverse
+    return fluid.slope * slope(math.sqrt(r2 + fluid.tiny) / fluid.smoothing) * per_r
 
 
 @njit(inline="always")
 def kernel(r2, fluid):  # type: ignore[no-untyped-def]
     """W; from the same root as the gradient, so that one serves both."""
-    r2 = r2 + TINY * fluid.smoothing * fluid.smoothing
-    inverse = 1.0 / math.sqrt(r2)
-    return fluid.height * shape(r2 * inverse / fluid.smoothing)
+    return fluid.height * shape(math.sqrt(r2 + fluid.tiny) / fluid.smoothing)
 
 
 @njit(inline="always")
-def approach(dot, r2, fluid):  # type: ignore[no-untyped-def]
-    """μ_ij/h = u_ij·r_ij/(r² + 0.01h²), negative as particles near each other."""
-    return dot / (r2 + 0.01 * fluid.smoothing * fluid.smoothing)
+def push(terms, closing, per_both, fluid):  # type: ignore[no-untyped-def]
+    """p_i/ρ_i² + p_j/ρ_j² + Π_ij; Monaghan 1992, eq. (3.3) and (4.2) with β = 0.
 
-
-@njit(inline="always")
-def push(terms, closing, density_sum, fluid):  # type: ignore[no-untyped-def]
-    """p_i/ρ_i² + p_j/ρ_j² + Π_ij; Monaghan 1992, eq. (3.3) and (4.2) with β = 0."""
-    return terms - fluid.drag * min(closing, 0.0) / density_sum
-
-
-@njit(inline="always")
-def flatten(r2, fluid):  # type: ignore[no-untyped-def]
-    """r²/(r² + 0.01h²): with the gradient, r·∇W/(r² + 0.01h²)."""
-    return r2 / (r2 + 0.01 * fluid.smoothing * fluid.smoothing)
+    `closing` is μ_ij/h = u_ij·r_ij/(r² + 0.01h²), negative as particles near each other.
+    """
+    return terms - fluid.drag * min(closing, ZERO) * per_both
 
 
 @njit(inline="always")
@@ -168,7 +170,7 @@ def spread(difference, dx, dy, dz, diffusion):  # type: ignore[no-untyped-def]
 @njit(inline="always")
 def repel(r2, guard):  # type: ignore[no-untyped-def]
     """Force of a wall particle on one of fluid over m² r, of finite reach."""
-    return guard.stiffness * max(1.0 - r2 / guard.reach2, 0.0)
+    return guard.stiffness * max(ONE - r2 / guard.reach2, ZERO)
 
 
 @njit(inline="always")
@@ -176,5 +178,5 @@ def bear(r2, density_product, contact, fluid):  # type: ignore[no-untyped-def]
     """K n W^(n-1)/(W(Δp)^n ρ_i ρ_j), what the contact potential has for p_i/ρ_i² + p_j/ρ_j²."""
     one = kernel(r2, fluid) * contact.inverse
     two = one * one
-    power = (1.0 + contact.once * (one - 1.0)) * (1.0 + contact.twice * (two - 1.0))
-    return contact.strength * power * (1.0 + contact.four * (two * two - 1.0)) / density_product
+    power = (ONE + contact.once * (one - ONE)) * (ONE + contact.twice * (two - ONE))
+    return contact.strength * power * (ONE + contact.four * (two * two - ONE)) / density_product

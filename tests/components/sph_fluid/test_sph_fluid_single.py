@@ -1,0 +1,95 @@
+"""Pairs in single precision: how far from double, and at rest as well."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import Fields
+
+Make = Callable[..., SphFluid]
+Join = Callable[..., Fields]
+SPACING = 0.02
+DEPTH = 20 * SPACING
+ROUNDED = 2.0**-24  # half of single precision's last place
+
+
+def slab(precision: str, width: float) -> SphFluid:
+    """Water 0.4 m deep in a tank twice as long, in two dimensions, as dam breaks are computed."""
+    settings: dict[str, Any] = {
+        "dimensions": 2,
+        "fluid": (((0.0, 0.0, 0.0), (width, SPACING, DEPTH)),),
+        "walls": ((0.0, 0.0, 0.0), (2.0 * DEPTH, SPACING, 1.5 * DEPTH)),
+        "boundary": "mdbc",
+        "diffusion": 0.1,
+        "tension": True,
+        "grip": 0.0,
+    }
+    sound = 20.0 * math.sqrt(9.81 * DEPTH)
+    params = SphFluidParams(spacing=SPACING, sound_speed=sound, precision=precision, **settings)
+    return SphFluid(params)
+
+
+def run(fluid: SphFluid, steps: int, dt: float) -> None:
+    for _ in range(steps):
+        fluid.step(dt)
+
+
+def test_a_dam_breaks_as_in_double_precision() -> None:
+    single, double = slab("float32", DEPTH), slab("float64", DEPTH)
+    dt = double.stable_dt()
+    for fluid in (single, double):
+        run(fluid, 1500, dt)
+    one, other = single.view()["points"], double.view()["points"]
+    assert other[:, 0].max() > 1.9 * DEPTH  # it has run almost to the far wall
+    assert np.abs(one - other).max() < 0.05 * SPACING
+    assert one.mean(axis=0) == pytest.approx(other.mean(axis=0), abs=1e-4 * SPACING)
+    mine, its = single.totals(), double.totals()
+    assert mine.kinetic == pytest.approx(its.kinetic, rel=1e-4)
+
+
+def test_rounding_alone_parts_the_two_at_first() -> None:
+    single, double = slab("float32", DEPTH), slab("float64", DEPTH)
+    dt = double.stable_dt()
+    for fluid in (single, double):
+        run(fluid, 50, dt)
+    apart = single.view()["points"] - double.view()["points"]
+    assert 0.0 < np.abs(apart).max() < 1e-4 * SPACING
+
+
+def test_still_water_is_no_less_still() -> None:
+    worst = {}
+    for precision in ("float32", "float64"):
+        fluid = slab(precision, 2.0 * DEPTH)
+        run(fluid, 1500, fluid.stable_dt())
+        view = fluid.view()
+        depth = DEPTH - view["points"][:, 2]
+        error = np.sqrt(np.mean((view["pressure"] - 9810.0 * depth) ** 2)) / (9810.0 * DEPTH)
+        speed = np.linalg.norm(view["velocity"], axis=1).max() / math.sqrt(9.81 * DEPTH)
+        worst[precision] = (error, speed)
+    assert worst["float32"] == pytest.approx(worst["float64"], rel=0.1)
+
+
+def test_samples_take_what_the_fluid_loses_to_rounding(drop: Make, plate: Join) -> None:
+    fluid = drop(gravity=(0.0, 0.0, 0.0), precision="float32", laminar=1e-3)
+    fluid.take(plate(fluid))
+    fluid.step(1e-4)
+    before = fluid.totals().momentum
+    fluid.step(0.7e-4)
+    impulse = 0.7e-4 * fluid.give()["surface_load.force"]
+    gained = fluid.totals().momentum - before
+    assert impulse.sum(axis=0) == pytest.approx(-gained, abs=20 * ROUNDED * np.abs(impulse).sum())
+
+
+def test_a_copy_of_the_state_goes_on_with_the_same_bits(drop: Make) -> None:
+    one, other = drop(precision="float32"), drop(precision="float32")
+    run(one, 20, 1e-4)
+    other.load(one.save())
+    for fluid in (one, other):
+        run(fluid, 20, 1e-4)
+    mine, its = one.save(), other.save()
+    assert all(np.array_equal(mine[name], its[name]) for name in mine)
