@@ -21,6 +21,9 @@ from quintet.interfaces.message import Message
 # What components take from those that step after them: by the taker's name and the field's.
 Guess = dict[tuple[str, str], Array]
 FLOOR = 1e-3  # of the largest value so far: below it agreement is not asked for
+# Of the largest of all fields, in SI: below it there is only rounding, as in the torque on a body
+# that water pushes evenly.
+ROUNDING = 1e-12
 
 
 @dataclass(slots=True)
@@ -73,8 +76,10 @@ class Coupling:
         for key, norm in norms.items():
             self.sizes[key] = max(self.sizes.get(key, 0.0), norm)
         least = {key: max(norm, FLOOR * self.sizes[key]) for key, norm in norms.items()}
-        tolerance = self.iteration.tolerance
-        return all(np.linalg.norm(gap[key]) <= tolerance * least[key] for key in gap)
+        tolerance, rounding = self.iteration.tolerance, ROUNDING * max(norms.values(), default=0.0)
+        return all(
+            np.linalg.norm(gap[key]) <= max(tolerance * least[key], rounding) for key in gap
+        )
 
     def start(self, name: str, window: int, carried: Carried, totals: bool) -> None:
         """Order one component's window."""

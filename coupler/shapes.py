@@ -37,14 +37,14 @@ def fill(
         )
     if inset is not None:
         size = size - 2.0 * (inset - 0.5 * spacing)
+    return _box(size, spacing, depth) if shape == BOX else _sphere(size, spacing, depth)
+
+
+def _box(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array]:
     cells = np.maximum(1, np.rint(size / spacing)).astype(int)
     step = size / cells
     axes = [(np.arange(n) - 0.5 * (n - 1)) * s for n, s in zip(cells, step, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    return _box(points, size, step, depth) if shape == BOX else _sphere(points, size, depth)
-
-
-def _box(points: Array, size: Array, step: Array, depth: float) -> tuple[Array, Array, Array]:
     below = 0.5 * size - np.abs(points)  # distance to the faces of each axis
     near = below.min(axis=1)
     keep = near < depth
@@ -57,15 +57,38 @@ def _box(points: Array, size: Array, step: Array, depth: float) -> tuple[Array, 
     return points[keep], normal, np.full(int(keep.sum()), float(step.prod()))
 
 
-def _sphere(points: Array, size: Array, depth: float) -> tuple[Array, Array, Array]:
+def _sphere(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array]:
     radius = 0.5 * size[0]
+    edges = np.append(np.arange(radius, 0.0, -spacing), 0.0)
+    points = np.concatenate([_shell(*pair, spacing) for pair in zip(edges, edges[1:])])
     distance = np.linalg.norm(points, axis=1)
-    inside = distance < radius
-    volume = math.pi / 6 * size[0] ** 3 / max(1, int(inside.sum()))
-    keep = inside & (radius - distance < depth)
+    keep = radius - distance < depth
     normal = points[keep] / np.maximum(distance[keep], 1e-12 * radius)[:, None]
     normal[~normal.any(axis=1)] = (0.0, 0.0, 1.0)
+    volume = math.pi / 6 * size[0] ** 3 / len(points)
     return points[keep], normal, np.full(int(keep.sum()), volume)
+
+
+def _shell(outer: float, inner: float, spacing: float) -> Array:
+    """Points (n, 3) m of one shell, about as many as it holds cubes of the spacing, in rings.
+
+    On a lattice the outermost would lie at all depths down to a spacing, and water would find the
+    body as large as their cubes together: a quarter too large at five spacings across.
+    """
+    count = 4.0 * math.pi / 3.0 * (outer**3 - inner**3) / spacing**3
+    if count < 1.5:
+        return np.zeros((1, 3))
+    radius = 0.5 * (outer + inner)
+    rings = max(2, round(math.pi * radius / spacing))
+    polar = np.linspace(0.0, math.pi, 2 * rings + 1)  # edges of the rings, and their middles
+    parts = []
+    for k, middle in enumerate(polar[1::2]):
+        band = 0.5 * float(np.cos(polar[2 * k]) - np.cos(polar[2 * k + 2]))
+        some = max(2, round(band * count))
+        turn = 2.0 * math.pi * (np.arange(some) + 0.5 * (k % 2)) / some
+        x, y = np.sin(middle) * np.cos(turn), np.sin(middle) * np.sin(turn)
+        parts.append(np.stack([x, y, np.full(some, np.cos(middle))], axis=1))
+    return radius * np.concatenate(parts)
 
 
 def mirrors(shape: int, size: Array, arm: Array, normal: Array) -> Array:

@@ -1,7 +1,7 @@
 """Stand-ins: what takes a solver's place in a run.
 
 ``replay`` gives again what a recorded component gave; ``prescribed`` moves rigid bodies on a
-given path whatever pushes them; ``echo`` sends back what it was sent, to measure the exchange.
+given path whatever pushes them, and can say what does; ``echo`` sends back what it was sent, to measure the exchange.
 """
 
 from quintet.components.stand_ins.params import (
@@ -11,8 +11,8 @@ from quintet.components.stand_ins.params import (
     recorded_ports,
 )
 from quintet.components.stand_ins.params import echo_ports as _echo_ports
+from quintet.components.stand_ins.params import prescribed_ports as _prescribed_ports
 from quintet.interfaces.manifest import Manifest
-from quintet.interfaces.ports import MOTION
 
 REPLAY = Manifest(
     kind="replay",
@@ -26,7 +26,7 @@ PRESCRIBED = Manifest(
     title="rigid bodies on given paths",
     params=PrescribedParams,
     component="quintet.components.stand_ins.prescribed:Prescribed",
-    ports=lambda params: ((), (MOTION,)),
+    ports=_prescribed_ports,
 )
 ECHO = Manifest(
     kind="echo",

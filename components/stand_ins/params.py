@@ -7,10 +7,12 @@ from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.params import Count, Number, Positive, PositiveVector, Vector, parameters
-from quintet.interfaces.ports import from_json
+from quintet.interfaces.ports import LOAD, MOTION, from_json
 
 PASSED = Port("passed", (Field("value", (3,), "m"),))
 RETURNED = Port("returned", (Field("value", (3,), "m"),))
+# What pushes bodies that do not yield, as it came: the force of water on a fixed block.
+HELD = Port("held", LOAD.fields)
 
 
 @parameters
@@ -40,6 +42,7 @@ class PrescribedParams:
     """Bodies that move as told."""
 
     bodies: tuple[PrescribedBody, ...]
+    held: bool = False  # whether the loads on them are taken, and given as port `held`
 
     def __post_init__(self) -> None:
         if not self.bodies:
@@ -53,6 +56,11 @@ class EchoParams:
     items: Count = 100
     fails_at: int = -1  # step at which it fails; below 0 never. For trying out failures
     fails_by: Literal["raise", "exit", "nan", "kill", "stop"] = "raise"
+
+
+def prescribed_ports(params: PrescribedParams) -> Ports:
+    """It gives motion; if asked to it takes loads, and gives them again."""
+    return ((LOAD,), (MOTION, HELD)) if params.held else ((), (MOTION,))
 
 
 def echo_ports(params: EchoParams) -> Ports:

@@ -4,20 +4,19 @@ import math
 
 import numpy as np
 
-from quintet.components.stand_ins.params import PrescribedParams
+from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
 from quintet.interfaces.component import Array, Component, Fields
-from quintet.interfaces.ports import MOTION
 
+PUSHES = ("force", "torque")
 SHAPES = {"sphere": 0.0, "box": 1.0}  # as ports.MOTION gives them
 
 
 class Prescribed(Component):
     """Moves as told: x = x0 + v t + a sin(2 π f t), turning steadily about ω."""
 
-    takes = ()
-    gives = (MOTION,)
-
     def __init__(self, params: PrescribedParams) -> None:
+        self.takes, self.gives = prescribed_ports(params)
+        self.held = {f"held.{key}": np.zeros((len(params.bodies), 3)) for key in PUSHES}
         bodies = params.bodies
         self.shape = np.array([SHAPES[one.shape] for one in bodies])
         self.size = np.array([one.size for one in bodies])  # (n, 3) m
@@ -38,7 +37,10 @@ class Prescribed(Component):
         return math.inf
 
     def take(self, fields: Fields) -> None:
-        """Nothing pushes it."""
+        """Keep what pushes, to give it again; nothing moves it."""
+        for key in PUSHES:
+            if f"load.{key}" in fields:
+                self.held[f"held.{key}"] = np.array(fields[f"load.{key}"])
 
     def step(self, dt: float) -> None:
         """Let time pass."""
@@ -49,7 +51,9 @@ class Prescribed(Component):
         phase = self.pulsation * self.time
         moved = self.drift * self.time + self.amplitude * np.sin(phase)
         rate = self.drift + self.amplitude * self.pulsation * np.cos(phase)
+        held = {key: value.copy() for key, value in self.held.items()} if self.takes else {}
         return {
+            **held,
             "motion.position": self.origin + moved,
             "motion.velocity": rate,
             "motion.orientation": turned(self.spin, self.time),
@@ -57,12 +61,13 @@ class Prescribed(Component):
         }
 
     def save(self) -> Fields:
-        """Copy out the time."""
-        return {"time": np.array([self.time])}
+        """Copy out the time and the loads."""
+        return {"time": np.array([self.time])} | {k: v.copy() for k, v in self.held.items()}
 
     def load(self, state: Fields) -> None:
         """Come back to a time."""
         self.time = float(state["time"][0])
+        self.held = {key: np.array(state[key]) for key in self.held}
 
     def items(self) -> int:
         """Count the bodies."""

@@ -16,7 +16,7 @@ def run_scene(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Run a scene without its pictures; return its results, with the expectations by name."""
 
     def run(scene: str, *options: str) -> dict:
-        out = tmp_path_factory.mktemp(scene)
+        out = tmp_path_factory.mktemp(Path(scene).stem)
         plain = ["--set", "output.interval=0", "--set", "output.pictures=[]"]
         with pytest.raises(SystemExit) as ended:
             main(["run", scene, "--out", str(out), *plain, *options])

@@ -1,0 +1,1 @@
+"""A cube floats: scene, exact by Archimedes and by linear theory of small waves."""

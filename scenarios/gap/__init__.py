@@ -1,0 +1,1 @@
+"""Water enters gaps between fixed blocks: scene, exact by hydrostatics."""
