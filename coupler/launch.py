@@ -10,8 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from quintet.interfaces.alive import processor_time, running, state
+
 QUIET_FACTOR, QUIET_EXTRA = 3.0, 5.0  # silent for 3 usual windows and 5 s: not working any more
-TICK = 1.0 / os.sysconf("SC_CLK_TCK")  # s of processor time that the system counts in
 BUSY = 0.02  # share of a core below which a process is taken to be doing nothing
 LOOK = 0.5  # s between two looks at a process's times
 STATES = {"R": "running", "S": "sleeping", "D": "waiting for a disk", "T": "stopped"}
@@ -110,30 +111,6 @@ def environment(threads: int, folders: list[str]) -> dict[str, str]:
         "PYTHONPATH": path,
         "OMP_WAIT_POLICY": "passive",
     }
-
-
-def running(pid: int) -> bool:
-    """Whether a process of this host runs; one that ended but was not awaited does not."""
-    return state(pid) not in ("", "Z", "X")
-
-
-def state(pid: int) -> str:
-    """One letter of the system: R runs, S sleeps, T is stopped, Z ended; "" is not there."""
-    return _stat(pid)[0]
-
-
-def processor_time(pid: int) -> float:
-    """Processor time of a process so far, all threads [s]."""
-    return _stat(pid)[1]
-
-
-def _stat(pid: int) -> tuple[str, float]:
-    try:
-        text = Path(f"/proc/{pid}/stat").read_text()
-    except OSError:
-        return "", 0.0
-    fields = text.rpartition(")")[2].split()
-    return fields[0], (int(fields[11]) + int(fields[12])) * TICK
 
 
 def tail(path: Path, lines: int = 12) -> list[str]:

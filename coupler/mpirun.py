@@ -20,8 +20,9 @@ from pathlib import Path
 from types import FrameType
 from typing import IO
 
-from quintet.coupler.launch import environment, running, tail
+from quintet.coupler.launch import environment, tail
 from quintet.coupler.scene import Scene
+from quintet.interfaces.alive import running
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.process import STARTER
 

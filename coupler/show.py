@@ -161,7 +161,9 @@ def _shares(found: Mapping[str, Any]) -> str:
     timing = found.get("timing") or {}
     times = {k: v for k, v in timing.items() if k not in ("components", "memory")}
     text = "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in times.items()) if times else ""
-    return text + (f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else "")
+    text += f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else ""
+    again = found.get("repetitions")
+    return text + (f"; windows repeated {again} times" if again else "")
 
 
 def _fault(fault: Mapping[str, Any]) -> Text:

@@ -107,6 +107,7 @@ def conclude(
         **outcome,
         "expect": results.expectations(found),
         "ledger": coupling.ledger.summary(),
+        "repetitions": coupling.repetitions,
         "timing": results.timing(coupling.parts, wall, coupling.mapping),
         "machine": results.machine(),
         "command": shlex.join(["quintet", *sys.argv[1:]]),

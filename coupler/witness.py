@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from quintet.coupler.launch import running
 from quintet.coupler.scene import Scene
 from quintet.coupler.schedule import Coupling
+from quintet.interfaces.alive import running
 from quintet.interfaces.component import Fields
 from quintet.interfaces.process import STARTER
 

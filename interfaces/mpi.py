@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from quintet.interfaces.alive import running
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import LineError
 from quintet.interfaces.message import Frame
@@ -68,15 +69,6 @@ class MpiLine(FramedLine):
 
     def close(self) -> None:
         """See `Line.close`."""
-
-
-def running(pid: int) -> bool:
-    """Tell whether a process of this host runs; one that ended and was not awaited does not."""
-    try:
-        with open(f"/proc/{pid}/stat", "rb") as file:
-            return file.read().rpartition(b")")[2].split()[0] not in (b"Z", b"X")
-    except OSError:
-        return False
 
 
 def self_check(expected: int) -> None:

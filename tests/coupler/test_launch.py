@@ -10,8 +10,9 @@ import pytest
 from started import write_scene
 
 from quintet.coupler import launch, mpirun
-from quintet.coupler.launch import Watch, environment, processor_time, running, state, tail
+from quintet.coupler.launch import Watch, environment, tail
 from quintet.coupler.read import load
+from quintet.interfaces.alive import processor_time, running, state
 from quintet.interfaces.errors import SceneError
 
 SLEEPS = "import time; time.sleep(60)"
