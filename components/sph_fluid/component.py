@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from quintet.components.shared.cells import grid_around, sorted_into
-from quintet.components.shared.cubic_spline import SUPPORT
 from quintet.components.shared.neighbours import Neighbours, neighbours_within
+from quintet.components.shared.cubic_spline import SUPPORT
 from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
@@ -81,8 +81,10 @@ class SphFluid(Component):
         h, state = self.fluid.smoothing, self.state
         sound = h / (self.params.sound_speed + h * state.approach)
         pull = math.sqrt(h / state.acceleration) if state.acceleration > 0.0 else math.inf
-        viscous = 0.5 * h * h / self.params.laminar if self.params.laminar > 0.0 else math.inf
-        return min(self.params.courant * min(sound, pull), 0.25 * viscous, self.steepest)
+        # Where friction is a stress, what comes nearer feels three times what passes by.
+        stiff = self.params.laminar * (3.0 if self.params.friction == "stress" else 1.0)
+        viscous = 0.125 * h * h / stiff if stiff > 0.0 else math.inf
+        return min(self.params.courant * min(sound, pull), viscous, self.steepest)
 
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
@@ -232,7 +234,9 @@ class SphFluid(Component):
             seen = seen.copy()
             arrays = (state.mirror, state.place, state.motion, self.near.arrays, self.fluid)
             self.team.run(reflect, len(state.mirror), state.fluid, *arrays, seen)
-        return Friction(4.0 * params.laminar, seen)
+        if params.friction == "stress":
+            return Friction(True, 4.0 * (params.dimensions + 2) * params.laminar, seen)
+        return Friction(None, 4.0 * params.laminar, seen)
 
     def _drift(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity."""

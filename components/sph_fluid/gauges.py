@@ -21,7 +21,7 @@ import numpy as np
 from quintet.components.shared.cubic_spline import SUPPORT
 from quintet.components.sph_fluid.gauge_kernels import MOMENTS, fill_columns, furthest, gather
 from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Fluid
+from quintet.components.sph_fluid.laws import Fluid, kernel
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
@@ -45,7 +45,7 @@ class Gauges:
             )
         boxes = [params.walls] if params.walls else params.fluid
         self.floor = min(box[0][2] for box in boxes)  # m
-        self.lone = fluid.mass / fluid.density * 4.0 * fluid.height  # 1, V W(0)
+        self.lone = fluid.mass / fluid.density * float(kernel(0.0, fluid))  # 1, V W(0)
 
     def read(self, state: State, near: List) -> Fields:
         """Read all gauges; `near` are the neighbour lists of this state, if it has any yet."""

@@ -64,7 +64,7 @@ def interact(
 
     With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); with
     `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, let the
-    fluid be viscous (Lo & Shao 2002); with `guard`, let walls repel what is about to pass between
+    fluid be viscous (Lo & Shao 2002, or Monaghan & Gingold 1983); with `guard`, let walls repel what is about to pass between
     their particles; with `contact`, let the contact potential alone push walls and fluid apart. Of
     what is None, numba leaves the lines out.
     """
@@ -97,7 +97,12 @@ def interact(
                 if diffusion is not None:
                     flux = spread(place[j, 3] - density, dx, dy, dz, diffusion)
                     growth -= flux * slope * (r2 * per_r2 * per_both)
-                if friction is not None:
+                if friction is not None and friction.stress is not None:
+                    rub = friction.strength * slope * closing * per_both
+                    ax += rub * dx
+                    ay += rub * dy
+                    az += rub * dz
+                elif friction is not None:
                     shear = friction.strength * slope * (r2 * per_r2 * per_both)
                     ax += shear * du
                     ay += shear * dv
@@ -130,7 +135,14 @@ def interact(
                 ax -= force * dx
                 ay -= force * dy
                 az -= force * dz
-                if friction is not None:
+                if friction is not None and friction.stress is not None:
+                    rub = dx * (u - friction.seen[j, 0]) + dy * (v - friction.seen[j, 1])
+                    rub += dz * (w - friction.seen[j, 2])
+                    rub *= friction.strength * fluid.grip * slope * per_r2 * per_both
+                    ax += rub * dx
+                    ay += rub * dy
+                    az += rub * dz
+                elif friction is not None:
                     shear = friction.strength * fluid.grip * slope * (r2 * per_r2 * per_both)
                     ax += shear * (u - friction.seen[j, 0])
                     ay += shear * (v - friction.seen[j, 1])
@@ -190,10 +202,29 @@ def push_samples(
             size = slope * push(terms, closing, per_both, fluid)
             if guard is not None:
                 size -= repel(r2, guard)
+            if friction is not None and friction.stress is not None:
+                rub = dx * (friction.seen[i, 0] - motion[j, 0])
+                rub += dy * (friction.seen[i, 1] - motion[j, 1])
+                rub += dz * (friction.seen[i, 2] - motion[j, 2])
+                share = friction.strength * fluid.grip
+                size -= share * slope * approach(rub, r2, fluid) / both
+            elif friction is not None:
+                shear = friction.strength * fluid.grip * (slope * flatten(r2, fluid)) / both
+                fx += shear * (friction.seen[i, 0] - motion[j, 0])
+                fy += shear * (friction.seen[i, 1] - motion[j, 1])
+                fz += shear * (friction.seen[i, 2] - motion[j, 2])
             fx -= size * dx
             fy -= size * dy
             fz -= size * dz
-            if friction is not None:
+            if friction is not None and friction.stress is not None:
+                rub = dx * (friction.seen[i, 0] - motion[j, 0])
+                rub += dy * (friction.seen[i, 1] - motion[j, 1])
+                rub += dz * (friction.seen[i, 2] - motion[j, 2])
+                rub *= friction.strength * fluid.grip * slope * per_r2 * per_both
+                fx += rub * dx
+                fy += rub * dy
+                fz += rub * dz
+            elif friction is not None:
                 shear = fluid.grip * slope * (r2 * per_r2 * per_both)
                 fx += friction.strength * shear * (friction.seen[i, 0] - motion[j, 0])
                 fy += friction.strength * shear * (friction.seen[i, 1] - motion[j, 1])

@@ -7,7 +7,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from quintet.components.shared.cubic_spline import ONE, ZERO, normalisation, shape, slope
+from quintet.components.shared import cubic_spline, wendland
+from quintet.components.shared.cubic_spline import ONE, ZERO
 from quintet.components.sph_fluid.build import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams
 
@@ -31,8 +32,9 @@ class Fluid(NamedTuple):
     smoothing: float  # m, h
     tiny: float  # m2, added to r² so that a particle does not divide by its distance from itself
     soft: float  # m2, 0.01h², added to r² where velocities are divided by it
-    height: float  # 1/m3, α/4: scale of W
-    slope: float  # 1/m4, -3α/(4h): scale of dW/dr
+    wendland: bool | None  # True, or None if the kernel is the cubic spline
+    height: float  # 1/m3, scale of W
+    slope: float  # 1/m4, scale of dW/dr; of Wendland's 1/m5, of (dW/dr)/r
     density: float  # kg/m3, ρ₀
     stiffness: float  # Pa, B
     lowest: float  # Pa, pressure is cut below
@@ -62,7 +64,8 @@ def diffusion(params: SphFluidParams) -> Diffusion | None:
 class Friction(NamedTuple):
     """The numbers that viscosity of the fluid itself needs."""
 
-    strength: float  # m2/s, 4 ν
+    stress: bool | None  # True, or None if it is a Laplacian
+    strength: float  # m2/s, 4 (D + 2) ν in D dimensions, or 4 ν
     seen: NDArray[np.float64]  # (n, 4) m/s, velocities as friction sees them, and a column unused
 
 
@@ -95,14 +98,16 @@ class Contact(NamedTuple):
 def constants(params: SphFluidParams) -> Fluid:
     """Numbers of the laws from the parameters."""
     h, dimensions = params.length, params.dimensions
-    alpha = normalisation(dimensions, h)
+    smooth = params.kernel == "wendland"
+    alpha = (wendland if smooth else cubic_spline).normalisation(dimensions, h)
     return Fluid(
         mass=params.density * params.spacing**dimensions,
         smoothing=h,
         tiny=TINY * h * h,
         soft=0.01 * h * h,
-        height=0.25 * alpha,
-        slope=-0.75 * alpha / h,
+        wendland=True if smooth else None,
+        height=alpha / 16.0 if smooth else 0.25 * alpha,
+        slope=-0.625 * alpha / h**2 if smooth else -0.75 * alpha / h,
         density=params.density,
         stiffness=params.sound_speed**2 * params.density / TAIT,
         lowest=-math.inf if params.tension else 0.0,
@@ -138,13 +143,19 @@ def inverses(r2, both, fluid):  # type: ignore[no-untyped-def]
 @njit(inline="always")
 def gradient(r2, per_r, fluid):  # type: ignore[no-untyped-def]
     """(dW/dr)/r, so that ∇_iW_ij = gradient · r_ij; finite where particles coincide."""
-    return fluid.slope * slope(math.sqrt(r2 + fluid.tiny) / fluid.smoothing) * per_r
+    q = math.sqrt(r2 + fluid.tiny) / fluid.smoothing
+    if fluid.wendland is not None:
+        return fluid.slope * wendland.slope(q)
+    return fluid.slope * cubic_spline.slope(q) * per_r
 
 
 @njit(inline="always")
 def kernel(r2, fluid):  # type: ignore[no-untyped-def]
     """W; from the same root as the gradient, so that one serves both."""
-    return fluid.height * shape(math.sqrt(r2 + fluid.tiny) / fluid.smoothing)
+    q = math.sqrt(r2 + fluid.tiny) / fluid.smoothing
+    if fluid.wendland is not None:
+        return fluid.height * wendland.shape(q)
+    return fluid.height * cubic_spline.shape(q)
 
 
 @njit(inline="always")

@@ -36,11 +36,13 @@ class SphFluidParams:
     open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
     wall_velocity: dict[Face, Vector] = field(default_factory=dict)  # m/s, of faces like belts
     obstacles: tuple[Box, ...] = ()  # m, boxes that stand still in the tank
+    kernel: Literal["cubic", "wendland"] = "cubic"  # Wendland's keeps particles apart and calm
     smoothing: Positive = 1.5  # 1, smoothing length / spacing
     density: Positive = 1000.0  # kg/m3, at no pressure
     gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
     viscosity: NotNegative = 0.1  # 1, α of Monaghan's artificial viscosity
     laminar: NotNegative = 0.0  # m2/s, kinematic viscosity of the fluid itself
+    friction: Literal["laplacian", "stress"] = "laplacian"  # how `laminar` acts
     diffusion: NotNegative = 0.0  # 1, δ of Fourtakas' diffusion of density; 0.1 is usual
     grip: Fraction = 1.0  # 1, share of the viscosity that acts between fluid and walls or samples
     boundary: Literal["dbc", "mdbc", "potential"] = "dbc"  # dynamic wall particles, or mirrored
@@ -79,6 +81,10 @@ class SphFluidParams:
             raise ValueError(
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
+            )
+        if self.boundary == "potential" and self.kernel != "cubic":
+            raise ValueError(
+                f"boundary potential needs the cubic kernel; found {self.kernel}. Leave kernel out."
             )
         if self.potential_stiffness is not None and self.boundary != "potential":
             raise ValueError(

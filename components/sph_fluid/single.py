@@ -25,7 +25,9 @@ def rounded(numbers: Any) -> Any:
         return None
     if isinstance(numbers, Fluid):
         numbers = numbers._replace(base=numbers.density)
-    return type(numbers)(*(np.asarray(one, np.float32)[()] for one in numbers))
+    return type(numbers)(
+        *(one if one is None else np.asarray(one, np.float32)[()] for one in numbers)
+    )
 
 
 @njit(**FAST)
