@@ -14,9 +14,6 @@ def found(run_scene: Run) -> dict:
     return run_scene("standing_wave", "--preset", "quick")
 
 
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="dynamic walls push water off as it starts"
-)
 @pytest.mark.parametrize("name", ["period", "decay"])
 def test_wave_is_that_of_linear_theory(found: dict, name: str) -> None:
     one = found["by_name"][name]

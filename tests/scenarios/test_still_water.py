@@ -6,10 +6,6 @@ import pytest
 
 Run = Callable[..., dict]
 
-NOISE = pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="dynamic walls push water off and make noise"
-)
-
 
 @pytest.fixture(scope="module")
 def found(run_scene: Run) -> dict:
@@ -17,14 +13,7 @@ def found(run_scene: Run) -> dict:
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param("floor.pressure", marks=NOISE),
-        "middle.pressure",
-        pytest.param("wall.pressure", marks=NOISE),
-        "level",
-        pytest.param("speed", marks=NOISE),
-    ],
+    "name", ["floor.pressure", "middle.pressure", "wall.pressure", "level", "speed"]
 )
 def test_still_water_stays_still(found: dict, name: str) -> None:
     one = found["by_name"][name]

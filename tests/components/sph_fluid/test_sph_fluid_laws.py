@@ -1,6 +1,7 @@
 """Kernel, gradients, and the equations on lattices."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,7 +30,7 @@ def near(points: np.ndarray, spacing: float) -> Neighbours:
     return neighbours_within(REACH * spacing, points, len(points), Team(1))
 
 
-def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: float) -> Fluid:
+def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: Any) -> Fluid:
     box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     settings = {"spacing": spacing, "smoothing": smoothing, "sound_speed": 40.0, "viscosity": 0.0}
     return constants(SphFluidParams(fluid=(box,), dimensions=dimensions, **settings, **given))
@@ -50,17 +51,19 @@ def rates(
     return rate
 
 
+@pytest.mark.parametrize("kernel", ["cubic", "wendland"])
 @pytest.mark.parametrize("dimensions", [2, 3])
-def test_kernel_sums_to_one(dimensions: int) -> None:
-    fluid = law(0.1, 3.0, dimensions)
+def test_kernel_sums_to_one(dimensions: int, kernel: str) -> None:
+    fluid = law(0.1, 3.0, dimensions, kernel=kernel)
     points = lattice(13, 0.1, dimensions)
     r2 = (points**2).sum(axis=1)
     values = [laws.kernel.py_func(float(one), fluid) for one in r2]
     assert sum(values) * 0.1**dimensions == pytest.approx(1.0, abs=2e-4)
 
 
-def test_kernel_gradient_is_the_derivative_of_the_kernel() -> None:
-    fluid = law(0.1)
+@pytest.mark.parametrize("kernel", ["cubic", "wendland"])
+def test_kernel_gradient_is_the_derivative_of_the_kernel(kernel: str) -> None:
+    fluid = law(0.1, kernel=kernel)
     for r in (0.02, 0.1, 0.14, 0.17, 0.25, 0.29):
         step = 1e-6
         low, high = (laws.kernel.py_func((r + d) ** 2, fluid) for d in (-step, step))

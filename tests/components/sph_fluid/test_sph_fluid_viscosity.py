@@ -1,0 +1,69 @@
+"""Viscosity of the fluid itself: how strong it is, and what it leaves alone."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from test_sph_fluid_laws import lattice, law, near
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.kernels import interact
+from quintet.components.sph_fluid.laws import Friction
+
+SPACING, NU = 0.05, 0.3
+NOTHING = np.zeros((0, 4))
+LAWS = {
+    "laplacian": Friction(None, 4.0 * NU, NOTHING),
+    "stress": Friction(True, 16.0 * NU, NOTHING),
+}
+
+
+def rubbed(points: np.ndarray, velocity: np.ndarray, friction: Friction) -> np.ndarray:
+    """Acceleration (n, 3) m/s2 of a fluid in two dimensions without pressure."""
+    fluid, count = law(SPACING, 1.5, 2), len(points)
+    place = np.column_stack([points, np.full(count, 1000.0)])
+    motion = np.column_stack([velocity, np.zeros(count)])
+    lists = near(points, SPACING).arrays
+    rate = np.empty_like(place)
+    terms = (rate, None, None, friction._replace(seen=motion), None)
+    interact(0, count, count, place, motion, lists, fluid, (0.0, 0.0, 0.0), *terms)
+    return rate[:, :3]
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_shear_flow_feels_the_viscosity_asked_for(name: str) -> None:
+    points, k = lattice(30, SPACING, 2), 3.0
+    velocity = np.zeros_like(points)
+    velocity[:, 0] = np.sin(k * points[:, 2] + 0.3)
+    found = rubbed(points, velocity, LAWS[name])[:, 0]
+    inside = (np.abs(points) < 0.2).all(axis=1)
+    u, a = velocity[inside, 0], found[inside]
+    assert -(a @ u) / (u @ u) / k**2 == pytest.approx(NU, rel=0.08)  # a = -νk²u
+
+
+def test_stress_leaves_rigid_rotation_alone_up_to_the_free_surface() -> None:
+    """Colagrossi et al., Phys. Rev. E 84 (2011) 026705: a Laplacian does not."""
+    points = lattice(16, SPACING, 2)
+    velocity = np.column_stack([points[:, 2], np.zeros(len(points)), -points[:, 0]])
+    assert np.abs(rubbed(points, velocity, LAWS["stress"])).max() < 1e-9
+    assert np.abs(rubbed(points, velocity, LAWS["laplacian"])).max() > 0.1
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("boundary", ["dbc", "mdbc"])
+def test_surface_takes_the_momentum_that_friction_takes(
+    drop: Any, plate: Any, name: str, boundary: str
+) -> None:
+    given = {"laminar": 0.01, "friction": name, "boundary": boundary, "viscosity": 0.0}
+    fluid: SphFluid = drop(gravity=(0.0, 0.0, 0.0), **given)
+    fields = plate(fluid, speed=0.0)
+    sliding = np.tile([0.5, 0.0, 0.0], (len(fields["surface.position"]), 1))
+    mirror = fields["surface.position"] + [0.0, 0.0, 0.02]
+    fluid.take(fields | {"surface.velocity": sliding, "surface.mirror": mirror})
+    force, before = np.zeros(3), fluid.totals().momentum
+    for _ in range(10):
+        fluid.step(1e-4)
+        force += 1e-4 * fluid.give()["surface_load.force"].sum(axis=0)
+    gained = fluid.totals().momentum - before
+    assert gained[0] > 1e-5
+    assert force == pytest.approx(-gained, abs=1e-12 * np.abs(gained).max())
