@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from quintet.components.shared.cells import grid_around, sorted_into
-from quintet.components.shared.neighbours import Neighbours, neighbours_within
 from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.shared.neighbours import Neighbours, neighbours_within
 from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.gauge_ports import gauge_ports

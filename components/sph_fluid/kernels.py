@@ -64,9 +64,9 @@ def interact(
 
     With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); with
     `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, let the
-    fluid be viscous (Lo & Shao 2002, or Monaghan & Gingold 1983); with `guard`, let walls repel what is about to pass between
-    their particles; with `contact`, let the contact potential alone push walls and fluid apart. Of
-    what is None, numba leaves the lines out.
+    fluid be viscous (Lo & Shao 2002, or Monaghan & Gingold 1983); with `guard`, let walls repel
+    what is about to pass between their particles; with `contact`, let the contact potential alone
+    push walls and fluid apart. Of what is None, numba leaves the lines out.
     """
     begin, middle, end, neighbour = near
     nil = place.dtype.type(0)  # sums are as precise as what they are summed from
@@ -202,17 +202,6 @@ def push_samples(
             size = slope * push(terms, closing, per_both, fluid)
             if guard is not None:
                 size -= repel(r2, guard)
-            if friction is not None and friction.stress is not None:
-                rub = dx * (friction.seen[i, 0] - motion[j, 0])
-                rub += dy * (friction.seen[i, 1] - motion[j, 1])
-                rub += dz * (friction.seen[i, 2] - motion[j, 2])
-                share = friction.strength * fluid.grip
-                size -= share * slope * approach(rub, r2, fluid) / both
-            elif friction is not None:
-                shear = friction.strength * fluid.grip * (slope * flatten(r2, fluid)) / both
-                fx += shear * (friction.seen[i, 0] - motion[j, 0])
-                fy += shear * (friction.seen[i, 1] - motion[j, 1])
-                fz += shear * (friction.seen[i, 2] - motion[j, 2])
             fx -= size * dx
             fy -= size * dy
             fz -= size * dz
