@@ -11,11 +11,12 @@ fluid neighbours alone) and Tait's, but move as they are told; their density nev
 ρ₀, so that they never pull. With `boundary` "mdbc" their density is the fluid's, mirrored
 (`mdbc.py`); with "potential" they have no pressure, and a contact potential pushes (`contact.py`).
 
-`laminar` viscosity is a Laplacian (Lo & Shao 2002), close beside walls, or with `friction` "stress"
-acts along the line between particles (Monaghan & Gingold 1983), without which a free surface is not
-free of stress (Colagrossi et al. 2011); on a lattice it is 6 % low. At mirrored walls the fluid
-comes to rest: friction sees its velocity there mirrored too. `wall_velocity` moves a face in its own
-plane. Along axes on which the tank is open below nothing bears the fluid: it starts without weight.
+`laminar` viscosity is a Laplacian (Lo & Shao 2002), close beside walls, or with `friction`
+"stress" acts along the line between particles (Monaghan & Gingold 1983), without which a free
+surface is not free of stress (Colagrossi et al. 2011); in shear on a lattice it is 6 % low. At
+mirrored walls the fluid comes to rest: friction sees its velocity there mirrored too.
+`wall_velocity` moves a face in its own plane. Along axes on which the tank is open below nothing
+bears the fluid: it starts without weight.
 
 In time, a particle's momentum changes in a step by exactly dt times the force of that step,
 uⁿ⁺¹ = uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past
@@ -35,7 +36,8 @@ Papers: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; Monaghan, J. Comp
 (1989) 1 (XSPH) and 110 (1994) 399 (Tait); Monaghan & Kos, J. Waterway Port Coast. Ocean Eng. 125
 (1999) 145 (time step); Panizzo, PhD thesis, L'Aquila (2004) (Shepard filter); Crespo,
 Gómez-Gesteira & Dalrymple, CMC 5 (2007) 173 (walls); Lo & Shao, Appl. Ocean Res. 24 (2002) 275;
-Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev. E 84 (2011) 026705.
+Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev. E 84 (2011)
+026705.
 """
 
 from quintet.components.sph_fluid.build import particles
