@@ -1,6 +1,7 @@
 """Filling a rigid body's shape with samples, at the spacing that its partner asks for."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -82,7 +83,7 @@ def _rings(radius: float, spacing: float, crowd: float) -> list[tuple[float, flo
     """
     edges = [*np.arange(radius, 0.0, -spacing).tolist(), 0.0]
     found: list[tuple[float, float, int]] = []
-    for outer, inner in zip(edges, edges[1:], strict=False):
+    for outer, inner in pairwise(edges):
         count = crowd * 4.0 * math.pi / 3.0 * (outer**3 - inner**3) / spacing**3
         if count < 1.5:
             found.append((0.0, 0.0, 1))

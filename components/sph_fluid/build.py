@@ -99,7 +99,7 @@ def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
 
 
 def _surface(box: Box, params: SphFluidParams) -> float:
-    """Level [m] of the surface over a box: its own upper face, or that of boxes that stand on it."""
+    """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
     own, little = params.levels(box)[1], 1e-6 * params.spacing
     found = own
     for other in params.fluid:

@@ -115,8 +115,8 @@ class RigidFsi:
         for body in np.flatnonzero(widths < least)[:1]:
             raise LinkError(
                 f"link {self.name}: a body must be at least {least:g} m across, a spacing of "
-                f"{self.fluid} and twice the depth of the outermost samples it wants; body {body} of {self.body} is "
-                f"{widths[body]:g} m. Refine the spacing of {self.fluid}, or leave the body out."
+                f"{self.fluid} and twice the depth of the outermost samples it wants; body "
+                f"{body} of {self.body} is {widths[body]:g} m. Refine the spacing of {self.fluid}, or leave the body out."
             )
 
     def _move(self, given: Fields) -> dict[str, Array]:

@@ -58,7 +58,11 @@ def test_fsi_refuses_bodies_smaller_than_a_spacing(shape, surface, inset, least)
     stated = {key: np.array([value]) for key, value in water.items()}
     with pytest.raises(LinkError) as refused:
         link.describe({"water": stated, "cubes": body})
-    for words in (f"at least {least:g} m across", "body 1 of cubes is 0.09 m", "Refine the spacing"):
+    for words in (
+        f"at least {least:g} m across",
+        "body 1 of cubes is 0.09 m",
+        "Refine the spacing",
+    ):
         assert words in str(refused.value)
 
 
