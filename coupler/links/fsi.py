@@ -116,7 +116,8 @@ class RigidFsi:
             raise LinkError(
                 f"link {self.name}: a body must be at least {least:g} m across, a spacing of "
                 f"{self.fluid} and twice the depth of the outermost samples it wants; body "
-                f"{body} of {self.body} is {widths[body]:g} m. Refine the spacing of {self.fluid}, or leave the body out."
+                f"{body} of {self.body} is {widths[body]:g} m. Refine the spacing "
+                f"of {self.fluid}, or leave the body out."
             )
 
     def _move(self, given: Fields) -> dict[str, Array]:

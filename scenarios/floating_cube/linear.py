@@ -1,16 +1,16 @@
-"""Heave period of the cube in its tank by linear theory: ``python scenarios/floating_cube/linear.py``.
+"""Heave period of the cube in its tank: ``python scenarios/floating_cube/linear.py``.
 
-Water without viscosity under waves without height: ∇²φ = 0, ∂φ/∂n = 0 on floor and walls, the cube's
-speed on its lower face, ∂φ/∂z = ω²φ/g on the surface (Newman, Marine Hydrodynamics, 1977, chapter 6).
-The water's pressure on the lower face is that of an added mass A(ω), which holds all that walls
-and floor do; in a closed tank no wave leaves, and there is no damping. The period is the root of
+Linear theory (Newman, Marine Hydrodynamics, 1977, chapter 6): ∇²φ = 0, ∂φ/∂n = 0 on floor and
+walls, the cube's speed on its lower face, ∂φ/∂z = ω²φ/g on the surface. The water's pressure on
+the lower face is that of an added mass A(ω), which holds all that walls and floor do; from a
+closed tank no wave leaves, and there is no damping. The period is the root of
 
     ω² (m + A(ω)) = ρ g a²,    T = 2π √(d/g (1 + Ca)),    Ca = A/m.
 
-Finite volumes on cubes, over a quarter of the tank; the edges' singularity lets the error fall
-with the 4/3rd power of the width, by which the last two are carried on to zero. As ω rises and walls
-recede, Ca must come to that of half of a square prism 2d long in infinite water: 0.46 between
-0.68 and 0.36 of DNV-RP-C205, appendix D (prisms 1 and 2 times as long as wide).
+Finite volumes on cubes, over a quarter of the tank; at the edges φ is singular, and the error
+falls with the 4/3rd power of the width: by it the last two are carried on to zero. As ω rises and
+walls recede, Ca must come to that of half of a square prism 2d long in infinite water: 0.46,
+between 0.68 and 0.36 of DNV-RP-C205, appendix D, for prisms as long as wide and twice as long.
 """
 
 import math
