@@ -77,9 +77,7 @@ class Coupling:
             self.sizes[key] = max(self.sizes.get(key, 0.0), norm)
         least = {key: max(norm, FLOOR * self.sizes[key]) for key, norm in norms.items()}
         tolerance, rounding = self.iteration.tolerance, ROUNDING * max(norms.values(), default=0.0)
-        return all(
-            np.linalg.norm(gap[key]) <= max(tolerance * least[key], rounding) for key in gap
-        )
+        return all(np.linalg.norm(gap[key]) <= max(tolerance * least[key], rounding) for key in gap)
 
     def start(self, name: str, window: int, carried: Carried, totals: bool) -> None:
         """Order one component's window."""

@@ -1,6 +1,7 @@
 """Filling a rigid body's shape with samples, at the spacing that its partner asks for."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -8,6 +9,8 @@ from quintet.interfaces.component import Array
 from quintet.interfaces.errors import LinkError
 
 SPHERE, BOX = 0, 1  # codes of a body's shape, as ports.MOTION gives them
+# Shares of the cubes in a shell that its samples are, tried one after the other; 1 first.
+CROWDS = (1.0, *(1.0 + sign * 0.005 * k for k in range(1, 17) for sign in (1, -1)))
 
 
 def fill(
@@ -59,8 +62,11 @@ def _box(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array
 
 def _sphere(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array]:
     radius = 0.5 * size[0]
-    edges = np.append(np.arange(radius, 0.0, -spacing), 0.0)
-    points = np.concatenate([_shell(*pair, spacing) for pair in zip(edges, edges[1:])])
+    cubes = math.pi / 6 * float(size[0] / spacing) ** 3
+    # Water finds the body as large as its samples' cubes together: their number must be right.
+    tries = [_rings(radius, spacing, crowd) for crowd in CROWDS]
+    rings = min(tries, key=lambda one: abs(sum(count for _, _, count in one) - cubes))
+    points = np.concatenate([_ring(*ring, 0.5 * (k % 2)) for k, ring in enumerate(rings)])
     distance = np.linalg.norm(points, axis=1)
     keep = radius - distance < depth
     normal = points[keep] / np.maximum(distance[keep], 1e-12 * radius)[:, None]
@@ -69,26 +75,33 @@ def _sphere(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Ar
     return points[keep], normal, np.full(int(keep.sum()), volume)
 
 
-def _shell(outer: float, inner: float, spacing: float) -> Array:
-    """Points (n, 3) m of one shell, about as many as it holds cubes of the spacing, in rings.
+def _rings(radius: float, spacing: float, crowd: float) -> list[tuple[float, float, int]]:
+    """Rings of a sphere's shells: distance from its axis [m], height [m], number of points.
 
-    On a lattice the outermost would lie at all depths down to a spacing, and water would find the
-    body as large as their cubes together: a quarter too large at five spacings across.
+    A shell has about as many as it holds cubes of the spacing. On a lattice the outermost would
+    lie at all depths down to a spacing, and the sphere be larger than it is.
     """
-    count = 4.0 * math.pi / 3.0 * (outer**3 - inner**3) / spacing**3
-    if count < 1.5:
-        return np.zeros((1, 3))
-    radius = 0.5 * (outer + inner)
-    rings = max(2, round(math.pi * radius / spacing))
-    polar = np.linspace(0.0, math.pi, 2 * rings + 1)  # edges of the rings, and their middles
-    parts = []
-    for k, middle in enumerate(polar[1::2]):
-        band = 0.5 * float(np.cos(polar[2 * k]) - np.cos(polar[2 * k + 2]))
-        some = max(2, round(band * count))
-        turn = 2.0 * math.pi * (np.arange(some) + 0.5 * (k % 2)) / some
-        x, y = np.sin(middle) * np.cos(turn), np.sin(middle) * np.sin(turn)
-        parts.append(np.stack([x, y, np.full(some, np.cos(middle))], axis=1))
-    return radius * np.concatenate(parts)
+    edges = [*np.arange(radius, 0.0, -spacing).tolist(), 0.0]
+    found: list[tuple[float, float, int]] = []
+    for outer, inner in pairwise(edges):
+        count = crowd * 4.0 * math.pi / 3.0 * (outer**3 - inner**3) / spacing**3
+        if count < 1.5:
+            found.append((0.0, 0.0, 1))
+            continue
+        middle = 0.5 * (outer + inner)
+        bands = max(2, round(math.pi * middle / spacing))
+        for k in range(bands):
+            top, bottom = (math.cos(math.pi * (k + end) / bands) for end in (0, 1))
+            angle = math.pi * (k + 0.5) / bands
+            some = max(2, round(0.5 * (top - bottom) * count))
+            found.append((middle * math.sin(angle), middle * math.cos(angle), some))
+    return found
+
+
+def _ring(aside: float, height: float, count: int, turn: float) -> Array:
+    angle = 2.0 * math.pi * (np.arange(count) + turn) / count
+    x, y = aside * np.cos(angle), aside * np.sin(angle)
+    return np.stack([x, y, np.full(count, height)], axis=1)
 
 
 def mirrors(shape: int, size: Array, arm: Array, normal: Array) -> Array:

@@ -30,7 +30,7 @@ def particles(params: SphFluidParams) -> int:
 
 
 def state(params: SphFluidParams) -> State:
-    """Initial state: each box under the hydrostatic pressure of its own surface."""
+    """Initial state: each box under the hydrostatic pressure of the surface above it."""
     boxes = [fill_box(box, params) for box in params.fluid]
     wall = np.concatenate([wall_points(params), obstacle_points(params)])
     pairs = zip(boxes, params.fluid, strict=True)
@@ -90,12 +90,25 @@ def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int
 
 
 def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
-    """Density (n,) kg/m3 at points (n, 3) m below the surface of a box of fluid at rest."""
+    """Density (n,) kg/m3 at points (n, 3) m below the surface over a box of fluid at rest."""
     pull = math.hypot(*params.weight)
-    depth = params.levels(box)[1] + points @ np.array(params.weight) / (pull or 1.0)
+    depth = _surface(box, params) + points @ np.array(params.weight) / (pull or 1.0)
     pressure = params.density * pull * np.maximum(depth, 0.0)
     stiffness = params.sound_speed**2 * params.density / TAIT  # Pa
     return params.density * (1.0 + pressure / stiffness) ** (1.0 / TAIT)
+
+
+def _surface(box: Box, params: SphFluidParams) -> float:
+    """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
+    own, little = params.levels(box)[1], 1e-6 * params.spacing
+    found = own
+    for other in params.fluid:
+        ends = zip(*box, *other, strict=True)
+        shared = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
+        beside = min(shared) > -little and sum(one > little for one in shared) > 1
+        if beside and abs(params.levels(other)[0] - own) < little:
+            found = max(found, _surface(other, params))
+    return found
 
 
 def wall_density(wall: Array, params: SphFluidParams) -> Array:

@@ -1,7 +1,8 @@
 """Stand-ins: what takes a solver's place in a run.
 
 ``replay`` gives again what a recorded component gave; ``prescribed`` moves rigid bodies on a
-given path whatever pushes them, and can say what does; ``echo`` sends back what it was sent, to measure the exchange.
+given path whatever pushes them, and can say what does; ``echo`` sends back what it was sent, to
+measure the exchange.
 """
 
 from quintet.components.stand_ins.params import (

@@ -91,7 +91,7 @@ class RigidFsi:
         spacing, depth = float(stated["surface.spacing"][0]), float(stated["surface.depth"][0])
         inset = float(stated.get("surface.inset", [0.5 * spacing])[0])
         shapes, sizes = described[self.body]["motion.shape"], described[self.body]["motion.size"]
-        self._check(sizes, 2.0 * inset)
+        self._check(sizes, max(spacing, 2.0 * inset))
         pairs = zip(shapes, sizes, strict=True)
         parts = [fill(int(shape), size, spacing, depth, inset) for shape, size in pairs]
         owner = np.repeat(np.arange(len(parts)), [len(arm) for arm, _, _ in parts])
@@ -114,9 +114,10 @@ class RigidFsi:
         widths = sizes.min(axis=1)
         for body in np.flatnonzero(widths < least)[:1]:
             raise LinkError(
-                f"link {self.name}: a body must be at least {least:g} m across, twice the depth at "
-                f"which {self.fluid} wants its outermost samples; body {body} of {self.body} is "
-                f"{widths[body]:g} m. Refine the spacing of {self.fluid}, or leave the body out."
+                f"link {self.name}: a body must be at least {least:g} m across, a spacing of "
+                f"{self.fluid} and twice the depth of the outermost samples it wants; body "
+                f"{body} of {self.body} is {widths[body]:g} m. Refine the spacing "
+                f"of {self.fluid}, or leave the body out."
             )
 
     def _move(self, given: Fields) -> dict[str, Array]:

@@ -1,35 +1,74 @@
-import sys
+"""Heave period of the cube in its tank: ``python scenarios/floating_cube/linear.py``.
+
+Linear theory (Newman, Marine Hydrodynamics, 1977, chapter 6): ∇²φ = 0, ∂φ/∂n = 0 on floor and
+walls, the cube's speed on its lower face, ∂φ/∂z = ω²φ/g on the surface. The water's pressure on
+the lower face is that of an added mass A(ω), which holds all that walls and floor do; from a
+closed tank no wave leaves, and there is no damping. The period is the root of
+
+    ω² (m + A(ω)) = ρ g a²,    T = 2π √(d/g (1 + Ca)),    Ca = A/m.
+
+Finite volumes on cubes, over a quarter of the tank; at the edges φ is singular, and the error
+falls with the 4/3rd power of the width: by it the last two are carried on to zero. As ω rises and
+walls recede, Ca must come to that of half of a square prism 2d long in infinite water: 0.46,
+between 0.68 and 0.36 of DNV-RP-C205, appendix D, for prisms as long as wide and twice as long.
+"""
+
+import math
+
 import numpy as np
-from scipy.sparse import csr_matrix, coo_matrix
+from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
-G=9.81
-def added(side, draught, length, depth, h, s):
-    """A/(rho a^2 d): s = w^2/g; s=inf: phi=0"""
-    nx=round(length/2/h); nz=round(depth/h); nb=round(side/2/h); nd=round(draught/h)
-    wet=np.ones((nx,nx,nz),bool); wet[:nb,:nb,nz-nd:]=False
-    num=-np.ones(wet.shape,int); num[wet]=np.arange(wet.sum())
-    n=wet.sum(); rows=[];cols=[];vals=[]; diag=np.zeros(n)
-    for ax in range(3):
-        lo=[slice(None)]*3; hi=[slice(None)]*3; lo[ax]=slice(None,-1); hi[ax]=slice(1,None)
-        a=num[tuple(lo)].ravel(); b=num[tuple(hi)].ravel(); ok=(a>=0)&(b>=0); a=a[ok]; b=b[ok]
-        rows+=[a,b]; cols+=[b,a]; vals+=[-np.ones(len(a))]*2
-        np.add.at(diag,a,1.); np.add.at(diag,b,1.)
-    top=num[:,:,-1]; top=top[top>=0]
-    if np.isinf(s): diag[top]+=2.0
-    else: diag[top]-= s*h/(1-s*h/2)
-    # bottom of body: dphi/dn out of fluid: upward flux W=1 out -> laplacian source
-    under=num[:nb,:nb,nz-nd-1].ravel()
-    b=np.zeros(n); b[under]=h   # flux h^2*1 /h
-    m=coo_matrix((np.r_[np.concatenate(vals),diag],(np.r_[np.concatenate(rows),np.arange(n)],np.r_[np.concatenate(cols),np.arange(n)]))).tocsc()
-    phi=splu(m).solve(b)
-    return (phi[under]+h/2).sum()*h*h*4/(side**2*draught), n
-if __name__=="__main__":
-    for h in (.015,):
-        print("inf freq, big tank", h, added(.15,.12,.9,.6,h,np.inf))
-    for L,D in ((.45,.3),):
-      for h in (.015,.0075):
-        D2=round(D/h)*h
-        w2=G/.12/1.5
-        for _ in range(8):
-            ca,_n=added(.15,.12,L,D2,h,w2/G); w2=G/.12/(1+ca)
-        print(L,D2,h,ca,2*np.pi/np.sqrt(w2))
+
+G, SIDE, DRAUGHT = 9.81, 0.15, 0.12  # m/s2, m, m
+TANK, DEPTH = 0.45, 0.3  # m
+
+
+def added(tank: float, depth: float, width: float, steep: float) -> float:
+    """Ca, on cells of a width [m]; steep: ω²/g [1/m], infinite for motion too fast for waves."""
+    across, high, half, deep = (
+        round(one / width) for one in (0.5 * tank, depth, 0.5 * SIDE, DRAUGHT)
+    )
+    wet = np.ones((across, across, high), bool)
+    wet[:half, :half, high - deep :] = False
+    number = np.where(wet, np.cumsum(wet).reshape(wet.shape) - 1, -1)
+    count = int(wet.sum())
+    diagonal = np.zeros(count)
+    rows, columns = [np.arange(count)], [np.arange(count)]
+    for axis in range(3):
+        one = np.moveaxis(number, axis, 0)
+        i, j = one[:-1].ravel(), one[1:].ravel()
+        joined = (i >= 0) & (j >= 0)
+        i, j = i[joined], j[joined]
+        rows, columns = [*rows, i, j], [*columns, j, i]
+        diagonal += np.bincount(i, minlength=count) + np.bincount(j, minlength=count)
+    top = number[:, :, -1][number[:, :, -1] >= 0]
+    # From the middle of a cell to the surface, half a width away, φ is linear.
+    still = math.isinf(steep)
+    diagonal[top] += 2.0 if still else -steep * width / (1.0 - 0.5 * steep * width)
+    values = np.concatenate([diagonal, -np.ones(sum(map(len, rows)) - count)])
+    matrix = coo_matrix((values, (np.concatenate(rows), np.concatenate(columns)))).tocsc()
+    under = number[:half, :half, high - deep - 1].ravel()
+    source = np.zeros(count)
+    source[under] = width  # the lower face moves at 1 m/s
+    potential = splu(matrix).solve(source)[under] + 0.5 * width
+    return float(4.0 * width**2 * potential.sum() / (SIDE**2 * DRAUGHT))
+
+
+def period(width: float) -> tuple[float, float]:
+    """Period [s] and Ca on cells of a width [m]."""
+    ca = 0.4
+    for _ in range(4):  # A hardly depends on ω
+        ca = added(TANK, DEPTH, width, 1.0 / (DRAUGHT * (1.0 + ca)))
+    return 2.0 * math.pi * math.sqrt(DRAUGHT / G * (1.0 + ca)), ca
+
+
+def main() -> None:
+    """Print them."""
+    print(f"wide tank, fast motion: Ca = {added(6 * SIDE, 4 * SIDE, 0.015, math.inf):.3f}")
+    (coarse, _), (fine, ca) = period(0.015), period(0.0075)
+    print(f"this tank: Ca = {ca:.3f}; T = {coarse:.4f} s, {fine:.4f} s", end=" ")
+    print(f"-> {fine + (fine - coarse) / (2.0 ** (4.0 / 3.0) - 1.0):.4f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -17,7 +17,7 @@ from quintet.coupler.vtkhdf import read_step, times
 from quintet.interfaces.component import Array
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 MIDDLE = 2.5  # spacings: half the width of the middle of a face, away from its rim
 REACH = 3.0  # spacings, of the kernel

@@ -16,6 +16,7 @@ from quintet.interfaces.ports import (
     GLUED,
     GLUED_LOAD,
     LOAD,
+    MIRRORED_SURFACE,
     MOTION,
     NODE_GLUE,
     NODE_LOAD,
@@ -44,6 +45,25 @@ def test_fsi_finds_who_is_who_in_either_order():
         assert isinstance(found, RigidFsi) and (found.fluid, found.body) == ("water", "cubes")
     assert isinstance(join_fsi("link", ("plate", "water"), PORTS), FaceFsi)
     assert len(join_fsi("link", ("water", "path"), PORTS).legs) == 1  # it takes no load
+
+
+@pytest.mark.parametrize("shape", [0.0, 1.0])
+@pytest.mark.parametrize("surface", [SURFACE, MIRRORED_SURFACE])
+@pytest.mark.parametrize(("inset", "least"), [(0.5, 0.1), (0.0, 0.1), (1.5, 0.3)])
+def test_fsi_refuses_bodies_smaller_than_a_spacing(shape, surface, inset, least):
+    link = join_fsi("link", ("water", "cubes"), {**PORTS, "water": ((surface,), (SURFACE_LOAD,))})
+    sizes = np.array([[1.0, 1.0, 1.0], [0.09, 0.09, 0.09]])
+    body = {"motion.shape": np.full(2, shape), "motion.size": sizes}
+    water = {"surface.spacing": 0.1, "surface.depth": 0.3, "surface.inset": 0.1 * inset}
+    stated = {key: np.array([value]) for key, value in water.items()}
+    with pytest.raises(LinkError) as refused:
+        link.describe({"water": stated, "cubes": body})
+    for words in (
+        f"at least {least:g} m across",
+        "body 1 of cubes is 0.09 m",
+        "Refine the spacing",
+    ):
+        assert words in str(refused.value)
 
 
 def test_fsi_says_what_does_not_fit():

@@ -44,6 +44,17 @@ def test_aitken_survives_a_residual_that_does_not_change():
     assert np.isfinite(guess[KEY]).all()
 
 
+def test_what_is_nothing_but_rounding_need_not_agree():
+    force, torque = ("cube", "load.force"), ("cube", "load.torque")
+    found = {force: np.array([0.07]), torque: np.array([2e-18])}
+    exchange = Exchange([], {})
+    coupling = Coupling({}, exchange, Ledger(exchange), 1.0, Iteration())
+    assert coupling.agree({force: np.array([1e-9]), torque: np.array([1e-18])}, found)
+    assert not coupling.agree({force: np.array([1e-6]), torque: np.array([1e-18])}, found)
+    found[torque] = np.array([2e-4])
+    assert not coupling.agree({force: np.array([1e-9]), torque: np.array([1e-6])}, found)
+
+
 class _Stub:
     """A part that gives its window's number plus what it was sent; nothing runs."""
 

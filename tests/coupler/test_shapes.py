@@ -44,6 +44,16 @@ def test_spacing_is_rounded_to_divide_the_edges():
     assert len(arm) == 27
 
 
+@pytest.mark.parametrize("across", [3, 4, 5, 6, 8, 10])
+def test_a_sphere_has_as_many_samples_as_it_has_cubes_on_shells(across):
+    arm, _, _ = fill(SPHERE, np.full(3, float(across)), 1.0, DEEP)
+    assert len(arm) == pytest.approx(math.pi / 6.0 * across**3, rel=0.02)
+    outermost = np.linalg.norm(arm, axis=1).max()
+    assert outermost == pytest.approx(0.5 * across - 0.5)
+    apart = np.linalg.norm(arm[:, None] - arm[None], axis=2) + 9.0 * np.eye(len(arm))
+    assert apart.min() > 0.6
+
+
 @pytest.mark.parametrize("shape", [SPHERE, BOX])
 def test_only_a_skin_of_the_depth_is_filled(shape):
     size, spacing, depth = np.full(3, 1.0), 0.05, 0.12

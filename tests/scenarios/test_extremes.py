@@ -58,7 +58,7 @@ def test_bodies_of_every_density_rise_or_sink_no_faster_than_they_can(
 
 
 def test_windows_that_hold_a_light_cube_are_as_long_as_predicted(go: Run) -> None:
-    # It feels the sound that it makes, ρ c a² per velocity: two masses of that a window is too much.
+    # It feels the sound that it makes, ρ c a² per velocity: in a window at most two masses of that.
     density = 50.0
     limit = 2.0 * density * EDGE / (1000.0 * SOUND)  # s
     held = go(balanced(density, 0.4 * limit))

@@ -1,0 +1,89 @@
+"""Fixed bodies deep in water at rest: it pushes them up by the weight of what they displace."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.kernels import press
+from quintet.coupler.shapes import BOX, SPHERE, fill, mirrors
+
+SPACING, EDGE, SIDE = 0.03, 0.15, 0.27  # m: of particles, body, tank
+LOW, HIGH = 0.5 * (SIDE - EDGE), 0.5 * (SIDE + EDGE)
+WEIGHT = 9810.0  # N/m3
+# Water below the body, beside it and above it.
+AROUND = (
+    ((0.0, 0.0, 0.0), (SIDE, SIDE, LOW)),
+    ((0.0, 0.0, LOW), (LOW, SIDE, HIGH)),
+    ((HIGH, 0.0, LOW), (SIDE, SIDE, HIGH)),
+    ((LOW, 0.0, LOW), (HIGH, LOW, HIGH)),
+    ((LOW, HIGH, LOW), (HIGH, SIDE, HIGH)),
+    ((0.0, 0.0, HIGH), (SIDE, SIDE, SIDE)),
+)
+
+
+def sunk(shape: int, **given: object) -> SphFluid:
+    """Water around a body in the middle of the tank."""
+    settings = {
+        "spacing": SPACING,
+        "sound_speed": 16.4,
+        "fluid": AROUND,
+        "walls": ((0.0, 0.0, 0.0), (SIDE, SIDE, SIDE + 0.09)),
+        "boundary": "mdbc",
+        "diffusion": 0.1,
+        "tension": True,
+    }
+    fluid = SphFluid(SphFluidParams(**(settings | given)))
+    stated, size = fluid.describe(), np.full(3, EDGE)
+    asked = [float(stated[f"surface.{key}"][0]) for key in ("spacing", "depth", "inset")]
+    arm, normal, volume = fill(shape, size, *asked)
+    body = np.zeros(len(arm))
+    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body})
+    moved = {"position": arm, "mirror": mirrors(shape, size, arm, normal)}
+    placed = {f"surface.{key}": points + 0.5 * SIDE for key, points in moved.items()}
+    fluid.take(placed | {"surface.velocity": np.zeros_like(arm)})
+    return fluid
+
+
+def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
+    """Mean force on the body between two times [s]; (3,) N."""
+    time, impulse = 0.0, np.zeros(3)
+    while time < end:
+        dt = fluid.stable_dt()
+        fluid.step(dt)
+        time += dt
+        if time > begin:
+            impulse += dt * fluid.give()["surface_load.force"].sum(axis=0)
+    return impulse / (end - begin)
+
+
+def test_a_box_is_pushed_up_by_the_weight_of_its_water() -> None:
+    force = push(sunk(BOX), 0.5, 0.8) / (WEIGHT * EDGE**3)
+    assert force[2] == pytest.approx(1.0, abs=0.01)
+    assert np.abs(force[:2]).max() < 1e-3
+
+
+@pytest.mark.slow
+def test_a_sphere_is_pushed_up_by_the_weight_of_its_water() -> None:
+    fluid = sunk(SPHERE, fluid=(*AROUND, *corners()))
+    # Water below an overhang starts without the pressure of what is beside and above it.
+    state, rows = fluid.state, slice(fluid.state.fluid)
+    depth = SIDE - state.place[rows, 2]
+    state.place[rows, 3] = 1000.0 + WEIGHT * depth / fluid.params.sound_speed**2
+    press(fluid.fluid, state.place, state.motion)
+    # What starts in the corners of the sphere's box has to find its place first.
+    force = push(fluid, 1.6, 2.0) / (WEIGHT * math.pi / 6.0 * EDGE**3)
+    assert force[2] == pytest.approx(1.0, abs=0.01)
+    assert np.abs(force[:2]).max() < 0.01
+
+
+def corners() -> list:
+    """Cells of the box around the sphere whose middles are well outside it."""
+    cells = round(EDGE / SPACING)
+    spots = np.stack(np.meshgrid(*[np.arange(cells)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    middle = SPACING * (spots + 0.5 - 0.5 * cells)
+    outside = spots[np.linalg.norm(middle, axis=1) > 0.5 * EDGE + 0.3 * SPACING]
+    low = LOW + SPACING * outside
+    return [(tuple(a), tuple(a + SPACING)) for a in low]

@@ -1,0 +1,27 @@
+"""A cube floats, coarse: its period; how deep it lies at five spacings an edge."""
+
+from collections.abc import Callable
+
+import pytest
+
+from quintet.scenarios.floating_cube.linear import added, period
+
+Run = Callable[..., dict]
+
+
+@pytest.mark.slow
+def test_cube_heaves_with_the_period_of_linear_theory(run_scene: Run) -> None:
+    found = run_scene("floating_cube", "--preset", "quick")
+    (link,) = found["ledger"]["links"]
+    assert link["momentum_residual"] < 1e-12
+    one = found["by_name"]["period"]
+    assert one["met"], one
+    # Around the rim water pushes up by about a tenth of ρ g Δp² a length: too little draught.
+    deep = found["by_name"]["draught"]
+    assert deep["value"] == pytest.approx(deep["reference"], rel=0.08), deep
+
+
+def test_reference_is_that_of_linear_theory_and_of_prisms_in_infinite_water() -> None:
+    # On cells of 0.015 m the period is 1 % above the one carried on to none.
+    assert period(0.015)[0] == pytest.approx(0.802, rel=0.015)
+    assert added(0.75, 0.6, 0.015, float("inf")) == pytest.approx(0.46, rel=0.05)
