@@ -102,7 +102,7 @@ def _surface(box: Box, params: SphFluidParams) -> float:
     """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
     own, little = params.levels(box)[1], 1e-6 * params.spacing
     found = own
-    for other in params.fluid:
+    for other in params.fluid if any(params.weight) else ():
         ends = zip(*box, *other, strict=True)
         shared = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
         beside = min(shared) > -little and sum(one > little for one in shared) > 1
