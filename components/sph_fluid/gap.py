@@ -21,7 +21,7 @@ from quintet.components.shared.neighbours import FAST
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 
-WIDEST = 1.25  # spacings, of the gaps that are films
+WIDEST = 0.49  # spacings, of the gaps that are films: particles get into wider ones, and push
 WATER = 1e-3  # Pa s, its viscosity
 OUTERMOST = 2.2  # spacings, between a particle of the first layer and its mirror point, at most
 ASIDE = 1.01  # spacings, how far beside each other two facing particles may be
