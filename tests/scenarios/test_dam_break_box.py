@@ -19,7 +19,7 @@ COARSE = pytest.mark.xfail(
 
 @pytest.fixture(scope="module")
 def found(run_scene: Run) -> dict:
-    return run_scene("dam_break_box", "--preset", "quick", "--set", "output.interval=0.25")
+    return run_scene("dam_break_box", "--preset", "quick", "--set", "output.interval=0.3")
 
 
 @pytest.mark.parametrize("name", ["p1.peak", "p1.arrival", "p3.peak", "p3.arrival"])
