@@ -32,8 +32,7 @@ class SphFluid(Component):
 
     def __init__(self, params: SphFluidParams) -> None:
         self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
-        self.fluid = constants(params)
-        self.terms = terms(params)
+        self.fluid, self.terms = constants(params), terms(params)
         self.steepest = math.inf  # s, step that a contact potential allows
         self.team = Team(threads_wanted())
         self.state = build.state(params)
@@ -159,8 +158,8 @@ class SphFluid(Component):
         return (1.0 + SKIN) * SUPPORT * self.fluid.smoothing
 
     def _list(self) -> None:
-        state = self.state
-        points, seekers = state.reference[: len(state.place)], None
+        state, seekers = self.state, None
+        points = state.reference[: len(state.place)]
         self.listed = self.rows
         if self.params.mirrored:
             # Walls look for fluid from their mirror points; samples, which it pushes, from where
@@ -170,7 +169,8 @@ class SphFluid(Component):
         elif self.terms.contact is not None:
             seekers = points[self.rows]
             self.listed = state.fluid + np.arange(len(self.rows))
-        self.near = neighbours_within(self._reach, points, state.fluid, self.team, seekers)
+        search = (self._reach, points, state.fluid, self.team, seekers, self.near.list)
+        self.near = neighbours_within(*search)
         if len(state.film):
             from quintet.components.sph_fluid.gap import film
 
