@@ -203,12 +203,11 @@ class SphFluid(Component):
 
     def _interact(self) -> None:
         """Forces and rates of density."""
+        state, law, gravity = self.state, self.terms, self.params.gravity
         if self.params.mirrored:
             from quintet.components.sph_fluid.mdbc import press_walls
 
-            rows = (self.rows, self.listed)
-            press_walls(self.state, self.near.arrays, *rows, self.params, self.team)
-        state, law, gravity = self.state, self.terms, self.params.gravity
+            press_walls(state, self.near.arrays, self.rows, self.listed, self.params, self.team)
         self.pairs = pairs, rubbing = self._pairs()
         terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact)
         found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
@@ -256,8 +255,7 @@ class SphFluid(Component):
         if any(failed for _, failed in moved):
             raise StepError(failure(self.state, self.params, dt))
         state.moved = math.sqrt(max(distance for distance, _ in moved))
-        state.last_dt = dt
-        state.steps += 1
+        state.last_dt, state.steps = dt, state.steps + 1
 
     def give(self) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""

@@ -84,10 +84,6 @@ class SphFluidParams:
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
             )
-        if self.boundary == "potential" and self.kernel != "cubic":
-            raise ValueError(
-                f"boundary potential needs the cubic kernel; found {self.kernel}. Leave kernel out."
-            )
         if self.potential_stiffness is not None and self.boundary != "potential":
             raise ValueError(
                 f"potential_stiffness belongs to boundary potential; found {self.boundary}. Remove "
