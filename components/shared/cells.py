@@ -1,4 +1,8 @@
-"""Sorting points into cubic cells, x fastest, so that near points are near in memory."""
+"""Sorting points into cubic cells, so that near points are near in memory.
+
+Cells are numbered along the shortest extent first and along the longest last: the layers that a
+search looks through are then as small as can be, and stay in the processor's cache.
+"""
 
 import math
 from typing import NamedTuple
@@ -17,15 +21,18 @@ Whole = NDArray[np.int64]
 
 
 class Grid(NamedTuple):
-    """Cells of one width around the points that are searched for."""
+    """Cells of one width around the points that are searched for; its x, y, z are any axes."""
 
     x: float  # m, the lowest corner
     y: float
     z: float
     per_metre: float
-    nx: int
+    nx: int  # along x, the axis along which cells are numbered first
     ny: int
     nz: int
+    first: int  # which of the points' axes is x
+    second: int
+    third: int
 
     @property
     def cells(self) -> int:
@@ -44,8 +51,10 @@ def grid_around(points: Points, reach: float) -> Grid:
             f"particles must stay together; they spread over {extent.round(3).tolist()} m, "
             f"{nx * ny * nz} cells of {width:.3g} m. Add walls, or end the run earlier."
         )
-    x, y, z = low.tolist()
-    return Grid(x, y, z, 1.0 / width, nx, ny, nz)
+    axes = np.argsort([nx, ny, nz], kind="stable").tolist()
+    x, y, z = (float(low[axis]) for axis in axes)
+    nx, ny, nz = ((nx, ny, nz)[axis] for axis in axes)
+    return Grid(x, y, z, 1.0 / width, nx, ny, nz, *axes)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -53,9 +62,9 @@ def number_cells(points: Points, grid: Grid, cell: Whole) -> None:
     """Write the cell of each point (n, 3); one past the last cell for points outside."""
     outside = grid.nx * grid.ny * grid.nz
     for i in range(points.shape[0]):
-        x = (points[i, 0] - grid.x) * grid.per_metre
-        y = (points[i, 1] - grid.y) * grid.per_metre
-        z = (points[i, 2] - grid.z) * grid.per_metre
+        x = (points[i, grid.first] - grid.x) * grid.per_metre
+        y = (points[i, grid.second] - grid.y) * grid.per_metre
+        z = (points[i, grid.third] - grid.z) * grid.per_metre
         # Compared before they are rounded: a far point's cell need not fit an integer.
         inside = 0.0 <= x < grid.nx and 0.0 <= y < grid.ny and 0.0 <= z < grid.nz
         cell[i] = int(x) + grid.nx * (int(y) + grid.ny * int(z)) if inside else outside

@@ -1,7 +1,7 @@
 """Verlet lists: for each point, those nearer than a reach, kept until points have moved.
 
-Points come in two groups, each sorted by cell, so that the cells of a row along x are one
-contiguous range. The first group (fluid) looks for both, the second (walls) for the first
+Points come in two groups, each sorted by cell, so that the cells of a row along the grid's x are
+one contiguous range. The first group (fluid) looks for both, the second (walls) for the first
 only: each from where it is, or from other places that stand for it. Lists are written row
 after row: first counted, then filled.
 """
@@ -106,12 +106,19 @@ def fill(
 
 
 def neighbours_within(
-    reach: float, points: Points, split: int, team: Team, seekers: Points | None = None
+    reach: float,
+    points: Points,
+    split: int,
+    team: Team,
+    seekers: Points | None = None,
+    room: NDArray[np.int32] | None = None,
 ) -> Neighbours:
     """List what is nearer than `reach` [m] among points (n, 3) m, the first `split` of them fluid.
 
     Both groups must come in the order that `sorted_into` gives for this reach. Where given, the
-    `seekers` (any, 3) m look for fluid in place of the second group.
+    `seekers` (any, 3) m look for fluid in place of the second group. The lists are written into
+    `room`, that of lists no longer wanted, if it is large enough: fresh memory costs as much as
+    half of the search.
     """
     grid = grid_around(points[:split], reach)
     cell_one, start_one, _ = sorted_into(points[:split], grid)
@@ -126,7 +133,10 @@ def neighbours_within(
     search = (split, start, points, cell, start_one, start_two, grid, reach * reach)
     team.run(count, rows, *search, number)
     begin = np.cumsum(number + 1) - (number + 1)
-    found = Neighbours(np.empty(int(number.sum()) + rows, np.int32), begin)
+    needed = int(number.sum()) + rows
+    if room is None or not needed <= len(room) <= 2 * needed:
+        room = np.empty(needed + needed // 50, np.int32)
+    found = Neighbours(room, begin)
     found.middle, found.end = np.empty(rows, np.int64), begin + number
     team.run(fill, rows, *search, begin, found.middle, found.list)
     return found

@@ -12,11 +12,11 @@ from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
-from quintet.components.sph_fluid.laws import AHEAD, Friction, constants
+from quintet.components.sph_fluid.laws import AHEAD, constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, totals
-from quintet.components.sph_fluid.terms import terms
+from quintet.components.sph_fluid.terms import friction, terms
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
@@ -32,8 +32,7 @@ class SphFluid(Component):
 
     def __init__(self, params: SphFluidParams) -> None:
         self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
-        self.fluid = constants(params)
-        self.terms = terms(params)
+        self.fluid, self.terms = constants(params), terms(params)
         self.steepest = math.inf  # s, step that a contact potential allows
         self.team = Team(threads_wanted())
         self.state = build.state(params)
@@ -99,17 +98,19 @@ class SphFluid(Component):
         """Advance by dt [s]."""
         if not self.placed:
             raise OrderError("step: surface samples must be placed first. Call take before it.")
-        if self._list_is_old():
+        if self._list_is_old(dt):
             self._sort()
             self._list()
         self._filter_density()
-        if self.params.mirrored:
-            self._extrapolate()
-        self._interact(dt)
+        if self.params.integration == "symplectic":
+            self._verlet(dt)
+            return
+        self._interact()
+        self._push(dt)
         self._drift(dt)
         self._advance(dt)
 
-    def _list_is_old(self) -> bool:
+    def _list_is_old(self, dt: float = 0.0) -> bool:
         state = self.state
         if len(state.reference) == 0:
             return True
@@ -120,6 +121,10 @@ class SphFluid(Component):
             shift = state.mirror[here] - state.reference[len(state.place) + here]
             shifted = max(shifted, np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
         margin = SKIN * SUPPORT * self.fluid.smoothing
+        if self.params.integration == "symplectic":
+            # Pairs meet in the middle of the step too: each of the two goes there at its speed.
+            velocity = state.motion[: state.fluid, :3]
+            margin -= dt * math.sqrt(np.einsum("nd,nd->n", velocity, velocity).max())
         return bool(state.moved + max(state.moved, math.sqrt(shifted)) > margin)
 
     def _sort(self) -> None:
@@ -153,8 +158,8 @@ class SphFluid(Component):
         return (1.0 + SKIN) * SUPPORT * self.fluid.smoothing
 
     def _list(self) -> None:
-        state = self.state
-        points, seekers = state.reference[: len(state.place)], None
+        state, seekers = self.state, None
+        points = state.reference[: len(state.place)]
         self.listed = self.rows
         if self.params.mirrored:
             # Walls look for fluid from their mirror points; samples, which it pushes, from where
@@ -164,7 +169,8 @@ class SphFluid(Component):
         elif self.terms.contact is not None:
             seekers = points[self.rows]
             self.listed = state.fluid + np.arange(len(self.rows))
-        self.near = neighbours_within(self._reach, points, state.fluid, self.team, seekers)
+        search = (self._reach, points, state.fluid, self.team, seekers, self.near.list)
+        self.near = neighbours_within(*search)
         if len(state.film):
             from quintet.components.sph_fluid.gap import film
 
@@ -180,68 +186,61 @@ class SphFluid(Component):
     def _filter_density(self) -> None:
         state, every = self.state, self.params.shepard_every
         if every > 0 and state.steps % every == every - 1:
-            from quintet.components.sph_fluid.shepard import shepard
+            from quintet.components.sph_fluid.shepard import smooth
 
-            density = np.empty(state.fluid)
-            arguments = (state.place, self.near.arrays, self.fluid, density)
-            self.team.run(shepard, state.fluid, *arguments)
-            state.place[: state.fluid, 3] = density
-            press(self.fluid, state.place, state.motion)
+            smooth(state, self.near.arrays, self.fluid, self.team)
 
-    def _extrapolate(self) -> None:
-        """Mirrored walls: density as if the fluid went on into them."""
-        from quintet.components.sph_fluid.mdbc import extrapolate
-
-        state = self.state
-        own = np.full(len(state.mirror), -1)
-        own[self.rows - state.fluid] = self.listed
-        arrays = (own, state.mirror, state.place, state.motion, self.near.arrays)
-        weight = self.params.density * math.hypot(*self.params.weight) / self.params.sound_speed**2
-        self.team.run(extrapolate, len(own), state.fluid, *arrays, weight, self.fluid)
-
-    def _interact(self, dt: float) -> None:
-        """Forces and rates of density, and what they do to the samples."""
-        state, law, gravity = self.state, self.terms, self.params.gravity
-        friction = self._friction()
+    def _pairs(self) -> tuple[tuple[Any, ...], Any]:
+        """What the loops over pairs take: particles, lists and laws; and friction."""
+        state, near = self.state, self.near.arrays
+        rubbing = friction(self.params, state, near, self.fluid, self.team)
         arrays: tuple[Any, Any] = state.place, state.motion
         if self.params.precision == "float32":
             from quintet.components.sph_fluid.single import rounded
 
-            friction, arrays = rounded(friction), self.single.of(state, self.team)
-        pairs = (*arrays, self.near.arrays, law.fluid)
-        terms = (self.rate, self.drift, law.diffusion, friction, law.guard, law.contact)
+            rubbing, arrays = rounded(rubbing), self.single.of(state, self.team)
+        return (*arrays, near, self.terms.fluid), rubbing
+
+    def _interact(self) -> None:
+        """Forces and rates of density."""
+        state, law, gravity = self.state, self.terms, self.params.gravity
+        if self.params.mirrored:
+            from quintet.components.sph_fluid.mdbc import press_walls
+
+            press_walls(state, self.near.arrays, self.rows, self.listed, self.params, self.team)
+        self.pairs = pairs, rubbing = self._pairs()
+        terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact)
         found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
+
+    def _push(self, dt: float) -> None:
+        """Push the samples as they pushed the fluid."""
+        state, law, (pairs, rubbing) = self.state, self.terms, self.pairs
         if len(self.rows):
             rows = (self.rows, self.listed)
-            on_samples = (friction, law.guard, law.contact, state.force)
+            on_samples = (rubbing, law.guard, law.contact, state.force)
             self.team.run(push_samples, len(self.rows), *rows, *pairs, *on_samples)
         if len(state.film):
             from quintet.components.sph_fluid.gap import push
 
             push(self.film, state, dt, self.params)
 
-    def _friction(self) -> Friction | None:
-        """Viscosity of the fluid itself, and the velocities that it sees in mirrored walls."""
-        params, state = self.params, self.state
-        if params.laminar == 0.0:
-            return None
-        seen = state.motion
-        if params.mirrored and params.grip > 0.0:
-            from quintet.components.sph_fluid.mdbc import reflect
-
-            seen = seen.copy()
-            arrays = (state.mirror, state.place, state.motion, self.near.arrays, self.fluid)
-            self.team.run(reflect, len(state.mirror), state.fluid, *arrays, seen)
-        if params.friction == "stress":
-            return Friction(True, 4.0 * (params.dimensions + 2) * params.laminar, seen)
-        return Friction(None, 4.0 * params.laminar, seen)
-
     def _drift(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity."""
         if self.drift is not None:
             self.state.place[: self.state.fluid, :3] += self.params.xsph * dt * self.drift
+
+    def _verlet(self, dt: float) -> None:
+        from quintet.components.sph_fluid import symplectic
+
+        def act() -> None:
+            self._push(dt)
+            self._drift(dt)
+
+        numbers = (self._advancing, dt, self.params.spacing, self.fluid, self.rate)
+        moved = symplectic.step(self.state, self.team, *numbers, self._interact, act)
+        self._finish(moved, dt)
 
     def _advance(self, dt: float) -> None:
         state = self.state
@@ -249,12 +248,14 @@ class SphFluid(Component):
         ahead = AHEAD * min(dt / state.last_dt, 2.0) if state.last_dt > 0.0 else 0.0
         arrays = (self.rate, state.reference, state.place, state.motion, state.before)
         numbers = (state.fluid, dt, ahead, self.params.spacing, self.fluid)
-        moved = self.team.run(advance, self._advancing, *numbers, *arrays)
+        self._finish(self.team.run(advance, self._advancing, *numbers, *arrays), dt)
+
+    def _finish(self, moved: list[tuple[float, int]], dt: float) -> None:
+        state = self.state
         if any(failed for _, failed in moved):
             raise StepError(failure(self.state, self.params, dt))
         state.moved = math.sqrt(max(distance for distance, _ in moved))
-        state.last_dt = dt
-        state.steps += 1
+        state.last_dt, state.steps = dt, state.steps + 1
 
     def give(self) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""

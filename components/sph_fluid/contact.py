@@ -14,8 +14,9 @@ import math
 
 import numpy as np
 
-from quintet.components.shared.cubic_spline import SUPPORT, normalisation, shape, slope
-from quintet.components.sph_fluid.laws import Contact
+from quintet.components.shared import cubic_spline, wendland
+from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.sph_fluid.laws import Contact, constants
 from quintet.components.sph_fluid.params import SphFluidParams
 
 SAFE = 0.2  # of √(m/(∂F/∂d)): the step
@@ -24,8 +25,7 @@ FLOW = 0.1  # of the speed of sound, velocity whose ρ₀u² is held at one spac
 
 def contact(params: SphFluidParams) -> Contact:
     """Numbers of the contact potential."""
-    alpha = normalisation(params.dimensions, params.length)
-    width = 0.25 * alpha * shape.py_func(1.0 / params.smoothing)  # 1/m3, W(Δp)
+    width = constants(params).height * shape(1.0 / params.smoothing, params)  # 1/m3, W(Δp)
     power = params.potential_exponent - 1
     strength = stiffness(params) / params.spacing**params.dimensions * (power + 1) / width
     once, twice, four = (float(power >> bit & 1) for bit in range(3))
@@ -62,7 +62,20 @@ def push_of_wall(apart: float, params: SphFluidParams) -> float:
     r = np.sqrt(x * x + y * y + z * z)
     r, z = r[r > 0.0], z[r > 0.0]
     h, n = params.smoothing, params.potential_exponent
-    width = shape.py_func(1.0 / h)  # W(Δp) over α/4
-    ratio = np.array([shape.py_func(one) for one in r / h]) / width
-    fall = np.array([slope.py_func(one) for one in r / h]) * 3.0 / h / width
+    width = shape(1.0 / h, params)  # W(Δp) over its scale
+    ratio = np.array([shape(one, params) for one in r / h]) / width
+    fall = np.array([slope(one, params) for one in r / h]) / h / width
     return float((n * ratio ** (n - 1) * fall * z / r).sum())
+
+
+def shape(q: float, params: SphFluidParams) -> float:
+    """W over its scale, q = r/h."""
+    kernel = wendland if params.kernel == "wendland" else cubic_spline
+    return float(kernel.shape.py_func(q))
+
+
+def slope(q: float, params: SphFluidParams) -> float:
+    """-dW/dq over the same."""
+    if params.kernel == "wendland":
+        return 10.0 * q * float(wendland.slope.py_func(q))
+    return 3.0 * float(cubic_spline.slope.py_func(q))

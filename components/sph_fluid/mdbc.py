@@ -15,12 +15,13 @@ import numpy as np
 from numba import njit
 
 from quintet.components.shared.neighbours import FAST
+from quintet.components.shared.team import Team
 from quintet.components.sph_fluid.build import wall_points
 from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Fluid, kernel, pressure_term
+from quintet.components.sph_fluid.laws import Fluid, constants, kernel, pressure_term
 from quintet.components.sph_fluid.obstacles import obstacle_mirrors
 from quintet.components.sph_fluid.params import FACES, SphFluidParams
-from quintet.components.sph_fluid.state import Array, Whole
+from quintet.components.sph_fluid.state import Array, State, Whole
 
 THIN = 0.02  # h², variance of places along a direction below which no gradient is fitted
 NONE = 1e-2  # Σ V W below which there is no fluid
@@ -37,6 +38,20 @@ def mirrors(params: SphFluidParams) -> Array:
         high[axis] = high[axis] if FACES[2 * axis + 1] in params.shut else np.inf
     images = 2.0 * np.clip(points, low, high) - points
     return np.concatenate([images, obstacle_mirrors(params)])
+
+
+def press_walls(
+    state: State, near: List, rows: Whole, listed: Whole, params: SphFluidParams, team: Team
+) -> None:
+    """Walls and samples: density as if the fluid went on into them.
+
+    `rows` (samples,) are those of the samples, `listed` where the lists have what is around them.
+    """
+    own = np.full(len(state.mirror), -1)
+    own[rows - state.fluid] = listed
+    arrays = (own, state.mirror, state.place, state.motion, near)
+    weight = params.density * math.hypot(*params.weight) / params.sound_speed**2
+    team.run(extrapolate, len(own), state.fluid, *arrays, weight, constants(params))
 
 
 @njit(**FAST)

@@ -57,6 +57,8 @@ class SphFluidParams:
     xsph: Fraction = 0.0  # 1, ε: how far particles move with their neighbours' mean velocity
     shepard_every: NonNegativeInt = 0  # steps between two Shepard filters of the density; 0: none
     precision: Literal["float64", "float32"] = "float64"  # in which pairs are computed
+    integration: Literal["extrapolated", "symplectic"] = "extrapolated"  # one pass over pairs in a
+    # step, or two and second order
     courant: Positive = 0.2  # 1, step / (time that sound takes through a smoothing length)
     wave: Wave | None = None  # standing on the fluid at the start
     pressure_gauges: tuple[Vector, ...] = ()  # m, points whose pressure is given
@@ -81,10 +83,6 @@ class SphFluidParams:
             raise ValueError(
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
-            )
-        if self.boundary == "potential" and self.kernel != "cubic":
-            raise ValueError(
-                f"boundary potential needs the cubic kernel; found {self.kernel}. Leave kernel out."
             )
         if self.potential_stiffness is not None and self.boundary != "potential":
             raise ValueError(

@@ -4,9 +4,18 @@ import numpy as np
 from numba import njit
 
 from quintet.components.shared.neighbours import FAST
-from quintet.components.sph_fluid.kernels import List
+from quintet.components.shared.team import Team
+from quintet.components.sph_fluid.kernels import List, press
 from quintet.components.sph_fluid.laws import Fluid, kernel
-from quintet.components.sph_fluid.state import Array
+from quintet.components.sph_fluid.state import Array, State
+
+
+def smooth(state: State, near: List, fluid: Fluid, team: Team) -> None:
+    """Filter the fluid's density, and press all anew."""
+    density = np.empty(state.fluid)
+    team.run(shepard, state.fluid, state.place, near, fluid, density)
+    state.place[: state.fluid, 3] = density
+    press(fluid, state.place, state.motion)
 
 
 @njit(**FAST)

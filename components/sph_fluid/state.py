@@ -22,6 +22,7 @@ class State:
     place: Array  # (n, 4) m, m, m, kg/m3: x, y, z, ρ
     motion: Array  # (n, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
     before: Array  # (n,) kg/(m3 s), dρ/dt one step ago
+    pull: Array  # (fluid, 3) m/s2, acceleration at the last step's end; (0, 3) if not symplectic
     reference: Array  # (n, 3) m, where the neighbour list was made, with mirrors (n + boundary, 3);
     # (0, 3): there is none yet
     mirror: Array  # (boundary, 3) m, mirror points of walls and samples; (0, 3) without mdbc
@@ -45,6 +46,7 @@ class State:
             place=np.zeros((n, 4)),
             motion=np.zeros((n, 4)),
             before=np.zeros(n),
+            pull=np.zeros((0, 3)),
             reference=np.zeros((0, 3)),
             mirror=np.zeros((0, 3)),
             identity=np.arange(fluid),
@@ -63,6 +65,8 @@ class State:
         rows = np.concatenate([fluid, self.fluid + boundary])
         self.place, self.motion = self.place[rows], self.motion[rows]
         self.before = self.before[rows]
+        if len(self.pull):
+            self.pull = self.pull[fluid]
         self.identity, self.sample = self.identity[fluid], self.sample[boundary]
         if len(self.mirror):
             self.mirror = self.mirror[boundary]

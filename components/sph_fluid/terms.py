@@ -2,16 +2,20 @@
 
 from dataclasses import dataclass
 
+from quintet.components.shared.team import Team
+from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import (
     Contact,
     Diffusion,
     Fluid,
+    Friction,
     Guard,
     constants,
     diffusion,
     guard,
 )
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import State
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,3 +41,21 @@ def terms(params: SphFluidParams) -> Terms:
 
         laws = tuple(map(rounded, laws))
     return Terms(*laws)
+
+
+def friction(
+    params: SphFluidParams, state: State, near: List, fluid: Fluid, team: Team
+) -> Friction | None:
+    """Viscosity of the fluid itself, and the velocities that it sees in mirrored walls."""
+    if params.laminar == 0.0:
+        return None
+    seen = state.motion
+    if params.mirrored and params.grip > 0.0:
+        from quintet.components.sph_fluid.mdbc import reflect
+
+        seen = seen.copy()
+        arrays = (state.mirror, state.place, state.motion, near, fluid)
+        team.run(reflect, len(state.mirror), state.fluid, *arrays, seen)
+    if params.friction == "stress":
+        return Friction(True, 4.0 * (params.dimensions + 2) * params.laminar, seen)
+    return Friction(None, 4.0 * params.laminar, seen)

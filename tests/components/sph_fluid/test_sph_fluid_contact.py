@@ -62,9 +62,14 @@ def test_pressure_between_lattices_is_the_tabled_one(
     assert found == pytest.approx(pressures, rel=0.05)  # its digits
 
 
-@pytest.mark.parametrize("exponent", range(1, 9))
-def test_force_on_a_plate_is_that_of_the_lattices(drop: Make, plate: Join, exponent: int) -> None:
-    fluid = drop(boundary="potential", potential_exponent=exponent, gravity=(0.0, 0.0, 0.0))
+@pytest.mark.parametrize(
+    ("kernel", "exponent"), [*(("cubic", n) for n in range(1, 9)), ("wendland", 4)]
+)
+def test_force_on_a_plate_is_that_of_the_lattices(
+    drop: Make, plate: Join, kernel: str, exponent: int
+) -> None:
+    given = {"kernel": kernel, "potential_exponent": exponent, "gravity": (0.0, 0.0, 0.0)}
+    fluid = drop(boundary="potential", **given)
     fluid.state.place[:216, :3] += SPACING * np.array([0.5, 0.5, -0.5])  # above samples, from z = 0
     fluid.take(plate(fluid, height=-1.3 * SPACING, speed=0.0))
     fluid.step(1e-9)

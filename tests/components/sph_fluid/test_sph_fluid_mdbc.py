@@ -41,7 +41,7 @@ def test_walls_carry_on_a_linear_density(slope):
     state.place[rows, 3] = linear[rows]
     fluid._sort()
     fluid._list()
-    fluid._extrapolate()
+    fluid._interact()
     points, density = walls(fluid)[0][:, :3], walls(fluid)[0][:, 3]
     wet = (points[:, 2] < 0.1) & (points[:, 2] > -0.03)
     expected = 1005.0 + points @ np.array(slope)

@@ -74,8 +74,13 @@ def test_still_water_is_no_less_still() -> None:
     assert worst["float32"] == pytest.approx(worst["float64"], rel=0.1)
 
 
-def test_samples_take_what_the_fluid_loses_to_rounding(drop: Make, plate: Join) -> None:
-    fluid = drop(gravity=(0.0, 0.0, 0.0), precision="float32", laminar=1e-3)
+@pytest.mark.parametrize("kernel", ["cubic", "wendland"])
+@pytest.mark.parametrize("friction", ["laplacian", "stress"])
+def test_samples_take_what_the_fluid_loses_to_rounding(
+    drop: Make, plate: Join, kernel: str, friction: str
+) -> None:
+    given = {"kernel": kernel, "friction": friction, "laminar": 1e-3}
+    fluid = drop(gravity=(0.0, 0.0, 0.0), precision="float32", **given)
     fluid.take(plate(fluid))
     fluid.step(1e-4)
     before = fluid.totals().momentum

@@ -19,7 +19,7 @@ def drop(**given):
 def rates(fluid):
     fluid._sort()
     fluid._list()
-    fluid._interact(1e-5)
+    fluid._interact()
     return fluid.rate[: fluid.state.fluid]
 
 
