@@ -106,7 +106,8 @@ def _surface(box: Box, params: SphFluidParams) -> float:
         ends = zip(*box, *other, strict=True)
         shared = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
         beside = min(shared) > -little and sum(one > little for one in shared) > 1
-        if beside and abs(params.levels(other)[0] - own) < little:
+        lowest, highest = params.levels(other)
+        if beside and abs(lowest - own) < little < highest - own:
             found = max(found, _surface(other, params))
     return found
 

@@ -9,16 +9,24 @@ from quintet.scenarios.floating_cube.linear import added, period
 Run = Callable[..., dict]
 
 
+@pytest.fixture(scope="module")
+def found(run_scene: Run) -> dict:
+    return run_scene("floating_cube", "--preset", "quick")
+
+
 @pytest.mark.slow
-def test_cube_heaves_with_the_period_of_linear_theory(run_scene: Run) -> None:
-    found = run_scene("floating_cube", "--preset", "quick")
+def test_cube_heaves_with_the_period_of_linear_theory(found: dict) -> None:
     (link,) = found["ledger"]["links"]
     assert link["momentum_residual"] < 1e-12
     one = found["by_name"]["period"]
     assert one["met"], one
-    # Around the rim water pushes up by about a tenth of ρ g Δp² a length: too little draught.
-    deep = found["by_name"]["draught"]
-    assert deep["value"] == pytest.approx(deep["reference"], rel=0.08), deep
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="7 % at five spacings an edge")
+def test_cube_comes_to_rest_as_deep_as_it_weighs(found: dict) -> None:
+    one = found["by_name"]["draught"]
+    assert one["met"], one
 
 
 def test_reference_is_that_of_linear_theory_and_of_prisms_in_infinite_water() -> None:

@@ -4,6 +4,7 @@ import math
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
@@ -118,3 +119,14 @@ def test_ports_are_the_shared_ones() -> None:
 
 def tuples() -> dict[str, Any]:
     return {"spacing": 0.5, "sound_speed": 60.0, "fluid": (((0.0,) * 3, (1.0,) * 3),)}
+
+
+def test_water_under_water_starts_under_the_pressure_of_both() -> None:
+    boxes = (((0.0, 0.0, 0.0), (0.4, 0.4, 0.2)), ((0.0, 0.0, 0.2), (0.2, 0.4, 0.4)))
+    beside = ((0.4, 0.0, 0.0), (0.6, 0.4, 0.2))  # nothing stands on it
+    one = SphFluidParams(spacing=0.05, sound_speed=20.0, fluid=(*boxes, beside))
+    made = state(one)
+    z, density = made.place[:, 2], made.place[:, 3]
+    below = np.where(made.place[:, 0] < 0.4, 0.4, 0.2) - z
+    pressure = 400.0 * 1000.0 / 7.0 * ((density / 1000.0) ** 7 - 1.0)
+    np.testing.assert_allclose(pressure, 9810.0 * below, rtol=1e-6)
