@@ -1,4 +1,4 @@
-"""Weakly compressible smoothed-particle hydrodynamics with walls of dynamic particles.
+"""Weakly compressible smoothed-particle hydrodynamics, with walls of particles.
 
     dρ_i/dt = Σ_j m_j u_ij·∇_iW_ij                                       continuity
     du_i/dt = -Σ_j m_j (p_i/ρ_i² + p_j/ρ_j² + Π_ij) ∇_iW_ij + g          momentum
@@ -17,6 +17,11 @@ surface is not free of stress (Colagrossi et al. 2011); in shear on a lattice it
 mirrored walls the fluid comes to rest: friction sees its velocity there mirrored too.
 `wall_velocity` moves a face in its own plane. Along axes on which the tank is open below nothing
 bears the fluid: it starts without weight.
+
+Pressure below zero is cut unless `tension` is on, which thin fast layers need to hold together;
+`diffusion` levels the density between particles (Fourtakas et al. 2019), `kernel` "wendland"
+keeps still water calm, `gaps` puts films into gaps that no particle enters (`gap.py`). Of what is
+off, nothing is compiled.
 
 In time, a particle's momentum changes in a step by exactly dt times the force of that step,
 uⁿ⁺¹ = uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past
