@@ -61,10 +61,6 @@ def test_good_parameters_have_no_mistakes() -> None:
         ({"gravity": [0.0, 0.0, "down"]}, r"water.gravity.2 .* found 'down'"),
         ({"tension": "no"}, r"water.tension .* found 'no'"),
         ({"kernel": "quintic"}, r"water.kernel .* found 'quintic'"),
-        (
-            {"boundary": "potential", "kernel": "wendland"},
-            r"boundary potential needs the cubic kernel; found wendland. Leave kernel out",
-        ),
     ],
 )
 def test_mistake_says_where_rule_value_and_cure(changes: dict[str, Any], sentence: str) -> None:
