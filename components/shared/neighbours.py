@@ -45,46 +45,22 @@ class Neighbours:
 
 
 @njit(**FAST)
-def count(
+def search(
     first: int, last: int, split: int, seekers: Points, points: Points, cell: Whole,
     start_one: Whole, start_two: Whole, grid: Grid, reach2: float, number: Whole,
+    begin_of: Whole, middle_of: Whole, found: NDArray[np.int32] | None,
 ) -> None:  # fmt: skip
-    """Count the neighbours of seekers [first, last)."""
-    nx, ny, nz = grid.nx, grid.ny, grid.nz
-    for i in range(first, last):
-        c = cell[i]
-        found = 0
-        if c < nx * ny * nz:
-            cx, cy, cz = c % nx, (c // nx) % ny, c // (nx * ny)
-            low, high = max(cx - REACH, 0), min(cx + REACH, nx - 1)
-            for group in range(2 if i < split else 1):
-                start = start_one if group == 0 else start_two
-                base = group * split
-                for kz in range(max(cz - REACH, 0), min(cz + REACH, nz - 1) + 1):
-                    for ky in range(max(cy - REACH, 0), min(cy + REACH, ny - 1) + 1):
-                        row = nx * (ky + ny * kz)
-                        begin, end = base + start[row + low], base + start[row + high + 1]
-                        for j in range(np.uint64(begin), np.uint64(end)):
-                            dx = seekers[i, 0] - points[j, 0]
-                            dy = seekers[i, 1] - points[j, 1]
-                            dz = seekers[i, 2] - points[j, 2]
-                            found += int(dx * dx + dy * dy + dz * dz < reach2)
-        number[i] = found
+    """Count the neighbours of seekers [first, last); with `found`, write them from `begin_of`.
 
-
-@njit(**FAST)
-def fill(
-    first: int, last: int, split: int, seekers: Points, points: Points, cell: Whole,
-    start_one: Whole, start_two: Whole, grid: Grid, reach2: float,
-    begin_of: Whole, middle_of: Whole, found: NDArray[np.int32],
-) -> None:  # fmt: skip
-    """Write the neighbours that `count` counted; each row has room for one more."""
+    Each row of what is found has room for one more.
+    """
     nx, ny, nz = grid.nx, grid.ny, grid.nz
     for i in range(first, last):
         c = cell[i]
         k = begin_of[i]
         middle_of[i] = k
         if c < nx * ny * nz:
+            x, y, z = seekers[i, 0], seekers[i, 1], seekers[i, 2]
             cx, cy, cz = c % nx, (c // nx) % ny, c // (nx * ny)
             low, high = max(cx - REACH, 0), min(cx + REACH, nx - 1)
             for group in range(2 if i < split else 1):
@@ -95,14 +71,14 @@ def fill(
                         row = nx * (ky + ny * kz)
                         begin, end = base + start[row + low], base + start[row + high + 1]
                         for j in range(np.uint64(begin), np.uint64(end)):
-                            dx = seekers[i, 0] - points[j, 0]
-                            dy = seekers[i, 1] - points[j, 1]
-                            dz = seekers[i, 2] - points[j, 2]
-                            # Always written, kept if near: there is no branch to mispredict.
-                            found[k] = np.int32(j)
+                            dx, dy, dz = x - points[0, j], y - points[1, j], z - points[2, j]
+                            if found is not None:
+                                # Always written, kept if near: no branch to mispredict.
+                                found[k] = np.int32(j)
                             k += int(dx * dx + dy * dy + dz * dz < reach2)
                 if group == 0:
                     middle_of[i] = k
+        number[i] = k - begin_of[i]
 
 
 def neighbours_within(
@@ -130,13 +106,13 @@ def neighbours_within(
     rows = len(cell)
     start = points if seekers is None else np.concatenate([points[:split], seekers])
     number = np.empty(rows, np.int64)
-    search = (split, start, points, cell, start_one, start_two, grid, reach * reach)
-    team.run(count, rows, *search, number)
+    cells = (cell, start_one, start_two, grid)
+    where = (split, start, np.ascontiguousarray(points.T), *cells, reach * reach)
+    begin, middle = np.zeros(rows, np.int64), np.empty(rows, np.int64)
+    team.run(search, rows, *where, number, begin, middle, None)
     begin = np.cumsum(number + 1) - (number + 1)
     needed = int(number.sum()) + rows
     if room is None or not needed <= len(room) <= 2 * needed:
         room = np.empty(needed + needed // 50, np.int32)
-    found = Neighbours(room, begin)
-    found.middle, found.end = np.empty(rows, np.int64), begin + number
-    team.run(fill, rows, *search, begin, found.middle, found.list)
-    return found
+    team.run(search, rows, *where, number, begin, middle, room)
+    return Neighbours(room, begin, middle, begin + number)

@@ -21,7 +21,8 @@ from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
 
-SKIN = 0.1  # of the kernel's support: how much further the neighbour lists reach
+# Of the kernel's support, how much further the neighbour lists reach: longer steps want more.
+SKIN = {"extrapolated": 0.1, "symplectic": 0.2}
 STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
 
 
@@ -120,7 +121,7 @@ class SphFluid(Component):
             here = self.rows - state.fluid
             shift = state.mirror[here] - state.reference[len(state.place) + here]
             shifted = max(shifted, np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
-        margin = SKIN * SUPPORT * self.fluid.smoothing
+        margin = self._reach - SUPPORT * self.fluid.smoothing
         if self.params.integration == "symplectic":
             # Pairs meet in the middle of the step too: each of the two goes there at its speed.
             velocity = state.motion[: state.fluid, :3]
@@ -155,7 +156,7 @@ class SphFluid(Component):
 
     @property
     def _reach(self) -> float:
-        return (1.0 + SKIN) * SUPPORT * self.fluid.smoothing
+        return (1.0 + SKIN[self.params.integration]) * SUPPORT * self.fluid.smoothing
 
     def _list(self) -> None:
         state, seekers = self.state, None
