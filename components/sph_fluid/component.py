@@ -219,9 +219,8 @@ class SphFluid(Component):
         """Push the samples as they pushed the fluid."""
         state, law, (pairs, rubbing) = self.state, self.terms, self.pairs
         if len(self.rows):
-            rows = (self.rows, self.listed)
             on_samples = (rubbing, law.guard, law.contact, self.bulk, state.force)
-            self.team.run(push_samples, len(self.rows), *rows, *pairs, *on_samples)
+            self.team.run(push_samples, len(self.rows), self.rows, self.listed, *pairs, *on_samples)
         if len(state.film):
             from quintet.components.sph_fluid.gap import push
 
