@@ -20,8 +20,11 @@ bears the fluid: it starts without weight.
 
 Pressure below zero is cut unless `tension` is on, which thin fast layers need to hold together;
 `diffusion` levels the density between particles (Fourtakas et al. 2019), `kernel` "wendland"
-keeps still water calm, `gaps` puts films into gaps that no particle enters (`gap.py`). Of what is
-off, nothing is compiled.
+keeps still water calm, `gaps` puts films into gaps narrower than 1.25 spacings, which press what
+particles leave of their faces (`gap.py`). Of what is off, nothing is compiled.
+
+Samples have the mass of fluid that their volume would hold, so that a body displaces its own
+volume whether or not the spacing divides it.
 
 In time, a particle's momentum changes in a step by exactly dt times the force of that step,
 uⁿ⁺¹ = uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past

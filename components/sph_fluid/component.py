@@ -16,7 +16,7 @@ from quintet.components.sph_fluid.laws import AHEAD, constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, totals
-from quintet.components.sph_fluid.terms import friction, terms
+from quintet.components.sph_fluid.terms import bulk, friction, terms
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
@@ -35,14 +35,14 @@ class SphFluid(Component):
         self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
         self.fluid, self.terms = constants(params), terms(params)
         self.steepest = math.inf  # s, step that a contact potential allows
-        self.team = Team(threads_wanted())
-        self.state = build.state(params)
+        self.team, self.state = Team(threads_wanted()), build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
         self.near = Neighbours()
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
         self.listed: Whole = self.rows  # (samples,) and where in the neighbour lists
         self.rate = np.empty((0, 4))  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s); of the present step
         self.drift: Array | None = None  # (fluid, 3) m/s, XSPH's; where it is on
+        self.volume = np.empty(0)  # (samples,) m3
         self.placed = True
         if params.mirrored:
             self.takes = (MIRRORED_SURFACE,)
@@ -56,10 +56,9 @@ class SphFluid(Component):
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
-        reach = SUPPORT * self.fluid.smoothing
         return {
             "surface.spacing": np.array([self.params.spacing]),
-            "surface.depth": np.array([reach]),
+            "surface.depth": np.array([SUPPORT * self.fluid.smoothing]),
             "surface.inset": np.array([self.params.inset * self.params.spacing]),
         }
 
@@ -73,7 +72,7 @@ class SphFluid(Component):
             press(self.fluid, self.state.place, self.state.motion)
             self.rows = self.state.sample_rows()
             self.placed = False
-            self.body = static["surface.body"]
+            self.body, self.volume = static["surface.body"], static["surface.volume"]
             self.state.film = np.zeros((count if self.params.gaps else 0, 3))
 
     def stable_dt(self) -> float:
@@ -160,6 +159,7 @@ class SphFluid(Component):
 
     def _list(self) -> None:
         state, seekers = self.state, None
+        self.bulk = bulk(self.volume, self.rows, len(state.place), self.params)
         points = state.reference[: len(state.place)]
         self.listed = self.rows
         if self.params.mirrored:
@@ -173,9 +173,9 @@ class SphFluid(Component):
         search = (self._reach, points, state.fluid, self.team, seekers, self.near.list)
         self.near = neighbours_within(*search)
         if len(state.film):
-            from quintet.components.sph_fluid.gap import film
+            from quintet.components.sph_fluid.facing import film
 
-            self.film = film(state, self.body, self.params)
+            self.film = film(state, self.body, self.volume, self.params.spacing, self.fluid)
         if self.params.precision == "float32":
             from quintet.components.sph_fluid.single import Single
 
@@ -210,7 +210,7 @@ class SphFluid(Component):
 
             press_walls(state, self.near.arrays, self.rows, self.listed, self.params, self.team)
         self.pairs = pairs, rubbing = self._pairs()
-        terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact)
+        terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact, self.bulk)
         found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
@@ -219,13 +219,12 @@ class SphFluid(Component):
         """Push the samples as they pushed the fluid."""
         state, law, (pairs, rubbing) = self.state, self.terms, self.pairs
         if len(self.rows):
-            rows = (self.rows, self.listed)
-            on_samples = (rubbing, law.guard, law.contact, state.force)
-            self.team.run(push_samples, len(self.rows), *rows, *pairs, *on_samples)
+            on_samples = (rubbing, law.guard, law.contact, self.bulk, state.force)
+            self.team.run(push_samples, len(self.rows), self.rows, self.listed, *pairs, *on_samples)
         if len(state.film):
             from quintet.components.sph_fluid.gap import push
 
-            push(self.film, state, dt, self.params)
+            push(self.film, state, self.near.arrays, dt, self.params, self.fluid)
 
     def _drift(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity."""

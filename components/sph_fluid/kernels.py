@@ -58,7 +58,7 @@ def interact(
     first: int, last: int, split: int, place: Array, motion: Array, near: List,
     fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
     diffusion: Diffusion | None, friction: Friction | None, guard: Guard | None,
-    contact: Contact | None,
+    contact: Contact | None, bulk: Array | None,
 ) -> tuple[float, float]:  # fmt: skip
     """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r².
 
@@ -66,7 +66,8 @@ def interact(
     `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, let the
     fluid be viscous (Lo & Shao 2002, or Monaghan & Gingold 1983); with `guard`, let walls repel
     what is about to pass between their particles; with `contact`, let the contact potential alone
-    push walls and fluid apart. Of what is None, numba leaves the lines out.
+    push walls and fluid apart; with `bulk`, let boundary particles weigh that many times as much as
+    those of the fluid. Of what is None, numba leaves the lines out.
     """
     begin, middle, end, neighbour = near
     nil = place.dtype.type(0)  # sums are as precise as what they are summed from
@@ -122,6 +123,8 @@ def interact(
                 per_r, per_r2, per_both = inverses(r2, both, fluid)
                 closing = dot * per_r2
                 slope = gradient(r2, per_r, fluid)
+                if bulk is not None:
+                    slope *= bulk[j]
                 fastest = max(fastest, bits(abs(closing)))
                 if contact is None:
                     terms = term + motion[j, 3]
@@ -174,7 +177,7 @@ def interact(
 def push_samples(
     first: int, last: int, row: Whole, listed: Whole, place: Array, motion: Array, near: List,
     fluid: Fluid, friction: Friction | None, guard: Guard | None, contact: Contact | None,
-    force: Array,
+    bulk: Array | None, force: Array,
 ) -> None:  # fmt: skip
     """Write the force on surface samples: pair by pair, minus that on the fluid [N]."""
     begin, _, end, neighbour = near
@@ -194,6 +197,8 @@ def push_samples(
             per_r, per_r2, per_both = inverses(r2, both, fluid)
             closing = fluid.grip * dot * per_r2
             slope = gradient(r2, per_r, fluid)
+            if bulk is not None:
+                slope *= bulk[i]
             if contact is None:
                 terms = term + motion[j, 3]
             else:

@@ -49,7 +49,7 @@ class SphFluidParams:
     # ones, or a contact potential in place of their pressure
     potential_stiffness: Positive | None = None  # Pa, K Δpᵈ; else what holds ρ(c/10)² at a spacing
     potential_exponent: Exponent = 4  # 1, n: how much it steepens towards the wall
-    gaps: bool = False  # whether gaps that no particle enters carry pressure; with mdbc
+    gaps: bool = False  # whether films press in gaps too narrow for particles alone; with mdbc
     roughness: Positive = 5e-4  # m, least width that a film has between faces that touch
     standoff: Positive = 0.5  # 1, spacings from a wall's face out to its particles
     inset: NotNegative = 0.5  # 1, spacings from a moving surface in to its outermost samples

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from quintet.components.shared.team import Team
 from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import (
@@ -15,7 +17,9 @@ from quintet.components.sph_fluid.laws import (
     guard,
 )
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.state import State
+from quintet.components.sph_fluid.state import Array, State, Whole
+
+EVEN = 1e-9  # of a particle's volume: what differs from it by less is as large
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,3 +63,17 @@ def friction(
     if params.friction == "stress":
         return Friction(True, 4.0 * (params.dimensions + 2) * params.laminar, seen)
     return Friction(None, 4.0 * params.laminar, seen)
+
+
+def bulk(volume: Array, rows: Whole, count: int, params: SphFluidParams) -> Array | None:
+    """Volume of each of `count` rows over a particle's, (samples,) m3 of these; None: all alike.
+
+    Where the spacing does not divide a body, its samples stand closer, or less close, than the
+    fluid's particles; as heavy as those they would displace more, or less, than the body does.
+    """
+    share = volume / params.spacing**3
+    if np.abs(share - 1.0).max(initial=0.0) < EVEN:
+        return None
+    found = np.ones(count, params.precision)
+    found[rows] = share
+    return found

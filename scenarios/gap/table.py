@@ -1,4 +1,4 @@
-"""What each treatment of walls does to each gap: ``python scenarios/gap/table.py RUN RUN ...``.
+"""What each treatment of walls does to each gap: ``python -m quintet.scenarios.gap.table RUN ...``.
 
 RUN is the folder of a run of this scene, as `quintet study gap` leaves one for each treatment.
 Prints the README's table and draws `gap.png` beside the first run.

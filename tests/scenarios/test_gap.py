@@ -7,21 +7,15 @@ import pytest
 Run = Callable[..., dict]
 
 pytestmark = pytest.mark.slow
-THIN = ("gap_0.5", "gap_0.75", "gap_1")
+WIDE = ("gap_1.25", "gap_1.5", "gap_2", "gap_3", "gap_4")
 
 
-def test_water_fills_gaps_of_five_quarters_of_a_spacing_and_more(run_scene: Run) -> None:
-    found = run_scene("gap", "--preset", "quick")
-    wide = {name: one for name, one in found["by_name"].items() if name not in THIN}
-    assert len(wide) == 5
-    assert all(one["met"] for one in wide.values()), wide
-
-
-def test_films_leave_gaps_alone_that_particles_enter(run_scene: Run) -> None:
-    # The ladder of the scene has rungs with other walls, which films do not go with.
-    short = ("--preset", "quick", "--set", "study=[]", "--set")
+def test_films_mend_narrow_gaps_and_leave_those_that_particles_fill(run_scene: Run) -> None:
     found, alone = (
-        run_scene("gap", *short, f"components.water.gaps={on}")["by_name"]
+        run_scene("gap", "--preset", "quick", "--set", f"components.water.gaps={on}")["by_name"]
         for on in ("true", "false")
     )
-    assert found == alone
+    assert len(found) == 10
+    assert all(one["met"] for one in found.values()), found
+    assert all(found[name] == alone[name] for name in WIDE)
+    assert not any(alone[name]["met"] for name in ("gap_0.1", "gap_0.25", "gap_0.5"))

@@ -47,7 +47,9 @@ def pool() -> Callable[..., SphFluid]:
 def plate() -> Callable[..., Fields]:
     """Join a plate of samples below a fluid; return where it is, moving upwards."""
 
-    def join(fluid: SphFluid, height: float = -0.5 * SPACING, speed: float = 0.3) -> Fields:
+    def join(
+        fluid: SphFluid, height: float = -0.5 * SPACING, speed: float = 0.3, share: float = 1.0
+    ) -> Fields:
         x, y = np.meshgrid(np.arange(7) * SPACING, np.arange(7) * SPACING)
         position = np.stack([x.ravel(), y.ravel(), np.full(x.size, height)], axis=1)
         velocity = np.zeros_like(position)
@@ -56,7 +58,7 @@ def plate() -> Callable[..., Fields]:
         for array in fields.values():
             array.flags.writeable = False
         normal = np.tile([0.0, 0.0, 1.0], (len(position), 1))
-        volume = np.full(len(position), SPACING**3)
+        volume = np.full(len(position), share * SPACING**3)
         static = {"surface.normal": normal, "surface.volume": volume}
         fluid.bind(static | {"surface.body": np.zeros(len(position))})
         return fields

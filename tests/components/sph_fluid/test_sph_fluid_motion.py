@@ -100,9 +100,10 @@ def test_surface_takes_what_the_fluid_loses(drop: Make, plate: Join) -> None:
     assert given + gained == pytest.approx(np.zeros(3), abs=1e-12 * size)
 
 
-def test_one_step_gives_and_takes_the_same_impulse(drop: Make, plate: Join) -> None:
+@pytest.mark.parametrize("share", [1.0, 0.6])
+def test_one_step_gives_and_takes_the_same_impulse(drop: Make, plate: Join, share: float) -> None:
     fluid = drop(gravity=(0.0, 0.0, 0.0))
-    fluid.take(plate(fluid))
+    fluid.take(plate(fluid, share=share))
     fluid.step(1e-4)
     fluid.step(2e-4)
     before = fluid.totals().momentum

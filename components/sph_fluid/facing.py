@@ -1,0 +1,188 @@
+"""Which samples face another surface across a narrow gap; imported only by a scene that asks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from quintet.components.shared.neighbours import FAST
+from quintet.components.sph_fluid.laws import Fluid, kernel
+from quintet.components.sph_fluid.state import Array, State, Whole
+
+WIDEST = 1.25  # spacings, of the gaps that are films: in wider ones particles press enough
+OUTERMOST = 2.2  # spacings, between a particle of the first layer and its mirror point, at most
+ASIDE = 0.75  # spacings, how far beside each other two facing particles may be
+BESIDE = 1.2  # spacings, between neighbours in a film: those on its square lattice
+MOST = 8  # of them
+NEARLY = 1e-3  # of a vector's square: less makes no difference between directions
+RIM = 0.2  # spacings, from a particle of the film to the mean of its neighbours, beyond which
+# it stands at the rim
+
+
+@dataclass(slots=True)
+class Film:
+    """Samples that face another surface across a narrow gap; each pair of faces counts once."""
+
+    sample: Whole  # (m,) number of the sample
+    facing: Whole  # (m,) sample that it faces; -1 for a wall
+    row: Whole  # (m,) its row in the boundary
+    across: Whole  # (m,) row in the boundary of what it faces
+    area: Array  # (m,) m2, of its cell in the face
+    own: Array  # (m,) Σ V W of its own body's samples, around the middle of that cell
+    rim: Array  # (m,) whether it is at the film's rim
+    size: Array  # (m,) m, of the film that it belongs to
+    begin: Whole  # (m + 1,) where its neighbours in the film stand in `near`
+    near: Whole  # rows of the film
+
+
+def film(state: State, body: Array, volume: Array, spacing: float, fluid: Fluid) -> Film:
+    """Find where samples face walls, or samples of a body with a lower number.
+
+    As the neighbour lists do, it goes by where all was when they were made, so that a state that
+    is loaded finds the same films. Samples have a body and a volume (samples,) m3.
+    """
+    place = state.reference[state.fluid : len(state.place)]
+    off = state.reference[len(state.place) :] - place
+    outer = np.einsum("nd,nd->n", off, off) < (OUTERMOST * spacing) ** 2
+    inside = np.flatnonzero(state.sample >= 0)
+    inside = inside[np.argsort(state.sample[inside])]
+    samples = inside[outer[inside]]
+    low, high = place[samples].min(axis=0), place[samples].max(axis=0)
+    room = 4.0 * spacing
+    near = ((place > low - room) & (place < high + room)).all(axis=1)
+    others = np.flatnonzero(outer & near)
+    owner = np.where(state.sample >= 0, body[np.maximum(state.sample, 0)], -1.0)
+    partner = np.full(len(samples), -1)
+    face(
+        place[samples], off[samples], owner[samples],
+        place[others], off[others], owner[others], spacing, partner,
+    )  # fmt: skip
+    mine, theirs = samples[partner >= 0], others[partner[partner >= 0]]
+    away = directions(off[mine], off[theirs])
+    below = np.einsum("nd,nd->n", off[mine], away)
+    foot = place[mine] + 0.5 * below[:, None] * away
+    own = np.zeros(len(mine))
+    fill(foot, owner[mine], place[inside], owner[inside], volume, fluid, own)
+    count = np.zeros(len(mine), np.int64)
+    table = np.zeros((len(mine), MOST), np.int64)
+    join(place[mine], away, owner[mine], owner[theirs], BESIDE * spacing, count, table)
+    begin = np.concatenate([[0], np.cumsum(count)])
+    pairs = np.stack([owner[mine], owner[theirs]], axis=1)
+    _, which, members = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    listed = table[np.arange(MOST) < count[:, None]]
+    return Film(
+        sample=state.sample[mine],
+        facing=state.sample[theirs],
+        row=mine,
+        across=theirs,
+        area=volume[state.sample[mine]] / np.abs(below),
+        own=own,
+        rim=_rim(place[mine], begin, listed, RIM * spacing),
+        size=spacing * np.sqrt(members[which.reshape(-1)]),
+        begin=begin,
+        near=listed,
+    )
+
+
+def _rim(place: Array, begin: Whole, near: Whole, apart: float) -> Array:
+    rim = np.ones(len(place), bool)
+    for row in range(len(place)):
+        some = near[begin[row] : begin[row + 1]]
+        if len(some):
+            aside = place[some].mean(axis=0) - place[row]
+            rim[row] = np.linalg.norm(aside) > apart
+    return rim
+
+
+@njit(inline="always")
+def direction(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
+    """Unit normal of a face b against which another, a, lies; none if they do not.
+
+    Vectors go out of the faces to the mirror points. On edges and corners they have a part for
+    each face that meets there: of one vector, the other turned round, and their mean, the shortest
+    has least of what is not common.
+    """
+    a2, b2 = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz
+    x, y, z = 0.5 * (bx - ax), 0.5 * (by - ay), 0.5 * (bz - az)
+    shortest = x * x + y * y + z * z + NEARLY * b2
+    if a2 < min(shortest, b2):
+        x, y, z = -ax, -ay, -az
+    elif b2 < shortest:
+        x, y, z = bx, by, bz
+    size = np.sqrt(x * x + y * y + z * z)
+    if size == 0.0 or ax * x + ay * y + az * z >= 0.0 or bx * x + by * y + bz * z <= 0.0:
+        return 0.0, 0.0, 0.0
+    return x / size, y / size, z / size
+
+
+@njit(**FAST)
+def directions(off: Array, back: Array) -> Array:
+    """Normals (m, 3) of the faces across, from vectors (m, 3) m out of both faces of films."""
+    found = np.empty_like(off)
+    for i in range(off.shape[0]):
+        ax, ay, az, bx, by, bz = off[i, 0], off[i, 1], off[i, 2], back[i, 0], back[i, 1], back[i, 2]
+        found[i, 0], found[i, 1], found[i, 2] = direction(ax, ay, az, bx, by, bz)
+    return found
+
+
+@njit(**FAST)
+def face(
+    place: Array, off: Array, owner: Array, other_place: Array, other_off: Array,
+    other_owner: Array, spacing: float, partner: Whole,
+) -> None:  # fmt: skip
+    """Write the particle that each faces across a narrow gap; -1: none.
+
+    Points lie half of `off` below their faces.
+    """
+    furthest2 = (WIDEST + OUTERMOST) ** 2 * spacing**2 + (ASIDE * spacing) ** 2
+    for i in range(place.shape[0]):
+        best = (ASIDE * spacing) ** 2
+        ax, ay, az = off[i, 0], off[i, 1], off[i, 2]
+        for k in range(other_place.shape[0]):
+            dx = place[i, 0] - other_place[k, 0]
+            dy = place[i, 1] - other_place[k, 1]
+            dz = place[i, 2] - other_place[k, 2]
+            r2 = dx * dx + dy * dy + dz * dz
+            if r2 > furthest2 or other_owner[k] >= owner[i]:
+                continue
+            bx, by, bz = other_off[k, 0], other_off[k, 1], other_off[k, 2]
+            x, y, z = direction(ax, ay, az, bx, by, bz)
+            ahead = dx * x + dy * y + dz * z
+            gap = ahead + 0.5 * ((ax - bx) * x + (ay - by) * y + (az - bz) * z)
+            aside = r2 - ahead * ahead
+            if aside < best and -0.5 * spacing < gap < WIDEST * spacing:
+                best = aside
+                partner[i] = k
+
+
+@njit(**FAST)
+def fill(
+    foot: Array, owner: Array, place: Array, owners: Array, volume: Array, fluid: Fluid, own: Array
+) -> None:
+    """Write Σ V W of the samples of the same body around points (m, 3) m."""
+    for i in range(foot.shape[0]):
+        for k in range(place.shape[0]):
+            if owners[k] == owner[i]:
+                r2 = 0.0
+                for d in range(3):
+                    r2 += (foot[i, d] - place[k, d]) ** 2
+                own[i] += kernel(r2, fluid) * volume[k]
+
+
+@njit(**FAST)
+def join(
+    place: Array, away: Array, owner: Array, other: Array, reach: float, count: Whole,
+    table: Whole,
+) -> None:  # fmt: skip
+    """Write the neighbours of each particle in its film, the gap between the same two faces."""
+    for i in range(place.shape[0]):
+        for j in range(place.shape[0]):
+            if i == j or owner[i] != owner[j] or other[i] != other[j]:
+                continue
+            r2, along = 0.0, 0.0
+            for d in range(3):
+                r2 += (place[i, d] - place[j, d]) ** 2
+                along += away[i, d] * away[j, d]
+            if r2 < reach * reach and along > 0.9 and count[i] < table.shape[1]:
+                table[i, count[i]] = j
+                count[i] += 1
