@@ -9,7 +9,8 @@
 Walls and moving surface samples are particles that obey the continuity equation (from
 fluid neighbours alone) and Tait's, but move as they are told; their density never falls below
 ρ₀, so that they never pull. With `boundary` "mdbc" their density is the fluid's, mirrored
-(`mdbc.py`); with "potential" they have no pressure, and a contact potential pushes (`contact.py`).
+(`mdbc.py`); with "potential" they have no pressure, and a contact potential stands for it
+(`contact.py`).
 
 `laminar` viscosity is a Laplacian (Lo & Shao 2002), close beside walls, or with `friction`
 "stress" acts along the line between particles (Monaghan & Gingold 1983), without which a free
@@ -33,6 +34,9 @@ are then damped, not amplified (`laws.AHEAD`).
 
 With `integration` "symplectic" there are two passes a step, of second order; rest stays stable up
 to a `courant` of 1.6 instead of 0.4 (`symplectic.py`).
+
+What strikes the fluid faster than half the speed of sound, so that its density rises by a quarter,
+is an error: a tenth is what a weakly compressible fluid bears (Monaghan 1994).
 
 A particle that goes further than half of the tank's longest edge beyond the walls is lost: it is
 removed, and `totals` shows its mass missing. Without walls none is.

@@ -15,8 +15,8 @@ from quintet.components.sph_fluid.kernels import advance, interact, press, push_
 from quintet.components.sph_fluid.laws import AHEAD, constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
-from quintet.components.sph_fluid.sums import failure, totals
-from quintet.components.sph_fluid.terms import bulk, friction, terms
+from quintet.components.sph_fluid.sums import failure, refuse_dense, totals, view
+from quintet.components.sph_fluid.terms import bulk, friction, hold, step_limit, terms
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
@@ -34,9 +34,9 @@ class SphFluid(Component):
     def __init__(self, params: SphFluidParams) -> None:
         self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
         self.fluid, self.terms = constants(params), terms(params)
-        self.steepest = math.inf  # s, step that a contact potential allows
         self.team, self.state = Team(threads_wanted()), build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
+        self.steepest = hold(self.state, params)  # s, step that a contact potential allows
         self.near = Neighbours()
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
         self.listed: Whole = self.rows  # (samples,) and where in the neighbour lists
@@ -49,10 +49,6 @@ class SphFluid(Component):
             from quintet.components.sph_fluid.mdbc import mirrors
 
             self.state.mirror = mirrors(params)
-        if params.boundary == "potential":
-            from quintet.components.sph_fluid.contact import step_limit
-
-            self.steepest = step_limit(params)
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
@@ -69,7 +65,8 @@ class SphFluid(Component):
                 raise PortError("surface: samples need three dimensions; this fluid has two.")
             count = len(static["surface.volume"])
             self.state.add_samples(count, self.params.density, self.params.mirrored)
-            press(self.fluid, self.state.place, self.state.motion)
+            if self.params.boundary == "dbc":
+                press(self.fluid, self.state.place, self.state.motion)
             self.rows = self.state.sample_rows()
             self.placed = False
             self.body, self.volume = static["surface.body"], static["surface.volume"]
@@ -92,6 +89,8 @@ class SphFluid(Component):
             self.state.motion[self.rows, :3] = fields["surface.velocity"]
             if self.params.mirrored:
                 self.state.mirror[self.rows - self.state.fluid] = fields["surface.mirror"]
+            if not self.placed:
+                self.steepest = hold(self.state, self.params, self.body)
             self.placed = True
 
     def step(self, dt: float) -> None:
@@ -99,6 +98,7 @@ class SphFluid(Component):
         if not self.placed:
             raise OrderError("step: surface samples must be placed first. Call take before it.")
         if self._list_is_old(dt):
+            refuse_dense(self.state, self.params)
             self._sort()
             self._list()
         self._filter_density()
@@ -277,23 +277,22 @@ class SphFluid(Component):
         self.placed = bool(state["placed"])
         self.state = State.load(state)
         self.rows = self.state.sample_rows()
+        self.steepest = step_limit(self.state, self.params)
         if len(self.state.reference):
             self._list()
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left."""
-        return totals(self.state, self.params, self.fluid)
+        found = totals(self.state, self.params, self.fluid)
+        if self.terms.contact is not None and len(self.state.reference):
+            from quintet.components.sph_fluid.contact import energy
+
+            found.internal += energy(self.state, self.near.arrays, self.params, self.team)
+        return found
 
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
-        rows = np.argsort(self.state.identity)
-        place, motion = self.state.place[rows], self.state.motion[rows]
-        return {
-            "points": place[:, :3],
-            "velocity": motion[:, :3].astype(np.float32),
-            "density": place[:, 3].astype(np.float32),
-            "pressure": (motion[:, 3] * place[:, 3] ** 2).astype(np.float32),
-        }
+        return view(self.state)
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""

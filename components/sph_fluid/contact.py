@@ -1,59 +1,113 @@
-"""How strong the contact potential is; imported only by a scene that asks.
+"""The contact potential between fluid and walls or samples; imported only by a scene that asks.
 
-Between fluid and boundary particles acts (Campbell, Vignjevic & Libersky, Comput. Methods Appl.
-Mech. Eng. 184 (2000) 49; Vignjevic, De Vuyst & Campbell, CMES 13 (2006) 35)
+Boundary particles have no pressure of their own. In its place acts (Campbell, Vignjevic & Libersky,
+Comput. Methods Appl. Mech. Eng. 184 (2000) 49; Vignjevic, De Vuyst & Campbell, CMES 13 (2006) 35)
 
-    F_i = -Σ_j V_i V_j K n W_ij^(n-1)/W(Δp)^n ∇_iW_ij = -F_j
+    F_i = -Σ_j V² K_j n W_ij^(n-1)/W(Δp)^n ∇_iW_ij = -F_j,  V = m/ρ₀
 
-in place of their part in continuity and pressure: it depends on distance alone, so that walls push
-and never pull, and a fluid under a pressure σ comes as near as S(d) = σ/(K Δpᵈ) says, where S is
-the pressure between two cubic lattices, d apart, over K Δpᵈ.
+which depends on distance alone. Fluid and boundary still count in each other's continuity, and the
+fluid's own pressure acts on the boundary. Left out, as those papers have it, the fluid near a wall
+does not feel how densely it lies there, and packs by about a third of a spacing more, so that
+bodies displace too little. What is left conserves energy: the work of p_i/ρ_i² is what continuity
+changes in the fluid, and the rest comes from Σ V² K_j (W_ij/W(Δp))^n and the guard's own potential.
+
+Under a pressure p the fluid comes as near as p = p s(d) + K Δpᵈ S(d) says: S is the pressure
+between two cubic lattices, d apart, over K Δpᵈ, and s the share of p that p_i/ρ_i² brings, one half
+where d is a spacing, as between the fluid's own planes. K Δpᵈ = (1-s(1))p/S(1) holds p there.
+
+Walls and samples are given it for the pressure that water at rest has where they are first; with
+n = 1 the potential then has the shape of what the fluid lacks at a wall, and its lattice stays at
+rest. Dry bodies are given it for the fluid's mean pressure. Dry walls have none: there, and under
+pressures that are higher, the guard of mirrored walls (`laws.Guard`) turns the fluid.
 """
 
 import math
 
 import numpy as np
+from numba import njit
 
 from quintet.components.shared import cubic_spline, wendland
 from quintet.components.shared.cubic_spline import SUPPORT
-from quintet.components.sph_fluid.laws import Contact, constants
+from quintet.components.shared.neighbours import FAST
+from quintet.components.shared.team import Team
+from quintet.components.sph_fluid.kernels import List
+from quintet.components.sph_fluid.laws import Contact, Fluid, Guard, constants, guard, kernel
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State
 
 SAFE = 0.2  # of √(m/(∂F/∂d)): the step
-FLOW = 0.1  # of the speed of sound, velocity whose ρ₀u² is held at one spacing
 
 
 def contact(params: SphFluidParams) -> Contact:
     """Numbers of the contact potential."""
     width = constants(params).height * shape(1.0 / params.smoothing, params)  # 1/m3, W(Δp)
     power = params.potential_exponent - 1
-    strength = stiffness(params) / params.spacing**params.dimensions * (power + 1) / width
+    strength = (power + 1) / (width * params.spacing**params.dimensions)
     once, twice, four = (float(power >> bit & 1) for bit in range(3))
     return Contact(strength, 1.0 / width, once, twice, four)
 
 
-def stiffness(params: SphFluidParams) -> float:
-    """K Δpᵈ [Pa]: as given, or what holds ρ₀(c₀/10)² at one spacing."""
+def hold(state: State, params: SphFluidParams, body: Array | None = None) -> None:
+    """Write K Δpᵈ/ρ₀² of walls, or of the samples of bodies (samples,), in place of p/ρ²."""
+    rows = np.flatnonzero(state.sample < 0) if body is None else state.sample_rows() - state.fluid
+    points = state.place[state.fluid + rows, :3]
     if params.potential_stiffness is not None:
-        return params.potential_stiffness
-    return params.density * (FLOW * params.sound_speed) ** 2 / held(1.0, params)
+        held_by = np.full(len(rows), params.potential_stiffness)
+    else:
+        held_by = stiffness(pressure(points, params, body), params)
+    state.motion[state.fluid + rows, 3] = held_by / params.density**2
 
 
-def step_limit(params: SphFluidParams) -> float:
+def pressure(points: Array, params: SphFluidParams, body: Array | None = None) -> Array:
+    """Pressure (n,) Pa of water at rest at points (n, 3) m of walls, or of bodies (n,).
+
+    It stands as high as the highest fluid does at the start. On bodies that it does not reach it is
+    the mean of all the fluid's.
+    """
+    size = math.hypot(*params.weight)
+    top = max(params.levels(box)[1] for box in params.fluid)  # m, against the weight
+    found = np.maximum(params.density * (size * top + points @ np.array(params.weight)), 0.0)
+    if body is None:
+        return np.asarray(found)
+    number = body.astype(np.int64)
+    dry = np.bincount(number, found) == 0.0
+    mean = 0.5 * params.density * size * params.depth
+    return np.where(dry[number], mean, found)
+
+
+def stiffness(pressures: Array, params: SphFluidParams) -> Array:
+    """K Δpᵈ [Pa] that holds pressures (n,) [Pa] at one spacing."""
+    return np.asarray(pressures * (1.0 - shared(1.0, params)) / held(1.0, params))
+
+
+def step_limit(state: State, params: SphFluidParams) -> float:
     """Largest step [s] that the steepest part of the potential allows."""
+    return limit(params.density**2 * float(state.motion[state.fluid :, 3].max(initial=0.0)), params)
+
+
+def limit(stiffest: float, params: SphFluidParams) -> float:
+    """Largest step [s] where the greatest K Δpᵈ is `stiffest` [Pa]."""
+    if stiffest == 0.0:
+        return math.inf
     apart = np.linspace(0.0, SUPPORT * params.smoothing, 61)
     push = [push_of_wall(one, params) for one in apart]
     steepest = float(-np.gradient(push, apart).min())
-    return SAFE * params.spacing * math.sqrt(params.density / (stiffness(params) * steepest))
+    return SAFE * params.spacing * math.sqrt(params.density / (stiffest * steepest))
 
 
-def held(apart: float, params: SphFluidParams) -> float:
+def held(apart: float, params: SphFluidParams, exponent: int | None = None) -> float:
     """S, the pressure over K Δpᵈ between two lattices so many spacings apart."""
     layers = range(math.ceil(SUPPORT * params.smoothing))
-    return sum(push_of_wall(apart + layer, params) for layer in layers)
+    return sum(push_of_wall(apart + layer, params, exponent) for layer in layers)
 
 
-def push_of_wall(apart: float, params: SphFluidParams) -> float:
+def shared(apart: float, params: SphFluidParams) -> float:
+    """s, the share of the fluid's pressure that its own p_i/ρ_i² brings over so many spacings."""
+    numbers = contact(params)
+    return held(apart, params, 1) / (numbers.inverse * params.spacing**-params.dimensions)
+
+
+def push_of_wall(apart: float, params: SphFluidParams, exponent: int | None = None) -> float:
     """Force over K Δpᵈ⁺¹ (d dimensions, 3 or 2) on a particle so many spacings before a wall."""
     reach = math.ceil(SUPPORT * params.smoothing)
     line = np.arange(-reach, reach + 1.0)
@@ -61,7 +115,7 @@ def push_of_wall(apart: float, params: SphFluidParams) -> float:
     x, y, z = (axis.ravel() for axis in np.meshgrid(*axes))
     r = np.sqrt(x * x + y * y + z * z)
     r, z = r[r > 0.0], z[r > 0.0]
-    h, n = params.smoothing, params.potential_exponent
+    h, n = params.smoothing, exponent or params.potential_exponent
     width = shape(1.0 / h, params)  # W(Δp) over its scale
     ratio = np.array([shape(one, params) for one in r / h]) / width
     fall = np.array([slope(one, params) for one in r / h]) / h / width
@@ -79,3 +133,37 @@ def slope(q: float, params: SphFluidParams) -> float:
     if params.kernel == "wendland":
         return 10.0 * q * float(wendland.slope.py_func(q))
     return 3.0 * float(cubic_spline.slope.py_func(q))
+
+
+def energy(state: State, near: List, params: SphFluidParams, team: Team) -> float:
+    """Energy [J] of the contact potential and of the guard."""
+    touch, turn, fluid = contact(params), guard(params), constants(params)
+    assert turn is not None
+    numbers = (touch.inverse, params.potential_exponent, params.spacing**-params.dimensions)
+    found = np.zeros(state.fluid)
+    arrays = (state.place, state.motion, near, *numbers, turn, fluid, found)
+    team.run(store, state.fluid, *arrays)
+    return float(found.sum()) * fluid.mass**2 * params.thickness
+
+
+@njit(**FAST)
+def store(
+    first: int, last: int, place: Array, motion: Array, near: List, inverse: float, exponent: int,
+    per_volume: float, guard: Guard, fluid: Fluid, found: Array,
+) -> None:  # fmt: skip
+    """Write the energy over m² of fluid rows [first, last) with their boundary neighbours."""
+    _, middle, end, neighbour = near
+    for i in range(first, last):
+        total = 0.0
+        for k in range(np.uint64(middle[i]), np.uint64(end[i])):
+            j = np.uint64(neighbour[k])
+            x, y, z = (
+                place[i, 0] - place[j, 0],
+                place[i, 1] - place[j, 1],
+                place[i, 2] - place[j, 2],
+            )
+            r2 = x * x + y * y + z * z
+            total += motion[j, 3] * per_volume * (kernel(r2, fluid) * inverse) ** exponent
+            close = max(1.0 - r2 / guard.reach2, 0.0)
+            total += 0.25 * guard.stiffness * guard.reach2 * close * close
+        found[i] = total

@@ -65,8 +65,8 @@ def interact(
     With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); with
     `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, let the
     fluid be viscous (Lo & Shao 2002, or Monaghan & Gingold 1983); with `guard`, let walls repel
-    what is about to pass between their particles; with `contact`, let the contact potential alone
-    push walls and fluid apart; with `bulk`, let boundary particles weigh that many times as much as
+    what is about to pass between their particles; with `contact`, let the contact potential stand
+    for the walls' pressure; with `bulk`, let boundary particles weigh that many times as much as
     those of the fluid. Of what is None, numba leaves the lines out.
     """
     begin, middle, end, neighbour = near
@@ -126,12 +126,10 @@ def interact(
                 if bulk is not None:
                     slope *= bulk[j]
                 fastest = max(fastest, bits(abs(closing)))
-                if contact is None:
-                    terms = term + motion[j, 3]
-                    growth += dot * slope
-                else:
-                    product = (density + fluid.base) * (place[j, 3] + fluid.base)
-                    terms = bear(r2, product, contact, fluid)
+                growth += dot * slope
+                terms = term + motion[j, 3]
+                if contact is not None:
+                    terms = term + motion[j, 3] * bear(r2, contact, fluid)
                 force = slope * push(terms, fluid.grip * closing, per_both, fluid)
                 if guard is not None:
                     force -= repel(r2, guard)
@@ -199,11 +197,9 @@ def push_samples(
             slope = gradient(r2, per_r, fluid)
             if bulk is not None:
                 slope *= bulk[i]
-            if contact is None:
-                terms = term + motion[j, 3]
-            else:
-                product = (density + fluid.base) * (place[j, 3] + fluid.base)
-                terms = bear(r2, product, contact, fluid)
+            terms = term + motion[j, 3]
+            if contact is not None:
+                terms = term * bear(r2, contact, fluid) + motion[j, 3]
             size = slope * push(terms, closing, per_both, fluid)
             if guard is not None:
                 size -= repel(r2, guard)

@@ -16,7 +16,7 @@ from quintet.components.sph_fluid.params import SphFluidParams
 # sound waves neutral to second order in ω dt; a little more damps them, up to ω dt = 0.5.
 AHEAD = 1.25
 
-# Mirrored walls press as the fluid does, and would let single fast particles through. Within
+# All walls but dynamic ones press as still water does, and would let fast particles by. Within
 # NEAREST spacings, which a particle half a spacing off the face does not reach, their particles
 # repel: softly beside the fluid's own stiffness, but enough to turn a tenth of the speed of sound.
 GUARD = 0.2
@@ -70,15 +70,15 @@ class Friction(NamedTuple):
 
 
 class Guard(NamedTuple):
-    """The numbers that the repulsion of mirrored walls needs."""
+    """The numbers that the repulsion of walls needs."""
 
     stiffness: float  # 1/(kg s2)
     reach2: float  # m2
 
 
 def guard(params: SphFluidParams) -> Guard | None:
-    """Numbers of the repulsion of mirrored walls; None for others, which repel by themselves."""
-    if not params.mirrored:
+    """Numbers of the repulsion of walls; None for dynamic ones, which repel by themselves."""
+    if params.boundary == "dbc":
         return None
     mass = params.density * params.spacing**params.dimensions
     stiffness = GUARD * (params.sound_speed / params.spacing) ** 2 / mass
@@ -88,7 +88,7 @@ def guard(params: SphFluidParams) -> Guard | None:
 class Contact(NamedTuple):
     """The numbers that the contact potential needs; n - 1 = once + 2 twice + 4 four."""
 
-    strength: float  # Pa, K n / W(Δp)
+    strength: float  # 1, n / (W(Δp) Δpᵈ)
     inverse: float  # m3, 1 / W(Δp)
     once: float  # 1, or 0
     twice: float
@@ -185,9 +185,9 @@ def repel(r2, guard):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def bear(r2, density_product, contact, fluid):  # type: ignore[no-untyped-def]
-    """K n W^(n-1)/(W(Δp)^n ρ_i ρ_j), what the contact potential has for p_i/ρ_i² + p_j/ρ_j²."""
+def bear(r2, contact, fluid):  # type: ignore[no-untyped-def]
+    """What K Δpᵈ/ρ₀² is multiplied by to stand for p_j/ρ_j²: n W^(n-1)/(W(Δp)^n Δpᵈ)."""
     one = kernel(r2, fluid) * contact.inverse
     two = one * one
     power = (ONE + contact.once * (one - ONE)) * (ONE + contact.twice * (two - ONE))
-    return contact.strength * power * (ONE + contact.four * (two * two - ONE)) / density_product
+    return contact.strength * power * (ONE + contact.four * (two * two - ONE))

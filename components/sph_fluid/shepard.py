@@ -15,7 +15,7 @@ def smooth(state: State, near: List, fluid: Fluid, team: Team) -> None:
     density = np.empty(state.fluid)
     team.run(shepard, state.fluid, state.place, near, fluid, density)
     state.place[: state.fluid, 3] = density
-    press(fluid, state.place, state.motion)
+    press(fluid, state.place[: state.fluid], state.motion[: state.fluid])
 
 
 @njit(**FAST)

@@ -8,7 +8,10 @@ from quintet.components.sph_fluid.build import TAIT
 from quintet.components.sph_fluid.laws import Fluid
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
-from quintet.interfaces.component import Totals
+from quintet.interfaces.component import Fields, Totals
+from quintet.interfaces.errors import StepError
+
+MACH = 0.5  # of the speed of sound: what strikes the fluid faster is refused
 
 
 def totals(state: State, params: SphFluidParams, fluid: Fluid) -> Totals:
@@ -60,3 +63,44 @@ def _worst(state: State, spacing: float, dt: float) -> int:
     speed = np.linalg.norm(motion[:, :3], axis=1)
     fast = float(speed.max()) * dt > spacing
     return int(np.argmax(speed) if fast else np.argmin(place[:, 3]))
+
+
+def refuse_dense(state: State, params: SphFluidParams) -> None:
+    """Raise where the fluid was struck faster than a weakly compressible one can be.
+
+    A surface that meets it with a velocity u raises its pressure by ρ₀c₀u, whatever moves: that of
+    u = c₀/2 is a density that nothing slower reaches.
+    """
+    density = state.place[: state.fluid, 3]
+    worst = int(np.argmax(density))
+    most = params.density * (1.0 + TAIT * MACH) ** (1.0 / TAIT)
+    if not density[worst] > most:
+        return
+    raise StepError(
+        f"step {state.steps}: what strikes the fluid must be slower than half its sound_speed "
+        f"({MACH * params.sound_speed:.3g} m/s), a tenth to be right, so that its density stays "
+        f"below {most:.4g} kg/m3; {_met(state, worst)} Raise sound_speed to ten times the largest "
+        "velocity, or slow what moves."
+    )
+
+
+def _met(state: State, worst: int) -> str:
+    x, y, z, density = state.place[worst].tolist()
+    speed = math.hypot(*state.motion[worst, :3].tolist())
+    fastest = float(np.linalg.norm(state.motion[:, :3], axis=1).max())
+    return (
+        f"particle {state.identity[worst]} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {density:.4g} "
+        f"kg/m3 and {speed:.3g} m/s, and the fastest of all, surfaces too, {fastest:.3g} m/s."
+    )
+
+
+def view(state: State) -> Fields:
+    """Copy fluid particles in the order of their birth."""
+    rows = np.argsort(state.identity)
+    place, motion = state.place[rows], state.motion[rows]
+    return {
+        "points": place[:, :3],
+        "velocity": motion[:, :3].astype(np.float32),
+        "density": place[:, 3].astype(np.float32),
+        "pressure": (motion[:, 3] * place[:, 3] ** 2).astype(np.float32),
+    }

@@ -1,5 +1,6 @@
 """The numbers of all laws that act between pairs, in the precision that pairs are computed in."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,25 @@ def terms(params: SphFluidParams) -> Terms:
 
         laws = tuple(map(rounded, laws))
     return Terms(*laws)
+
+
+def hold(state: State, params: SphFluidParams, body: Array | None = None) -> float:
+    """Let walls, or samples of bodies, hold the water where they are; return the step limit [s]."""
+    if params.boundary != "potential":
+        return math.inf
+    from quintet.components.sph_fluid.contact import hold
+
+    hold(state, params, body)
+    return step_limit(state, params)
+
+
+def step_limit(state: State, params: SphFluidParams) -> float:
+    """Largest step [s] that a contact potential allows."""
+    if params.boundary != "potential":
+        return math.inf
+    from quintet.components.sph_fluid.contact import step_limit
+
+    return step_limit(state, params)
 
 
 def friction(

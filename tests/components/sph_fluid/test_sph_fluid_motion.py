@@ -208,6 +208,35 @@ def test_too_fast_a_particle_is_an_error_that_names_it(drop: Make) -> None:
         fluid.step(1e-3)
 
 
+@pytest.mark.parametrize("boundary", ["dbc", "mdbc", "potential"])
+@pytest.mark.parametrize(("speed", "fails"), [(2.0, False), (20.0, True)])
+def test_what_strikes_faster_than_half_of_sound_is_an_error(
+    drop: Make, plate: Join, boundary: str, speed: float, fails: bool
+) -> None:
+    fluid = drop(boundary=boundary, gravity=(0.0, 0.0, 0.0), sound_speed=18.0)
+    fields = {name: np.array(array) for name, array in plate(fluid, speed=speed).items()}
+    fields["surface.mirror"] = fields["surface.position"] + [0.0, 0.0, 0.02]
+
+    def strike() -> None:
+        moved = 0.0
+        while moved < 0.06:
+            fluid.take(fields)
+            dt = fluid.stable_dt()
+            fluid.step(dt)
+            moved += speed * dt
+            for name in ("position", "mirror"):
+                fields[f"surface.{name}"][:, 2] += speed * dt
+
+    if not fails:
+        strike()
+        return
+    sentence = (
+        r"slower than half its sound_speed \(9 m/s\).* the fastest of all, .* Raise sound_speed"
+    )
+    with pytest.raises(StepError, match=sentence):
+        strike()
+
+
 def test_a_number_that_is_not_finite_is_an_error(drop: Make, plate: Join) -> None:
     fluid = drop()
     fields = plate(fluid)

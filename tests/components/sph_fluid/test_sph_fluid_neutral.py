@@ -49,14 +49,15 @@ def sunk(shape: int, cells: int = 5, **given: object) -> SphFluid:
 
 def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
     """Mean force on the body between two times [s]; (3,) N."""
-    time, impulse = 0.0, np.zeros(3)
+    time, spent, impulse = 0.0, 0.0, np.zeros(3)
     while time < end:
         dt = fluid.stable_dt()
         fluid.step(dt)
         time += dt
         if time > begin:
+            spent += dt
             impulse += dt * fluid.give()["surface_load.force"].sum(axis=0)
-    return impulse / (end - begin)
+    return impulse / spent
 
 
 @pytest.mark.parametrize("cells", [4, 5, 6])
@@ -65,6 +66,54 @@ def test_a_box_is_pushed_up_by_the_weight_of_its_water(cells: int) -> None:
     force = push(sunk(BOX, cells), 0.5, 0.8) / (WEIGHT * EDGE**3)
     assert force[2] == pytest.approx(1.0, abs=0.01)
     assert np.abs(force[:2]).max() < 1e-3
+
+
+def around(edge: int, side: int, below: int, above: int, spacing: float) -> tuple:
+    """Boxes of water below, beside and above a cube, all in whole spacings; its middle [m]."""
+    low, high, top = 0.5 * (side - edge), 0.5 * (side + edge), below + edge + above
+    boxes = (
+        ((0, 0, 0), (side, side, below)),
+        ((0, 0, below), (low, side, below + edge)),
+        ((high, 0, below), (side, side, below + edge)),
+        ((low, 0, below), (high, low, below + edge)),
+        ((low, high, below), (high, side, below + edge)),
+        ((0, 0, below + edge), (side, side, top)),
+    )
+    return tuple(tuple(tuple(spacing * x for x in corner) for corner in box) for box in boxes)
+
+
+@pytest.mark.parametrize(
+    ("edge", "spacing", "below", "above"), [(4, 0.03, 4, 3), (4, 0.03, 2, 7), (5, 0.02, 4, 4)]
+)
+def test_the_potential_pushes_a_box_up_by_the_weight_of_its_water(
+    edge: int, spacing: float, below: int, above: int
+) -> None:
+    side, top = edge + 6, below + edge + above
+    tank = ((0.0, 0.0, 0.0), (side * spacing, side * spacing, (top + 3) * spacing))
+    given = {"fluid": around(edge, side, below, above, spacing), "walls": tank, "grip": 0.0}
+    sound = 10.2 * math.sqrt(9.81 * top * spacing)
+    how = {"kernel": "wendland", "integration": "symplectic", "courant": 1.0, "viscosity": 0.3}
+    fluid = SphFluid(
+        SphFluidParams(
+            spacing=spacing, sound_speed=sound, boundary="potential", diffusion=0.1, tension=True,
+            **given, **how,
+        )
+    )  # fmt: skip
+    size = np.full(3, edge * spacing)
+    arm, normal, volume = fill(BOX, size, spacing, 2.0 * fluid.params.length)
+    body = np.zeros(len(arm))
+    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body})
+    middle = spacing * np.array([0.5 * side, 0.5 * side, below + 0.5 * edge])
+    fluid.take({"surface.position": arm + middle, "surface.velocity": np.zeros_like(arm)})
+    force = push(fluid, 0.2, 0.5) / (WEIGHT * size[0] ** 3)
+    assert force[2] == pytest.approx(1.0, abs=0.005)
+    assert np.abs(force[:2]).max() < 1e-3
+    # Nothing has moved, and the pressure at the floor is that of the water above it.
+    assert np.linalg.norm(fluid.view()["velocity"], axis=1).max() < 0.01
+    points, found = fluid.view()["points"], fluid.view()["pressure"]
+    deep = points[:, 2] < 2.0 * spacing
+    expected = WEIGHT * (top * spacing - points[deep, 2])
+    assert found[deep] == pytest.approx(expected, rel=0.03)
 
 
 @pytest.mark.slow
