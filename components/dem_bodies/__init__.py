@@ -56,6 +56,7 @@ def _plan(params: DemBodiesParams) -> Plan:
     solids = [build.solid(body) for body in params.bodies]
     ω = build.expected_frequency(params, solids)
     dt = min(params.longest_step, DURATION * SPEED_UP / ω / params.steps_per_contact)
+    dt = dt if params.step is None else params.step
     count = len(solids)
     # Of a step, some time is for calling it, and some for each body.
     return Plan(count, dt, rate=count / (1.5e-5 + 2.5e-7 * count), bytes_per_item=4000.0)

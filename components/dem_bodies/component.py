@@ -85,6 +85,8 @@ class DemBodies(Component):
 
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
+        if self.params.step is not None:
+            return self.params.step
         report, longest = self.state.report, self.params.longest_step
         stiffest = math.sqrt(report[rows.STIFFEST])  # rad/s
         ω = max(self.frequency, stiffest)
