@@ -5,23 +5,26 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.geometry import FAR, scaled, three, vector
+from quintet.components.dem_bodies.geometry import FAR, scaled, three, vector, write
 from quintet.components.dem_bodies.laws import LEAST, beginning, contact
 from quintet.components.dem_bodies.state import (
     BLOCK,
+    BORNE,
     DEEPEST,
     ELASTIC,
+    END_V,
     GAP,
     STIFFEST,
+    TALLIES,
     WHICH,
     Balls,
     Model,
     Numbers,
-    Scratch,
+    State,
+    V,
 )
 from quintet.components.shared.rotations import INNER, Vector, beside, cross, dot, less
 
-V, END_V = 4, 10  # columns of motion
 ROOM = 72  # pairs that are computed at once; a fixed length lets the compiler do several in one
 # Where in the room each number of the pairs begins.
 X, Y, Z, SQUARE, REACH, DEPTH, ROOT, QUARTER, WEIGHT, FIRST = range(0, 10 * ROOM, ROOM)
@@ -129,11 +132,28 @@ def bear(count: int, room: Numbers, dt: float) -> None:
 
 
 @njit(**INNER)
-def share(first: int, last: int, balls: Balls, scratch: Scratch, room: Numbers, block: int) -> None:
-    """Add the forces of the pairs [first, last) to their rows, keep them for the partners."""
-    motion, sums, tally = scratch.motion, scratch.sums, scratch.tally
-    row, partner, held, push = balls.row, balls.partner, balls.held, balls.push
-    rows, ground = motion.shape[0], motion.shape[0] - 1
+def bring(loads: Numbers, k: int, force: Vector, torque: Vector) -> None:
+    """Add a force and a torque to a row."""
+    loads[k, 0] += force[0]
+    loads[k, 1] += force[1]
+    loads[k, 2] += force[2]
+    loads[k, 3] += torque[0]
+    loads[k, 4] += torque[1]
+    loads[k, 5] += torque[2]
+
+
+@njit(**INNER)
+def share(
+    first: int, last: int, state: State, balls: Balls, tally: Numbers, room: Numbers, block: int,
+    slot: int,
+) -> int:  # fmt: skip
+    """Add the forces of the pairs [first, last) to their rows, and keep those for later blocks.
+
+    `slot` is where the first of these is kept; return where the next one is.
+    """
+    motion, contact, force_on, pushes = state.motion, state.contact, balls.force, balls.push
+    row, partner, held, kept = balls.row, balls.partner, balls.held, balls.force.shape[0] > 0
+    rows, ground, end = motion.shape[0], motion.shape[0] - 1, (block + 1) * BLOCK
     smallest, deepest, which = tally[block, GAP], tally[block, DEEPEST], tally[block, WHICH]
     energy, stiffest = tally[block, ELASTIC], tally[block, STIFFEST]
     for k in range(first, last):
@@ -147,36 +167,46 @@ def share(first: int, last: int, balls: Balls, scratch: Scratch, room: Numbers, 
         force = column(room, FORCE + c)
         t = cross(force, n)
         i, j = motion[a, 3] - 0.5 * depth, motion[b, 3] - 0.5 * depth
-        turn = scaled(j, t)
+        bring(contact, a, force, scaled(i, t))
+        back = scaled(-1.0, force)
         if partner[k] >= rows:  # the ground's is about the origin
             turn = cross(force, beside(vector(motion, a), -i, n))
-        for d in range(3):
-            held[k, d] = room[HELD + d * ROOM + c]
-            push[k, d], push[k, 3 + d] = -force[d], turn[d]
-            sums[a, d] += force[d]
-            sums[a, 3 + d] += i * t[d]
+            for d in range(3):
+                tally[block, BORNE + d] += back[d]
+                tally[block, BORNE + 3 + d] += turn[d]
+        elif b < end:
+            bring(contact, b, back, scaled(j, t))
+        else:
+            write(pushes, slot, 0, back)
+            write(pushes, slot, 3, scaled(j, t))
+            slot += 1
+        if kept:
+            write(force_on, k, 0, force)
+        write(held, k, 0, column(room, HELD + c))
         held[k, 3] = room[WEIGHT + c] if depth > 0.0 else 0.0
     tally[block, GAP], tally[block, DEEPEST], tally[block, WHICH] = smallest, deepest, which
     tally[block, ELASTIC], tally[block, STIFFEST] = energy, stiffest
+    return slot
 
 
 @njit(**INNER)
 def press_balls(
-    first: int, last: int, model: Model, balls: Balls, scratch: Scratch, dt: float
+    first: int, last: int, model: Model, state: State, balls: Balls, tally: Numbers, dt: float
 ) -> None:
     """Press the blocks [first, last) of rows; rows that are no balls have no such pairs."""
-    begin, tally, motion = balls.begin, scratch.tally, scratch.motion
+    begin, motion = balls.begin, state.motion
     count = begin.shape[0] - 1
     room = np.full(NUMBERS * ROOM if begin[count] > 0 else 0, -1.0)
     for block in range(first, last):
-        scratch.sums[block * BLOCK : (block + 1) * BLOCK] = 0.0
+        state.contact[block * BLOCK : (block + 1) * BLOCK] = 0.0
+        tally[block, BORNE:TALLIES] = 0.0
         tally[block, GAP], tally[block, DEEPEST], tally[block, WHICH] = FAR, 0.0, -1.0
         tally[block, ELASTIC], tally[block, STIFFEST] = 0.0, 0.0
-        end = begin[min((block + 1) * BLOCK, count)]
+        end, slot = begin[min((block + 1) * BLOCK, count)], balls.leave[block]
         for k in range(begin[min(block * BLOCK, count)], end, ROOM):
             last_pair = min(k + ROOM, end)
             face(k, last_pair, model, balls, motion, room)
             measure(last_pair - k, room)
             approach(k, last_pair, balls, motion, room, dt)
             bear(last_pair - k, room, dt)
-            share(k, last_pair, balls, scratch, room, block)
+            slot = share(k, last_pair, state, balls, tally, room, block, slot)

@@ -1,7 +1,7 @@
 """Listing the pairs of balls, and of balls and planes, that may touch; rows sorted in space.
 
 Rows are sorted by cell, so that what a ball may meet among later rows is five ranges of rows,
-whose ends only move on from one ball to the next.
+whose ends only move on from one ball to the next; and so that all that a step reads is near.
 """
 
 from typing import NamedTuple
@@ -13,13 +13,14 @@ from quintet.components.dem_bodies.cells import BITS, number
 from quintet.components.dem_bodies.geometry import on_plane, vector
 from quintet.components.dem_bodies.laws import constants
 from quintet.components.dem_bodies.state import (
+    BLOCK,
     Balls,
     Model,
     Numbers,
-    Scratch,
     Short,
     State,
     Whole,
+    blocks_of,
 )
 from quintet.components.shared.rotations import PURE, dot, less
 
@@ -78,14 +79,14 @@ def meet(
 
 
 @njit(**PURE)
-def laws_of(model: Model, body: Short, row: Short, partner: Short) -> Whole:
+def laws_of(model: Model, row: Short, partner: Short) -> Whole:
     """Number of the law of each pair, by the kinds of its balls, or of a ball and a plane."""
-    rows, kinds = body.shape[0], max(model.kind.max() + 1, model.law.shape[0])
+    rows, kinds = model.kind.shape[0], max(model.kind.max() + 1, model.law.shape[0])
     numbers = np.empty(partner.shape[0], np.int64)
     for k in range(partner.shape[0]):
-        i, b = model.kind[body[row[k]]], partner[k]
+        i, b = model.kind[row[k]], partner[k]
         if b < rows:
-            j = model.kind[body[b]]
+            j = model.kind[b]
             numbers[k] = min(i, j) * kinds + max(i, j)
         else:
             numbers[k] = kinds * (kinds + i) + model.plane_material[b - rows]
@@ -93,20 +94,17 @@ def laws_of(model: Model, body: Short, row: Short, partner: Short) -> Whole:
 
 
 @njit(**PURE)
-def constants_of(model: Model, body: Short, row: Short, partner: Short, some: Whole) -> Numbers:
+def constants_of(model: Model, row: Short, partner: Short, some: Whole) -> Numbers:
     """Constants of some of the pairs: a plane is a partner without end."""
-    rows = body.shape[0]
+    rows = model.kind.shape[0]
     table = np.empty((some.shape[0], 7))
     for s in range(some.shape[0]):
         k = some[s]
-        i, b = body[row[k]], partner[k]
+        i, b = row[k], partner[k]
         radius, inverse, a = model.reach[i], model.inverse_mass[i], model.material[i]
         if b < rows:
-            other, radius = (
-                model.material[body[b]],
-                1.0 / (1.0 / radius + 1.0 / model.reach[body[b]]),
-            )
-            inverse += model.inverse_mass[body[b]]
+            other, radius = model.material[b], 1.0 / (1.0 / radius + 1.0 / model.reach[b])
+            inverse += model.inverse_mass[b]
         else:
             other = model.plane_material[b - rows]
         modulus, shear = model.law[a, other, 0], model.law[a, other, 1]
@@ -115,16 +113,16 @@ def constants_of(model: Model, body: Short, row: Short, partner: Short, some: Wh
     return table
 
 
-def ends(balls: Balls, body: Short) -> tuple[Whole, Whole]:
+def ends(balls: Balls, body: Whole) -> tuple[Whole, Whole]:
     """Body of each pair, and its partner: another body, or beyond all bodies a plane."""
-    first = body[balls.row].astype(np.int64)
+    first = body[balls.row]
     partner = balls.partner.astype(np.int64)
     near = partner < len(body)
     partner[near] = body[partner[near]]
     return first, partner
 
 
-def carry(old: Balls, old_body: Short, new: Balls, body: Short) -> None:
+def carry(old: Balls, old_body: Whole, new: Balls, body: Whole) -> None:
     """Take over the history of the pairs that touch."""
     touching = np.flatnonzero(old.held[:, 3])
     first, second = (end[touching] for end in ends(old, old_body))
@@ -146,73 +144,76 @@ def carry(old: Balls, old_body: Short, new: Balls, body: Short) -> None:
         new.roll[swapped] *= -1.0
 
 
-def balls_from(model: Model, body: Short, begin: Whole, partner: Short) -> Balls:
-    """Pairs of given partners, without history."""
-    rows, pairs = len(body), len(partner)
+def balls_from(model: Model, begin: Whole, partner: Short, asked: bool) -> Balls:
+    """Pairs of given partners, without history; whether their forces are `asked` for."""
+    rows, pairs = len(model.kind), len(partner)
     row = np.repeat(np.arange(len(begin) - 1, dtype=np.uint32), np.diff(begin))
-    _, some, law = np.unique(
-        laws_of(model, body, row, partner), return_index=True, return_inverse=True
-    )
-    towards = np.minimum(partner, rows - 1)  # what planes bear the ground gets
+    _, some, law = np.unique(laws_of(model, row, partner), return_index=True, return_inverse=True)
+    leaves = (partner < rows) & (partner // BLOCK > row // BLOCK)
+    towards, blocks = partner[leaves], np.arange(blocks_of(rows) + 1)
+    rolls = model.law[:, :, 4].any()
     return Balls(
         begin=begin,
         row=row,
         partner=partner,
         law=law.astype(np.uint32),
-        constants=constants_of(model, body, row, partner, some),
+        constants=constants_of(model, row, partner, some),
         held=np.zeros((pairs, 4)),
-        roll=np.zeros((pairs if model.law[:, :, 4].any() else 0, 3)),
-        push=np.zeros((pairs, 7)),
+        roll=np.zeros((pairs if rolls else 0, 3)),
+        force=np.zeros((pairs if rolls or asked else 0, 3)),
+        push=np.zeros((len(towards), 6)),
+        leave=np.searchsorted(row[leaves] // BLOCK, blocks),
         come=np.concatenate([[0], np.cumsum(np.bincount(towards, minlength=rows))]),
         coming=np.argsort(towards, kind="stable").astype(np.uint32),
     )
 
 
-def no_balls(model: Model, scratch: Scratch) -> Balls:
+def no_balls(model: Model) -> Balls:
     """Pairs of balls before any are listed."""
     begin = np.zeros(np.count_nonzero(model.ball) + 1, np.int64)
-    return balls_from(model, scratch.body, begin, np.zeros(0, np.uint32))
+    return balls_from(model, begin, np.zeros(0, np.uint32), False)
 
 
-def sort_rows(model: Model, state: State, scratch: Scratch, skin: float) -> Sorted:
-    """Sort the rows of the balls in space."""
-    bodies = np.flatnonzero(model.ball[:-1])
-    width = 2.0 * float(model.reach[bodies].max(initial=0.0)) + skin
-    cells = number(state.position, bodies, width)
+def sorted_balls(model: Model, state: State, skin: float) -> tuple[Sorted, Whole]:
+    """Return the balls' cells in rising order, and their present rows in that order."""
+    balls = np.flatnonzero(model.ball[:-1])
+    width = 2.0 * float(model.reach[balls].max(initial=0.0)) + skin
+    cells = number(state.motion, balls, width)
     order = np.argsort(cells, kind="stable")
-    count, n = len(bodies), len(scratch.body)
-    before = scratch.row.copy()
-    scratch.body[:count] = bodies[order]
-    scratch.row[scratch.body] = np.arange(n, dtype=np.uint32)
-    scratch.motion[:] = scratch.motion[before[scratch.body]]
-    return Sorted(cells[order], width)
+    return Sorted(cells[order], width), order
 
 
 def listed_balls(
-    model: Model, scratch: Scratch, around: Sorted, old: Balls, old_body: Short, skin: float
+    model: Model,
+    state: State,
+    around: Sorted,
+    old: Balls,
+    old_body: Whole,
+    skin: float,
+    asked: bool,
 ) -> Balls:
     """List anew all pairs of balls, and of balls and planes, nearer than the skin [m]."""
     begin = np.empty(len(around.cells) + 1, np.int64)
     partner = np.empty(2 * len(old.partner) + 64, np.uint32)
-    count = meet(model, scratch.motion, around.cells, skin, begin, partner)
+    count = meet(model, state.motion, around.cells, skin, begin, partner)
     if count > len(partner):
         partner = np.empty(count, np.uint32)
-        meet(model, scratch.motion, around.cells, skin, begin, partner)
-    new = balls_from(model, scratch.body.copy(), begin, partner[:count].copy())
-    carry(old, old_body, new, scratch.body)
+        meet(model, state.motion, around.cells, skin, begin, partner)
+    new = balls_from(model, begin, partner[:count].copy(), asked)
+    carry(old, old_body, new, state.body)
     return new
 
 
-def touched(model: Model, balls: Balls, scratch: Scratch) -> Touched:
+def touched(model: Model, state: State, balls: Balls) -> Touched:
     """List the pairs that touched in the last step."""
-    pairs, ground = np.flatnonzero(balls.held[:, 3]), len(scratch.body) - 1
+    pairs, ground = np.flatnonzero(balls.held[:, 3]), len(state.body) - 1
     row, partner = balls.row[pairs], balls.partner[pairs].astype(np.int64)
     on_ground = partner > ground
-    x, other = scratch.motion[row], scratch.motion[np.minimum(partner, ground)]
+    x, other = state.motion[row], state.motion[np.minimum(partner, ground)]
     way = x[:, :3] - other[:, :3]
     normal = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
     normal[on_ground] = model.plane[partner[on_ground] - ground - 1, :3]
     depth = balls.held[pairs, 3] ** -2
-    bodies = scratch.body[np.column_stack([row, np.minimum(partner, ground)])].astype(np.int64)
+    bodies = state.body[np.column_stack([row, np.minimum(partner, ground)])]
     point = x[:, :3] - (x[:, 3] - 0.5 * depth)[:, None] * normal
-    return Touched(bodies, point, normal, -balls.push[pairs, :3], depth)
+    return Touched(bodies, point, normal, balls.force[pairs], depth)

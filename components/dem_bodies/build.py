@@ -1,5 +1,6 @@
 """From parameters to arrays: mass, inertia, contact spheres and edges of each body."""
 
+from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ from quintet.components.dem_bodies import materials
 from quintet.components.dem_bodies.clump import union
 from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
 from quintet.components.dem_bodies.placement import reach, rotation, spheres
-from quintet.components.dem_bodies.state import Model, Numbers, State, Whole
+from quintet.components.dem_bodies.state import Model, Numbers, State, V, W, Whole
 
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
 # Pairs of corners that differ in one coordinate.
@@ -85,9 +86,14 @@ def law(a: Material, b: Material) -> Numbers:
     )
 
 
-def model(params: DemBodiesParams, solids: list[Solid]) -> Model:
-    """Arrays of all that never changes."""
-    bodies, planes = params.bodies, params.planes
+def balls_first(bodies: Sequence[Body]) -> list[int]:
+    """Bodies in the order of their rows at the start."""
+    return sorted(range(len(bodies)), key=lambda k: bodies[k].diameter is None)
+
+
+def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) -> Model:
+    """Arrays of all that never changes, of bodies in the order of their rows."""
+    planes = params.planes
     names = {name: k for k, name in enumerate(params.materials)}
     n = len(bodies) + 1
     half, rounding = np.zeros((n, 3)), np.zeros(n)
@@ -152,9 +158,9 @@ def isotropic(inertia: Numbers) -> bool:
     return bool(np.abs(inertia - inertia[0, 0] * np.eye(3)).max() <= 1e-14 * inertia[0, 0])
 
 
-def state(params: DemBodiesParams, solids: list[Solid]) -> State:
-    """Arrays of all that moves, as it is at the start."""
-    bodies, n = params.bodies, len(params.bodies) + 1
+def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> State:
+    """Arrays of all that moves, as it is at the start; `number` is that of each row's body."""
+    n = len(bodies) + 1
     spheres = sum(len(one.radii) for one in solids)
     spins, inverses = [], []
     for body, one in zip(bodies, solids, strict=True):
@@ -162,15 +168,21 @@ def state(params: DemBodiesParams, solids: list[Solid]) -> State:
         inertia = turn @ one.inertia @ turn.T
         spins.append(inertia @ np.array(body.angular_velocity))
         inverses.append(np.asarray(np.linalg.inv(inertia), np.float64))
-    still = [(0.0, 0.0, 0.0)]
     orientations = np.array([body.orientation for body in bodies] + [(1.0, 0.0, 0.0, 0.0)])
+    motion = np.zeros((n, 16))
+    motion[:-1, :3] = [body.position for body in bodies]
+    motion[:-1, 3] = [reach(body) for body in bodies]
+    motion[:-1, V : V + 3] = [body.velocity for body in bodies]
+    motion[:-1, W : W + 3] = [body.angular_velocity for body in bodies]
+    rows = np.array([*number, n - 1])
     return State(
-        position=np.array([body.position for body in bodies] + still),
-        velocity=np.array([body.velocity for body in bodies] + still),
+        body=rows,
+        row=np.argsort(rows),
+        motion=motion,
         orientation=orientations / np.linalg.norm(orientations, axis=1, keepdims=True),
         spin=np.array([*spins, np.zeros(3)]),
-        angular_velocity=np.array([body.angular_velocity for body in bodies] + still),
         contact=np.zeros((n, 6)),
+        before=np.zeros((n, 6)),
         load=np.zeros((n, 6)),
         axes=np.tile(np.eye(3).reshape(9), (n, 1)),
         mobility=np.array([packed(world) for world in inverses] + [np.zeros(6)]),

@@ -10,7 +10,7 @@ from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.crowd import crowd_step, crowding, crowding_of_balls
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
-from quintet.components.dem_bodies.state import empty_contacts, empty_scratch
+from quintet.components.dem_bodies.state import arrange, empty_contacts
 from quintet.components.shared.team import Team, threads_wanted
 from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
@@ -21,7 +21,13 @@ DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 # As ports.MOTION gives them; 2 is our own.
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
 FEWEST = 8  # blocks of rows that are worth handing to another thread
-KEPT = ("begin", "partner", "held", "roll")  # of the balls' pairs; the rest follows from these
+KEPT = (
+    "begin",
+    "partner",
+    "held",
+    "roll",
+    "force",
+)  # of the balls' pairs; the rest follows from these
 
 
 @dataclass(slots=True)
@@ -48,23 +54,25 @@ class DemBodies(Component):
         self.params = params
         self.gives = (MOTION, CONTACT) if params.contact_forces else (MOTION,)
         self.solids = [build.solid(body) for body in params.bodies]
-        self.model = build.model(params, self.solids)
-        self.state = build.state(params, self.solids)
-        self.scratch = empty_scratch(self.model)
-        self.balls = ball_search.no_balls(self.model, self.scratch)
+        number = build.balls_first(params.bodies)
+        bodies, solids = [params.bodies[k] for k in number], [self.solids[k] for k in number]
+        self.model = build.model(params, bodies, solids)
+        self.state = build.state(bodies, number, solids)
+        self.tally = np.zeros((rows.blocks_of(len(solids) + 1), rows.TALLIES))
+        self.balls = ball_search.no_balls(self.model)
         self.contacts = empty_contacts(0)
         self.loaded = False  # whether any body has a load
         self.books = Books()
         self.count = len(self.solids)
-        several = threads_wanted() > 1 and len(self.scratch.tally) >= 2 * FEWEST
+        several = threads_wanted() > 1 and len(self.tally) >= 2 * FEWEST
         self.rolling = bool(self.model.law[:, :, 4].any() and self.model.ball.any())
         self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.skin = SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
         self.damping = float(self.model.law[:, :, 2].max())  # ζ of the most damped contact
-        self.held = np.zeros(self.count + 1, np.int64)  # contacts of each body
-        self.before = np.zeros_like(self.state.contact)  # N and N m, as the last step began
+        self.held = np.zeros(self.count + 1, np.int64)  # contacts of each row
+        self.most = 0  # contacts that a row can have before pairs are listed anew
         self._move(0.0)
 
     def describe(self) -> Fields:
@@ -77,37 +85,45 @@ class DemBodies(Component):
 
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
+        if self.params.step is not None:
+            return self.params.step
         report, longest = self.state.report, self.params.longest_step
         stiffest = math.sqrt(report[rows.STIFFEST])  # rad/s
         ω = max(self.frequency, stiffest)
         contact = DURATION * SPEED_UP / ω / self.params.steps_per_contact
-        contact = min(contact, crowd_step(self._crowd(), stiffest, self.damping))
+        if crowd_step(self.most, stiffest, self.damping) < contact:  # else no need to count them
+            crowd = self._crowd(self.contacts.history, self.balls.held)
+            contact = min(contact, crowd_step(crowd, stiffest, self.damping))
         # Pairs that are not listed were further apart than the skin, and may have come nearer.
         gap = min(report[rows.GAP], self.skin - 2.0 * math.sqrt(report[rows.WAY]))
         speed = report[rows.FASTEST] + report[rows.HARDEST] * longest
         free = gap / (2.0 * speed) if speed > 0.0 else longest
         return float(min(longest, max(free, contact)))
 
-    def _crowd(self) -> int:
+    def _crowd(self, history: Array, held: Array) -> int:
+        """Most contacts of any row, of the pairs with a depth in `history` and in `held`."""
         pairs, model = self.contacts, self.model
         ends = (pairs.ends, pairs.begin, model.sphere_body, model.edge_ends)
-        crowding(pairs.history, *ends, self.held)
-        balls = (self.balls.row, self.balls.partner, self.balls.held)
-        return crowding_of_balls(*balls, self.scratch.body, self.held)
+        crowding(history, *ends, self.held)
+        return crowding_of_balls(self.balls.row, self.balls.partner, held, self.held)
+
+    def _crowd_listed(self) -> int:
+        return self._crowd(np.ones_like(self.contacts.history), np.ones_like(self.balls.held))
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; without them there is none."""
-        load = self.state.load
+        load, row = self.state.load, self.state.row[: self.count]
         force, torque = fields.get("load.force"), fields.get("load.torque")
-        load[: self.count, :3] = 0.0 if force is None else force
-        load[: self.count, 3:] = 0.0 if torque is None else torque
+        load[row, :3] = 0.0 if force is None else force
+        load[row, 3:] = 0.0 if torque is None else torque
         self.loaded = bool(load.any())
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, contacts, half kick."""
         report = self.state.report
         held = report[rows.ELASTIC]
-        self.before[:] = self.state.contact
+        if self.params.contact_forces:
+            self.state.before[:] = self.state.contact
         self._move(dt)
         self.books.time += dt
         self.books.given += float(report[rows.GIVEN])
@@ -126,76 +142,76 @@ class DemBodies(Component):
 
     def _move_by_passes(self, dt: float, limit: float) -> None:
         """Do as kernels.advance does, with the blocks of rows shared out among threads."""
-        model, state, scratch, loaded = self.model, self.state, self.scratch, self.loaded
-        team = self.team
-        blocks = len(scratch.tally)
-        team.run(passes.drift, blocks, model, state, scratch, dt, loaded)
-        if not passes.furthest(state, scratch) <= limit:
+        model, state, tally, loaded = self.model, self.state, self.tally, self.loaded
+        team, blocks = self.team, len(self.tally)
+        team.run(passes.drift, blocks, model, state, tally, dt, loaded)
+        if not passes.furthest(state, tally) <= limit:
             self._list()
-        team.run(passes.press_balls, blocks, model, self.balls, scratch, dt)
+        team.run(passes.press_balls, blocks, model, state, self.balls, tally, dt)
         if self.rolling:
-            team.run(rolling.resist, blocks, model, self.balls, scratch, dt)
+            team.run(rolling.resist, blocks, model, state, self.balls, tally, dt)
         passes.press_others(*self._arrays(), dt)
-        team.run(passes.finish, blocks, model, state, self.balls, scratch, dt, loaded)
-        passes.close(state, self.balls, scratch)
+        team.run(passes.finish, blocks, model, state, self.balls, tally, dt, loaded)
+        passes.close(state, tally)
 
-    def _arrays(self) -> tuple[rows.Model, rows.State, rows.Balls, rows.Contacts, rows.Scratch]:
-        return self.model, self.state, self.balls, self.contacts, self.scratch
+    def _arrays(self) -> tuple[rows.Model, rows.State, rows.Balls, rows.Contacts, Array]:
+        return self.model, self.state, self.balls, self.contacts, self.tally
 
     def _list(self) -> None:
         if not np.isfinite(self.state.position).all():
             self._refuse(0.0)
-        self.balls, self.contacts = search.listed(
-            self.model, self.state, self.scratch, self.balls, self.contacts, self.skin
-        )
+        pairs, asked = (self.balls, self.contacts), self.params.contact_forces
+        self.balls, self.contacts = search.listed(self.model, self.state, *pairs, self.skin, asked)
+        self.most = self._crowd_listed()
         self.state.report[rows.WAY] = 0.0
 
     def _refuse(self, dt: float) -> None:
         """End the run with the body that is wrong and what to do."""
         after = f"dem_bodies, t = {self.books.time + dt:.6g} s"
         s, m = self.state, self.count
-        good = np.isfinite(np.hstack([s.position, s.velocity, s.spin]).sum(axis=1))
+        good = np.isfinite(s.motion.sum(axis=1))[s.row]
         if not good.all():
             k = int(np.argmin(good))
+            a = s.row[k]
             raise StepError(
-                f"{after}: the state must stay finite; body {k} is at {s.position[k].tolist()} m "
-                f"with {s.velocity[k].tolist()} m/s under a load of {s.load[k].tolist()} N, N m. "
+                f"{after}: the state must stay finite; body {k} is at {s.position[a].tolist()} m "
+                f"with {s.velocity[a].tolist()} m/s under a load of {s.load[a].tolist()} N, N m. "
                 "Look at the load it was given, or make steps_per_contact larger."
             )
         deepest, (i, j) = s.report[rows.DEEPEST], self._pair(int(s.report[rows.WHICH]))
         other = f"body {j}" if j < m else "a plane"
         raise StepError(
             f"{after}: a contact may be {DEEPEST} of its radius deep; body {i} is {deepest:.3g} of "
-            f"it deep in {other}, near {s.position[i].round(4).tolist()} m. Make young or rounding "
-            "larger, or speed nearer to that of the impacts."
+            f"it deep in {other}, near {s.position[s.row[i]].round(4).tolist()} m. Make young or "
+            "rounding larger, or speed nearer to that of the impacts."
         )
 
     def _pair(self, which: int) -> tuple[int, int]:
         """Bodies of a pair as the report numbers them; planes are beyond all bodies."""
         count = len(self.balls.partner)
         if which < count:
-            first, second = ball_search.ends(self.balls, self.scratch.body)
+            first, second = ball_search.ends(self.balls, self.state.body)
             return int(first[which]), int(second[which])
         touching = self.contacts.touching
-        i, j = touching[touching[:, 0] == which - count][0, 1:3]
+        i, j = self.state.body[touching[touching[:, 0] == which - count][0, 1:3]]
         return int(i), int(j)
 
     def give(self) -> Fields:
         """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
-        s, m = self.state, self.count
+        s, row = self.state, self.state.row[: self.count]
         motion = {
-            "motion.position": s.position[:m].copy(),
-            "motion.velocity": s.velocity[:m].copy(),
-            "motion.orientation": s.orientation[:m].copy(),
-            "motion.angular_velocity": s.angular_velocity[:m].copy(),
+            "motion.position": s.position[row],
+            "motion.velocity": s.velocity[row],
+            "motion.orientation": s.orientation[row],
+            "motion.angular_velocity": s.angular_velocity[row],
         }
         if not self.params.contact_forces:
             return motion
-        mean = 0.5 * (self.before + s.contact)  # gives the change of momentum to rounding
+        mean = 0.5 * (s.before + s.contact)[s.row]  # gives the change of momentum to rounding
         return {**motion, "contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
 
     def contact_points(self) -> Fields:
-        """List what touched in the last step: nothing is computed for it before it is asked for.
+        """List what touched in the last step, of bodies with `contact_forces`.
 
         Returns
         -------
@@ -204,10 +220,12 @@ class DemBodies(Component):
         force : (k, 3) N on the first body
         depth : (k,) m, overlap
         """
+        if not self.params.contact_forces:
+            raise ValueError("contact_forces must be true to list contacts; found false. Set it.")
         other = self.contacts
         count = int(self.state.report[rows.TOUCHING])
-        geometry, bodies = other.geometry[:count], other.touching[:count, 1:3]
-        found = ball_search.touched(self.model, self.balls, self.scratch)
+        geometry, bodies = other.geometry[:count], self.state.body[other.touching[:count, 1:3]]
+        found = ball_search.touched(self.model, self.state, self.balls)
         return {
             "bodies": np.vstack([found.bodies, bodies]),
             "point": np.vstack([found.point, geometry[:, 3:6]]),
@@ -221,8 +239,6 @@ class DemBodies(Component):
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         kept["pairs.key"] = self.contacts.key.copy()
         kept["pairs.history"] = self.contacts.history.copy()
-        kept["step.before"] = self.before.copy()
-        kept["rows.body"] = self.scratch.body.astype(np.int64)
         kept |= {f"balls.{name}": getattr(self.balls, name).copy() for name in KEPT}
         kept["balls.partner"] = self.balls.partner.astype(np.int64)  # messages know no uint32
         books = self.books
@@ -231,32 +247,34 @@ class DemBodies(Component):
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
+        balls = np.count_nonzero(self.model.ball)
+        arrange(self.model, self.state, self.state.row[state["body"][:balls]])
         for name, array in self.state._asdict().items():
             array[:] = state[name]
         kept = empty_contacts(len(state["pairs.key"]))
         kept.key[:] = state["pairs.key"]
         kept.history[:] = state["pairs.history"]
         self.contacts = search.contacts_from(kept.key, kept)
-        self.before[:] = state["step.before"]
-        self.scratch.body[:] = state["rows.body"]
-        self.scratch.row[self.scratch.body] = np.arange(self.count + 1)
         begin, partner = np.array(state["balls.begin"]), state["balls.partner"].astype(np.uint32)
-        self.balls = ball_search.balls_from(self.model, self.scratch.body, begin, partner)
-        self.balls.held[:] = state["balls.held"]
-        self.balls.roll[:] = state["balls.roll"]
+        asked = self.params.contact_forces
+        self.balls = ball_search.balls_from(self.model, begin, partner, asked)
+        for name in KEPT[2:]:
+            getattr(self.balls, name)[:] = state[f"balls.{name}"]
+        self.most = self._crowd_listed()
         self.loaded = bool(self.state.load.any())
         self.books = Books(*state["books"].tolist())
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the bodies; internal is the contacts' elastic energy."""
-        s, m, mass = self.state, self.count, self.mass
-        momentum = mass[:, None] * s.velocity[:m]
+        s, row, mass = self.state, self.state.row[: self.count], self.mass
+        x, momentum = s.position[row], mass[:, None] * s.velocity[row]
+        spin = kernels.spins(self.model, s)[row]
         return Totals(
             mass=float(mass.sum()),
             momentum=momentum.sum(axis=0),
-            angular_momentum=(s.spin[:m] + np.cross(s.position[:m], momentum)).sum(axis=0),
+            angular_momentum=(spin + np.cross(x, momentum)).sum(axis=0),
             kinetic=kernels.kinetic(self.model, s),
-            potential=-float(mass @ (s.position[:m] @ self.model.fall[0])),
+            potential=-float(mass @ (x @ self.model.fall[0])),
             internal=float(s.report[rows.ELASTIC]),
         )
 
@@ -265,18 +283,18 @@ class DemBodies(Component):
         points: list[Array] = []
         owners: list[int] = []
         faces: list[Array] = []
-        for k, body in enumerate(self.params.bodies):
+        for k, (body, a) in enumerate(zip(self.params.bodies, self.state.row, strict=False)):
             corners = self.solids[k].centres
             if body.size is not None:
                 corners = build.CORNERS * 0.5 * np.array(body.size)
                 faces.append(build.FACES + len(owners))
-            axes = self.state.axes[k].reshape(3, 3)
-            points.append(self.state.position[k] + corners @ axes.T)
+            axes = self.state.axes[a].reshape(3, 3)
+            points.append(self.state.position[a] + corners @ axes.T)
             owners += [k] * len(corners)
         where, owner = np.vstack(points), np.array(owners)
-        arm = where - self.state.position[owner]
-        spun = np.cross(self.state.angular_velocity[owner], arm)
-        shown = {"points": where, "body": owner, "velocity": self.state.velocity[owner] + spun}
+        row = self.state.row[owner]
+        spun = np.cross(self.state.angular_velocity[row], where - self.state.position[row])
+        shown = {"points": where, "body": owner, "velocity": self.state.velocity[row] + spun}
         return shown | ({"cells": np.vstack(faces)} if faces else {})
 
     def items(self) -> int:

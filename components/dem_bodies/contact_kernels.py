@@ -19,6 +19,7 @@ from quintet.components.dem_bodies.state import (
     DEEPEST,
     EDGE,
     ELASTIC,
+    END_V,
     GAP,
     PLANE,
     SPHERE,
@@ -27,8 +28,8 @@ from quintet.components.dem_bodies.state import (
     Contacts,
     Model,
     Numbers,
-    Scratch,
     State,
+    V,
     Whole,
 )
 from quintet.components.shared.rotations import INNER, Vector, cross, dot, less
@@ -89,7 +90,7 @@ def find(model: Model, state: State, contacts: Contacts, ahead: int) -> int:
     for k in range(begin[BOX], begin[BOX + 1]):
         s, j = ends[k, 0], ends[k, 1]
         i, r = body[s], size[s]
-        law, q, o = material[i] * kinds + material[j], round_[j], vector(state.position, j)
+        law, q, o = material[i] * kinds + material[j], round_[j], vector(state.motion, j)
         half, low = vector(model.half, j), min(r, q)
         found = on_box(vector(centre, s), r, o, axes_of(state.axes, j), half, q)
         count = note(report, history, touching, geometry, count, k, ahead, i, j, law, found, r, low)
@@ -110,7 +111,7 @@ def find(model: Model, state: State, contacts: Contacts, ahead: int) -> int:
 
 @njit(**INNER)
 def slip(motion: Numbers, a: int, first: int, arm: Vector) -> Vector:
-    """Velocity [m/s] of row a's point at an arm from its centre; `first` 4 mean, 10 at the end."""
+    """Velocity [m/s] of row a's point at an arm from its centre; `first` V mean, END_V at end."""
     turn = (motion[a, first + 3], motion[a, first + 4], motion[a, first + 5])
     x, y, z = cross(turn, arm)
     return motion[a, first] + x, motion[a, first + 1] + y, motion[a, first + 2] + z
@@ -139,23 +140,21 @@ def grown(history: Numbers, pair: int, depth: float, closing: float, dt: float) 
 
 
 @njit(**INNER)
-def press(
-    model: Model, state: State, contacts: Contacts, scratch: Scratch, count: int, dt: float
-) -> None:
+def press(model: Model, state: State, contacts: Contacts, count: int, dt: float) -> None:
     """Forces and torques of all noted contacts: what one body gets the other loses."""
     table, inverse_mass, mobility = model.law, model.inverse_mass, state.mobility
-    position, motion, sums, row = state.position, scratch.motion, scratch.sums, scratch.row
+    motion, sums = state.motion, state.contact
     touching, geometry, history = contacts.touching, contacts.geometry, contacts.history
     kinds, edges = table.shape[0], contacts.begin[EDGE]
     energy, stiffest = state.report[ELASTIC], state.report[STIFFEST]
     for k in range(count):
         pair, i, j, law = touching[k, 0], touching[k, 1], touching[k, 2], touching[k, 3]
         n, depth, radius = vector(geometry, k), geometry[k, 6], geometry[k, 7]
-        point, a, b = (geometry[k, 3], geometry[k, 4], geometry[k, 5]), row[i], row[j]
-        arm_i, arm_j = less(point, vector(position, i)), less(point, vector(position, j))
+        point = (geometry[k, 3], geometry[k, 4], geometry[k, 5])
+        arm_i, arm_j = less(point, vector(motion, i)), less(point, vector(motion, j))
         yield_i = yielding(inverse_mass[i], mobility, i, arm_i, n)
         mass = 1.0 / (yield_i + yielding(inverse_mass[j], mobility, j, arm_j, n))
-        end = less(slip(motion, a, 10, arm_i), slip(motion, b, 10, arm_j))
+        end = less(slip(motion, i, END_V, arm_i), slip(motion, j, END_V, arm_j))
         before, bearing = history[pair, 3] - history[pair, 4], depth
         if pair >= edges:
             bearing = grown(history, pair, depth, -dot(end, n), dt)
@@ -166,7 +165,7 @@ def press(
             continue
         p, q = law // kinds, law % kinds
         c = constants(table[p, q, 0], table[p, q, 1], table[p, q, 2], table[p, q, 3], radius, mass)
-        mean = less(slip(motion, a, 4, arm_i), slip(motion, b, 4, arm_j))
+        mean = less(slip(motion, i, V, arm_i), slip(motion, j, V, arm_j))
         weight = 1.0 / math.sqrt(before) if before > 0.0 else 0.0
         root = math.sqrt(bearing)
         roots = (root, math.sqrt(root), 1.0 / root)
@@ -185,10 +184,10 @@ def press(
         torque_i, torque_j = cross(arm_i, force), cross(arm_j, force)
         for d in range(3):
             history[pair, d], geometry[k, 8 + d] = held[d], force[d]
-            sums[a, d] += force[d]
-            sums[b, d] -= force[d]
-            sums[a, 3 + d] += torque_i[d]
-            sums[b, 3 + d] -= torque_j[d]
+            sums[i, d] += force[d]
+            sums[j, d] -= force[d]
+            sums[i, 3 + d] += torque_i[d]
+            sums[j, 3 + d] -= torque_j[d]
         energy += elastic
         stiffest = max(stiffest, c[5] * root)
     state.report[ELASTIC], state.report[STIFFEST] = energy, stiffest

@@ -30,13 +30,13 @@ def crowding(
 
 
 @njit(**PURE)
-def crowding_of_balls(row: Short, partner: Short, held: Numbers, body: Short, count: Whole) -> int:
+def crowding_of_balls(row: Short, partner: Short, held: Numbers, count: Whole) -> int:
     """Add the contacts of balls to `count` (n,); return the largest of any body."""
     for k in range(row.shape[0]):
         if held[k, 3] > 0.0:
-            count[body[row[k]]] += 1
-            if partner[k] < body.shape[0]:
-                count[body[partner[k]]] += 1
+            count[row[k]] += 1
+            if partner[k] < count.shape[0]:
+                count[partner[k]] += 1
     return int(count.max())
 
 

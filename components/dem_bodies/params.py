@@ -131,6 +131,7 @@ class DemBodiesParams:
     speed: Positive = 1.0  # m/s, of the impacts to be expected
     steps_per_contact: Annotated[int, Field(ge=10)] = 40  # in the duration of such an impact
     longest_step: Positive = 1e-3  # s, while nothing is about to touch
+    step: Positive | None = None  # s, in place of the stable one: to see where that ends
     contact_forces: bool = False  # whether they are given, as port `contact`
 
     def __post_init__(self) -> None:

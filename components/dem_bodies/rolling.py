@@ -17,10 +17,19 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.ball_kernels import END_V, V
 from quintet.components.dem_bodies.geometry import scaled, three, vector
 from quintet.components.dem_bodies.laws import carried
-from quintet.components.dem_bodies.state import BLOCK, ELASTIC, Balls, Model, Scratch
+from quintet.components.dem_bodies.state import (
+    BLOCK,
+    BORNE,
+    ELASTIC,
+    END_W,
+    Balls,
+    Model,
+    Numbers,
+    State,
+    W,
+)
 from quintet.components.shared.rotations import INNER, PURE, Vector, beside, dot, less
 
 DASHPOT = 0.3  # η, share of critical damping; Ai et al. use the same
@@ -35,9 +44,9 @@ def inertia(model: Model, i: int) -> float:
 
 
 @njit(**INNER)
-def direction(model: Model, scratch: Scratch, a: int, b: int) -> Vector:
+def direction(model: Model, motion: Numbers, a: int, b: int) -> Vector:
     """Normal of a pair, to row a from row b or from a plane."""
-    motion, rows = scratch.motion, scratch.motion.shape[0]
+    rows = motion.shape[0]
     if b >= rows:
         return vector(model.plane, b - rows)
     d = less(vector(motion, a), vector(motion, b))
@@ -61,18 +70,22 @@ def yielded(spring: Vector, dashpot: Vector, limit: float) -> tuple[Vector, Vect
 
 
 @njit(**PURE)
-def resist(first: int, last: int, model: Model, balls: Balls, scratch: Scratch, dt: float) -> None:
+def resist(
+    first: int, last: int, model: Model, state: State, balls: Balls, tally: Numbers, dt: float
+) -> None:
     """Add moments against rolling to the pairs of the rows of blocks [first, last)."""
-    motion, body, count = scratch.motion, scratch.body, balls.begin.shape[0] - 1
+    motion, contact, count = state.motion, state.contact, balls.begin.shape[0] - 1
     rows, ground = motion.shape[0], motion.shape[0] - 1
     for block in range(first, last):
-        energy, end = 0.0, min((block + 1) * BLOCK, count)
+        energy, end, slot = 0.0, min((block + 1) * BLOCK, count), balls.leave[block]
         for k in range(balls.begin[min(block * BLOCK, count)], balls.begin[end]):
+            leaves = (block + 1) * BLOCK <= balls.partner[k] < rows
+            slot += leaves
             if balls.held[k, 3] == 0.0:
                 balls.roll[k] = 0.0
                 continue
-            a, b = balls.row[k], min(balls.partner[k], ground)
-            i, j, n = body[a], body[b], direction(model, scratch, a, balls.partner[k])
+            i, j = balls.row[k], min(balls.partner[k], ground)
+            n = direction(model, motion, i, balls.partner[k])
             other, radius = model.material[j], model.reach[i]
             if balls.partner[k] >= rows:
                 other = model.plane_material[balls.partner[k] - rows]
@@ -84,15 +97,20 @@ def resist(first: int, last: int, model: Model, balls: Balls, scratch: Scratch, 
             c = balls.constants[balls.law[k]]
             stiffness = 2.25 * 1.5 * c[0] / balls.held[k, 3] * reach * reach
             damping = 2.0 * DASHPOT * math.sqrt(stiffness / (inertia(model, i) + inertia(model, j)))
-            limit = reach * max(0.0, -dot(vector(balls.push, k), n))
-            mean = across(less(three(motion, a, V + 3), three(motion, b, V + 3)), n)
-            after = across(less(three(motion, a, END_V + 3), three(motion, b, END_V + 3)), n)
+            limit = reach * max(0.0, dot(vector(balls.force, k), n))
+            mean = across(less(three(motion, i, W), three(motion, j, W)), n)
+            after = across(less(three(motion, i, END_W), three(motion, j, END_W)), n)
             spring = carried(vector(balls.roll, k), n, 1.0)
             spring = beside(spring, -stiffness * dt, mean)
             moment, spring = yielded(spring, scaled(damping, after), limit)
             for d in range(3):
                 balls.roll[k, d] = spring[d]
-                scratch.sums[a, 3 + d] += moment[d]
-                balls.push[k, 3 + d] -= moment[d]
+                contact[i, 3 + d] += moment[d]
+                if leaves:
+                    balls.push[slot - 1, 3 + d] -= moment[d]
+                elif j < ground:
+                    contact[j, 3 + d] -= moment[d]
+                else:
+                    tally[block, BORNE + 3 + d] -= moment[d]
             energy += 0.5 * dot(spring, spring) / stiffness
-        scratch.tally[block, ELASTIC] += energy
+        tally[block, ELASTIC] += energy

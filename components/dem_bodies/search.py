@@ -10,7 +10,7 @@ from numba import njit
 from quintet.components.dem_bodies.ball_search import (
     Sorted,
     listed_balls,
-    sort_rows,
+    sorted_balls,
 )
 from quintet.components.dem_bodies.cells import BITS, cell_of, number
 from quintet.components.dem_bodies.geometry import (
@@ -31,10 +31,9 @@ from quintet.components.dem_bodies.state import (
     Contacts,
     Model,
     Numbers,
-    Scratch,
-    Short,
     State,
     Whole,
+    arrange,
     empty_contacts,
 )
 from quintet.components.shared.rotations import INNER, PURE, dot, less
@@ -61,7 +60,7 @@ def list_spheres_of_box(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
     """List the spheres of body i that are near the box j."""
-    r, o = axes_of(state.axes, j), vector(state.position, j)
+    r, o = axes_of(state.axes, j), vector(state.motion, j)
     half, q = vector(model.half, j), model.rounding[j]
     for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
         if on_box(vector(state.centre, s), model.sphere_radius[s], o, r, half, q)[0] < skin:
@@ -110,7 +109,7 @@ def list_near(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
     """List what is near of two bodies, if they are near one another."""
-    d = less(vector(state.position, i), vector(state.position, j))
+    d = less(vector(state.motion, i), vector(state.motion, j))
     near = model.reach[i] + model.reach[j] + skin
     if dot(d, d) < near * near:
         return list_bodies(model, state, min(i, j), max(i, j), skin, keys, count)
@@ -119,36 +118,36 @@ def list_near(
 
 @njit(**INNER)
 def list_balls(
-    model: Model, state: State, i: int, cells: Whole, body: Short, width: float, skin: float,
-    keys: Whole, count: int,
+    model: Model, state: State, i: int, cells: Whole, width: float, skin: float, keys: Whole,
+    count: int,
 ) -> int:  # fmt: skip
-    """List what body i is near of balls, which are sorted by cells (b,) of a width [m]."""
-    x, far = vector(state.position, i), model.reach[i] + 0.5 * width + 0.5 * skin
+    """List what row i is near of balls, which are sorted by cells (b,) of a width [m]."""
+    x, far = vector(state.motion, i), model.reach[i] + 0.5 * width + 0.5 * skin
     for z in range(cell_of(x[2] - far, width), cell_of(x[2] + far, width) + 1):
         for y in range(cell_of(x[1] - far, width), cell_of(x[1] + far, width) + 1):
             row = (z << 2 * BITS) + (y << BITS)
             last = np.searchsorted(cells, row + cell_of(x[0] + far, width), side="right")
             for b in range(np.searchsorted(cells, row + cell_of(x[0] - far, width)), last):
-                count = list_near(model, state, i, body[b], skin, keys, count)
+                count = list_near(model, state, i, b, skin, keys, count)
     return count
 
 
 @njit(**PURE)
 def list_pairs(
-    model: Model, state: State, cells: Whole, order: Whole, ball_cells: Whole, body: Short,
-    width: float, skin: float, keys: Whole,
+    model: Model, state: State, cells: Whole, order: Whole, ball_cells: Whole, width: float,
+    skin: float, keys: Whole,
 ) -> int:  # fmt: skip
     """Write the keys of all pairs nearer than the skin [m]; return their number.
 
-    `cells` (o,) is sorted, `order` (o,) are the bodies in that order; `ball_cells` (b,) and
-    `body` (n,) are those of the balls, and `width` [m] that of their cells. If there is not room
-    for all keys, only their number is right.
+    `cells` (o,) is sorted, `order` (o,) are the rows in that order; `ball_cells` (b,) are those
+    of the balls, and `width` [m] that of their cells. If there is not room for all keys, only
+    their number is right.
     """
     count = 0
     for a in range(order.shape[0]):
         i = order[a]
         count = list_planes(model, state, i, skin, keys, count)
-        count = list_balls(model, state, i, ball_cells, body, width, skin, keys, count)
+        count = list_balls(model, state, i, ball_cells, width, skin, keys, count)
         for z in range(-1, 2):
             for y in range(-1, 2):
                 row = cells[a] + (z << 2 * BITS) + (y << BITS)
@@ -181,30 +180,41 @@ def contacts_from(keys: Whole, old: Contacts) -> Contacts:
     return new
 
 
+def renamed(old: Contacts, order: Whole) -> Contacts:
+    """Keep the history of pairs with balls, whose present rows (b,) are put in a new order."""
+    key, mask = old.key.copy(), (1 << FIRST) - 1
+    first = key >> FIRST & mask
+    ball = np.flatnonzero((key >> KIND < EDGE) & (first < len(order)))
+    key[ball] += (np.argsort(order)[first[ball]] - first[ball]) << FIRST
+    rising = np.argsort(key)
+    return old._replace(key=key[rising], history=old.history[rising])
+
+
 def listed_others(
-    model: Model, state: State, scratch: Scratch, around: Sorted, old: Contacts, skin: float
+    model: Model, state: State, around: Sorted, old: Contacts, skin: float
 ) -> Contacts:
     """List anew all pairs nearer than the skin [m] that are not of balls and planes alone."""
     width = 2.0 * float(model.reach[model.others].max(initial=0.0)) + skin
-    cells = number(state.position, model.others, width)
+    cells = number(state.motion, model.others, width)
     order = np.argsort(cells, kind="stable")
-    given = (model, state, cells[order], model.others[order], around.cells, scratch.body)
+    given = (model, state, cells[order], model.others[order], around.cells, around.width, skin)
     keys = np.empty(2 * len(old.key) + 64, np.int64)
-    count = list_pairs(*given, around.width, skin, keys)
+    count = list_pairs(*given, keys)
     if count > len(keys):
         keys = np.empty(count, np.int64)
-        list_pairs(*given, around.width, skin, keys)
+        list_pairs(*given, keys)
     return contacts_from(np.sort(keys[:count]), old)
 
 
 def listed(
-    model: Model, state: State, scratch: Scratch, balls: Balls, contacts: Contacts, skin: float
+    model: Model, state: State, balls: Balls, contacts: Contacts, skin: float, asked: bool
 ) -> tuple[Balls, Contacts]:
-    """List anew all pairs nearer than the skin [m], and sort the rows."""
-    body = scratch.body.copy()
-    around = sort_rows(model, state, scratch, skin)
-    balls = listed_balls(model, scratch, around, balls, body, skin)
-    contacts = listed_others(model, state, scratch, around, contacts, skin)
+    """Sort the rows, and list anew all pairs nearer than the skin [m]."""
+    body = state.body.copy()
+    around, order = sorted_balls(model, state, skin)
+    arrange(model, state, order)
+    balls = listed_balls(model, state, around, balls, body, skin, asked)
+    contacts = listed_others(model, state, around, renamed(contacts, order), skin)
     mark(model, state)
     return balls, contacts
 
@@ -215,5 +225,5 @@ def mark(model: Model, state: State) -> None:
     for i in range(model.reach.shape[0]):
         for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
             for k in range(3):
-                at = state.position[i, k] if model.ball[i] else state.centre[s, k]
+                at = state.motion[i, k] if model.ball[i] else state.centre[s, k]
                 state.listed[s, k] = at

@@ -1,8 +1,10 @@
 """All arrays of the bodies: what stays as it was built, what moves, and what touches.
 
-Named tuples, because kernels take each as a whole. The last row of what is listed per body is
-the ground: it never moves, and takes up what the planes bear. A body that is one sphere is called
-a ball: it needs neither axes nor a world inertia, and its contacts have a list of their own.
+Named tuples, because kernels take each as a whole. A body that is one sphere is called a ball: it
+needs neither axes nor a world inertia, and its contacts have a list of their own. What is listed
+per body is in rows: balls come first, sorted in space whenever pairs are listed, so that what
+touches is near in memory too; then all other bodies; and last the ground, which never moves and
+takes up what the planes bear. Only ports know bodies by the numbers that the scene gives them.
 """
 
 from typing import NamedTuple
@@ -19,21 +21,21 @@ KIND, FIRST = 60, 30  # bits of a pair's key: kind, first, second; sorted keys k
 
 
 class Model(NamedTuple):
-    """What never changes; m bodies and the ground make n = m + 1 rows."""
+    """What never changes but for the order of its rows; m bodies and the ground are n = m + 1."""
 
     inverse_mass: Numbers  # (n,) 1/kg
     inverse_inertia: Numbers  # (n, 6) 1/(kg m2), body axes: xx yy zz xy xz yz
     inverse_turn: Numbers  # (n,) 1/(kg m2), that of balls
     isotropic: NDArray[np.bool_]  # (n,) whether inertia is the same about all axes
     ball: NDArray[np.bool_]  # (n,) whether the body is one sphere
-    others: Whole  # (o,) bodies that are no balls
+    others: Whole  # (o,) rows of the bodies that are no balls
     half: Numbers  # (n, 3) m, half edges of a box less its rounding; 0 for others
     rounding: Numbers  # (n,) m, of a box's edges; 0 for others
     reach: Numbers  # (m,) m, radius of a sphere about the centre that holds the body
     material: Whole  # (n,) number of the material
     kind: Whole  # (n,) number that bodies of one radius, mass and material share
-    sphere_from: Whole  # (n + 1,) spheres of body i: sphere_from[i] ... sphere_from[i + 1] - 1
-    sphere_body: Whole  # (s,)
+    sphere_from: Whole  # (n + 1,) spheres of row i: sphere_from[i] ... sphere_from[i + 1] - 1
+    sphere_body: Whole  # (s,) row; that of a ball's sphere has its own number
     sphere_centre: Numbers  # (s, 3) m, body axes
     sphere_radius: Numbers  # (s,) m
     edge_from: Whole  # (n + 1,) as sphere_from, of edges
@@ -47,12 +49,14 @@ class Model(NamedTuple):
 class State(NamedTuple):
     """What moves."""
 
-    position: Numbers  # (n, 3) m
-    velocity: Numbers  # (n, 3) m/s
+    body: Whole  # (n,) body of each row
+    row: Whole  # (n,) row of each body
+    # Position [m], radius [m]; velocity and angular velocity; both as foreseen at the step's end.
+    motion: Numbers  # (n, 16)
     orientation: Numbers  # (n, 4) w x y z, body -> world
-    spin: Numbers  # (n, 3) kg m2/s, angular momentum about the centre
-    angular_velocity: Numbers  # (n, 3) rad/s
+    spin: Numbers  # (n, 3) kg m2/s, angular momentum about the centre; of balls not kept up
     contact: Numbers  # (n, 6) N and N m: force and torque of all contacts at the present time
+    before: Numbers  # (n, 6) N and N m, that of the last step's beginning, where it is asked for
     load: Numbers  # (n, 6) N and N m, given from outside
     axes: Numbers  # (n, 9) rotation matrices, by rows; of balls not kept up
     mobility: Numbers  # (n, 6) 1/(kg m2), inverse inertia in world axes
@@ -60,23 +64,27 @@ class State(NamedTuple):
     listed: Numbers  # (s, 3) m, where they were when pairs were last listed
     report: Numbers  # (11,) on the last step, see below
 
+    @property
+    def position(self) -> Numbers:
+        """Positions (n, 3) [m]."""
+        return self.motion[:, :3]
 
-class Scratch(NamedTuple):
-    """What kernels hand to one another within a step, by rows: balls sorted in space come first."""
+    @property
+    def velocity(self) -> Numbers:
+        """Velocities (n, 3) [m/s]."""
+        return self.motion[:, V : V + 3]
 
-    body: Short  # (n,) body of each row; those that are no balls come last, and then the ground
-    row: Short  # (n,) row of each body
-    # Position [m], radius [m]; velocity and angular velocity: the step's mean, foreseen at its end.
-    motion: Numbers  # (n, 16)
-    sums: Numbers  # (n, 6) N and N m, contact forces that rows' own pairs brought them
-    tally: Numbers  # (blocks, TALLIES) what a block of rows adds to the report
+    @property
+    def angular_velocity(self) -> Numbers:
+        """Angular velocities (n, 3) [rad/s]."""
+        return self.motion[:, W : W + 3]
 
 
 class Balls(NamedTuple):
     """Pairs of a ball and a ball of a later row, or a plane, that may touch; by the ball's row.
 
-    What a pair does to its later row is kept beside it and gathered afterwards, so that threads
-    share out the rows without meeting, and sums have one order.
+    What a pair does to a row of a later block is kept and gathered afterwards, so that threads
+    share out the blocks without meeting, and sums have one order.
     """
 
     begin: Whole  # (b + 1,) pairs of row a: begin[a] ... begin[a + 1] - 1
@@ -86,11 +94,11 @@ class Balls(NamedTuple):
     constants: Numbers  # (laws, 7) see laws
     held: Numbers  # (pairs, 4) elastic tangential force on the ball [N], 1/√δ; 0 if apart
     roll: Numbers  # (pairs, 3) N m, elastic moment against rolling; (0, 3) if nothing resists it
-    push: Numbers  # (pairs, 6) N and N m, force and torque on the partner
-    come: (
-        Whole  # (n + 1,) pairs whose partner is row a: coming[come[a]] ... coming[come[a + 1] - 1]
-    )
-    coming: Short  # (pairs,)
+    force: Numbers  # (pairs, 3) N, on the ball; (0, 3) if nothing asks for it
+    push: Numbers  # (pushes, 6) N and N m, on partners in later blocks, in the order of the pairs
+    leave: Whole  # (blocks + 1,) pushes of block b: leave[b] ... leave[b + 1] - 1
+    come: Whole  # (n + 1,) those on row a: coming[come[a]] ... coming[come[a + 1] - 1]
+    coming: Short  # (pushes,)
 
 
 class Contacts(NamedTuple):
@@ -119,10 +127,12 @@ GIVEN = 8  # J, work of the loads in the step
 WAY = 9  # m2, square of the longest way of any sphere since pairs were listed
 TOUCHING = 10  # number of contacts that touch, those of balls not counted
 
-# What else a block tallies: squares of the largest speeds and accelerations.
+# What else a block of rows tallies: squares of the largest speeds and accelerations; force and
+# torque on the ground.
 MOVING, SPINNING, PULLED, SPUN, CURVED = range(11, 16)
-TALLIES = 16
+BORNE, TALLIES = 16, 22
 BLOCK = 512  # rows
+V, W, END_V, END_W = 4, 7, 10, 13  # columns of motion
 
 
 def blocks_of(rows: int) -> int:
@@ -142,14 +152,16 @@ def empty_contacts(pairs: int) -> Contacts:
     )
 
 
-def empty_scratch(model: Model) -> Scratch:
-    """Rows in the order of the bodies, balls first."""
-    n = len(model.ball)
-    body = np.concatenate([np.flatnonzero(model.ball), model.others, [n - 1]]).astype(np.uint32)
-    return Scratch(
-        body=body,
-        row=np.argsort(body).astype(np.uint32),
-        motion=np.zeros((n, 16)),
-        sums=np.zeros((n, 6)),
-        tally=np.zeros((blocks_of(n), TALLIES)),
-    )
+def arrange(model: Model, state: State, order: Whole) -> None:
+    """Put the rows of the balls in a new order, given by their present rows (b,)."""
+    of_model = (
+        model.inverse_mass, model.inverse_inertia, model.inverse_turn, model.reach,
+        model.material, model.kind, model.sphere_radius,
+    )  # fmt: skip
+    of_state = (
+        state.body, state.motion, state.orientation, state.contact, state.before, state.load,
+        state.mobility, state.centre,
+    )  # fmt: skip
+    for array in of_model + of_state:
+        array[: len(order)] = array[order]
+    state.row[state.body] = np.arange(len(state.body))

@@ -55,12 +55,9 @@ def midpoint(inverse: Numbers, i: int, q: Quaternion, spin: Vector, half: float)
 
 
 @njit(**INNER)
-def spun(model: Model, state: State, i: int) -> Vector:
-    """Angular velocity [rad/s] of body i with its present angular momentum and axes."""
+def spun(state: State, i: int) -> Vector:
+    """Angular velocity [rad/s] of a body that is no ball, with its present angular momentum."""
     x, y, z = vector(state.spin, i)
-    if model.ball[i]:
-        inverse = model.inverse_turn[i]
-        return inverse * x, inverse * y, inverse * z
     return times(state.mobility, i, x, y, z)
 
 

@@ -23,7 +23,8 @@ def crowd(seed=0, count=9000, **given):
     ]
     normals = np.eye(3).tolist()
     stuff = {"a": material(young=5e6, friction=0.5, **given)}
-    return build(bodies, stuff, planes=[FLOOR | {"normal": n} for n in normals], speed=2.0)
+    planes = [FLOOR | {"normal": n} for n in normals]
+    return build(bodies, stuff, planes=planes, speed=2.0, contact_forces=True)
 
 
 @pytest.fixture(scope="module")
@@ -51,8 +52,11 @@ def test_energy_and_contacts_of_many_are_as_summed_one_by_one(mixed):
     np.add.at(forces, i, found["force"])
     np.add.at(forces, j, -found["force"])
     scale = np.abs(forces).max()
-    np.testing.assert_allclose(forces, mixed.state.contact[:, :3], atol=1e-12 * scale)
-    x = mixed.state.position[:m]
+    assert (mixed.state.body[:m] != np.arange(m)).mean() > 0.9
+    np.testing.assert_allclose(
+        forces[mixed.state.body], mixed.state.contact[:, :3], atol=1e-12 * scale
+    )
+    x = mixed.give()["motion.position"]
     apart = np.linalg.norm(x[i[j < m]] - x[j[j < m]], axis=1)
     np.testing.assert_allclose(found["depth"][j < m], 0.01 - apart, atol=1e-12)
 
@@ -61,7 +65,7 @@ def test_all_that_touch_are_listed(mixed):
     """Against a search of its own, by a tree."""
     from scipy.spatial import KDTree
 
-    x = mixed.state.position[: mixed.count]
+    x = mixed.give()["motion.position"]
     expected = {tuple(sorted(pair)) for pair in KDTree(x).query_pairs(0.01 * (1.0 - 1e-9))}
     found = mixed.contact_points()["bodies"]
     assert {tuple(sorted(pair)) for pair in found[found[:, 1] < mixed.count].tolist()} == expected
@@ -95,8 +99,36 @@ def test_listing_anew_changes_no_contact():
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
 
 
+def pushed_pile(along):
+    """A box that slides on four spheres; the floor, without friction, may pass by along y."""
+    places = [(-0.11, -0.11), (-0.107, 0.105), (0.104, -0.106), (0.11, 0.107)]
+    bodies = [box([0.0, 0.0, 0.26], (0.3, 0.3, 0.1), velocity=[0.2, along, 0.0])]
+    bodies += [sphere([x, y, 0.105], 0.21, velocity=[0.0, along, 0.0]) for x, y in places]
+    stuff = {"a": material(young=1e7, friction=0.5), "ice": material(young=1e7, friction=0.0)}
+    floor = FLOOR | {"material": "ice"}
+    return build(bodies, stuff, planes=[floor], speed=0.5)
+
+
+def test_rows_that_change_places_keep_their_contacts_with_boxes():
+    """The same pile at rest and as it moves through the cells by which rows are sorted."""
+    still, moving = pushed_pile(0.0), pushed_pile(2.0)
+    orders, dt = set(), 0.5 * still.stable_dt()
+    steps = int(0.3 / dt)
+    for _ in range(steps):
+        still.step(dt)
+        moving.step(dt)
+        orders.add(tuple(moving.state.body.tolist()))
+    assert len(orders) > 1
+    passed = moving.give()["motion.position"] - [0.0, 2.0 * steps * dt, 0.0]
+    np.testing.assert_allclose(passed, still.give()["motion.position"], atol=1e-7)
+    assert still.give()["motion.velocity"][0, 0] < 0.19  # friction slowed the box
+    turned = [scene.give()["motion.angular_velocity"] for scene in (still, moving)]
+    np.testing.assert_allclose(*turned, atol=1e-5)
+
+
 def test_contact_forces_of_a_block_at_rest_are_its_weight():
-    cube = build([box([0.0, 0.0, 0.075])], {"a": material(young=1e7)}, planes=[FLOOR], speed=0.5)
+    stuff, given = {"a": material(young=1e7)}, {"planes": [FLOOR], "contact_forces": True}
+    cube = build([box([0.0, 0.0, 0.075])], stuff, speed=0.5, **given)
     run(cube, 1.5)
     found, weight = cube.contact_points(), 9.81 * cube.mass[0]
     assert len(found["depth"]) == 4 and (found["depth"] > 0.0).all()
@@ -152,4 +184,6 @@ def test_benchmark_touches_its_six_neighbours():
     scene = DemBodies(params)
     for _ in range(20):
         scene.step(scene.stable_dt())
-    assert len(scene.contact_points()["depth"]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
+    assert np.count_nonzero(scene.balls.held[:, 3]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
+    with pytest.raises(ValueError, match=r"contact_forces must be true.*found false\. Set it"):
+        scene.contact_points()
