@@ -9,44 +9,35 @@ from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import Fluid, kernel
 from quintet.components.sph_fluid.state import Array
 
-MOMENTS = 14  # of 1, x, y, z, xx, xy, xz, yy, yz, zz, p, xp, yp, zp
-
 EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
 
 
 @njit(**EXACT)
 def gather(
-    points: Array, split: int, place: Array, motion: Array, fluid: Fluid, sums: Array
-) -> None:
-    """Write Σ_j V_j (1 - r_j²/4h²)² times each of `MOMENTS` around points (m, 3) m; (m, 14).
+    points: Array, split: int, place: Array, motion: Array, fluid: Fluid, weight: Array,
+    sums: Array,
+) -> None:  # fmt: skip
+    """Write Σ V W of fluid, of walls, and Σ V W (p + weight·(point - r)) of fluid; (m, 3).
 
-    So weighted, a second layer of particles counts even where the first stands off a wall.
+    `points` (m, 3) m; `weight` (3,) N/m3, of the fluid.
     """
     reach2 = (SUPPORT * fluid.smoothing) ** 2
     sums[:] = 0.0
     for g in range(points.shape[0]):
-        for j in range(split):
-            x, y = place[j, 0] - points[g, 0], place[j, 1] - points[g, 1]
-            z = place[j, 2] - points[g, 2]
+        for j in range(place.shape[0]):
+            x, y = points[g, 0] - place[j, 0], points[g, 1] - place[j, 1]
+            z = points[g, 2] - place[j, 2]
             r2 = x * x + y * y + z * z
-            if r2 < reach2:
-                density = place[j, 3]
-                weight = fluid.mass / density * (1.0 - r2 / reach2) ** 2
-                load = weight * motion[j, 3] * density * density
-                sums[g, 0] += weight
-                sums[g, 1] += weight * x
-                sums[g, 2] += weight * y
-                sums[g, 3] += weight * z
-                sums[g, 4] += weight * x * x
-                sums[g, 5] += weight * x * y
-                sums[g, 6] += weight * x * z
-                sums[g, 7] += weight * y * y
-                sums[g, 8] += weight * y * z
-                sums[g, 9] += weight * z * z
-                sums[g, 10] += load
-                sums[g, 11] += load * x
-                sums[g, 12] += load * y
-                sums[g, 13] += load * z
+            if r2 >= reach2:
+                continue
+            density = place[j, 3]
+            share = kernel(r2, fluid) * fluid.mass / density
+            if j < split:
+                pressure = motion[j, 3] * density * density
+                sums[g, 0] += share
+                sums[g, 2] += share * (pressure + weight[0] * x + weight[1] * y + weight[2] * z)
+            else:
+                sums[g, 1] += share
 
 
 @njit(**EXACT)

@@ -1,10 +1,10 @@
 """What gauges read: pressure at points, level above spots, the front, energies.
 
-Pressure is that of the plane p + b·r which fits the particles near the point best, each with
-the weight V_j (1 - r_j²/4h²)²: a linear pressure is read exactly, on a wall too, where
-particles lie on one side only (moving least squares: Lancaster & Salkauskas, Math. Comp. 37
-(1981) 141). In directions in which the particles hardly spread the plane is level, so that of a
-flat layer, or of a drop, the Shepard mean is left. Without fluid near it a gauge reads 0.
+Pressure is what a face would feel per area: Σ V_j W_j of the particles' pressures, each carried on
+to the gauge's height as in still water, over the room Σ V_j W_j that the walls leave. Where fluid
+fills that room up to a seventh it is the mean over the fluid instead, which knows no gaps between
+particles. A face that a drop strikes feels but its share, as the real one's sensor does; without
+fluid near it a gauge reads 0. Dynamic walls keep the fluid off: there it is always the mean.
 
 A level is where the share of volume Σ_j V_j W_j, seen from above, first rises through one half;
 beside a wall, where it is nowhere 1, through half of its largest value. Lone drops are passed
@@ -19,14 +19,14 @@ import math
 import numpy as np
 
 from quintet.components.shared.cubic_spline import SUPPORT
-from quintet.components.sph_fluid.gauge_kernels import MOMENTS, fill_columns, furthest, gather
+from quintet.components.sph_fluid.gauge_kernels import fill_columns, furthest, gather
 from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import Fluid, kernel
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
 
-THIN = 0.01  # of h²: mean square of the distances from a plane below which a layer is thin
+FULL = 0.85  # of the room that walls leave: so much is filled where there is but fluid
 FINE = 0.25  # spacings between the heights at which the share of volume is looked at
 SURFACE = 0.5  # share of volume at the surface
 DROP = 2.0  # particles on one spot whose share of volume is not yet a surface
@@ -61,10 +61,14 @@ class Gauges:
         return found
 
     def _pressure(self, state: State) -> Array:
-        sums = np.empty((len(self.points), MOMENTS))
-        gather(self.points, state.fluid, state.place, state.motion, self.fluid, sums)
-        planes = [plane(row, THIN * self.fluid.smoothing**2) for row in sums]
-        return np.maximum(planes, self.fluid.lowest)
+        sums = np.empty((len(self.points), 3))
+        weight = self.params.density * np.array(self.params.gravity)
+        gather(self.points, state.fluid, state.place, state.motion, self.fluid, weight, sums)
+        share, walls, load = sums.T
+        room = 0.0 if self.params.boundary == "dbc" else FULL * (1.0 - walls)
+        filled = np.maximum(share, room)
+        pressure = np.divide(load, filled, out=np.zeros(len(load)), where=share > 0.0)
+        return np.maximum(pressure, self.fluid.lowest)
 
     def _height(self, state: State) -> Array:
         z, spacing = state.place[: state.fluid, 2], self.params.spacing
@@ -105,21 +109,3 @@ class Gauges:
             "motion_gauge.potential": np.array([-mass * float(centre @ self.params.gravity)]),
             "motion_gauge.centre": centre[np.newaxis],
         }
-
-
-def plane(sums: Array, thin: float) -> float:
-    """Value at the origin of the plane that fits best, from `MOMENTS`; 0 where there are none.
-
-    Along directions in which the mean square distance is below `thin` [m2] the plane is level.
-    """
-    total = sums[0]
-    if total == 0.0:
-        return 0.0
-    xx, xy, xz, yy, yz, zz = sums[4:10] / total
-    middle, value = sums[1:4] / total, sums[10] / total
-    spread = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) - np.outer(middle, middle)
-    along = sums[11:14] / total - value * middle
-    squares, axes = np.linalg.eigh(spread)
-    wide = axes[:, squares > thin]
-    slope = wide @ ((wide.T @ along) / squares[squares > thin])
-    return float(value - slope @ middle)
