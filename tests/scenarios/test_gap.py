@@ -17,5 +17,6 @@ def test_films_mend_narrow_gaps_and_leave_those_that_particles_fill(run_scene: R
     )
     assert len(found) == 10
     assert all(one["met"] for one in found.values()), found
-    assert all(found[name] == alone[name] for name in WIDE)
+    for name in WIDE:  # the first is as wide as films reach, to rounding
+        assert found[name]["value"] == pytest.approx(alone[name]["value"], rel=1e-12)
     assert not any(alone[name]["met"] for name in ("gap_0.1", "gap_0.25", "gap_0.5"))
