@@ -21,13 +21,8 @@ DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 # As ports.MOTION gives them; 2 is our own.
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
 FEWEST = 8  # blocks of rows that are worth handing to another thread
-KEPT = (
-    "begin",
-    "partner",
-    "held",
-    "roll",
-    "force",
-)  # of the balls' pairs; the rest follows from these
+# Of the balls' pairs; the rest follows from these.
+KEPT = ("begin", "partner", "held", "roll", "force")
 
 
 @dataclass(slots=True)
