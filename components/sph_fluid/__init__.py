@@ -44,6 +44,11 @@ removed, and `totals` shows its mass missing. Without walls none is.
 `obstacles` are boxes of wall particles that stand still in the tank; a `wave` sets level water into
 the motion of a standing wave at the start.
 
+A face of the tank named in `symmetry` has no walls and is a plane of symmetry: what is near it acts
+from behind it too, mirrored, so that half of a symmetric flow moves as the whole does. Nothing
+rubs there, nothing passes, and the plane takes the momentum across it (`symmetry.py`). Surfaces
+stay before it, gravity lies in it, and films in narrow gaps do not know it.
+
 Gauges (`pressure_gauges`, `level_gauges`, `front`, `motion_gauge`) give what a scene compares
 with a reference, each in a port of its own; see `gauges.py` for what they read.
 

@@ -9,7 +9,7 @@ from quintet.components.shared.cells import grid_around, sorted_into
 from quintet.components.shared.cubic_spline import SUPPORT
 from quintet.components.shared.neighbours import Neighbours, neighbours_within
 from quintet.components.shared.team import Team, threads_wanted
-from quintet.components.sph_fluid import build
+from quintet.components.sph_fluid import build, lists
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
 from quintet.components.sph_fluid.laws import AHEAD, constants
@@ -20,10 +20,6 @@ from quintet.components.sph_fluid.terms import bulk, friction, hold, step_limit,
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
-
-# Of the kernel's support, how much further the neighbour lists reach: longer steps want more.
-SKIN = {"extrapolated": 0.1, "symplectic": 0.2}
-STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
 
 
 class SphFluid(Component):
@@ -49,6 +45,11 @@ class SphFluid(Component):
             from quintet.components.sph_fluid.mdbc import mirrors
 
             self.state.mirror = mirrors(params)
+        self.images = None
+        if params.symmetry:
+            from quintet.components.sph_fluid.symmetry import Images
+
+            self.images = Images(params)
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
@@ -91,6 +92,8 @@ class SphFluid(Component):
                 self.state.mirror[self.rows - self.state.fluid] = fields["surface.mirror"]
             if not self.placed:
                 self.steepest = hold(self.state, self.params, self.body)
+            if self.images is not None:
+                self.images.refuse(fields["surface.position"])
             self.placed = True
 
     def step(self, dt: float) -> None:
@@ -111,56 +114,30 @@ class SphFluid(Component):
         self._advance(dt)
 
     def _list_is_old(self, dt: float = 0.0) -> bool:
-        state = self.state
-        if len(state.reference) == 0:
-            return True
-        shift = state.place[self.rows, :3] - state.reference[self.rows]
-        shifted = np.einsum("nd,nd->n", shift, shift).max(initial=0.0)
-        if self.params.mirrored:
-            here = self.rows - state.fluid
-            shift = state.mirror[here] - state.reference[len(state.place) + here]
-            shifted = max(shifted, np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
-        margin = self._reach - SUPPORT * self.fluid.smoothing
-        if self.params.integration == "symplectic":
-            # Pairs meet in the middle of the step too: each of the two goes there at its speed.
-            velocity = state.motion[: state.fluid, :3]
-            margin -= dt * math.sqrt(np.einsum("nd,nd->n", velocity, velocity).max())
-        return bool(state.moved + max(state.moved, math.sqrt(shifted)) > margin)
+        return lists.are_old(self.state, self.rows, self.params, dt)
 
     def _sort(self) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
         state, split = self.state, self.state.fluid
-        kept = np.flatnonzero(self._inside(state.place[:split, :3]))
+        kept = np.flatnonzero(lists.inside(state.place[:split, :3], self.params))
         if not len(kept):
             raise StepError("step: all fluid has left the domain. Check the walls and gravity.")
-        points = np.ascontiguousarray(state.place[:, :3])
+        points = np.ascontiguousarray(state.place[: state.particles, :3])
         fluid, boundary = points[kept], points[split:]
-        grid = grid_around(fluid, self._reach)
+        grid = grid_around(fluid, lists.reach(self.params))
         state.lost += split - len(kept)
         state.keep(kept[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         state.reference, state.moved = np.concatenate([state.place[:, :3], state.mirror]), 0.0
         self.rows = state.sample_rows()
 
-    def _inside(self, points: Array) -> Any:
-        if self.params.walls is None:
-            return np.ones(len(points), bool)
-        low, high = np.array(self.params.walls)
-        stray = STRAY * float((high - low).max())
-        return ((points > low - stray) & (points < high + stray)).all(axis=1)
-
     @property
     def _advancing(self) -> int:
         """Rows whose density has a rate: all where walls are dynamic, or the fluid's."""
-        return len(self.state.place) if self.params.boundary == "dbc" else self.state.fluid
-
-    @property
-    def _reach(self) -> float:
-        return (1.0 + SKIN[self.params.integration]) * SUPPORT * self.fluid.smoothing
+        return self.state.particles if self.params.boundary == "dbc" else self.state.fluid
 
     def _list(self) -> None:
         state, seekers = self.state, None
-        self.bulk = bulk(self.volume, self.rows, len(state.place), self.params)
-        points = state.reference[: len(state.place)]
+        points = state.reference[: state.particles]
         self.listed = self.rows
         if self.params.mirrored:
             # Walls look for fluid from their mirror points; samples, which it pushes, from where
@@ -170,8 +147,16 @@ class SphFluid(Component):
         elif self.terms.contact is not None:
             seekers = points[self.rows]
             self.listed = state.fluid + np.arange(len(self.rows))
-        search = (self._reach, points, state.fluid, self.team, seekers, self.near.list)
-        self.near = neighbours_within(*search)
+        reach, after = lists.reach(self.params), (self.team, seekers, self.near.list)
+        if self.images is None:
+            self.near = neighbours_within(reach, points, state.fluid, *after)
+        else:
+            from quintet.components.sph_fluid.symmetry import neighbours
+
+            self.near = neighbours(self.images, state, reach, *after)
+        self.bulk = bulk(self.volume, self.rows, len(state.place), self.params)
+        if self.images is not None and self.bulk is not None:
+            self.images.copy(self.bulk, state.particles)
         if len(state.film):
             from quintet.components.sph_fluid.facing import film
 
@@ -195,6 +180,8 @@ class SphFluid(Component):
         """What the loops over pairs take: particles, lists and laws; and friction."""
         state, near = self.state, self.near.arrays
         rubbing = friction(self.params, state, near, self.fluid, self.team)
+        if self.images is not None and rubbing is not None:
+            self.images.turn(rubbing.seen, state.particles)
         arrays: tuple[Any, Any] = state.place, state.motion
         if self.params.precision == "float32":
             from quintet.components.sph_fluid.single import rounded
@@ -205,15 +192,21 @@ class SphFluid(Component):
     def _interact(self) -> None:
         """Forces and rates of density."""
         state, law, gravity = self.state, self.terms, self.params.gravity
+        self._mirror()
         if self.params.mirrored:
             from quintet.components.sph_fluid.mdbc import press_walls
 
             press_walls(state, self.near.arrays, self.rows, self.listed, self.params, self.team)
+            self._mirror()
         self.pairs = pairs, rubbing = self._pairs()
         terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact, self.bulk)
         found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
+
+    def _mirror(self) -> None:
+        if self.images is not None:
+            self.images.fill(self.state)
 
     def _push(self, dt: float) -> None:
         """Push the samples as they pushed the fluid."""
@@ -254,6 +247,9 @@ class SphFluid(Component):
         state = self.state
         if any(failed for _, failed in moved):
             raise StepError(failure(self.state, self.params, dt))
+        if self.images is not None:
+            self.images.turn_back(state)
+        self._mirror()
         state.moved = math.sqrt(max(distance for distance, _ in moved))
         state.last_dt, state.steps = dt, state.steps + 1
 
@@ -296,4 +292,4 @@ class SphFluid(Component):
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""
-        return len(self.state.place)
+        return self.state.particles

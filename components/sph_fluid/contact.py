@@ -82,7 +82,8 @@ def stiffness(pressures: Array, params: SphFluidParams) -> Array:
 
 def step_limit(state: State, params: SphFluidParams) -> float:
     """Largest step [s] that the steepest part of the potential allows."""
-    return limit(params.density**2 * float(state.motion[state.fluid :, 3].max(initial=0.0)), params)
+    held_by = state.motion[state.fluid : state.particles, 3]
+    return limit(params.density**2 * float(held_by.max(initial=0.0)), params)
 
 
 def limit(stiffest: float, params: SphFluidParams) -> float:

@@ -13,6 +13,7 @@ Box = tuple[Vector, Vector]  # lowest and highest corner, m
 Spot = tuple[Number, Number]  # x and y, m
 Axis = Literal["x", "y", "z"]
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
+Upright = Literal["x-", "x+", "y-", "y+"]
 
 Exponent = Annotated[int, Field(ge=1, le=8)]
 
@@ -34,6 +35,7 @@ class SphFluidParams:
     dimensions: Literal[2, 3] = 3  # 2: x and z
     walls: Box | None = None  # m, the inside of a tank
     open: tuple[Face, ...] = ("z+",)  # faces that the tank lacks
+    symmetry: tuple[Upright, ...] = ()  # faces that are planes of symmetry, without walls
     wall_velocity: dict[Face, Vector] = field(default_factory=dict)  # m/s, of faces like belts
     obstacles: tuple[Box, ...] = ()  # m, boxes that stand still in the tank
     kernel: Literal["cubic", "wendland"] = "cubic"  # Wendland's keeps particles apart and calm
@@ -79,6 +81,7 @@ class SphFluidParams:
         self._check_obstacles()
         self._check_sound()
         self._check_slab()
+        self._check_symmetry()
         if self.mirrored and (self.standoff, self.inset) != (0.5, 0.5):
             raise ValueError(
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
@@ -142,6 +145,44 @@ class SphFluidParams:
                 "set dimensions to 3."
             )
 
+    def _check_symmetry(self) -> None:
+        for face in self.symmetry:
+            axis, name = "xyz".index(face[0]), f"symmetry: {face}"
+            if self.walls is None or face in self.open:
+                raise ValueError(
+                    f"{name} must be a face of the tank; found walls {self.walls} and open "
+                    f"{self.open}. Give walls, or take the face out of one of the two."
+                )
+            if self.dimensions == 2 and face[0] == "y":
+                raise ValueError(
+                    f"{name} must be x- or x+ in two dimensions, where both sides along y are "
+                    "planes already. Remove it."
+                )
+            if self.gravity[axis] != 0.0:
+                raise ValueError(
+                    f"{name} must have gravity in its plane; found {self.gravity} m/s2. Turn "
+                    "gravity, or make the face a wall."
+                )
+            low, high = self.walls[0][axis], self.walls[1][axis]
+            both = {f"{face[0]}-", f"{face[0]}+"} <= set(self.symmetry)
+            if both and high - low < (least := 3.0 * self.length):
+                # What is behind one plane would be mirrored in the other.
+                raise ValueError(
+                    f"{name} must be {least:g} m or more, 3 smoothing lengths, from the opposite "
+                    f"plane; found {high - low:g} m. Widen the tank, or refine the spacing."
+                )
+            for number, box in enumerate(self.obstacles):
+                if min(box[0][axis] - low, high - box[1][axis]) < -1e-6 * self.spacing:
+                    raise ValueError(
+                        f"{name}, {face[0]} from {low:g} to {high:g} m, must not cut "
+                        f"obstacles[{number}]; found {box}. Cut the box there."
+                    )
+        if self.symmetry and self.gaps:
+            raise ValueError(
+                f"gaps knows no planes of symmetry; found gaps and symmetry {self.symmetry}. "
+                "Leave one out."
+            )
+
     @property
     def thickness(self) -> float:
         """Of the slab [m] that a particle's mass is counted over; 1 in three dimensions."""
@@ -152,7 +193,7 @@ class SphFluidParams:
     def shut(self) -> tuple[Face, ...]:
         """Faces at which the tank has wall particles."""
         sides = ("y-", "y+") if self.dimensions == 2 else ()
-        return tuple(face for face in FACES if face not in (*self.open, *sides))
+        return tuple(face for face in FACES if face not in (*self.open, *self.symmetry, *sides))
 
     @property
     def mirrored(self) -> bool:

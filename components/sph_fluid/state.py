@@ -16,11 +16,12 @@ Whole = NDArray[np.int64]
 class State:
     """Rows are the fluid, then the boundary (walls and surface samples), each sorted by cell.
 
-    Position and density, velocity and pressure stand side by side, as pairs need them.
+    Position and density, velocity and pressure stand side by side, as pairs need them; of these,
+    images in planes of symmetry follow (`symmetry.py`).
     """
 
-    place: Array  # (n, 4) m, m, m, kg/m3: x, y, z, ρ
-    motion: Array  # (n, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
+    place: Array  # (n + images, 4) m, m, m, kg/m3: x, y, z, ρ
+    motion: Array  # (n + images, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
     before: Array  # (n,) kg/(m3 s), dρ/dt one step ago
     pull: Array  # (fluid, 3) m/s2, acceleration at the last step's end; (0, 3) if not symplectic
     reference: Array  # (n, 3) m, where the neighbour list was made, with mirrors (n + boundary, 3);
@@ -59,6 +60,11 @@ class State:
     def fluid(self) -> int:
         """Number of fluid particles."""
         return len(self.identity)
+
+    @property
+    def particles(self) -> int:
+        """Number of fluid and boundary particles, without images."""
+        return len(self.before)
 
     def keep(self, fluid: Whole, boundary: Whole) -> None:
         """Keep these rows of the fluid and of the boundary, in this order; all else goes."""

@@ -1,0 +1,47 @@
+"""When the neighbour lists are made anew, how far they reach, and what is still in the domain."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State, Whole
+
+# Of the kernel's support, how much further the neighbour lists reach: longer steps want more.
+SKIN = {"extrapolated": 0.1, "symplectic": 0.2}
+STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
+
+
+def reach(params: SphFluidParams) -> float:
+    """Distance [m] within which the lists hold all neighbours."""
+    return (1.0 + SKIN[params.integration]) * SUPPORT * params.length
+
+
+def are_old(state: State, rows: Whole, params: SphFluidParams, dt: float) -> bool:
+    """Whether pairs may meet in a step of dt [s] that the lists lack; `rows` are the samples'."""
+    if len(state.reference) == 0:
+        return True
+    shift = state.place[rows, :3] - state.reference[rows]
+    shifted = np.einsum("nd,nd->n", shift, shift).max(initial=0.0)
+    if params.mirrored:
+        here = rows - state.fluid
+        shift = state.mirror[here] - state.reference[state.particles + here]
+        shifted = max(shifted, np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
+    margin = reach(params) - SUPPORT * params.length
+    if params.integration == "symplectic":
+        # Pairs meet in the middle of the step too: each of the two goes there at its speed.
+        velocity = state.motion[: state.fluid, :3]
+        margin -= dt * math.sqrt(np.einsum("nd,nd->n", velocity, velocity).max())
+    return bool(state.moved + max(state.moved, math.sqrt(shifted)) > margin)
+
+
+def inside(points: Array, params: SphFluidParams) -> NDArray[np.bool_]:
+    """Which points (n, 3) m are in the tank or not far outside of it."""
+    if params.walls is None:
+        return np.ones(len(points), bool)
+    low, high = np.array(params.walls)
+    stray = STRAY * float((high - low).max())
+    found: NDArray[np.bool_] = ((points > low - stray) & (points < high + stray)).all(axis=1)
+    return found
