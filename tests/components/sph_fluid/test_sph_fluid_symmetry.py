@@ -1,0 +1,248 @@
+"""Planes of symmetry: half of a symmetric flow moves as the whole does, and nothing passes."""
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from quintet.components.shared.team import Team
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import StepError
+
+SPACING, DEPTH = 0.02, 0.2
+FULL = ((0.0, 0.0, 0.0), (0.2, 0.1, 2.0 * DEPTH))  # m
+THIN = ((0.0, 0.0, 0.0), (0.08, 0.1, DEPTH))  # m
+CALM = {"boundary": "mdbc", "diffusion": 0.1, "tension": True}
+EVERY = CALM | {"laminar": 1e-4, "xsph": 0.3, "shepard_every": 10}
+
+
+def params(**given: Any) -> SphFluidParams:
+    """Half a column of water between a plane of symmetry and a dry floor, in two dimensions."""
+    settings = {
+        "spacing": SPACING,
+        "sound_speed": 20.0 * math.sqrt(9.81 * DEPTH),
+        "dimensions": 2,
+        "fluid": (((0.0, 0.0, 0.0), (0.1, 0.1, DEPTH)),),
+        "walls": ((0.0, 0.0, 0.0), (0.6, 0.1, 0.4)),
+        "symmetry": ("x-",),
+    }
+    return SphFluidParams(**(settings | CALM | given))
+
+
+def whole(half: SphFluidParams) -> SphFluidParams:
+    """The same water and tank on both sides of all planes of symmetry through the origin."""
+    axes = ["xyz".index(face[0]) for face in half.symmetry]
+    assert half.walls is not None
+    boxes = []
+    for low, high in (*half.fluid, half.walls):
+        down = tuple(-high[axis] if axis in axes else low[axis] for axis in range(3))
+        boxes.append((down, high))
+    return replace(half, fluid=tuple(boxes[:-1]), walls=boxes[-1], symmetry=())
+
+
+def side_by_side(one: SphFluid, other: SphFluid, end: float) -> float:
+    """Advance both to a time [s]; return the largest difference of place [m], of `one`'s fluid."""
+    time = 0.0
+    while time < end:
+        dt = min(one.stable_dt(), other.stable_dt())
+        one.step(dt)
+        other.step(dt)
+        time += dt
+    mine, theirs = one.view()["points"], other.view()["points"]
+    apart = np.abs(mine[:, np.newaxis] - theirs).max(axis=2)
+    assert len(set(apart.argmin(axis=1))) == len(mine)
+    return float(apart.min(axis=1).max())
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{}, {"integration": "symplectic"}, {"boundary": "dbc"}, {"boundary": "potential"}, EVERY],
+    ids=["mirrored", "symplectic", "dynamic", "potential", "every term"],
+)
+def test_half_a_column_falls_as_the_whole_does(given: dict[str, Any]) -> None:
+    half = params(**given)
+    one = SphFluid(half)
+    start = one.view()["points"]
+    # Over 0.7 √(H/g) the water moves by a spacing; rounding alone may part the two.
+    assert side_by_side(one, SphFluid(whole(half)), 0.1) < 1e-12
+    assert np.abs(one.view()["points"] - start).max() > SPACING
+
+
+def test_a_quarter_falls_as_the_whole_does_in_three_dimensions() -> None:
+    quarter = params(
+        dimensions=3, symmetry=("y-", "x-"), fluid=(((0.0, 0.0, 0.0), (0.08, 0.08, 0.12)),),
+        walls=((0.0, 0.0, 0.0), (0.16, 0.08, 0.2)),
+    )  # fmt: skip
+    # The wall at y = 0.08 m is a wall of both.
+    assert side_by_side(SphFluid(quarter), SphFluid(whole(quarter)), 0.03) < 1e-12
+
+
+def test_still_water_is_hydrostatic_beside_the_plane() -> None:
+    sound = 20.0 * math.sqrt(9.81 * 2.0 * DEPTH)
+    fluid = SphFluid(params(walls=FULL, fluid=(FULL,), sound_speed=sound))
+    for _ in range(1500):
+        fluid.step(fluid.stable_dt())
+    rows = slice(fluid.state.fluid)
+    place, motion = fluid.state.place[rows], fluid.state.motion[rows]
+    beside = place[:, 0] < 0.06
+    pressure = motion[beside, 3] * place[beside, 3] ** 2
+    error = pressure - 9810.0 * (2.0 * DEPTH - place[beside, 2])
+    assert np.abs(error).max() < 0.02 * 9810.0 * 2.0 * DEPTH
+    assert np.abs(motion[beside, :3]).max() < 0.005 * math.sqrt(9.81 * 2.0 * DEPTH)
+    assert place[:, 0].min() > 0.25 * SPACING
+    assert fluid.state.lost == 0
+
+
+@pytest.mark.parametrize("symmetry", [("y-", "y+"), ()], ids=["planes", "walls"])
+def test_a_flow_along_planes_stays_uniform(symmetry: tuple[str, ...]) -> None:
+    box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
+    fluid = SphFluid(
+        params(
+            dimensions=3, symmetry=symmetry, open=("x-", "x+", "z-", "z+"), fluid=(box,), walls=box,
+            gravity=(0.0, 0.0, 0.0), laminar=1e-2,
+        )
+    )  # fmt: skip
+    rows, stream = slice(fluid.state.fluid), np.array([0.5, 0.0, -0.3])
+    fluid.state.motion[rows, :3] = stream
+    for _ in range(20):
+        fluid.step(fluid.stable_dt())
+    change = np.abs(fluid.state.motion[rows, :3] - stream).max()
+    assert change < 1e-12 if symmetry else change > 0.01
+
+
+def test_fluid_that_passes_the_plane_changes_places_with_its_image() -> None:
+    fluid = SphFluid(params(integration="symplectic"))
+    fluid.step(1e-4)
+    state, images = fluid.state, fluid.images
+    assert images is not None
+    row = int(np.argmin(state.place[: state.fluid, 0]))
+    state.place[row, 0], state.motion[row, 0], state.pull[row, 0] = -1e-3, -2.0, -3.0
+    images.fill(state)
+    before = seen(state.place, state.motion)
+    images.turn_back(state)
+    assert (state.place[row, 0], state.motion[row, 0], state.pull[row, 0]) == (1e-3, 2.0, 3.0)
+    images.fill(state)
+    np.testing.assert_array_equal(seen(state.place, state.motion), before)
+
+
+def seen(place: NDArray[Any], motion: NDArray[Any]) -> NDArray[Any]:
+    rows = np.concatenate([place, motion], axis=1)
+    return np.asarray(rows[np.lexsort(rows.T)])
+
+
+def test_water_thrown_at_the_plane_stays_before_it() -> None:
+    fluid = SphFluid(params(sound_speed=60.0, viscosity=0.01))
+    fluid.state.motion[: fluid.state.fluid, 0] = -5.0
+    for _ in range(400):
+        fluid.step(fluid.stable_dt())
+        assert fluid.view()["points"][:, 0].min() >= 0.0
+    assert fluid.totals().momentum[0] > 0.0
+
+
+def cut(half: bool) -> SphFluid:
+    """A cube of water, or the half of it with x > 0, over a moving plate."""
+    edge, low = 6 * SPACING, 0.0 if half else -3 * SPACING
+    fluid = SphFluid(
+        params(
+            dimensions=3, boundary="dbc", gravity=(0.0,) * 3, symmetry=("x-",) if half else (),
+            fluid=(((low, 0.0, 0.0), (3 * SPACING, edge, edge)),), open=("x+", "y-", "y+", "z+"),
+            walls=((0.0 if half else -0.2, 0.0, -0.2), (0.2, 0.2, 0.2)),
+        )
+    )  # fmt: skip
+    line = SPACING * (np.arange(8) - 3.5)
+    x, y = np.meshgrid(line[line > 0.0] if half else line, line + 3 * SPACING)
+    points = np.stack([x.ravel(), y.ravel(), np.full(x.size, -0.5 * SPACING)], axis=1)
+    # Samples of fewer kilograms than particles: those of images are as light.
+    volume = np.full(len(points), 0.8 * SPACING**3)
+    normal = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": 0.0 * volume})
+    fluid.take(moving(points))
+    return fluid
+
+
+def moving(points: NDArray[Any]) -> Fields:
+    return {
+        "surface.position": points,
+        "surface.velocity": np.tile([0.0, 0.0, 0.3], (len(points), 1)),
+    }
+
+
+def test_half_a_body_feels_what_that_half_of_the_whole_does() -> None:
+    one, other = cut(True), cut(False)
+    for _ in range(10):
+        one.step(2e-4)
+        other.step(2e-4)
+    rows = other.state.place[other.rows, 0] > 0.0
+    mine, theirs = one.give()["surface_load.force"], other.give()["surface_load.force"][rows]
+    assert np.abs(theirs).max() > 0.01
+    np.testing.assert_allclose(mine, theirs, atol=1e-10)
+
+
+def test_samples_behind_the_plane_are_refused() -> None:
+    fluid = cut(True)
+    points = fluid.state.place[fluid.rows, :3] - np.array([0.012, 0.0, 0.0])
+    sentence = r"before the plane of symmetry x-, x = 0 m; sample 0 is at x = -0.002 m. Move"
+    with pytest.raises(StepError, match=sentence):
+        fluid.take(moving(points))
+
+
+@pytest.mark.parametrize("given", [EVERY, {"integration": "symplectic"}])
+def test_saved_state_and_threads_change_no_bit(given: dict[str, Any]) -> None:
+    ends = []
+    for threads in (1, 3):
+        fluid = SphFluid(params(**given))
+        fluid.team = Team(threads, fewest=5)
+        for _ in range(30):
+            fluid.step(fluid.stable_dt())
+        kept = fluid.save()
+        if threads == 3:
+            fluid = SphFluid(params(**given))
+            fluid.load(kept)
+        for _ in range(30):
+            fluid.step(fluid.stable_dt())
+        ends.append(fluid.save())
+    assert all(np.array_equal(ends[0][name], ends[1][name]) for name in ends[0])
+
+
+def test_only_a_scene_that_asks_imports_them() -> None:
+    program = (
+        "import sys; from quintet.components.sph_fluid import SphFluidParams;"
+        "from quintet.components.sph_fluid.component import SphFluid;"
+        "f = SphFluid(SphFluidParams(spacing=0.1, sound_speed=30.0,"
+        " fluid=(((0.0, 0.0, 0.0), (0.3, 0.3, 0.3)),))); f.step(1e-5);"
+        "assert 'quintet.components.sph_fluid.symmetry' not in sys.modules;"
+        "assert f.images is None and len(f.state.place) == f.items() == 27"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"symmetry": ("z-",)}, "symmetry"),
+        ({"open": ("x-", "z+")}, r"x- must be a face of the tank; found walls .* and open .*x-"),
+        ({"walls": None}, r"x- must be a face of the tank; found walls None"),
+        ({"symmetry": ("y+",)}, r"y\+ must be x- or x\+ in two dimensions"),
+        ({"gravity": (0.5, 0.0, -9.8)}, r"x- must have gravity in its plane; found \(0.5, 0.0"),
+        ({"wall_velocity": {"x-": (0.0, 1.0, 0.0)}}, r"wall_velocity.x- must lie in a face that"),
+        ({"gaps": True}, r"gaps knows no planes of symmetry; found gaps and symmetry \('x-',\)"),
+        (
+            {"symmetry": ("x-", "x+"), "fluid": (THIN,), "walls": THIN},
+            r"x- must be 0.09 m or more, 3 smoothing lengths, .* found 0.08 m. Widen",
+        ),
+        (
+            {"obstacles": (((-0.1, 0.0, 0.3), (0.1, 0.1, 0.4)),)},
+            r"x-, x from 0 to 0.6 m, must not cut obstacles\[0\]; found .* Cut",
+        ),
+    ],
+)  # fmt: skip
+def test_mistakes_are_told(given: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ValueError, match=sentence):
+        params(**given)
