@@ -43,6 +43,11 @@ class Gauges:
             self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
                 corner[1] for corner in params.fluid[0]
             )
+        self.seen = self.points  # (k m, 3) m, and from where images see what these see in them
+        if params.symmetry:
+            from quintet.components.sph_fluid.symmetry import Images
+
+            self.seen = Images(params).reflect(self.points)
         boxes = [params.walls] if params.walls else params.fluid
         self.floor = min(box[0][2] for box in boxes)  # m
         self.lone = fluid.mass / fluid.density * float(kernel(0.0, fluid))  # 1, V W(0)
@@ -61,10 +66,11 @@ class Gauges:
         return found
 
     def _pressure(self, state: State) -> Array:
-        sums = np.empty((len(self.points), 3))
+        sums = np.empty((len(self.seen), 3))
         weight = self.params.density * np.array(self.params.gravity)
-        gather(self.points, state.fluid, state.place, state.motion, self.fluid, weight, sums)
-        share, walls, load = sums.T
+        place, motion = state.place[: state.particles], state.motion[: state.particles]
+        gather(self.seen, state.fluid, place, motion, self.fluid, weight, sums)
+        share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T
         room = 0.0 if self.params.boundary == "dbc" else FULL * (1.0 - walls)
         filled = np.maximum(share, room)
         pressure = np.divide(load, filled, out=np.zeros(len(load)), where=share > 0.0)

@@ -58,6 +58,14 @@ class Images:
         self.fill(state)
         return points, wet
 
+    def reflect(self, points: Array) -> Array:
+        """Points (m, 3) m, then their images in all planes and edges; (k m, 3)."""
+        for _, axis, plane, _ in self.planes:
+            image = points.copy()
+            image[:, axis] = 2.0 * plane - image[:, axis]
+            points = np.concatenate([points, image])
+        return points
+
     def fill(self, state: State) -> None:
         """Write the images of the state as it is."""
         first = state.particles

@@ -75,6 +75,15 @@ def test_half_a_column_falls_as_the_whole_does(given: dict[str, Any]) -> None:
     assert np.abs(one.view()["points"] - start).max() > SPACING
 
 
+def test_a_gauge_on_the_plane_reads_what_it_does_in_the_whole() -> None:
+    half = params(pressure_gauges=((0.0, 0.0, 0.05), (0.01, 0.0, 0.1)))
+    one, other = SphFluid(half), SphFluid(whole(half))
+    side_by_side(one, other, 0.02)
+    mine, theirs = (fluid.give()["pressure_gauge.pressure"] for fluid in (one, other))
+    assert np.abs(theirs).min() > 100.0
+    np.testing.assert_allclose(mine, theirs, rtol=1e-9)
+
+
 def test_a_quarter_falls_as_the_whole_does_in_three_dimensions() -> None:
     quarter = params(
         dimensions=3, symmetry=("y-", "x-"), fluid=(((0.0, 0.0, 0.0), (0.08, 0.08, 0.12)),),
