@@ -64,3 +64,18 @@ def plate() -> Callable[..., Fields]:
         return fields
 
     return join
+
+
+@pytest.fixture
+def struck() -> Callable[..., tuple[Any, Any]]:
+    """Let samples strike a fluid for two steps; return impulses on them and what it gained."""
+
+    def strike(fluid: SphFluid, fields: Fields) -> tuple[Any, Any]:
+        fluid.take(fields)
+        fluid.step(1e-4)
+        before = fluid.totals().momentum
+        fluid.step(0.7e-4)
+        impulse = 0.7e-4 * fluid.give()["surface_load.force"]
+        return impulse, fluid.totals().momentum - before
+
+    return strike
