@@ -14,6 +14,7 @@ from quintet.coupler.launch import GRACE, Watch, start
 from quintet.coupler.part import ComponentFailed, Part
 from quintet.coupler.scene import Scene
 from quintet.interfaces.errors import LineError, QuintetError
+from quintet.interfaces.heap import keep_freed_memory
 from quintet.interfaces.message import Message
 from quintet.interfaces.transport import FramedLine
 
@@ -35,6 +36,7 @@ class Connection(Protocol):
 
 def connect(scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> Connection:
     """Start and join all components of a scene, over its transport."""
+    keep_freed_memory()
     if scene.transport == "memory":
         return InMemory(scene)
     if scene.transport == "mpi":

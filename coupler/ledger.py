@@ -20,7 +20,7 @@ from quintet.coupler.balance import Balance
 from quintet.coupler.exchange import Brought, Carried, Exchange
 from quintet.coupler.motion import Motion
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.outputs import column_sums, size
+from quintet.interfaces.sums import column_sums, product, size
 
 # The residual into which an impulse is booked, by the unit of its rate.
 RESIDUALS = {
@@ -171,7 +171,7 @@ class Ledger:
             for leg in link.legs:
                 for key, rate, place in leg.works_on if leg.taker == name else ():
                     mean = mean_rate(before, after, rate, place, dt)
-                    work = float(np.vdot(fields[key], mean))
+                    work = product(fields[key], mean)
                     self.accounts[link.name].work_taken += work
 
     def _alone(self, brought: Brought) -> bool:

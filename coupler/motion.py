@@ -12,7 +12,7 @@ import numpy as np
 
 from quintet.coupler.exchange import Exchange
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.outputs import column_sums, size
+from quintet.interfaces.sums import column_sums, size
 
 
 @dataclass(slots=True)

@@ -12,6 +12,7 @@ from typing import Any
 from quintet.interfaces.component import Component
 from quintet.interfaces.endpoint import Security
 from quintet.interfaces.errors import LineError, QuintetError
+from quintet.interfaces.heap import keep_freed_memory
 from quintet.interfaces.manifest import Manifest, find
 from quintet.interfaces.params import read
 from quintet.interfaces.serve import Server, failure, serve
@@ -51,6 +52,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     """Join, build, serve; return the exit status."""
     # Ctrl-C reaches the whole terminal; the coupler answers it and tells the components.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    keep_freed_memory()
     say(f"{given.name}: {manifest.title}, process {os.getpid()}")
     try:
         line = over_mpi(given.name) if given.mpi else over_zenoh(given)

@@ -16,7 +16,8 @@ from quintet.interfaces.errors import OrderError, QuintetError, StepError
 from quintet.interfaces.guard import Guard
 from quintet.interfaces.inputs import Inputs
 from quintet.interfaces.message import Message, require_finite
-from quintet.interfaces.outputs import Handed, Outputs, Sums, column_sums
+from quintet.interfaces.outputs import Handed, Outputs, Sums
+from quintet.interfaces.sums import column_sums
 from quintet.interfaces.transport import Line
 
 Answer = tuple[dict[str, Any], Fields]

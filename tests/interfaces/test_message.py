@@ -4,14 +4,15 @@ import msgpack
 import numpy as np
 import pytest
 
-from quintet.interfaces import message as msg
 from quintet.interfaces.errors import MessageError
-from quintet.interfaces.message import ALIGN, PREFIX, decode, encode, require_finite
+from quintet.interfaces.layout import ALIGN, DTYPES
+from quintet.interfaces.message import PREFIX, decode, encode, require_finite
 
 
 def frame(arrays, body=b"", header=None, **prefix):
     """A frame made by hand, as wrong as asked for."""
-    packed = msgpack.packb({"order": "x", "arrays": arrays} if header is None else header)
+    usual = {"order": "x", "arrays": msgpack.packb(arrays)}
+    packed = msgpack.packb(usual if header is None else header)
     start = -(-(PREFIX.size + len(packed)) // ALIGN) * ALIGN
     total = start + len(body)
     made = bytearray(total)
@@ -22,7 +23,7 @@ def frame(arrays, body=b"", header=None, **prefix):
     return made
 
 
-@pytest.mark.parametrize("name", sorted(msg.DTYPES))
+@pytest.mark.parametrize("name", sorted(DTYPES))
 @pytest.mark.parametrize("shape", [(5,), (5, 3), (2, 3, 4), (0,), (0, 3), (4, 0), (1, 1, 1, 1), ()])
 def test_every_type_and_shape_comes_back_bit_for_bit(name, shape):
     random = np.random.default_rng(3)
@@ -82,6 +83,8 @@ def test_every_array_is_aligned_and_frames_are_used_again():
         (frame([], size=3), "msgpack"),
         (frame(None, header=[1, 2]), "must be a map; found list"),
         (frame(None, header={"order": "x"}), "must list its arrays; found NoneType"),
+        (frame(None, header={"order": "x", "arrays": "abc"}), "must list its arrays; found str"),
+        (frame(None, header={"order": "x", "arrays": b"\x93"}), "arrays is not valid msgpack"),
         (frame("abc"), "must list its arrays; found str"),
         (frame(["abc"]), "listed as name, type, shape"),
         (frame([["a", "<f8"]]), "listed as name, type, shape"),

@@ -1,0 +1,99 @@
+"""Where the arrays of a message lie: their names, types and shapes, to bytes and back.
+
+A run sends the same arrays window after window. So their table is packed by itself, and both
+sides work it out, and check it, once.
+"""
+
+import functools
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import msgpack
+import numpy as np
+
+from quintet.interfaces.errors import MessageError
+
+Shape = tuple[int, ...]
+Shapes = Mapping[str, Shape]
+
+ALIGN = 16
+DIMENSIONS = 4
+DTYPES = {name: np.dtype(name) for name in ("<f8", "<f4", "<i8", "<i4", "|i1", "|u1", "|b1")}
+REMEMBERED = 64  # tables
+
+
+class Place(NamedTuple):
+    """One array: what it is, and where it lies from the first array's first byte on."""
+
+    key: str
+    dtype: np.dtype[Any]
+    shape: Shape
+    numbers: int
+    start: int  # bytes
+    end: int
+
+
+class Layout(NamedTuple):
+    """All arrays of a message."""
+
+    places: tuple[Place, ...]
+    size: int  # bytes, with what aligns the end
+    shapes: dict[str, Shape]
+    packed: bytes
+
+
+def aligned(offset: int) -> int:
+    """Round up to where an array may begin."""
+    return -(-offset // ALIGN) * ALIGN
+
+
+@functools.lru_cache(REMEMBERED)
+def lay_out(table: tuple[tuple[str, str, Shape], ...]) -> Layout:
+    """Place arrays of these names, types and shapes one after the other."""
+    for key, name, _ in table:
+        if name not in DTYPES:
+            raise MessageError(
+                f"field {key}: its type must be one of {', '.join(DTYPES)}; found {name}. "
+                "Convert it before giving it."
+            )
+    return _place(table, msgpack.packb(table))
+
+
+@functools.lru_cache(REMEMBERED)
+def read_layout(packed: bytes) -> Layout:
+    """Read a table that came; nothing of it is trusted."""
+    try:
+        table = msgpack.unpackb(packed, raw=False)
+    except (ValueError, msgpack.exceptions.UnpackException) as error:
+        raise MessageError(f"the list of arrays is not valid msgpack: {error}") from error
+    if not isinstance(table, list):
+        raise MessageError(f"a message must list its arrays; found {type(table).__name__}.")
+    layout = _place(tuple(_entry(entry) for entry in table), packed)
+    if len(layout.shapes) != len(table):
+        keys = [place.key for place in layout.places]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise MessageError(f"field {twice} is listed twice.")
+    return layout
+
+
+def _place(table: tuple[tuple[str, str, Shape], ...], packed: bytes) -> Layout:
+    places, offset = [], 0
+    for key, name, shape in table:
+        numbers = math.prod(shape)
+        end = offset + numbers * DTYPES[name].itemsize
+        places.append(Place(key, DTYPES[name], shape, numbers, offset, end))
+        offset = aligned(end)
+    return Layout(tuple(places), offset, {key: shape for key, _, shape in table}, packed)
+
+
+def _entry(entry: Any) -> tuple[str, str, Shape]:
+    if not (isinstance(entry, list) and len(entry) == 3 and isinstance(entry[0], str)):
+        raise MessageError(f"an array is listed as name, type, shape; found {entry!r}.")
+    key, name, shape = entry
+    if not isinstance(name, str) or name not in DTYPES:
+        raise MessageError(f"field {key}: type {name!r} is not one of {', '.join(DTYPES)}.")
+    fits = isinstance(shape, list) and len(shape) <= DIMENSIONS
+    if not fits or not all(type(n) is int and 0 <= n < 1 << 40 for n in shape):
+        raise MessageError(f"field {key}: {shape!r} is not a shape of at most {DIMENSIONS} sizes.")
+    return key, name, tuple(shape)
