@@ -100,8 +100,8 @@ def _refuse_size(layout: Layout, room: int) -> None:
     for place in layout.places:
         if place.end > room:
             raise MessageError(
-                f"field {place.key}: {place.numbers} items of {place.dtype.str} must end within the "
-                f"{room} bytes of the message's arrays; they end at {place.end}."
+                f"field {place.key}: {place.numbers} numbers of {place.dtype.str} must end within "
+                f"the {room} bytes of arrays of the message; they end at {place.end}."
             )
     raise MessageError(f"{room} bytes of arrays must be used up; {layout.size} were.")
 
