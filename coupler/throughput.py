@@ -32,8 +32,9 @@ def run_kind(given: argparse.Namespace) -> int:
     found = []
     for number, case in cases:
         for count in threads:
-            print(f"{case.name}, threads: {count} ...", flush=True)
+            print(f"{case.name}, threads: {count} ... ", end="", flush=True)
             found.append(apart(given.name, number, count))
+            print(f"{found[-1]['rate']:.3g} {found[-1]['unit']} a thread", flush=True)
     on_screen().print(table(found))
     if given.json:
         given.json.write_text(json.dumps(found, indent=2))
