@@ -1,7 +1,8 @@
 """``quintet bench exchange``: the time that one exchange with a component takes.
 
 One window is all that a run does: an order with a field goes out, is checked, taken, given
-back, checked again; sums are made on both sides. The component computes nothing.
+back, checked again; sums are made on both sides. The component computes nothing. Beside it
+stands what the same bytes take over the library alone, on the same machine.
 """
 
 import argparse
@@ -16,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.coupler.bare import bare
 from quintet.coupler.connect import connect
 from quintet.coupler.part import Part
 from quintet.coupler.read import load
@@ -45,6 +47,7 @@ def run_bench(given: argparse.Namespace) -> int:
         for items, windows in SIZES.items():
             with tempfile.TemporaryDirectory() as folder:
                 found.append(measure(transport, items, windows, Path(folder)))
+            found[-1]["bare_ms"] = 1e3 * bare(transport, 24 * items, windows)
             print(sentence(found[-1]), flush=True)
     if given.json:
         given.json.write_text(json.dumps(found, indent=2))
@@ -128,5 +131,5 @@ def sentence(found: dict[str, Any]) -> str:
     """One line for one case."""
     return (
         f"{found['case']}: median {found['median_ms']:.3f} ms, p99 {found['p99_ms']:.3f} ms, "
-        f"{found['rate']:.0f} {found['unit']}"
+        f"{found['rate']:.0f} {found['unit']}; the library alone {found['bare_ms']:.3f} ms"
     )

@@ -35,15 +35,9 @@ LEAVING = 3.0  # s for all ranks to leave after the coupler has its results
 
 def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
     """The MPMD command line: rank 0 couples, the others are components in the scene's order."""
-    launcher = shutil.which("mpiexec", path=_search_path())
-    if launcher is None:
-        raise SceneError(
-            "transport mpi needs an mpiexec; there is none on PATH. Install an MPI library, or "
-            "the extra: pip install 'quintet[mpi]'."
-        )
     python = [sys.executable, "-m", "mpi4py"]
     apart = [sys.executable, "-m", "quintet.coupler.apart"]
-    line = [launcher, *_options(launcher), "-n", "1", *apart, *python]
+    line = [*find_launcher(), "-n", "1", *apart, *python]
     line += ["-m", "quintet.coupler.cli", *arguments, "--inside-mpi"]
     for name, one in scene.components.items():
         log = str(folder / "log" / f"{name}.log")
@@ -52,9 +46,16 @@ def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
     return line
 
 
-def _search_path() -> str:
-    """Where to look for mpiexec: that of our own environment belongs to our library."""
-    return os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+def find_launcher() -> list[str]:
+    """Begin a command line with mpiexec; that of our own environment belongs to our library."""
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    launcher = shutil.which("mpiexec", path=path)
+    if launcher is None:
+        raise SceneError(
+            "transport mpi needs an mpiexec; there is none on PATH. Install an MPI library, or "
+            "the extra: pip install 'quintet[mpi]'."
+        )
+    return [launcher, *_options(launcher)]
 
 
 def _options(launcher: str) -> list[str]:

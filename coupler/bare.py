@@ -1,0 +1,116 @@
+"""The library alone: what the exchange is compared with.
+
+Two processes fill an array, send its bytes, read what came, and send it back: no header, no
+numbers of messages, no check, no deadline but that of whoever started them.
+"""
+
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.connect import free_port
+from quintet.coupler.launch import environment
+from quintet.coupler.mpirun import find_launcher
+
+WARM = 100  # windows before the clock starts
+PATIENCE = 120.0  # s for all windows
+LEAVING = 0.3  # s in which the last message leaves
+Send = Callable[[bytearray], None]
+Receive = Callable[[], Any]
+Carrier = tuple[bool, Send, Receive]  # whether it leads
+
+
+def bare(transport: str, size: int, windows: int) -> float:
+    """Median time [s] in which `size` bytes go there and come back, over a library by itself."""
+    program = ["-m", "quintet.coupler.bare", transport, str(size), str(windows)]
+    if transport == "mpi":
+        return _result([*find_launcher(), "-n", "2", sys.executable, "-m", "mpi4py", *program])
+    line = [sys.executable, *program, f"tcp/127.0.0.1:{free_port()}"]
+    with subprocess.Popen([*line, "back"], env=environment(1, [])) as other:
+        try:
+            return _result([*line, "there"])
+        finally:
+            other.kill()
+
+
+def _result(line: list[str]) -> float:
+    done = subprocess.run(
+        line, env=environment(1, []), stdout=subprocess.PIPE, timeout=PATIENCE, check=True
+    )
+    return float(done.stdout.decode().split()[-1])
+
+
+def main() -> None:
+    """Be one of the two processes."""
+    transport, size, windows = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    carry = _over_mpi if transport == "mpi" else _over_zenoh
+    with carry(size) as (leads, send, receive):
+        if leads:
+            print(statistics.median(_lead(send, receive, size, windows)), flush=True)
+        else:
+            _follow(send, receive, size, windows)
+
+
+def _lead(send: Send, receive: Receive, size: int, windows: int) -> list[float]:
+    value, frame = np.random.default_rng(1).random(size // 8), bytearray(size)
+    took = []
+    for _ in range(WARM + windows):
+        began = time.perf_counter()
+        np.frombuffer(frame)[:] = value
+        send(frame)
+        float(np.frombuffer(receive()).sum())
+        took.append(time.perf_counter() - began)
+    return took[WARM:]
+
+
+def _follow(send: Send, receive: Receive, size: int, windows: int) -> None:
+    frame = bytearray(size)
+    for _ in range(WARM + windows):
+        value = np.frombuffer(receive())
+        float(value.sum())
+        np.frombuffer(frame)[:] = value
+        send(frame)
+
+
+@contextmanager
+def _over_mpi(size: int) -> Iterator[Carrier]:
+    from mpi4py import MPI
+
+    comm, came = MPI.COMM_WORLD, bytearray(size)
+    other = 1 - comm.rank
+
+    def receive() -> bytearray:
+        comm.Recv([came, MPI.BYTE], other)
+        return came
+
+    yield comm.rank == 0, lambda frame: comm.Send([frame, MPI.BYTE], other), receive
+
+
+@contextmanager
+def _over_zenoh(_: int) -> Iterator[Carrier]:
+    import zenoh
+
+    from quintet.interfaces.zenoh import configuration
+
+    endpoint, me = sys.argv[4:]
+    other = "back" if me == "there" else "there"
+    with zenoh.open(configuration(endpoint, me == "back", None)) as session:
+        inbox = session.declare_subscriber(f"bare/{me}", zenoh.handlers.FifoChannel(4))
+        outbox: Any = session.declare_publisher(  # its stub says that the status is a truth
+            f"bare/{other}", congestion_control=zenoh.CongestionControl.BLOCK
+        )
+        limit = time.monotonic() + PATIENCE
+        while not outbox.matching_status.matching and time.monotonic() < limit:
+            time.sleep(0.01)
+        yield me == "there", outbox.put, lambda: inbox.recv().payload.to_bytes()
+        time.sleep(LEAVING)
+
+
+if __name__ == "__main__":
+    main()
