@@ -4,8 +4,8 @@ Row 0 of a field is the output at the start; row k is its value at the end of wi
 for an impulse, its integral over that window. Nothing in the file is pickled.
 """
 
+from abc import ABC, abstractmethod
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 import h5py
@@ -25,7 +25,21 @@ CHUNK_BYTES = 1 << 20
 PACKED = {"shuffle": True, "compression": "lzf"}
 
 
-class Recorder:
+class _Closed(ABC):
+    """What a with statement closes."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """End using the file; a second call does nothing."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class Recorder(_Closed):
     """Write a recording; rows are held back and written in batches."""
 
     def __init__(self, path: Path | str, run: str, scene: str) -> None:
@@ -80,17 +94,6 @@ class Recorder:
         if self._file:
             self.flush()
             self._file.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
 
 class _Track:
@@ -192,7 +195,7 @@ def _rows_within(limit: int, row: int) -> int:
     return rows
 
 
-class Recording:
+class Recording(_Closed):
     """Read a recording; `path` is the file, or the folder of its run."""
 
     def __init__(self, path: Path | str) -> None:
@@ -265,17 +268,6 @@ class Recording:
     def close(self) -> None:
         """End reading."""
         self._file.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _group(self, name: str) -> Any:
         return self._found(self._groups, name, name)
