@@ -62,7 +62,8 @@ def _options(launcher: str) -> list[str]:
     text = subprocess.run([launcher, "--version"], capture_output=True, text=True).stdout
     if "HYDRA" in text:
         return ["-disable-auto-cleanup"]
-    return ["--map-by", ":OVERSUBSCRIBE"] if "Open MPI" in text else []
+    open_mpi = "Open MPI" in text or "OpenRTE" in text  # the latter until version 4
+    return ["--map-by", ":OVERSUBSCRIBE"] if open_mpi else []
 
 
 def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
