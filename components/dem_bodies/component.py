@@ -189,8 +189,7 @@ class DemBodies(Component):
         """Bodies of a pair as the report numbers them; planes are beyond all bodies."""
         count = len(self.balls.partner)
         if which < count:
-            first, second = ball_search.ends(self.balls, self.state.body)
-            return int(first[which]), int(second[which])
+            return ball_search.deepest(self.state, self.balls)
         touching = self.contacts.touching
         i, j = self.state.body[touching[touching[:, 0] == which - count][0, 1:3]]
         return int(i), int(j)
