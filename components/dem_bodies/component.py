@@ -16,7 +16,6 @@ from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import LOAD, MOTION
 
-SKIN = 0.4  # over the smallest contact radius
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 # As ports.MOTION gives them; 2 is our own.
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
@@ -65,7 +64,7 @@ class DemBodies(Component):
         self.rolling = bool(self.model.law[:, :, 4].any() and self.model.ball.any())
         self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
-        self.skin = SKIN * float(self.model.sphere_radius.min())  # m
+        self.skin = build.SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
         self.damping = float(self.model.law[:, :, 2].max())  # ζ of the most damped contact
         self.held = np.zeros(self.count + 1, np.int64)  # contacts of each row
