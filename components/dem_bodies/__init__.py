@@ -54,10 +54,11 @@ def _ports(params: DemBodiesParams) -> Ports:
 
 def _plan(params: DemBodiesParams) -> Plan:
     solids = [build.solid(body) for body in params.bodies]
-    ω = build.expected_frequency(params, solids)
-    dt = min(params.longest_step, DURATION * SPEED_UP / ω / params.steps_per_contact)
-    dt = dt if params.step is None else params.step
-    count = len(solids)
+    count, ω = len(solids), build.expected_frequency(params, solids)
+    dt = DURATION * SPEED_UP / ω / params.steps_per_contact
+    if count == 1 and not params.planes:  # nothing to touch: two steps for each half of the skin
+        dt = max(dt, 0.25 * build.SKIN * float(solids[0].radii.min()) / params.speed)
+    dt = min(params.longest_step, dt) if params.step is None else params.step
     # Of a step, some time is for calling it, and some for each body: more where it is no ball.
     balls = sum(body.diameter is not None for body in params.bodies)
     step = 1.5e-5 + 1.7e-7 * balls + 1e-6 * (count - balls)  # s

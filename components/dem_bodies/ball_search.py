@@ -217,3 +217,13 @@ def touched(model: Model, state: State, balls: Balls) -> Touched:
     bodies = state.body[np.column_stack([row, np.minimum(partner, ground)])]
     point = x[:, :3] - (x[:, 3] - 0.5 * depth)[:, None] * normal
     return Touched(bodies, point, normal, balls.force[pairs], depth)
+
+
+def deepest(state: State, balls: Balls) -> tuple[int, int]:
+    """Find the bodies of the pair that is deepest for its radius; a plane is beyond all bodies."""
+    radius, weight = state.motion[:, 3], balls.held[:, 3]
+    other = radius[np.minimum(balls.partner, len(radius) - 1)]  # the ground has none
+    low = np.minimum(radius[balls.row], np.where(other > 0.0, other, np.inf))
+    k = int(np.argmin(np.where(weight > 0.0, weight * np.sqrt(low), np.inf)))
+    first, second = ends(balls, state.body)
+    return int(first[k]), int(second[k])

@@ -12,6 +12,7 @@ from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
 from quintet.components.dem_bodies.placement import reach, rotation, spheres
 from quintet.components.dem_bodies.state import Model, Numbers, State, V, W, Whole
 
+SKIN = 0.4  # over the smallest contact radius: pairs nearer than that are listed
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
 # Pairs of corners that differ in one coordinate.
 EDGES = np.array([(k, k + step) for step in (1, 2, 4) for k in range(8) if not k & step])

@@ -16,11 +16,12 @@ from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import LOAD, MOTION
 
-SKIN = 0.4  # over the smallest contact radius
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 # As ports.MOTION gives them; 2 is our own.
 SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
 FEWEST = 8  # blocks of rows that are worth handing to another thread
+# Of the port, in the order that kernels.moves takes.
+MOVES = ("motion.position", "motion.velocity", "motion.orientation", "motion.angular_velocity")
 # Of the balls' pairs; the rest follows from these.
 KEPT = ("begin", "partner", "held", "roll", "force")
 
@@ -63,7 +64,7 @@ class DemBodies(Component):
         self.rolling = bool(self.model.law[:, :, 4].any() and self.model.ball.any())
         self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
-        self.skin = SKIN * float(self.model.sphere_radius.min())  # m
+        self.skin = build.SKIN * float(self.model.sphere_radius.min())  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
         self.damping = float(self.model.law[:, :, 2].max())  # ζ of the most damped contact
         self.held = np.zeros(self.count + 1, np.int64)  # contacts of each row
@@ -107,8 +108,10 @@ class DemBodies(Component):
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; without them there is none."""
-        load, row = self.state.load, self.state.row[: self.count]
         force, torque = fields.get("load.force"), fields.get("load.torque")
+        if force is None and torque is None and not self.loaded:
+            return
+        load, row = self.state.load, self.state.row[: self.count]
         load[row, :3] = 0.0 if force is None else force
         load[row, 3:] = 0.0 if torque is None else torque
         self.loaded = bool(load.any())
@@ -185,21 +188,18 @@ class DemBodies(Component):
         """Bodies of a pair as the report numbers them; planes are beyond all bodies."""
         count = len(self.balls.partner)
         if which < count:
-            first, second = ball_search.ends(self.balls, self.state.body)
-            return int(first[which]), int(second[which])
+            return ball_search.deepest(self.state, self.balls)
         touching = self.contacts.touching
         i, j = self.state.body[touching[touching[:, 0] == which - count][0, 1:3]]
         return int(i), int(j)
 
     def give(self) -> Fields:
         """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
-        s, row = self.state, self.state.row[: self.count]
-        motion = {
-            "motion.position": s.position[row],
-            "motion.velocity": s.velocity[row],
-            "motion.orientation": s.orientation[row],
-            "motion.angular_velocity": s.angular_velocity[row],
-        }
+        s, n = self.state, self.count
+        # One piece of memory, for pieces of their own are fetched from the system at every call.
+        parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
+        motion = dict(zip(MOVES, (part.reshape(n, -1) for part in parts), strict=True))
+        kernels.moves(s, *motion.values())
         if not self.params.contact_forces:
             return motion
         mean = 0.5 * (s.before + s.contact)[s.row]  # gives the change of momentum to rounding

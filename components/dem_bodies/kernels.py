@@ -228,6 +228,21 @@ def spins(model: Model, state: State) -> Numbers:
     return spin
 
 
+@njit(**PURE)
+def moves(
+    state: State, position: Numbers, velocity: Numbers, orientation: Numbers, turning: Numbers
+) -> None:
+    """Copy out the motion of all bodies, in the scene's order."""
+    motion = state.motion
+    for k in range(position.shape[0]):
+        i = state.row[k]
+        write(position, k, 0, vector(motion, i))
+        write(velocity, k, 0, three(motion, i, V))
+        write(turning, k, 0, three(motion, i, W))
+        for d in range(4):
+            orientation[k, d] = state.orientation[i, d]
+
+
 @njit(**INNER)
 def press_others(
     model: Model, state: State, balls: Balls, contacts: Contacts, tally: Numbers, dt: float

@@ -118,7 +118,7 @@ class Contacts(NamedTuple):
 GAP = 0  # m, smallest distance of any pair
 STIFFEST = 1  # (rad/s)2, largest S_n/m* of any contact
 DEEPEST = 2  # largest depth over contact radius
-WHICH = 3  # pair of that: of the balls, or after them of the other contacts
+WHICH = 3  # pair of that, numbered after those of balls; of balls any; -1 if nothing touches
 ELASTIC = 4  # J, held by all contacts
 WORK = 5  # J, done by contacts on bodies in the step
 FASTEST = 6  # m/s, bound of the speed of any point
@@ -132,7 +132,7 @@ TOUCHING = 10  # number of contacts that touch, those of balls not counted
 MOVING, SPINNING, PULLED, SPUN, CURVED = range(11, 16)
 BORNE, TALLIES = 16, 22
 BLOCK = 512  # rows
-V, W, END_V, END_W = 4, 7, 10, 13  # columns of motion
+V, W, END_V, END_W, COLUMNS = 4, 7, 10, 13, 16  # of motion: where each begins, and their number
 
 
 def blocks_of(rows: int) -> int:

@@ -8,6 +8,7 @@ from quintet.components.dem_bodies import MANIFEST
 from quintet.components.dem_bodies.bench import lattice
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.state import DEEPEST, WHICH
 from quintet.interfaces.params import read
 
 
@@ -59,6 +60,14 @@ def test_energy_and_contacts_of_many_are_as_summed_one_by_one(mixed):
     x = mixed.give()["motion.position"]
     apart = np.linalg.norm(x[i[j < m]] - x[j[j < m]], axis=1)
     np.testing.assert_allclose(found["depth"][j < m], 0.01 - apart, atol=1e-12)
+
+
+def test_deepest_of_many_is_the_one_that_is_told(mixed):
+    found, report = mixed.contact_points(), mixed.state.report
+    k = int(np.argmax(found["depth"]))
+    assert report[DEEPEST] == pytest.approx(found["depth"][k] / 0.005, rel=1e-6)
+    i, j = mixed._pair(int(report[WHICH]))
+    assert [i, min(j, mixed.count)] == found["bodies"][k].tolist()
 
 
 def test_all_that_touch_are_listed(mixed):

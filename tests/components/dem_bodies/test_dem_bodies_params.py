@@ -5,9 +5,10 @@ import sys
 
 import numpy as np
 import pytest
-from dem_scenes import FLOOR, about, box, mistakes, params, sphere
+from dem_scenes import FLOOR, about, box, material, mistakes, params, run, sphere
 
 from quintet.components.dem_bodies import MANIFEST
+from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import CONTACT
 from quintet.interfaces.ports import LOAD, MOTION
 
@@ -74,3 +75,12 @@ def test_manifest_needs_no_solver():
     assert MANIFEST.ports(given) == ((LOAD,), (MOTION,))
     plan = MANIFEST.plan(given)
     assert plan.items == 2 and 1e-6 < plan.dt < 1e-3
+
+
+@pytest.mark.parametrize("speed", [1.0, 20.0])
+def test_steps_of_a_body_that_nothing_can_touch_are_planned_as_they_are(speed):
+    ball = sphere([0.0, 0.0, 0.0], velocity=[speed, 0.0, 0.0])
+    given = params([ball], {"a": material(young=1e9)}, gravity=[0.0, 0.0, 0.0], speed=speed)
+    lone, steps = DemBodies(given), []
+    run(lone, 0.1, watch=steps.append)
+    assert MANIFEST.plan(given).dt == pytest.approx(0.1 / len(steps), rel=0.5)
