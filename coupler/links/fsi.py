@@ -1,7 +1,9 @@
 """Fluid and structure: surface samples move with bodies or faces, and carry forces back.
 
 The fluid takes samples and gives a force on each; it never learns what moves them. The body
-gives its shape or its faces; it never learns how finely they are sampled.
+gives its shape or its faces; it never learns how finely they are sampled. `contact` says what
+presses between the fluid and the samples of this link: what does at the fluid's walls, or a contact
+potential, of a fluid whose port asks for it.
 """
 
 from collections.abc import Mapping
