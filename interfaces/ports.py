@@ -29,6 +29,9 @@ SURFACE = Port(
 )
 # The same with the mirror image of each sample through its surface, for fluids that ask for it.
 MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,), "m")))
+# Said too by fluids that let each link choose what presses between them and its samples:
+# 0 what presses at their walls, 1 a contact potential.
+CONTACT = Field("contact", (), "1")
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 
 # Rigid bodies: given by whatever moves them, loaded by a force and a torque about the centre.

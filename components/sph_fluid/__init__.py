@@ -10,7 +10,7 @@ Walls and moving surface samples are particles that obey the continuity equation
 fluid neighbours alone) and Tait's, but move as they are told; their density never falls below
 ρ₀, so that they never pull. With `boundary` "mdbc" their density is the fluid's, mirrored
 (`mdbc.py`); with "potential" they have no pressure, and a contact potential stands for it
-(`contact.py`).
+(`contact.py`), as it may for single links of a fluid with mirrored walls (`surface.py`).
 
 `laminar` viscosity is a Laplacian (Lo & Shao 2002), close beside walls, or with `friction`
 "stress" acts along the line between particles (Monaghan & Gingold 1983), without which a free
@@ -63,14 +63,15 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 from quintet.components.sph_fluid.build import particles
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.surface import surface
 from quintet.interfaces.manifest import Manifest, Plan, Ports
-from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
+from quintet.interfaces.ports import SURFACE_LOAD
 
 __all__ = ["MANIFEST", "SphFluidParams"]
 
 
 def _ports(params: SphFluidParams) -> Ports:
-    return (MIRRORED_SURFACE if params.mirrored else SURFACE,), (SURFACE_LOAD, *gauge_ports(params))
+    return (surface(params),), (SURFACE_LOAD, *gauge_ports(params))
 
 
 def _plan(params: SphFluidParams) -> Plan:

@@ -16,32 +16,35 @@ from quintet.components.sph_fluid.laws import AHEAD, constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, refuse_dense, totals, view
-from quintet.components.sph_fluid.terms import bulk, friction, hold, step_limit, terms
+from quintet.components.sph_fluid.surface import chosen, surface
+from quintet.components.sph_fluid.terms import among, bulk, friction, terms
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
-from quintet.interfaces.ports import MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
+from quintet.interfaces.ports import SURFACE_LOAD
 
 
 class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
 
-    takes: tuple[Port, ...] = (SURFACE,)
-
     def __init__(self, params: SphFluidParams) -> None:
         self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
-        self.fluid, self.terms = constants(params), terms(params)
+        self.takes: tuple[Port, ...] = (surface(params),)
+        self.fluid = constants(params)
         self.team, self.state = Team(threads_wanted()), build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
-        self.steepest = hold(self.state, params)  # s, step that a contact potential allows
         self.near = Neighbours()
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
+        self.held: Whole = self.rows  # (k,) samples that a contact potential holds
+        self.steepest = math.inf  # s, step that it allows
+        self.terms = terms(params, params.boundary == "potential")
+        if self.terms.hold is not None:
+            self.steepest = self.terms.hold.walls(self.state)
         self.listed: Whole = self.rows  # (samples,) and where in the neighbour lists
         self.rate = np.empty((0, 4))  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s); of the present step
         self.drift: Array | None = None  # (fluid, 3) m/s, XSPH's; where it is on
         self.volume = np.empty(0)  # (samples,) m3
         self.placed = True
         if params.mirrored:
-            self.takes = (MIRRORED_SURFACE,)
             from quintet.components.sph_fluid.mdbc import mirrors
 
             self.state.mirror = mirrors(params)
@@ -72,6 +75,9 @@ class SphFluid(Component):
             self.placed = False
             self.body, self.volume = static["surface.body"], static["surface.volume"]
             self.state.film = np.zeros((count if self.params.gaps else 0, 3))
+            self.held = chosen(static, self.params)
+            if len(self.held):
+                self.terms = terms(self.params, True)
 
     def stable_dt(self) -> float:
         """Largest step [s]; Monaghan & Kos 1999 and Morris 1997, from the rates of the last one."""
@@ -90,8 +96,9 @@ class SphFluid(Component):
             self.state.motion[self.rows, :3] = fields["surface.velocity"]
             if self.params.mirrored:
                 self.state.mirror[self.rows - self.state.fluid] = fields["surface.mirror"]
-            if not self.placed:
-                self.steepest = hold(self.state, self.params, self.body)
+            if self.terms.hold is not None:
+                held = self.rows[self.held]
+                self.steepest = self.terms.hold.bodies(self.state, held, self.body[self.held])
             if self.images is not None:
                 self.images.refuse(fields["surface.position"])
             self.placed = True
@@ -136,17 +143,8 @@ class SphFluid(Component):
         return self.state.particles if self.params.boundary == "dbc" else self.state.fluid
 
     def _list(self) -> None:
-        state, seekers = self.state, None
-        points = state.reference[: state.particles]
-        self.listed = self.rows
-        if self.params.mirrored:
-            # Walls look for fluid from their mirror points; samples, which it pushes, from where
-            # they are as well.
-            seekers = np.concatenate([state.reference[len(points) :], points[self.rows]])
-            self.listed = len(points) + np.arange(len(self.rows))
-        elif self.terms.contact is not None:
-            seekers = points[self.rows]
-            self.listed = state.fluid + np.arange(len(self.rows))
+        state, points = self.state, self.state.reference[: self.state.particles]
+        seekers, self.listed = lists.seekers(state, self.rows, self.params)
         reach, after = lists.reach(self.params), (self.team, seekers, self.near.list)
         if self.images is None:
             self.near = neighbours_within(reach, points, state.fluid, *after)
@@ -155,8 +153,10 @@ class SphFluid(Component):
 
             self.near = neighbours(self.images, state, reach, *after)
         self.bulk = bulk(self.volume, self.rows, len(state.place), self.params)
-        if self.images is not None and self.bulk is not None:
-            self.images.copy(self.bulk, state.particles)
+        if self.params.mirrored and self.terms.contact is not None:
+            self.terms = among(self.terms, self.rows[self.held], len(state.place), self.params)
+        if self.images is not None:
+            self.images.copy(state.particles, self.bulk, self.terms.some)
         if len(state.film):
             from quintet.components.sph_fluid.facing import film
 
@@ -196,7 +196,8 @@ class SphFluid(Component):
         if self.params.mirrored:
             from quintet.components.sph_fluid.mdbc import press_walls
 
-            press_walls(state, self.near.arrays, self.rows, self.listed, self.params, self.team)
+            samples = (self.rows, self.listed, self.held)
+            press_walls(state, self.near.arrays, *samples, self.params, self.team)
             self._mirror()
         self.pairs = pairs, rubbing = self._pairs()
         terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact, self.bulk)
@@ -273,17 +274,18 @@ class SphFluid(Component):
         self.placed = bool(state["placed"])
         self.state = State.load(state)
         self.rows = self.state.sample_rows()
-        self.steepest = step_limit(self.state, self.params)
+        if self.terms.hold is not None:
+            self.steepest = self.terms.hold.limit(self.state, self.rows[self.held])
         if len(self.state.reference):
             self._list()
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left."""
         found = totals(self.state, self.params, self.fluid)
-        if self.terms.contact is not None and len(self.state.reference):
+        if (law := self.terms.contact) is not None and len(self.state.reference):
             from quintet.components.sph_fluid.contact import energy
 
-            found.internal += energy(self.state, self.near.arrays, self.params, self.team)
+            found.internal += energy(self.state, self.near.arrays, law, self.params, self.team)
         return found
 
     def view(self) -> Fields:

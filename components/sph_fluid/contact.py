@@ -15,10 +15,11 @@ Under a pressure p the fluid comes as near as p = p s(d) + K Δpᵈ S(d) says: S
 between two cubic lattices, d apart, over K Δpᵈ, and s the share of p that p_i/ρ_i² brings, one half
 where d is a spacing, as between the fluid's own planes. K Δpᵈ = (1-s(1))p/S(1) holds p there.
 
-Walls and samples are given it for the pressure that water at rest has where they are first; with
-n = 1 the potential then has the shape of what the fluid lacks at a wall, and its lattice stays at
-rest. Dry bodies are given it for the fluid's mean pressure. Dry walls have none: there, and under
-pressures that are higher, the guard of mirrored walls (`laws.Guard`) turns the fluid.
+Walls and samples are given it for the pressure that water at rest has where they are, samples anew
+whenever they are placed, so that a body that goes deeper is held up there too; with n = 1 the
+potential then has the shape of what the fluid lacks at a wall, and its lattice stays at rest. Dry
+bodies are given it for the fluid's mean pressure. Dry walls have none: there, and under pressures
+that are higher, the guard of mirrored walls (`laws.Guard`) turns the fluid.
 """
 
 import math
@@ -33,7 +34,7 @@ from quintet.components.shared.team import Team
 from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import Contact, Fluid, Guard, constants, guard, kernel
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.state import Array, State, Whole
 
 SAFE = 0.2  # of √(m/(∂F/∂d)): the step
 
@@ -47,15 +48,42 @@ def contact(params: SphFluidParams) -> Contact:
     return Contact(strength, 1.0 / width, once, twice, four)
 
 
-def hold(state: State, params: SphFluidParams, body: Array | None = None) -> None:
-    """Write K Δpᵈ/ρ₀² of walls, or of the samples of bodies (samples,), in place of p/ρ²."""
-    rows = np.flatnonzero(state.sample < 0) if body is None else state.sample_rows() - state.fluid
-    points = state.place[state.fluid + rows, :3]
-    if params.potential_stiffness is not None:
-        held_by = np.full(len(rows), params.potential_stiffness)
-    else:
-        held_by = stiffness(pressure(points, params, body), params)
-    state.motion[state.fluid + rows, 3] = held_by / params.density**2
+class Hold:
+    """How strongly the potential of one fluid holds walls and samples."""
+
+    def __init__(self, params: SphFluidParams) -> None:
+        self.params = params
+        self.share = float(stiffness(np.ones(1), params)[0])  # K Δpᵈ over the pressure held
+        self.step = limit(1.0, params)  # s √Pa
+
+    def walls(self, state: State) -> float:
+        """Hold all walls, before there are samples; return the step limit [s]."""
+        rows = np.arange(state.fluid, state.particles)
+        self._place(state, rows)
+        return self.limit(state, rows)
+
+    def bodies(self, state: State, rows: Whole, body: Array) -> float:
+        """Hold samples of bodies (k,), in rows (k,), where they are; return the step limit [s]."""
+        self._place(state, rows, body)
+        return self.limit(state, rows)
+
+    def _place(self, state: State, rows: Whole, body: Array | None = None) -> None:
+        """Write K Δpᵈ/ρ₀² in place of p/ρ²."""
+        if self.params.potential_stiffness is not None:
+            held_by = np.full(len(rows), self.params.potential_stiffness)
+        else:
+            held_by = self.share * pressure(state.place[rows, :3], self.params, body)
+        state.motion[rows, 3] = held_by / self.params.density**2
+
+    def limit(self, state: State, samples: Whole) -> float:
+        """Largest step [s] that the steepest part of the potential of all it holds allows.
+
+        Rows of samples (k,); walls are held where the boundary is a potential.
+        """
+        if self.params.boundary == "potential":
+            samples = np.arange(state.fluid, state.particles)
+        stiffest = self.params.density**2 * float(state.motion[samples, 3].max(initial=0.0))
+        return self.step / math.sqrt(stiffest) if stiffest > 0.0 else math.inf
 
 
 def pressure(points: Array, params: SphFluidParams, body: Array | None = None) -> Array:
@@ -80,16 +108,8 @@ def stiffness(pressures: Array, params: SphFluidParams) -> Array:
     return np.asarray(pressures * (1.0 - shared(1.0, params)) / held(1.0, params))
 
 
-def step_limit(state: State, params: SphFluidParams) -> float:
-    """Largest step [s] that the steepest part of the potential allows."""
-    held_by = state.motion[state.fluid : state.particles, 3]
-    return limit(params.density**2 * float(held_by.max(initial=0.0)), params)
-
-
 def limit(stiffest: float, params: SphFluidParams) -> float:
     """Largest step [s] where the greatest K Δpᵈ is `stiffest` [Pa]."""
-    if stiffest == 0.0:
-        return math.inf
     apart = np.linspace(0.0, SUPPORT * params.smoothing, 61)
     push = [push_of_wall(one, params) for one in apart]
     steepest = float(-np.gradient(push, apart).min())
@@ -136,20 +156,21 @@ def slope(q: float, params: SphFluidParams) -> float:
     return 3.0 * float(cubic_spline.slope.py_func(q))
 
 
-def energy(state: State, near: List, params: SphFluidParams, team: Team) -> float:
+def energy(state: State, near: List, touch: Contact, params: SphFluidParams, team: Team) -> float:
     """Energy [J] of the contact potential and of the guard."""
-    touch, turn, fluid = contact(params), guard(params), constants(params)
+    turn, fluid = guard(params), constants(params)
+    held_by = state.motion[:, 3] * (1.0 if touch.some is None else touch.some)
     assert turn is not None
     numbers = (touch.inverse, params.potential_exponent, params.spacing**-params.dimensions)
     found = np.zeros(state.fluid)
-    arrays = (state.place, state.motion, near, *numbers, turn, fluid, found)
+    arrays = (state.place, held_by, near, *numbers, turn, fluid, found)
     team.run(store, state.fluid, *arrays)
     return float(found.sum()) * fluid.mass**2 * params.thickness
 
 
 @njit(**FAST)
 def store(
-    first: int, last: int, place: Array, motion: Array, near: List, inverse: float, exponent: int,
+    first: int, last: int, place: Array, held_by: Array, near: List, inverse: float, exponent: int,
     per_volume: float, guard: Guard, fluid: Fluid, found: Array,
 ) -> None:  # fmt: skip
     """Write the energy over m² of fluid rows [first, last) with their boundary neighbours."""
@@ -164,7 +185,7 @@ def store(
                 place[i, 2] - place[j, 2],
             )
             r2 = x * x + y * y + z * z
-            total += motion[j, 3] * per_volume * (kernel(r2, fluid) * inverse) ** exponent
+            total += held_by[j] * per_volume * (kernel(r2, fluid) * inverse) ** exponent
             close = max(1.0 - r2 / guard.reach2, 0.0)
             total += 0.25 * guard.stiffness * guard.reach2 * close * close
         found[i] = total

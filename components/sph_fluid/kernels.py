@@ -129,7 +129,7 @@ def interact(
                 growth += dot * slope
                 terms = term + motion[j, 3]
                 if contact is not None:
-                    terms = term + motion[j, 3] * bear(r2, contact, fluid)
+                    terms = term + motion[j, 3] * bear(r2, j, contact, fluid)
                 force = slope * push(terms, fluid.grip * closing, per_both, fluid)
                 if guard is not None:
                     force -= repel(r2, guard)
@@ -199,7 +199,7 @@ def push_samples(
                 slope *= bulk[i]
             terms = term + motion[j, 3]
             if contact is not None:
-                terms = term * bear(r2, contact, fluid) + motion[j, 3]
+                terms = term * bear(r2, i, contact, fluid) + motion[j, 3]
             size = slope * push(terms, closing, per_both, fluid)
             if guard is not None:
                 size -= repel(r2, guard)

@@ -4,7 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, types
+from numba.extending import overload
 from numpy.typing import NDArray
 
 from quintet.components.shared import cubic_spline, wendland
@@ -93,6 +94,8 @@ class Contact(NamedTuple):
     once: float  # 1, or 0
     twice: float
     four: float
+    some: NDArray[np.floating] | None = None  # (n,) 1 for boundary rows that it holds, 0 for
+    # others; None: it holds all
 
 
 def constants(params: SphFluidParams) -> Fluid:
@@ -184,10 +187,25 @@ def repel(r2, guard):  # type: ignore[no-untyped-def]
     return guard.stiffness * max(ONE - r2 / guard.reach2, ZERO)
 
 
+def among(factor, some, j):  # type: ignore[no-untyped-def]
+    """Factor of row j if the potential holds it, or else 1."""
+
+
+@overload(among, inline="always")
+def _among(factor, some, j):  # type: ignore[no-untyped-def]
+    if isinstance(some, types.NoneType):
+        return lambda factor, some, j: factor
+    return lambda factor, some, j: ONE + some[j] * (factor - ONE)
+
+
 @njit(inline="always")
-def bear(r2, contact, fluid):  # type: ignore[no-untyped-def]
-    """What K Δpᵈ/ρ₀² is multiplied by to stand for p_j/ρ_j²: n W^(n-1)/(W(Δp)^n Δpᵈ)."""
+def bear(r2, j, contact, fluid):  # type: ignore[no-untyped-def]
+    """What K Δpᵈ/ρ₀² of row j is multiplied by to stand for p_j/ρ_j²: n W^(n-1)/(W(Δp)^n Δpᵈ).
+
+    Of a row that the potential does not hold p_j/ρ_j² stays as it is.
+    """
     one = kernel(r2, fluid) * contact.inverse
     two = one * one
     power = (ONE + contact.once * (one - ONE)) * (ONE + contact.twice * (two - ONE))
-    return contact.strength * power * (ONE + contact.four * (two * two - ONE))
+    factor = contact.strength * power * (ONE + contact.four * (two * two - ONE))
+    return among(factor, contact.some, j)

@@ -37,6 +37,21 @@ def are_old(state: State, rows: Whole, params: SphFluidParams, dt: float) -> boo
     return bool(state.moved + max(state.moved, math.sqrt(shifted)) > margin)
 
 
+def seekers(state: State, rows: Whole, params: SphFluidParams) -> tuple[Array | None, Whole]:
+    """Places (m, 3) m from which the boundary looks for fluid, and where the samples' lists stand.
+
+    None: all of it from where it is. Mirrored walls look from their mirror points; samples, which
+    the fluid pushes, from where they are as well. Under a contact potential these alone look.
+    """
+    points = state.reference[: state.particles]
+    if params.mirrored:
+        here = np.concatenate([state.reference[len(points) :], points[rows]])
+        return here, len(points) + np.arange(len(rows))
+    if params.boundary == "potential":
+        return points[rows], state.fluid + np.arange(len(rows))
+    return None, rows
+
+
 def inside(points: Array, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which points (n, 3) m are in the tank or not far outside of it."""
     if params.walls is None:

@@ -25,6 +25,7 @@ from quintet.components.sph_fluid.state import Array, State, Whole
 
 THIN = 0.02  # h², variance of places along a direction below which no gradient is fitted
 NONE = 1e-2  # Σ V W below which there is no fluid
+WALL, HELD = -1, -2  # in place of a row: the lists have none, or a contact potential holds it
 
 
 def mirrors(params: SphFluidParams) -> Array:
@@ -41,14 +42,17 @@ def mirrors(params: SphFluidParams) -> Array:
 
 
 def press_walls(
-    state: State, near: List, rows: Whole, listed: Whole, params: SphFluidParams, team: Team
-) -> None:
+    state: State, near: List, rows: Whole, listed: Whole, held: Whole, params: SphFluidParams,
+    team: Team,
+) -> None:  # fmt: skip
     """Walls and samples: density as if the fluid went on into them.
 
-    `rows` (samples,) are those of the samples, `listed` where the lists have what is around them.
+    `rows` (samples,) are those of the samples, `listed` where the lists have what is around them,
+    `held` (k,) the samples that a contact potential holds.
     """
-    own = np.full(len(state.mirror), -1)
+    own = np.full(len(state.mirror), WALL)
     own[rows - state.fluid] = listed
+    own[rows[held] - state.fluid] = HELD
     arrays = (own, state.mirror, state.place, state.motion, near)
     weight = params.density * math.hypot(*params.weight) / params.sound_speed**2
     team.run(extrapolate, len(own), state.fluid, *arrays, weight, constants(params))
@@ -68,6 +72,8 @@ def extrapolate(
     gradient is noise.
     """
     for b in range(first, last):
+        if own[b] == HELD:
+            continue
         i = split + b
         x, y, z, row = mirrors[b, 0], mirrors[b, 1], mirrors[b, 2], i
         mean, rise, weights = fit(row, x, y, z, place[i], place, near, fluid)

@@ -84,10 +84,12 @@ class Images:
             velocity[rows, axis] *= -1.0
             first = rows.stop
 
-    def copy(self, values: NDArray[np.floating], first: int) -> None:
-        """Write values (n + images,) of images, which are those of their origins."""
+    def copy(self, first: int, *lists: NDArray[np.floating] | None) -> None:
+        """Write values (n + images,) of images, from row `first` on: those of their origins."""
         for origin in self.origin:
-            values[first : first + len(origin)] = values[origin]
+            for values in lists:
+                if values is not None:
+                    values[first : first + len(origin)] = values[origin]
             first += len(origin)
 
     def turn_back(self, state: State) -> None:

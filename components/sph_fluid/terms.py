@@ -1,9 +1,10 @@
 """The numbers of all laws that act between pairs, in the precision that pairs are computed in."""
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.shared.team import Team
 from quintet.components.sph_fluid.kernels import List
@@ -20,6 +21,9 @@ from quintet.components.sph_fluid.laws import (
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 
+if TYPE_CHECKING:
+    from quintet.components.sph_fluid.contact import Hold
+
 EVEN = 1e-9  # of a particle's volume: what differs from it by less is as large
 
 
@@ -31,40 +35,35 @@ class Terms:
     diffusion: Diffusion | None
     guard: Guard | None
     contact: Contact | None
+    hold: "Hold | None" = None
+
+    @property
+    def some(self) -> NDArray[np.floating] | None:
+        """Whether the contact potential holds a row, of all rows; None: it holds all, or none."""
+        return None if self.contact is None else self.contact.some
 
 
-def terms(params: SphFluidParams) -> Terms:
-    """Numbers of the laws that a scene asks for."""
-    touch = None
-    if params.boundary == "potential":
-        from quintet.components.sph_fluid.contact import contact
+def terms(params: SphFluidParams, held: bool) -> Terms:
+    """Numbers of the laws that a scene asks for; `held`: of the contact potential too."""
+    touch, strength = None, None
+    if held:
+        from quintet.components.sph_fluid.contact import Hold, contact
 
-        touch = contact(params)
+        touch, strength = contact(params), Hold(params)
     laws = (constants(params), diffusion(params), guard(params), touch)
     if params.precision == "float32":
         from quintet.components.sph_fluid.single import rounded
 
         laws = tuple(map(rounded, laws))
-    return Terms(*laws)
+    return Terms(*laws, strength)
 
 
-def hold(state: State, params: SphFluidParams, body: Array | None = None) -> float:
-    """Let walls, or samples of bodies, hold the water where they are; return the step limit [s]."""
-    if params.boundary != "potential":
-        return math.inf
-    from quintet.components.sph_fluid.contact import hold
-
-    hold(state, params, body)
-    return step_limit(state, params)
-
-
-def step_limit(state: State, params: SphFluidParams) -> float:
-    """Largest step [s] that a contact potential allows."""
-    if params.boundary != "potential":
-        return math.inf
-    from quintet.components.sph_fluid.contact import step_limit
-
-    return step_limit(state, params)
+def among(laws: Terms, rows: Whole, count: int, params: SphFluidParams) -> Terms:
+    """Let the contact potential be that of some rows alone, of `count`."""
+    assert laws.contact is not None
+    some = np.zeros(count, params.precision)
+    some[rows] = 1.0
+    return replace(laws, contact=laws.contact._replace(some=some))
 
 
 def friction(

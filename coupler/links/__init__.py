@@ -10,13 +10,21 @@ from quintet.coupler.exchange import Link, Ports
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
 
+CONTACTS = ("walls", "potential")  # as at the fluid's walls, or by a contact potential
 Maker = Callable[[int, dict[str, Any], Mapping[str, Ports]], Link]
 
 
 def _fsi(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
     from quintet.coupler.links.fsi import join
 
-    return join(*_between(number, given, ports), ports)
+    name, pair = _between(number, given, ports, "contact")
+    contact = given.get("contact", CONTACTS[0])
+    if contact not in CONTACTS:
+        raise SceneError(
+            f"links.{number}.contact must be one of {', '.join(CONTACTS)}, as at the fluid's walls "
+            f"or by a contact potential; found {contact!r}. Correct it, or leave it out for walls."
+        )
+    return join(name, pair, ports, contact == "potential")
 
 
 def _glue(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
@@ -40,9 +48,9 @@ def _direct(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> L
 
 
 def _between(
-    number: int, given: dict[str, Any], ports: Mapping[str, Ports]
+    number: int, given: dict[str, Any], ports: Mapping[str, Ports], *more: str
 ) -> tuple[str, tuple[str, str]]:
-    _only(number, given, ("kind", "name", "between"))
+    _only(number, given, ("kind", "name", "between", *more))
     pair = given.get("between")
     if not isinstance(pair, list) or len(pair) != 2 or pair[0] == pair[1]:
         raise SceneError(f"links.{number}.between must name two components; found {pair!r}.")

@@ -1,7 +1,9 @@
 """Fluid and structure: surface samples move with bodies or faces, and carry forces back.
 
 The fluid takes samples and gives a force on each; it never learns what moves them. The body
-gives its shape or its faces; it never learns how finely they are sampled.
+gives its shape or its faces; it never learns how finely they are sampled. `contact` says what
+presses between the fluid and the samples of this link: what does at the fluid's walls, or a contact
+potential, of a fluid whose port asks for it.
 """
 
 from collections.abc import Mapping
@@ -14,6 +16,7 @@ from quintet.coupler.shapes import fill, mirrors
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
+    CONTACT,
     FACES,
     LOAD,
     MIRRORED_SURFACE,
@@ -26,8 +29,13 @@ from quintet.interfaces.ports import (
 WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
 
-def join(name: str, between: tuple[str, str], ports: Mapping[str, Ports]) -> "RigidFsi | FaceFsi":
-    """Match two components: one samples a surface, the other moves bodies or faces."""
+def join(
+    name: str, between: tuple[str, str], ports: Mapping[str, Ports], potential: bool = False
+) -> "RigidFsi | FaceFsi":
+    """Match two components: one samples a surface, the other moves bodies or faces.
+
+    With `potential` the fluid is asked to press on the samples by a contact potential.
+    """
     first, second = between
     for fluid, body in ((first, second), (second, first)):
         takes = {port.name for port in ports[fluid][0]}
@@ -44,7 +52,8 @@ def join(name: str, between: tuple[str, str], ports: Mapping[str, Ports]) -> "Ri
             raise SceneError(f"link {name}: {'; '.join(lacks)}. Correct the ports.")
         surface = next(port for port in ports[fluid][0] if port.name == SURFACE.name)
         mirrored = any(field.name == "mirror" for field in surface.fields)
-        found = (RigidFsi if rigid else FaceFsi)(name, fluid, body, mirrored)
+        contact = _contact(name, fluid, surface, potential)
+        found = (RigidFsi if rigid else FaceFsi)(name, fluid, body, mirrored, contact)
         found.legs = found.legs if loaded else found.legs[:1]
         return found
     raise SceneError(
@@ -55,6 +64,24 @@ def join(name: str, between: tuple[str, str], ports: Mapping[str, Ports]) -> "Ri
     )
 
 
+def _contact(name: str, fluid: str, surface: Port, potential: bool) -> float | None:
+    """Code of what presses on the samples, for a fluid that lets its links choose it."""
+    if any(field.name == CONTACT.name for field in surface.static):
+        return float(potential)
+    if potential:
+        raise SceneError(
+            f"link {name}: contact potential needs a fluid that lets links choose their contact; "
+            f"port {surface.name} of {fluid} does not say {CONTACT.name}. Remove contact, or "
+            f"change the boundary of {fluid}."
+        )
+    return None
+
+
+def _marks(contact: float | None, samples: int) -> dict[str, Array]:
+    """Static field that tells the fluid what presses on these samples, if it asks."""
+    return {} if contact is None else {"surface.contact": np.full(samples, contact)}
+
+
 def _names(ports: tuple[Port, ...]) -> str:
     return ", ".join(port.name for port in ports) or "nothing"
 
@@ -62,8 +89,11 @@ def _names(ports: tuple[Port, ...]) -> str:
 class RigidFsi:
     """Samples ride on rigid bodies; their forces become a force and a torque on each."""
 
-    def __init__(self, name: str, fluid: str, body: str, mirrored: bool = False) -> None:
-        self.name, self.fluid, self.body, self.mirrored = name, fluid, body, mirrored
+    def __init__(
+        self, name: str, fluid: str, body: str, mirrored: bool = False, contact: float | None = None
+    ) -> None:
+        self.name, self.fluid, self.body = name, fluid, body
+        self.mirrored, self.contact = mirrored, contact
         self.map: RigidMap
         self.mirror: RigidMap  # of the samples' mirror points, where the fluid takes them
         # Arms (n, 3) m and centres (bodies, 3) m in the world, at the last two times known.
@@ -107,6 +137,7 @@ class RigidFsi:
                 "surface.normal": np.concatenate([normal for _, normal, _ in parts]),
                 "surface.volume": np.concatenate([volume for _, _, volume in parts]),
                 "surface.body": owner.astype(np.float64),
+                **_marks(self.contact, len(owner)),
             }
         }
 
@@ -154,8 +185,11 @@ class RigidFsi:
 class FaceFsi:
     """Samples ride on the faces of a mesh; their forces go to its nodes."""
 
-    def __init__(self, name: str, fluid: str, body: str, mirrored: bool = False) -> None:
-        self.name, self.fluid, self.body, self.mirrored = name, fluid, body, mirrored
+    def __init__(
+        self, name: str, fluid: str, body: str, mirrored: bool = False, contact: float | None = None
+    ) -> None:
+        self.name, self.fluid, self.body = name, fluid, body
+        self.mirrored, self.contact = mirrored, contact
         self.map: ShapeMap
         self.memory = None
         self.partner = {fluid: SURFACE.name}
@@ -182,6 +216,7 @@ class FaceFsi:
                 "surface.normal": normal,
                 "surface.volume": area * spacing,
                 "surface.body": np.zeros(len(area)),
+                **_marks(self.contact, len(area)),
             }
         }
 

@@ -1,5 +1,7 @@
 """Links: which ports they join, what they refuse, and what they carry."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from quintet.coupler.links.glue import join as join_glue
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
+    CONTACT,
     FACES,
     FORCE,
     GLUED,
@@ -45,6 +48,37 @@ def test_fsi_finds_who_is_who_in_either_order():
         assert isinstance(found, RigidFsi) and (found.fluid, found.body) == ("water", "cubes")
     assert isinstance(join_fsi("link", ("plate", "water"), PORTS), FaceFsi)
     assert len(join_fsi("link", ("water", "path"), PORTS).legs) == 1  # it takes no load
+
+
+CHOOSING = replace(SURFACE, static=(*SURFACE.static, CONTACT))
+SINGLE = {"motion.shape": np.ones(1), "motion.size": np.full((1, 3), 0.3)}
+
+
+@pytest.mark.parametrize(("given", "mark"), [({}, 0.0), ({"contact": "potential"}, 1.0)])
+def test_fsi_tells_the_fluid_which_contact_a_link_asks_for(given, mark):
+    ports = {**PORTS, "water": ((CHOOSING,), (SURFACE_LOAD,))}
+    link = KINDS["fsi"](0, {"kind": "fsi", "between": ["water", "cubes"], **given}, ports)
+    stated = {"surface.spacing": np.array([0.1]), "surface.depth": np.array([0.3])}
+    (static,) = link.describe({"water": stated, "cubes": SINGLE}).values()
+    assert static["surface.contact"].tolist() == [mark] * 27
+
+
+def test_fsi_says_which_contacts_there_are_and_who_has_none():
+    given = {"kind": "fsi", "between": ["water", "cubes"]}
+    wrong = (
+        r"links.3.contact must be one of walls, potential, .*found 'potentials'. "
+        "Correct it, or leave it out for walls."
+    )
+    with pytest.raises(SceneError, match=wrong):
+        KINDS["fsi"](3, {**given, "contact": "potentials"}, PORTS)
+    alone = (
+        "link water-cubes: contact potential needs a fluid that lets links choose.*port surface of "
+        "water does not say contact. Remove contact, or change the boundary of water"
+    )
+    with pytest.raises(SceneError, match=alone):
+        KINDS["fsi"](3, {**given, "contact": "potential"}, PORTS)
+    with pytest.raises(SceneError, match="contact"):
+        KINDS["glue"](3, {"between": ["rods", "plate"], "contact": "potential"}, PORTS)
 
 
 @pytest.mark.parametrize("shape", [0.0, 1.0])

@@ -23,6 +23,7 @@ from quintet.components.sph_fluid.kernels import interact
 from quintet.components.sph_fluid.laws import constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import PortError
 from quintet.interfaces.params import read
 
 Make = Callable[..., SphFluid]
@@ -43,7 +44,7 @@ def run(fluid: SphFluid, time: float) -> None:
 def params(**given: Any) -> SphFluidParams:
     box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
     settings = {"spacing": SPACING, "sound_speed": 20.0 * math.sqrt(9.81 * EDGE), "fluid": (box,)}
-    return SphFluidParams(boundary="potential", **(settings | given))
+    return SphFluidParams(**({"boundary": "potential"} | settings | given))
 
 
 # σ/(K Δp³) between two facing cubic lattices, summed independently of this code.
@@ -191,3 +192,16 @@ def test_a_stiffness_without_the_potential_is_a_mistake() -> None:
     found = read(SphFluidParams, given | {"potential_stiffness": 1e3}, "water")[1]
     sentence = r"potential_stiffness belongs to boundary potential; found dbc. Remove it, or set"
     assert re.search(sentence, "\n".join(found))
+
+
+def test_a_link_may_not_ask_for_the_potential_where_films_press() -> None:
+    box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
+    one = SphFluid(params(boundary="mdbc", gaps=True, fluid=(box,)))
+    static = {
+        "volume": np.full(2, SPACING**3),
+        "body": np.zeros(2),
+        "contact": np.array([0.0, 1.0]),
+    }
+    sentence = "contact potential, of 1 of 2 samples, knows no films; found gaps on. Leave one of"
+    with pytest.raises(PortError, match=sentence):
+        one.bind({f"surface.{key}": array for key, array in static.items()})

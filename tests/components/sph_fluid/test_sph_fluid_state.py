@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Fields
@@ -16,6 +17,7 @@ Join = Callable[..., Fields]
 CONTINUE = """
 import sys
 import numpy as np
+import pytest
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 
@@ -47,6 +49,24 @@ assert not kernels.push_samples.signatures
 (signature,) = kernels.interact.signatures
 assert [str(one) for one in signature[-2:]] == ["none", "none"], signature
 assert fluid.drift is None and fluid.state.force.size == 0
+"""
+
+MIRRORED = """
+import sys, numpy as np
+from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid import kernels
+box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), boundary="mdbc"))
+one = np.array([[0.06, 0.06, -0.01]])
+static = {"normal": one, "volume": np.full(1, 8e-6), "body": np.zeros(1), "contact": np.zeros(1)}
+fluid.bind({f"surface.{key}": array for key, array in static.items()})
+moved = {"position": one, "velocity": 0.0 * one, "mirror": one + (0.0, 0.0, 0.02)}
+fluid.take({f"surface.{key}": array for key, array in moved.items()})
+fluid.step(fluid.stable_dt())
+assert "quintet.components.sph_fluid.contact" not in sys.modules
+(signature,) = kernels.push_samples.signatures
+assert str(signature[-3]) == "none", signature
 """
 
 
@@ -126,8 +146,9 @@ def test_particles_are_shown_in_the_order_of_their_birth(pool: Make) -> None:
     assert np.abs(fluid.view()["points"] - before).max() < 1e-3
 
 
-def test_terms_that_are_off_are_not_compiled() -> None:
-    python(LOOK)
+@pytest.mark.parametrize("scene", [LOOK, MIRRORED])
+def test_terms_that_are_off_are_not_compiled(scene: str) -> None:
+    python(scene)
 
 
 def test_manifest_is_light() -> None:
