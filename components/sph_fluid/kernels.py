@@ -134,10 +134,10 @@ def close(count, here, going, beside, moving, fluid):  # type: ignore[no-untyped
 
 
 @njit(inline="always")
-def meet(
+def meet(  # type: ignore[no-untyped-def]
     count, here, going, beside, moving, seen, share, grip, fluid, drift, diffusion, friction, guard,
     contact, bulk, fastest,
-):  # type: ignore[no-untyped-def]  # fmt: skip
+):  # fmt: skip
     """Sums over so many neighbours: force over m² (3), Σ u_ij·∇_iW_ij, XSPH's (3), greatest bits.
 
     Friction sees velocities `seen`; `grip` is the share of viscosity that acts and, with `bulk`,
