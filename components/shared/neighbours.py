@@ -2,8 +2,9 @@
 
 Points come in two groups, each sorted by cell, so that the cells of a row along the grid's x are
 one contiguous range. The first group (fluid) looks for both, the second (walls) for the first
-only: each from where it is, or from other places that stand for it. Lists are written row
-after row: first counted, then filled.
+only: each from where it is, or from other places that stand for it. Each share of the rows has
+its part of the memory, where its lists are written one after another. Where they do not fit, all
+is searched again with more.
 """
 
 from dataclasses import dataclass, field
@@ -22,6 +23,10 @@ from quintet.components.shared.cells import (
     sorted_into,
 )
 from quintet.components.shared.team import Team
+
+FEWEST = 100  # neighbours that a row has room for; memory that none is written to costs nothing
+GROWTH = 4  # where lists do not fit, a fourth more
+MOST = 1000  # neighbours, beyond which memory is given back
 
 FAST = {"fastmath": True, "error_model": "numpy", "cache": True, "nogil": True}
 
@@ -47,17 +52,18 @@ class Neighbours:
 @njit(**FAST)
 def search(
     first: int, last: int, split: int, seekers: Points, points: Points, cell: Whole,
-    start_one: Whole, start_two: Whole, grid: Grid, reach2: float, number: Whole,
-    begin_of: Whole, middle_of: Whole, found: NDArray[np.int32] | None,
-) -> None:  # fmt: skip
-    """Count the neighbours of seekers [first, last); with `found`, write them from `begin_of`.
+    start_one: Whole, start_two: Whole, grid: Grid, reach2: float, per_row: int, begin_of: Whole,
+    middle_of: Whole, end_of: Whole, found: NDArray[np.int32],
+) -> bool:  # fmt: skip
+    """List the neighbours of seekers [first, last); return whether they had room.
 
-    Each row of what is found has room for one more.
+    In `found` they have room for `per_row` each, taken together.
     """
     nx, ny, nz = grid.nx, grid.ny, grid.nz
+    k, limit = first * per_row, last * per_row
     for i in range(first, last):
         c = cell[i]
-        k = begin_of[i]
+        begin_of[i] = k
         middle_of[i] = k
         if c < nx * ny * nz:
             x, y, z = seekers[i, 0], seekers[i, 1], seekers[i, 2]
@@ -70,15 +76,17 @@ def search(
                     for ky in range(max(cy - REACH, 0), min(cy + REACH, ny - 1) + 1):
                         row = nx * (ky + ny * kz)
                         begin, end = base + start[row + low], base + start[row + high + 1]
+                        if k + end - begin > limit:
+                            return False
                         for j in range(np.uint64(begin), np.uint64(end)):
                             dx, dy, dz = x - points[0, j], y - points[1, j], z - points[2, j]
-                            if found is not None:
-                                # Always written, kept if near: no branch to mispredict.
-                                found[k] = np.int32(j)
+                            # Always written, kept if near: no branch to mispredict.
+                            found[k] = np.int32(j)
                             k += int(dx * dx + dy * dy + dz * dz < reach2)
                 if group == 0:
                     middle_of[i] = k
-        number[i] = k - begin_of[i]
+        end_of[i] = k
+    return True
 
 
 def neighbours_within(
@@ -105,14 +113,13 @@ def neighbours_within(
     cell = np.concatenate([cell_one, cell_two])
     rows = len(cell)
     start = points if seekers is None else np.concatenate([points[:split], seekers])
-    number = np.empty(rows, np.int64)
     cells = (cell, start_one, start_two, grid)
     where = (split, start, np.ascontiguousarray(points.T), *cells, reach * reach)
-    begin, middle = np.zeros(rows, np.int64), np.empty(rows, np.int64)
-    team.run(search, rows, *where, number, begin, middle, None)
-    begin = np.cumsum(number + 1) - (number + 1)
-    needed = int(number.sum()) + rows
-    if room is None or not needed <= len(room) <= 2 * needed:
-        room = np.empty(needed + needed // 50, np.int32)
-    team.run(search, rows, *where, number, begin, middle, room)
-    return Neighbours(room, begin, middle, begin + number)
+    begin, middle, end = (np.empty(rows, np.int64) for _ in range(3))
+    if room is None or len(room) > MOST * rows:
+        room = np.empty(0, np.int32)
+    while True:
+        per_row = len(room) // rows
+        if all(team.run(search, rows, *where, per_row, begin, middle, end, room)):
+            return Neighbours(room, begin, middle, end)
+        room = np.empty(rows * max(FEWEST, per_row + per_row // GROWTH), np.int32)

@@ -11,7 +11,7 @@ from quintet.components.shared.neighbours import Neighbours, neighbours_within
 from quintet.components.shared.team import Team, threads_wanted
 from quintet.components.sph_fluid import build, lists
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
-from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples
+from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples, shift
 from quintet.components.sph_fluid.laws import AHEAD, constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
@@ -223,7 +223,8 @@ class SphFluid(Component):
     def _drift(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity."""
         if self.drift is not None:
-            self.state.place[: self.state.fluid, :3] += self.params.xsph * dt * self.drift
+            time = self.params.xsph * dt
+            self.team.run(shift, self.state.fluid, time, self.drift, self.state.place)
 
     def _verlet(self, dt: float) -> None:
         from quintet.components.sph_fluid import symplectic

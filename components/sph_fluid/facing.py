@@ -85,13 +85,11 @@ def film(state: State, body: Array, volume: Array, spacing: float, fluid: Fluid)
 
 
 def _rim(place: Array, begin: Whole, near: Whole, apart: float) -> Array:
-    rim = np.ones(len(place), bool)
-    for row in range(len(place)):
-        some = near[begin[row] : begin[row + 1]]
-        if len(some):
-            aside = place[some].mean(axis=0) - place[row]
-            rim[row] = np.linalg.norm(aside) > apart
-    return rim
+    count = np.diff(begin)
+    row = np.repeat(np.arange(len(place)), count)
+    aside = [np.bincount(row, place[near, d], len(place)) for d in range(3)]
+    off = np.stack(aside, axis=1) - count[:, None] * place
+    return (count == 0) | (np.linalg.norm(off, axis=1) > apart * count)
 
 
 @njit(inline="always")

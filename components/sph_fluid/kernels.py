@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from quintet.components.shared.cubic_spline import ONE
 from quintet.components.shared.neighbours import FAST
+from quintet.components.sph_fluid.gather import away, gather, longest, pick, room
 from quintet.components.sph_fluid.laws import (
     Contact,
     Diffusion,
@@ -71,83 +72,40 @@ def interact(
     """
     begin, middle, end, neighbour = near
     nil = place.dtype.type(0)  # sums are as precise as what they are summed from
+    beside = room(longest(first, last, begin, end), place.dtype)
+    moving, seen = np.empty_like(beside), np.empty_like(beside)
+    share, some = np.ones_like(beside[:, 0]), np.ones_like(beside[:, 0])
     greatest, fastest = 0.0, bits(nil)
     for i in range(first, last):
-        x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
-        u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
-        more = density + fluid.base + fluid.base
-        ax, ay, az, growth = nil, nil, nil, nil
-        mx, my, mz = nil, nil, nil
+        here = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
+        going = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
+        out = away(here[0], fluid), here[1], here[2], here[3]
         if i < split:
-            for k in range(np.uint64(begin[i]), np.uint64(middle[i])):
-                j = np.uint64(neighbour[k])
-                dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
-                du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
-                r2 = dx * dx + dy * dy + dz * dz
-                dot = dx * du + dy * dv + dz * dw
-                both = more + place[j, 3]
-                per_r, per_r2, per_both = inverses(r2, both, fluid)
-                closing = dot * per_r2
-                slope = gradient(r2, per_r, fluid)
-                force = slope * push(term + motion[j, 3], closing, per_both, fluid)
-                fastest = max(fastest, bits(abs(closing)))
-                growth += dot * slope
-                ax -= force * dx
-                ay -= force * dy
-                az -= force * dz
-                if diffusion is not None:
-                    flux = spread(place[j, 3] - density, dx, dy, dz, diffusion)
-                    growth -= flux * slope * (r2 * per_r2 * per_both)
-                if friction is not None and friction.stress is not None:
-                    rub = friction.strength * slope * closing * per_both
-                    ax += rub * dx
-                    ay += rub * dy
-                    az += rub * dz
-                elif friction is not None:
-                    shear = friction.strength * slope * (r2 * per_r2 * per_both)
-                    ax += shear * du
-                    ay += shear * dv
-                    az += shear * dw
-                if drift is not None:
-                    weight = kernel(r2, fluid) * per_both
-                    mx -= weight * du
-                    my -= weight * dv
-                    mz -= weight * dw
-            for k in range(np.uint64(middle[i]), np.uint64(end[i])):
-                j = np.uint64(neighbour[k])
-                dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
-                du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
-                r2 = dx * dx + dy * dy + dz * dz
-                dot = dx * du + dy * dv + dz * dw
-                both = more + place[j, 3]
-                per_r, per_r2, per_both = inverses(r2, both, fluid)
-                closing = dot * per_r2
-                slope = gradient(r2, per_r, fluid)
+            count = gather(begin[i], middle[i], neighbour, place, out, beside)
+            gather(begin[i], middle[i], neighbour, motion, going, moving)
+            ax, ay, az, growth, mx, my, mz, fastest = meet(
+                count, here, going, beside, moving, moving, share, ONE, fluid, drift, diffusion,
+                friction, None, None, None, None, fastest,
+            )  # fmt: skip
+            if drift is not None:
+                drift[i, 0] = 2.0 * fluid.mass * mx
+                drift[i, 1] = 2.0 * fluid.mass * my
+                drift[i, 2] = 2.0 * fluid.mass * mz
+            if middle[i] < end[i]:
+                count = gather(middle[i], end[i], neighbour, place, out, beside)
+                gather(middle[i], end[i], neighbour, motion, going, moving)
+                if friction is not None:
+                    gather(middle[i], end[i], neighbour, friction.seen, going, seen)
                 if bulk is not None:
-                    slope *= bulk[j]
-                fastest = max(fastest, bits(abs(closing)))
-                growth += dot * slope
-                terms = term + motion[j, 3]
+                    pick(middle[i], end[i], neighbour, bulk, share)
+                held = None
                 if contact is not None:
-                    terms = term + motion[j, 3] * bear(r2, j, contact, fluid)
-                force = slope * push(terms, fluid.grip * closing, per_both, fluid)
-                if guard is not None:
-                    force -= repel(r2, guard)
-                ax -= force * dx
-                ay -= force * dy
-                az -= force * dz
-                if friction is not None and friction.stress is not None:
-                    rub = dx * (u - friction.seen[j, 0]) + dy * (v - friction.seen[j, 1])
-                    rub += dz * (w - friction.seen[j, 2])
-                    rub *= friction.strength * fluid.grip * slope * per_r2 * per_both
-                    ax += rub * dx
-                    ay += rub * dy
-                    az += rub * dz
-                elif friction is not None:
-                    shear = friction.strength * fluid.grip * slope * (r2 * per_r2 * per_both)
-                    ax += shear * (u - friction.seen[j, 0])
-                    ay += shear * (v - friction.seen[j, 1])
-                    az += shear * (w - friction.seen[j, 2])
+                    held = pick(middle[i], end[i], neighbour, contact.some, some)
+                bx, by, bz, more, _, _, _, fastest = meet(
+                    count, here, going, beside, moving, seen, share, fluid.grip, fluid, None, None,
+                    friction, guard, contact, held, bulk, fastest,
+                )  # fmt: skip
+                ax, ay, az, growth = ax + bx, ay + by, az + bz, growth + more
             fx = fluid.mass * ax + gravity[0]
             fy = fluid.mass * ay + gravity[1]
             fz = fluid.mass * az + gravity[2]
@@ -155,20 +113,90 @@ def interact(
             rate[i, 0] = fx
             rate[i, 1] = fy
             rate[i, 2] = fz
-            if drift is not None:
-                drift[i, 0] = 2.0 * fluid.mass * mx
-                drift[i, 1] = 2.0 * fluid.mass * my
-                drift[i, 2] = 2.0 * fluid.mass * mz
         else:
-            for k in range(np.uint64(begin[i]), np.uint64(end[i])):
-                j = np.uint64(neighbour[k])
-                dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
-                dot = dx * (u - motion[j, 0]) + dy * (v - motion[j, 1]) + dz * (w - motion[j, 2])
-                r2 = dx * dx + dy * dy + dz * dz
-                per_r = ONE / math.sqrt(r2 + fluid.tiny)
-                growth += dot * gradient(r2, per_r, fluid)
+            count = gather(begin[i], end[i], neighbour, place, out, beside)
+            gather(begin[i], end[i], neighbour, motion, going, moving)
+            growth = close(count, here, going, beside, moving, fluid)
         rate[i, 3] = fluid.mass * growth
     return greatest, number(fastest)
+
+
+@njit(inline="always")
+def close(count, here, going, beside, moving, fluid):  # type: ignore[no-untyped-def]
+    """Σ u_ij·∇_iW_ij of a boundary particle over so many of the fluid around it."""
+    x, y, z, _ = here
+    u, v, w, _ = going
+    growth = beside.dtype.type(0)
+    for k in range(count):
+        dx, dy, dz = x - beside[k, 0], y - beside[k, 1], z - beside[k, 2]
+        dot = dx * (u - moving[k, 0]) + dy * (v - moving[k, 1]) + dz * (w - moving[k, 2])
+        r2 = dx * dx + dy * dy + dz * dz
+        per_r = ONE / math.sqrt(r2 + fluid.tiny)
+        growth += dot * gradient(r2, per_r, fluid)
+    return growth
+
+
+@njit(inline="always")
+def meet(  # type: ignore[no-untyped-def]
+    count, here, going, beside, moving, seen, share, grip, fluid, drift, diffusion, friction, guard,
+    contact, held, bulk, fastest,
+):  # fmt: skip
+    """Sums over so many neighbours: force over m² (3), Σ u_ij·∇_iW_ij, XSPH's (3), greatest bits.
+
+    Friction sees velocities `seen`; `grip` is the share of viscosity that acts, `held` says which
+    neighbours the contact potential holds (None: all) and, with `bulk`, `share` how many times as
+    much as a particle of the fluid each weighs.
+    """
+    nil = beside.dtype.type(0)
+    x, y, z, density = here
+    u, v, w, term = going
+    more = density + fluid.base + fluid.base
+    ax, ay, az, growth = nil, nil, nil, nil
+    mx, my, mz = nil, nil, nil
+    for k in range(count):
+        dx, dy, dz = x - beside[k, 0], y - beside[k, 1], z - beside[k, 2]
+        du, dv, dw = u - moving[k, 0], v - moving[k, 1], w - moving[k, 2]
+        r2 = dx * dx + dy * dy + dz * dz
+        dot = dx * du + dy * dv + dz * dw
+        both = more + beside[k, 3]
+        per_r, per_r2, per_both = inverses(r2, both, fluid)
+        closing = dot * per_r2
+        slope = gradient(r2, per_r, fluid)
+        if bulk is not None:
+            slope *= share[k]
+        fastest = max(fastest, bits(abs(closing)))
+        growth += dot * slope
+        terms = term + moving[k, 3]
+        if contact is not None:
+            terms = term + moving[k, 3] * bear(r2, k, held, contact, fluid)
+        force = slope * push(terms, grip * closing, per_both, fluid)
+        if guard is not None:
+            force -= repel(r2, guard)
+        ax -= force * dx
+        ay -= force * dy
+        az -= force * dz
+        if diffusion is not None:
+            flux = spread(beside[k, 3] - density, dx, dy, dz, diffusion)
+            growth -= flux * slope * (r2 * per_r2 * per_both)
+        if friction is not None:
+            ru, rv, rw = u - seen[k, 0], v - seen[k, 1], w - seen[k, 2]
+            if friction.stress is not None:
+                rub = dx * ru + dy * rv + dz * rw
+                rub *= friction.strength * grip * slope * per_r2 * per_both
+                ax += rub * dx
+                ay += rub * dy
+                az += rub * dz
+            else:
+                shear = friction.strength * grip * slope * (r2 * per_r2 * per_both)
+                ax += shear * ru
+                ay += shear * rv
+                az += shear * rw
+        if drift is not None:
+            weight = kernel(r2, fluid) * per_both
+            mx -= weight * du
+            my -= weight * dv
+            mz -= weight * dw
+    return ax, ay, az, growth, mx, my, mz, fastest
 
 
 @njit(**FAST)
@@ -199,7 +227,7 @@ def push_samples(
                 slope *= bulk[i]
             terms = term + motion[j, 3]
             if contact is not None:
-                terms = term * bear(r2, i, contact, fluid) + motion[j, 3]
+                terms = term * bear(r2, i, contact.some, contact, fluid) + motion[j, 3]
             size = slope * push(terms, closing, per_both, fluid)
             if guard is not None:
                 size -= repel(r2, guard)
@@ -251,6 +279,14 @@ def advance(
         place[i, 3] = density
         motion[i, 3] = pressure_term(density, fluid)
     return moved, failed
+
+
+@njit(**FAST)
+def shift(first: int, last: int, time: float, drift: Array, place: Array) -> None:
+    """Move rows [first, last) with velocities (fluid, 3) m/s for a time [s]."""
+    for i in range(first, last):
+        for d in range(3):
+            place[i, d] += time * drift[i, d]
 
 
 @njit(error_model="numpy", cache=True, nogil=True)

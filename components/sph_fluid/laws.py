@@ -199,13 +199,13 @@ def _among(factor, some, j):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def bear(r2, j, contact, fluid):  # type: ignore[no-untyped-def]
+def bear(r2, j, some, contact, fluid):  # type: ignore[no-untyped-def]
     """What K Δpᵈ/ρ₀² of row j is multiplied by to stand for p_j/ρ_j²: n W^(n-1)/(W(Δp)^n Δpᵈ).
 
-    Of a row that the potential does not hold p_j/ρ_j² stays as it is.
+    Of a row that is not among `some` (None: all), which it holds, p_j/ρ_j² stays as it is.
     """
     one = kernel(r2, fluid) * contact.inverse
     two = one * one
     power = (ONE + contact.once * (one - ONE)) * (ONE + contact.twice * (two - ONE))
     factor = contact.strength * power * (ONE + contact.four * (two * two - ONE))
-    return among(factor, contact.some, j)
+    return among(factor, some, j)

@@ -17,6 +17,7 @@ from numba import njit
 from quintet.components.shared.neighbours import FAST
 from quintet.components.shared.team import Team
 from quintet.components.sph_fluid.build import wall_points
+from quintet.components.sph_fluid.gather import away, gather, longest, room
 from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import Fluid, constants, kernel, pressure_term
 from quintet.components.sph_fluid.obstacles import obstacle_mirrors
@@ -71,15 +72,21 @@ def extrapolate(
     mean by no more than itself and the fluid's weight, ρ₀g/c₀² = `weight` [kg/m4]: beyond that the
     gradient is noise.
     """
+    begin, _, end, _ = near
+    most = longest(split + first, split + last, begin, end)
+    for b in range(first, last):
+        if own[b] >= 0:
+            most = max(most, end[own[b]] - begin[own[b]])
+    beside = room(most, place.dtype)
     for b in range(first, last):
         if own[b] == HELD:
             continue
         i = split + b
-        x, y, z, row = mirrors[b, 0], mirrors[b, 1], mirrors[b, 2], i
-        mean, rise, weights = fit(row, x, y, z, place[i], place, near, fluid)
+        x, y, z = mirrors[b, 0], mirrors[b, 1], mirrors[b, 2]
+        mean, rise, weights = fit(i, x, y, z, place[i], place, near, fluid, beside)
         if weights < NONE and own[b] >= 0:
-            x, y, z, row = place[i, 0], place[i, 1], place[i, 2], own[b]
-            mean, rise, weights = fit(row, x, y, z, place[i], place, near, fluid)
+            x, y, z = place[i, 0], place[i, 1], place[i, 2]
+            mean, rise, weights = fit(own[b], x, y, z, place[i], place, near, fluid, beside)
             rise = 0.0
         excess = mean + min(rise, max(mean, 0.0) + weight * distance(place[i], x, y, z))
         place[i, 3] = fluid.density + max(excess, 0.0)
@@ -123,20 +130,23 @@ def distance(target, x, y, z):  # type: ignore[no-untyped-def]
     return math.sqrt((target[0] - x) ** 2 + (target[1] - y) ** 2 + (target[2] - z) ** 2)
 
 
-@njit(**FAST)
-def fit(row, x, y, z, target, place, near, fluid):  # type: ignore[no-untyped-def]
+@njit(inline="always")
+def fit(row, x, y, z, target, place, near, fluid, beside):  # type: ignore[no-untyped-def]
     """Mean of ρ - ρ₀ around a point, rise from there to a target, and Σ V W, of a row's fluid."""
     begin, _, end, neighbour = near
+    if begin[row] == end[row]:
+        return 0.0, 0.0, 0.0
+    out = away(x, fluid), y, z, fluid.density
+    count = gather(begin[row], end[row], neighbour, place, out, beside)
     inverse = 1.0 / fluid.smoothing
     s, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
     xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     b, bx, by, bz = 0.0, 0.0, 0.0, 0.0
-    for k in range(np.uint64(begin[row]), np.uint64(end[row])):
-        j = np.uint64(neighbour[k])
-        dx, dy, dz = place[j, 0] - x, place[j, 1] - y, place[j, 2] - z
-        w = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / place[j, 3]
+    for k in range(count):
+        dx, dy, dz = beside[k, 0] - x, beside[k, 1] - y, beside[k, 2] - z
+        w = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / beside[k, 3]
         dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
-        excess = place[j, 3] - fluid.density
+        excess = beside[k, 3] - fluid.density
         s += w
         wx, wy, wz, e = w * dx, w * dy, w * dz, w * excess
         sx += wx
