@@ -6,6 +6,7 @@ their images. (A whole box that would have particles on the plane itself gets a 
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.sph_fluid.params import Box, SphFluidParams
 from quintet.components.sph_fluid.state import Array
@@ -57,7 +58,7 @@ def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     return points[felt], depth[:, felt]
 
 
-def _wet(box: Box, params: SphFluidParams) -> Array:
+def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
     if params.walls is None:
         return np.ones((2, 3), bool)
