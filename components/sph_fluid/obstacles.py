@@ -1,6 +1,12 @@
-"""Boxes that stand still in the water, filled with wall particles as deep as water feels them."""
+"""Boxes that stand still in the water, filled with wall particles as deep as water feels them.
+
+A box that ends on a plane of symmetry is half of one that the plane cuts: its particles are half
+of those that the whole box has, beginning half a step from the plane, where the other half's are
+their images. (A whole box that would have particles on the plane itself gets a row more or less.)
+"""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.sph_fluid.params import Box, SphFluidParams
 from quintet.components.sph_fluid.state import Array
@@ -34,9 +40,15 @@ def obstacle_mirrors(params: SphFluidParams) -> Array:
 def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     """Particles (n, 3) m of one obstacle, and how deep below each wet face [m]; (2, n, 3)."""
     wet = _wet(box, params)  # (2, 3)
-    gap = np.where(wet, params.standoff, 0.5) * params.spacing
+    plane = ~wet & np.array([[f"{axis}{end}" in params.symmetry for axis in "xyz"] for end in "-+"])
+    gap = np.where(plane, 0.0, np.where(wet, params.standoff, 0.5)) * params.spacing
     low, high = np.array(box[0]) + gap[0], np.array(box[1]) - gap[1]
-    counts = np.maximum(1, np.round((high - low) / params.spacing)).astype(int) + 1
+    half = 0.5 * plane  # (2, 3) of a step, from the plane to the first particle
+    steps = np.round((high - low) / params.spacing - half.sum(axis=0))
+    steps = np.maximum(np.where(plane.any(axis=0), 0, 1), steps)
+    step = (high - low) / (steps + half.sum(axis=0))
+    low, high = low + half[0] * step, high - half[1] * step
+    counts = steps.astype(int) + 1
     axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
     z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
     points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
@@ -46,7 +58,7 @@ def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     return points[felt], depth[:, felt]
 
 
-def _wet(box: Box, params: SphFluidParams) -> Array:
+def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
     if params.walls is None:
         return np.ones((2, 3), bool)

@@ -11,10 +11,13 @@ pytestmark = pytest.mark.slow
 
 Run = Callable[..., dict]
 
-# Particles strike the gauges one by one, each with the pressure of sound; finer ones do too.
-NOISE = pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="single particles strike with the pressure of sound"
-)
+
+def falls_short(reason: str) -> pytest.MarkDecorator:
+    return pytest.mark.xfail(strict=True, raises=AssertionError, reason=reason)
+
+
+NOISE = falls_short("particles strike with the pressure of sound; finer ones do too")
+LATE = falls_short("the tip is thinner than a particle, and late; less so with finer ones")
 
 
 @pytest.fixture(scope="module")
@@ -22,8 +25,15 @@ def found(run_scene: Run) -> dict:
     return run_scene("dam_break_box", "--preset", "quick", "--set", "output.interval=0.3")
 
 
-@pytest.mark.parametrize("name", ["p1.peak", "p1.arrival", "p3.peak", "p3.arrival"])
-@NOISE
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("p1.peak", marks=NOISE),
+        pytest.param("p1.arrival", marks=LATE),
+        pytest.param("p3.peak", marks=NOISE),
+        pytest.param("p3.arrival", marks=LATE),
+    ],
+)
 def test_pressure_is_that_of_the_experiment(found: dict, name: str) -> None:
     one = found["by_name"][name]
     assert one["met"], one

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from quintet.components.shared.team import Team
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.params import Box
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import StepError
 
@@ -40,11 +41,16 @@ def whole(half: SphFluidParams) -> SphFluidParams:
     """The same water and tank on both sides of all planes of symmetry through the origin."""
     axes = ["xyz".index(face[0]) for face in half.symmetry]
     assert half.walls is not None
-    boxes = []
-    for low, high in (*half.fluid, half.walls):
-        down = tuple(-high[axis] if axis in axes else low[axis] for axis in range(3))
-        boxes.append((down, high))
-    return replace(half, fluid=tuple(boxes[:-1]), walls=boxes[-1], symmetry=())
+
+    def both(box: Box) -> Box:
+        low, high = box
+        x, y, z = (-high[axis] if axis in axes else low[axis] for axis in range(3))
+        return (x, y, z), high
+
+    return replace(
+        half, fluid=tuple(map(both, half.fluid)), obstacles=tuple(map(both, half.obstacles)),
+        walls=both(half.walls), symmetry=(),
+    )  # fmt: skip
 
 
 def side_by_side(one: SphFluid, other: SphFluid, end: float) -> float:
@@ -81,6 +87,27 @@ def test_a_gauge_on_the_plane_reads_what_it_does_in_the_whole() -> None:
     side_by_side(one, other, 0.02)
     mine, theirs = (fluid.give()["pressure_gauge.pressure"] for fluid in (one, other))
     assert np.abs(theirs).min() > 100.0
+    np.testing.assert_allclose(mine, theirs, rtol=1e-9)
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_water_presses_on_half_a_box_as_on_the_whole(dimensions: int) -> None:
+    box = ((0.0, 0.0, 0.0), (0.06, 0.1, 0.06))
+    half = params(
+        dimensions=dimensions, obstacles=(box,), fluid=(((0.0, 0.0, 0.06), (0.1, 0.1, 0.16)),),
+        walls=((0.0, 0.0, 0.0), (0.2, 0.1, 0.3)),
+        pressure_gauges=((0.0, 0.05, 0.06), (0.03, 0.05, 0.06), (0.06, 0.05, 0.03)),
+    )  # fmt: skip
+    one, other = SphFluid(half), SphFluid(whole(half))
+    mine, theirs = (fluid.state.place[fluid.state.fluid :, :3] for fluid in (one, other))
+    theirs = theirs[theirs[:, 0] > 0.0]
+    order, same = (np.lexsort(points.round(6).T) for points in (mine, theirs))
+    np.testing.assert_allclose(mine[order], theirs[same], atol=1e-12)
+    assert side_by_side(one, other, 0.1) < 1e-11
+    x, _, z = one.view()["points"].T
+    assert ((x > 0.06) & (z < 0.05)).any()  # some water is beside the box
+    mine, theirs = (fluid.give()["pressure_gauge.pressure"] for fluid in (one, other))
+    assert theirs.min() > 100.0
     np.testing.assert_allclose(mine, theirs, rtol=1e-9)
 
 
