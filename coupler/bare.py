@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler.connect import free_port
-from quintet.coupler.launch import environment
+from quintet.coupler.launch import GRACE, environment
 from quintet.coupler.mpirun import find_launcher
+from quintet.interfaces.errors import QuintetError
 
 WARM = 100  # windows before the clock starts
 PATIENCE = 120.0  # s for all windows
@@ -30,20 +31,49 @@ def bare(transport: str, size: int, windows: int) -> float:
     """Median time [s] in which `size` bytes go there and come back, over a library by itself."""
     program = ["-m", "quintet.coupler.bare", transport, str(size), str(windows)]
     if transport == "mpi":
-        return _result([*find_launcher(), "-n", "2", sys.executable, "-m", "mpi4py", *program])
+        both = [*find_launcher(), "-n", "2", sys.executable, "-m", "mpi4py", *program]
+        return _result([_started(both)])
     line = [sys.executable, *program, f"tcp/127.0.0.1:{free_port()}"]
-    with subprocess.Popen([*line, "back"], env=environment(1, [])) as other:
-        try:
-            return _result([*line, "there"])
-        finally:
-            other.kill()
+    return _result([_started([*line, "there"]), _started([*line, "back"])])
 
 
-def _result(line: list[str]) -> float:
-    done = subprocess.run(
-        line, env=environment(1, []), stdout=subprocess.PIPE, timeout=PATIENCE, check=True
+def _started(line: list[str]) -> "subprocess.Popen[bytes]":
+    return subprocess.Popen(
+        line,
+        env=environment(1, []),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
     )
-    return float(done.stdout.decode().split()[-1])
+
+
+def _result(processes: "list[subprocess.Popen[bytes]]") -> float:
+    """What the first of them prints last; all of them have ended then."""
+    limit = time.monotonic() + PATIENCE
+    first = processes[0]
+    try:
+        while first.poll() is None and time.monotonic() < limit:
+            if any(process.poll() for process in processes):
+                break
+            time.sleep(0.05)
+        if first.poll() == 0 and first.stdout is not None:
+            return float(first.stdout.read().split()[-1])
+        ended = [process.poll() for process in processes]
+        raise QuintetError(f"bench exchange: the library alone did not end well; status {ended}.")
+    finally:
+        for process in processes:
+            _end(process)
+
+
+def _end(process: "subprocess.Popen[bytes]") -> None:
+    """Make a process leave; a launcher that is asked to takes its ranks along."""
+    process.terminate()
+    try:
+        process.communicate(timeout=GRACE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
 
 
 def main() -> None:

@@ -117,7 +117,8 @@ class Exchange:
                     if known is None:
                         merged[name][key] = array
                     elif self._port(name, key).items == "partner":
-                        merged[name][key] = np.concatenate([known, array])
+                        counted = known.max(initial=-1.0) + 1.0 if self._labels(name, key) else 0.0
+                        merged[name][key] = np.concatenate([known, array + counted])
                     else:
                         merged[name][key] = known + array
         return merged
@@ -138,6 +139,10 @@ class Exchange:
     def _field(self, taker: str, key: str) -> Field:
         name = key.partition(".")[2]
         return next(one for one in self._port(taker, key).fields if one.name == name)
+
+    def _labels(self, taker: str, key: str) -> bool:
+        name = key.partition(".")[2]
+        return any(one.labels for one in self._port(taker, key).static if one.name == name)
 
     def _port(self, taker: str, key: str) -> Port:
         name = key.partition(".")[0]

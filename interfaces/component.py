@@ -22,7 +22,8 @@ class Field:
     step: a component gives and takes the rate [N], a link carries its integral over the
     window [N s], so that momentum closes at every subcycling ratio. ``rate`` names the field
     of the same port that is this one's time derivative; inputs are then interpolated by
-    cubic Hermite polynomials.
+    cubic Hermite polynomials. ``labels`` are whole numbers of things that the items of one link
+    belong to; those of the next link are counted on from there.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Field:
     centring: Literal["instant", "impulse"] = "instant"
     rate: str = ""
     frame: Literal["world", "body"] = "world"
+    labels: bool = False
 
     def __post_init__(self) -> None:
         check_unit(self.unit, f"field {self.name}", self.centring)

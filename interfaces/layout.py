@@ -21,6 +21,7 @@ ALIGN = 16
 DIMENSIONS = 4
 DTYPES = {name: np.dtype(name) for name in ("<f8", "<f4", "<i8", "<i4", "|i1", "|u1", "|b1")}
 REMEMBERED = 64  # tables
+MOST = 1000  # arrays in a message
 
 
 class Place(NamedTuple):
@@ -69,12 +70,15 @@ def read_layout(packed: bytes) -> Layout:
         raise MessageError(f"the list of arrays is not valid msgpack: {error}") from error
     if not isinstance(table, list):
         raise MessageError(f"a message must list its arrays; found {type(table).__name__}.")
-    layout = _place(tuple(_entry(entry) for entry in table), packed)
-    if len(layout.shapes) != len(table):
-        keys = [place.key for place in layout.places]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        raise MessageError(f"field {twice} is listed twice.")
-    return layout
+    if len(table) > MOST:
+        raise MessageError(f"a message lists at most {MOST} arrays; found {len(table)}.")
+    entries = tuple(_entry(entry) for entry in table)
+    seen: set[str] = set()
+    for key, _, _ in entries:
+        if key in seen:
+            raise MessageError(f"field {key} is listed twice.")
+        seen.add(key)
+    return _place(entries, packed)
 
 
 def _place(table: tuple[tuple[str, str, Shape], ...], packed: bytes) -> Layout:

@@ -1,7 +1,8 @@
 """One message: a small header and some arrays, to bytes and back.
 
-A frame is a 16-byte prefix, a msgpack header, and each array's bytes, aligned. Nothing is
-pickled. Every size, type and shape is checked before a byte of an array is looked at.
+A frame is a 16-byte prefix, a msgpack header with the table of the arrays packed by itself, and
+each array's bytes, aligned. Nothing is pickled. Every size, type and shape is checked before a
+byte of an array is looked at.
 """
 
 import struct
@@ -19,7 +20,7 @@ from quintet.interfaces.sums import finite
 
 Frame = Any  # bytes, a bytearray or an array of bytes: whatever has a buffer
 
-MAGIC = b"qnt1"
+MAGIC = b"qnt2"
 PREFIX = struct.Struct("<4sIQ")  # magic, bytes of the header, bytes of the frame
 HEADER_LIMIT = 1 << 20  # bytes
 BARE = ("failed", "abort")  # orders that replace an expected message and bring no arrays

@@ -19,7 +19,7 @@ SURFACE = Port(
     static=(
         Field("normal", (3,), "1"),  # outward, at the start
         Field("volume", (), "m3"),  # that the sample stands for
-        Field("body", (), "1"),  # number of the body (or mesh) it belongs to
+        Field("body", (), "1", labels=True),  # number of the body (or mesh) it belongs to
     ),
     states=(
         Field("spacing", (), "m"),

@@ -1,7 +1,7 @@
-"""Sums over large fields: block by block, so that one thread makes them, the same on any machine.
+"""Sums over large fields: block by block, so that one thread makes them, however many there are.
 
 A library of linear algebra shares out long products among threads. That changes their rounding
-from machine to machine, and its threads then wait on the very cores that the solvers need.
+with the number of cores, and its threads then wait on the very cores that the solvers need.
 """
 
 import math
@@ -36,7 +36,7 @@ def size(array: Array) -> float:
 def product(first: Array, second: Array) -> float:
     """Sum of the products of all numbers of two fields of one shape."""
     a, b = first.reshape(-1), second.reshape(-1)
-    return math.fsum(float(a[part] @ b[part]) for part in _blocks(len(a), 1))
+    return sum(float(a[part] @ b[part]) for part in _blocks(len(a), 1))
 
 
 def moment(position: Array, force: Array) -> Array:

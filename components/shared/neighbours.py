@@ -4,7 +4,7 @@ Points come in two groups, each sorted by cell, so that the cells of a row along
 one contiguous range. The first group (fluid) looks for both, the second (walls) for the first
 only: each from where it is, or from other places that stand for it. Each share of the rows has
 its part of the memory, where its lists are written one after another. Where they do not fit, all
-is searched again with more.
+is searched again with twice as much.
 """
 
 from dataclasses import dataclass, field
@@ -25,8 +25,7 @@ from quintet.components.shared.cells import (
 from quintet.components.shared.team import Team
 
 FEWEST = 100  # neighbours that a row has room for; memory that none is written to costs nothing
-GROWTH = 4  # where lists do not fit, a fourth more
-MOST = 1000  # neighbours, beyond which memory is given back
+MOST = 4000  # neighbours, beyond which memory is given back
 
 FAST = {"fastmath": True, "error_model": "numpy", "cache": True, "nogil": True}
 
@@ -122,4 +121,4 @@ def neighbours_within(
         per_row = len(room) // rows
         if all(team.run(search, rows, *where, per_row, begin, middle, end, room)):
             return Neighbours(room, begin, middle, end)
-        room = np.empty(rows * max(FEWEST, per_row + per_row // GROWTH), np.int32)
+        room = np.empty(rows * max(FEWEST, 2 * per_row), np.int32)

@@ -17,7 +17,7 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, refuse_dense, totals, view
 from quintet.components.sph_fluid.surface import chosen, surface
-from quintet.components.sph_fluid.terms import among, bulk, friction, terms
+from quintet.components.sph_fluid.terms import bulk, friction, mark, terms
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import SURFACE_LOAD
@@ -154,7 +154,7 @@ class SphFluid(Component):
             self.near = neighbours(self.images, state, reach, *after)
         self.bulk = bulk(self.volume, self.rows, len(state.place), self.params)
         if self.params.mirrored and self.terms.contact is not None:
-            self.terms = among(self.terms, self.rows[self.held], len(state.place), self.params)
+            self.terms = mark(self.terms, self.rows[self.held], len(state.place), self.params)
         if self.images is not None:
             self.images.copy(state.particles, self.bulk, self.terms.some)
         if len(state.film):

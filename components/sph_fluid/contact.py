@@ -9,7 +9,8 @@ which depends on distance alone. Fluid and boundary still count in each other's 
 fluid's own pressure acts on the boundary. Left out, as those papers have it, the fluid near a wall
 does not feel how densely it lies there, and packs by about a third of a spacing more, so that
 bodies displace too little. What is left conserves energy: the work of p_i/ρ_i² is what continuity
-changes in the fluid, and the rest comes from Σ V² K_j (W_ij/W(Δp))^n and the guard's own potential.
+changes in the fluid, and the rest comes from Σ V² K_j (W_ij/W(Δp))^n and the guard's own potential;
+but samples that are placed deeper or higher change their K_j, which no force pays for.
 
 Under a pressure p the fluid comes as near as p = p s(d) + K Δpᵈ S(d) says: S is the pressure
 between two cubic lattices, d apart, over K Δpᵈ, and s the share of p that p_i/ρ_i² brings, one half

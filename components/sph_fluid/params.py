@@ -87,10 +87,10 @@ class SphFluidParams:
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
             )
-        if self.potential_stiffness is not None and self.boundary != "potential":
+        if self.potential_stiffness is not None and self.boundary == "dbc":
             raise ValueError(
-                f"potential_stiffness belongs to boundary potential; found {self.boundary}. Remove "
-                "it, or set boundary."
+                "potential_stiffness belongs to boundary potential, or mdbc with links that choose "
+                f"it; found {self.boundary}. Remove it, or set boundary."
             )
         if self.wave is not None:
             self.wave.check(self.fluid, self.gravity)

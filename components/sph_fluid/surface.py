@@ -12,9 +12,13 @@ from quintet.interfaces.ports import CONTACT, MIRRORED_SURFACE, SURFACE
 
 
 def surface(params: SphFluidParams) -> Port:
-    """Port as the boundary asks for it; all but dynamic ones let links choose their contact."""
+    """Port as the boundary asks for it; it lets links choose their contact where that can be.
+
+    Dynamic boundary particles know no other contact; films know no potential.
+    """
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
-    return port if params.boundary == "dbc" else replace(port, static=(*port.static, CONTACT))
+    fixed = params.boundary == "dbc" or params.gaps
+    return port if fixed else replace(port, static=(*port.static, CONTACT))
 
 
 def chosen(static: Fields, params: SphFluidParams) -> Whole:
@@ -22,10 +26,10 @@ def chosen(static: Fields, params: SphFluidParams) -> Whole:
     count = len(static["surface.volume"])
     if params.boundary == "potential":
         return np.arange(count)
-    found = np.flatnonzero(static.get("surface.contact", np.zeros(count)))
-    if len(found) and params.gaps:
+    contact = static.get("surface.contact", np.zeros(count))
+    if len(contact) != count:
         raise PortError(
-            f"surface: contact potential, of {len(found)} of {count} samples, knows no films; "
-            "found gaps on. Leave one of the two out."
+            f"surface.contact must be said of all {count} samples or of none; found "
+            f"{len(contact)}. Let every link that brings samples say it."
         )
-    return found
+    return np.flatnonzero(contact)

@@ -58,7 +58,7 @@ def terms(params: SphFluidParams, held: bool) -> Terms:
     return Terms(*laws, strength)
 
 
-def among(laws: Terms, rows: Whole, count: int, params: SphFluidParams) -> Terms:
+def mark(laws: Terms, rows: Whole, count: int, params: SphFluidParams) -> Terms:
     """Let the contact potential be that of some rows alone, of `count`."""
     assert laws.contact is not None
     some = np.zeros(count, params.precision)

@@ -72,7 +72,7 @@ def _contact(name: str, fluid: str, surface: Port, potential: bool) -> float | N
         raise SceneError(
             f"link {name}: contact potential needs a fluid that lets links choose their contact; "
             f"port {surface.name} of {fluid} does not say {CONTACT.name}. Remove contact, or "
-            f"change the boundary of {fluid}."
+            f"choose a boundary of {fluid} that does, without films."
         )
     return None
 

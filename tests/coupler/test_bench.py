@@ -8,7 +8,18 @@ from quintet.coupler import bench
 from quintet.coupler.cli import main
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
-KEYS = {"name", "case", "items", "threads", "rate", "unit", "median_ms", "p99_ms", "bare_ms"}
+KEYS = {
+    "name",
+    "case",
+    "items",
+    "threads",
+    "rate",
+    "unit",
+    "median_ms",
+    "p99_ms",
+    "bare_ms",
+    "options",
+}
 
 
 @pytest.mark.parametrize("transport", OVER)

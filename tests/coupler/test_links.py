@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from quintet.coupler.exchange import Exchange
 from quintet.coupler.links import KINDS
 from quintet.coupler.links.direct import join as join_direct
 from quintet.coupler.links.fsi import FaceFsi, RigidFsi
@@ -52,6 +53,22 @@ def test_fsi_finds_who_is_who_in_either_order():
 
 CHOOSING = replace(SURFACE, static=(*SURFACE.static, CONTACT))
 SINGLE = {"motion.shape": np.ones(1), "motion.size": np.full((1, 3), 0.3)}
+
+
+def test_bodies_of_links_one_after_the_other_are_numbered_on():
+    bodies = {"path": 2, "cubes": 3}
+    links = [KINDS["fsi"](n, {"between": ["water", name]}, PORTS) for n, name in enumerate(bodies)]
+    said = {
+        name: {
+            "motion.shape": np.ones(count),
+            "motion.size": np.full((count, 3), 0.1),
+            "motion.mass": np.ones(count),
+        }
+        for name, count in bodies.items()
+    }
+    said["water"] = {"surface.spacing": np.array([0.05]), "surface.depth": np.array([0.1])}
+    body = Exchange(links, PORTS).bind(said)["water"]["surface.body"]
+    assert (np.unique(body) == np.arange(5.0)).all() and (np.diff(body) >= 0.0).all()
 
 
 @pytest.mark.parametrize(("given", "mark"), [({}, 0.0), ({"contact": "potential"}, 1.0)])

@@ -16,7 +16,7 @@ def frame(arrays, body=b"", header=None, **prefix):
     start = -(-(PREFIX.size + len(packed)) // ALIGN) * ALIGN
     total = start + len(body)
     made = bytearray(total)
-    magic, size = prefix.get("magic", b"qnt1"), prefix.get("size", len(packed))
+    magic, size = prefix.get("magic", b"qnt2"), prefix.get("size", len(packed))
     PREFIX.pack_into(made, 0, magic, size, prefix.get("total", total))
     made[PREFIX.size : PREFIX.size + len(packed)] = packed
     made[start:] = body
@@ -102,6 +102,7 @@ def test_every_array_is_aligned_and_frames_are_used_again():
         (frame([["a", "<f8", [3]]], b"\0" * 16), "must end within"),
         (frame([["a", "<f8", [2]]], b"\0" * 32), "must be used up"),
         (frame([["a", "<f8", [2]], ["a", "<f8", [2]]], b"\0" * 32), "listed twice"),
+        (frame([[f"a{n}", "<f8", [0]] for n in range(1001)]), "at most 1000 arrays; found 1001"),
     ],
 )
 def test_what_is_no_message_is_refused(made, words):

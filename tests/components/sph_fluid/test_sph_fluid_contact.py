@@ -25,6 +25,7 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import PortError
 from quintet.interfaces.params import read
+from quintet.interfaces.ports import CONTACT
 
 Make = Callable[..., SphFluid]
 Join = Callable[..., Fields]
@@ -190,18 +191,21 @@ def test_step_limit_is_a_tenth_of_where_rest_becomes_unstable() -> None:
 def test_a_stiffness_without_the_potential_is_a_mistake() -> None:
     given = {"spacing": 0.1, "sound_speed": 60.0, "fluid": [[[0, 0, 0], [1, 1, 1]]]}
     found = read(SphFluidParams, given | {"potential_stiffness": 1e3}, "water")[1]
-    sentence = r"potential_stiffness belongs to boundary potential; found dbc. Remove it, or set"
+    sentence = r"potential_stiffness belongs to boundary potential, or .* found dbc. Remove it, or"
     assert re.search(sentence, "\n".join(found))
 
 
-def test_a_link_may_not_ask_for_the_potential_where_films_press() -> None:
+def test_films_leave_a_link_no_choice() -> None:
     box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
-    one = SphFluid(params(boundary="mdbc", gaps=True, fluid=(box,)))
-    static = {
-        "volume": np.full(2, SPACING**3),
-        "body": np.zeros(2),
-        "contact": np.array([0.0, 1.0]),
-    }
-    sentence = "contact potential, of 1 of 2 samples, knows no films; found gaps on. Leave one of"
+    for gaps in (False, True):
+        port = SphFluid(params(boundary="mdbc", gaps=gaps, fluid=(box,))).takes[0]
+        assert (CONTACT in port.static) is not gaps
+
+
+def test_the_contact_of_some_samples_alone_is_refused() -> None:
+    box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
+    one = SphFluid(params(boundary="mdbc", fluid=(box,)))
+    static = {"volume": np.full(2, SPACING**3), "body": np.zeros(2), "contact": np.ones(1)}
+    sentence = "contact must be said of all 2 samples or of none; found 1. Let every link"
     with pytest.raises(PortError, match=sentence):
         one.bind({f"surface.{key}": array for key, array in static.items()})

@@ -17,7 +17,6 @@ Join = Callable[..., Fields]
 CONTINUE = """
 import sys
 import numpy as np
-import pytest
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 
