@@ -135,11 +135,17 @@ def test_a_log_is_quoted_from_its_end(tmp_path):
     assert tail(tmp_path / "none") == []
 
 
+def only(folder, monkeypatch):
+    """Let mpiexec be looked for in one folder."""
+    monkeypatch.setattr(sys, "executable", str(folder / "python"))
+    monkeypatch.setenv("PATH", str(folder))
+
+
 def test_ranks_are_the_coupler_and_every_component(tmp_path, monkeypatch):
     launcher = tmp_path / "mpiexec"
     launcher.write_text("#!/bin/sh\necho HYDRA build details:\n")
     launcher.chmod(0o755)
-    monkeypatch.setattr(mpirun, "_search_path", lambda: str(tmp_path))
+    only(tmp_path, monkeypatch)
     scene = load(str(write_scene(tmp_path)))
     line = mpirun.command(["run", "x.toml"], scene, tmp_path)
     assert line[:2] == [str(launcher), "-disable-auto-cleanup"]
@@ -151,7 +157,7 @@ def test_ranks_are_the_coupler_and_every_component(tmp_path, monkeypatch):
 
 
 def test_a_missing_launcher_is_said(tmp_path, monkeypatch):
-    monkeypatch.setattr(mpirun, "_search_path", lambda: str(tmp_path))
+    only(tmp_path, monkeypatch)
     scene = load(str(write_scene(tmp_path)))
     with pytest.raises(SceneError, match=r"needs an mpiexec; there is none on PATH\. Install"):
         mpirun.command([], scene, tmp_path)

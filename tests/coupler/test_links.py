@@ -90,7 +90,7 @@ def test_fsi_says_which_contacts_there_are_and_who_has_none():
         KINDS["fsi"](3, {**given, "contact": "potentials"}, PORTS)
     alone = (
         "link water-cubes: contact potential needs a fluid that lets links choose.*port surface of "
-        "water does not say contact. Remove contact, or change the boundary of water"
+        "water does not say contact. Remove contact, or choose a boundary of water that does"
     )
     with pytest.raises(SceneError, match=alone):
         KINDS["fsi"](3, {**given, "contact": "potential"}, PORTS)
