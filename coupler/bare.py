@@ -22,6 +22,7 @@ from quintet.interfaces.errors import QuintetError
 WARM = 100  # windows before the clock starts
 PATIENCE = 120.0  # s for all windows
 LEAVING = 0.3  # s in which the last message leaves
+LINES = 8  # of what each process said
 Send = Callable[[bytearray], None]
 Receive = Callable[[], Any]
 Carrier = tuple[bool, Send, Receive]  # whether it leads
@@ -50,30 +51,33 @@ def _started(line: list[str]) -> "subprocess.Popen[bytes]":
 
 def _result(processes: "list[subprocess.Popen[bytes]]") -> float:
     """What the first of them prints last; all of them have ended then."""
-    limit = time.monotonic() + PATIENCE
-    first = processes[0]
+    limit, first = time.monotonic() + PATIENCE, processes[0]
     try:
         while first.poll() is None and time.monotonic() < limit:
             if any(process.poll() for process in processes):
                 break
             time.sleep(0.05)
-        if first.poll() == 0 and first.stdout is not None:
-            return float(first.stdout.read().split()[-1])
-        ended = [process.poll() for process in processes]
-        raise QuintetError(f"bench exchange: the library alone did not end well; status {ended}.")
     finally:
-        for process in processes:
-            _end(process)
+        status = [process.poll() for process in processes]
+        said = [_end(process) for process in processes]
+    if status[0] != 0:
+        lines = "\n".join(f"    {line}" for one in said for line in one.splitlines()[-LINES:])
+        raise QuintetError(
+            f"bench exchange: the library alone must end with status 0 within {PATIENCE:.0f} s; "
+            f"found {status}:\n{lines}"
+        )
+    return float(said[0].split()[-1])
 
 
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    """Make a process leave; a launcher that is asked to takes its ranks along."""
+def _end(process: "subprocess.Popen[bytes]") -> str:
+    """Make a process leave, and return what it said; a launcher takes its ranks along."""
     process.terminate()
     try:
-        process.communicate(timeout=GRACE)
+        said, _ = process.communicate(timeout=GRACE)
     except subprocess.TimeoutExpired:
         process.kill()
-        process.communicate()
+        said, _ = process.communicate()
+    return said.decode(errors="replace")
 
 
 def main() -> None:

@@ -4,8 +4,9 @@ import json
 
 import pytest
 
-from quintet.coupler import bench
+from quintet.coupler import bare, bench
 from quintet.coupler.cli import main
+from quintet.interfaces.errors import QuintetError
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 KEYS = {
@@ -43,3 +44,11 @@ def test_an_unknown_benchmark_is_refused(capsys):
         main(["bench", "exchnge"])
     assert ended.value.code == 2
     assert "bench exchnge is not known. Did you mean exchange?" in capsys.readouterr().err
+
+
+def test_a_library_that_does_not_end_well_is_told_with_what_it_said(monkeypatch):
+    monkeypatch.setattr(bare, "free_port", lambda: "nowhere")
+    with pytest.raises(
+        QuintetError, match=r"must end with status 0 within 120 s; found \[(.|\n)+Error"
+    ):
+        bare.bare("zenoh", 2400, 10)
