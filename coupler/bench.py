@@ -49,8 +49,8 @@ def run_bench(given: argparse.Namespace) -> int:
                 found.append(measure(transport, items, windows, Path(folder)))
             found[-1]["bare_ms"] = 1e3 * bare(transport, 24 * items, windows)
             print(sentence(found[-1]), flush=True)
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=2))
+            if given.json:  # after each, so that a later one that fails costs none of it
+                given.json.write_text(json.dumps(found, indent=2))
     return 0
 
 

@@ -13,7 +13,7 @@ EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
 
 
 @njit(**EXACT)
-def gather(
+def add_around(
     points: Array, split: int, place: Array, motion: Array, fluid: Fluid, weight: Array,
     sums: Array,
 ) -> None:  # fmt: skip

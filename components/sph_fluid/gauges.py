@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from quintet.components.shared.cubic_spline import SUPPORT
-from quintet.components.sph_fluid.gauge_kernels import fill_columns, furthest, gather
+from quintet.components.sph_fluid.gauge_kernels import add_around, fill_columns, furthest
 from quintet.components.sph_fluid.kernels import List
 from quintet.components.sph_fluid.laws import Fluid, kernel
 from quintet.components.sph_fluid.params import SphFluidParams
@@ -43,11 +43,13 @@ class Gauges:
             self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
                 corner[1] for corner in params.fluid[0]
             )
-        self.seen = self.points  # (k m, 3) m, and from where images see what these see in them
+        # (k m, 3 or 2) m: these, and from where images see what these see in them.
+        self.seen, self.above = self.points, self.spots
         if params.symmetry:
             from quintet.components.sph_fluid.symmetry import Images
 
-            self.seen = Images(params).reflect(self.points)
+            images = Images(params)
+            self.seen, self.above = images.reflect(self.points), images.reflect(self.spots)
         boxes = [params.walls] if params.walls else params.fluid
         self.floor = min(box[0][2] for box in boxes)  # m
         self.lone = fluid.mass / fluid.density * float(kernel(0.0, fluid))  # 1, V W(0)
@@ -69,7 +71,7 @@ class Gauges:
         sums = np.empty((len(self.seen), 3))
         weight = self.params.density * np.array(self.params.gravity)
         place, motion = state.place[: state.particles], state.motion[: state.particles]
-        gather(self.seen, state.fluid, place, motion, self.fluid, weight, sums)
+        add_around(self.seen, state.fluid, place, motion, self.fluid, weight, sums)
         share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T
         room = 0.0 if self.params.boundary == "dbc" else FULL * (1.0 - walls)
         filled = np.maximum(share, room)
@@ -81,9 +83,10 @@ class Gauges:
         reach, rise = SUPPORT * self.fluid.smoothing, FINE * spacing
         bottom = z.min() - reach
         count = math.ceil((z.max() + reach - bottom) / rise) + 1
-        share = np.empty((len(self.spots), count))
-        fill_columns(self.spots, bottom, rise, state.fluid, state.place, self.fluid, share)
-        return np.array([self._surface(row, bottom, rise) for row in share])
+        share = np.empty((len(self.above), count))
+        fill_columns(self.above, bottom, rise, state.fluid, state.place, self.fluid, share)
+        whole = share.reshape(-1, len(self.spots), count).sum(axis=0)
+        return np.array([self._surface(row, bottom, rise) for row in whole])
 
     def _surface(self, share: Array, bottom: float, rise: float) -> float:
         most = min(1.0, float(share.max()))

@@ -59,8 +59,10 @@ class Images:
         return points, wet
 
     def reflect(self, points: Array) -> Array:
-        """Points (m, 3) m, then their images in all planes and edges; (k m, 3)."""
+        """Points (m, 3) m, or spots (m, 2) m, then their images in all planes and edges."""
         for _, axis, plane, _ in self.planes:
+            if axis >= points.shape[1]:
+                continue
             image = points.copy()
             image[:, axis] = 2.0 * plane - image[:, axis]
             points = np.concatenate([points, image])

@@ -81,13 +81,15 @@ def test_half_a_column_falls_as_the_whole_does(given: dict[str, Any]) -> None:
     assert np.abs(one.view()["points"] - start).max() > SPACING
 
 
-def test_a_gauge_on_the_plane_reads_what_it_does_in_the_whole() -> None:
-    half = params(pressure_gauges=((0.0, 0.0, 0.05), (0.01, 0.0, 0.1)))
+def test_gauges_on_the_plane_read_what_they_do_in_the_whole() -> None:
+    points, spots = ((0.0, 0.0, 0.05), (0.01, 0.0, 0.1)), ((0.0, 0.0), (0.01, 0.0), (0.09, 0.0))
+    half = params(pressure_gauges=points, level_gauges=spots)
     one, other = SphFluid(half), SphFluid(whole(half))
     side_by_side(one, other, 0.02)
-    mine, theirs = (fluid.give()["pressure_gauge.pressure"] for fluid in (one, other))
-    assert np.abs(theirs).min() > 100.0
-    np.testing.assert_allclose(mine, theirs, rtol=1e-9)
+    mine, theirs = one.give(), other.give()
+    for name, least in (("pressure_gauge.pressure", 100.0), ("level_gauge.height", 0.5 * DEPTH)):
+        assert np.abs(theirs[name]).min() > least
+        np.testing.assert_allclose(mine[name], theirs[name], rtol=1e-9)
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
