@@ -67,6 +67,7 @@ def parser() -> argparse.ArgumentParser:
     one = command("study", study, "error against run time over the scene's ladder")
     _scene(one)
     _report(one, "runs/SCENE-study")
+    one.add_argument("--keep", action="store_true", help=KEEP)
     one = command("stability", stability, "where a scene breaks, and how")
     _scene(one)
     _report(one, "runs/SCENE-stability")
@@ -82,6 +83,7 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+KEEP = "do not run again what a study left done in DIR, of the same scene on the same machine"
 RESUME = "go on with an interrupted or failed run, from its last snapshot"
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 ELSEWHERE = "do not start this component: it joins by hand, with quintet join"

@@ -1,7 +1,7 @@
 """``quintet study SCENE``: error against run time over the rungs of the scene's ladder.
 
 Every rung is a run in a folder of its own, one after the other, so that none takes the time of
-another. Rungs that ran are kept and told when the study is interrupted.
+another. Rungs that ran are told when the study is interrupted; ``--keep`` goes on from there.
 """
 
 import argparse
@@ -9,12 +9,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler import results
+from quintet.coupler import results, show
 from quintet.coupler.ladder import Rung
 from quintet.coupler.orders import least_squares, richardson
 from quintet.coupler.precision import draw, table
-from quintet.coupler.read import load
-from quintet.coupler.show import on_screen
+from quintet.coupler.read import load, parse
+from quintet.coupler.toml import text_of
 from quintet.coupler.trial import Trial
 from quintet.coupler.witness import Stop
 from quintet.interfaces.errors import SceneError
@@ -33,8 +33,10 @@ def run_study(given: argparse.Namespace) -> int:
     trial = Trial.of(given, stop)
     with stop.listening():
         for rung in scene.study:
-            print(f"{rung.label}: running in {folder / rung.folder}", flush=True)
-            rows.append(row_of(rung, trial.run(rung.settings, folder / rung.folder)))
+            place = folder / rung.folder
+            kept = left(given, rung, place) if given.keep else None
+            print(f"{rung.label}: {'kept' if kept else 'running'} in {place}", flush=True)
+            rows.append(row_of(rung, kept or trial.run(rung.settings, place)))
             print(f"{rung.label}: {rows[-1]['status']}, {rows[-1]['wall']:.1f} s", flush=True)
             if rows[-1]["status"] == "interrupted" or stop():
                 break
@@ -45,6 +47,20 @@ def run_study(given: argparse.Namespace) -> int:
             path.write_text(json.dumps(found, indent=2))
     tell(found, folder / PICTURE)
     return status_of(found, len(scene.study))
+
+
+def left(given: argparse.Namespace, rung: Rung, folder: Path) -> Row | None:
+    """Results that an earlier study left of this very run; None if there are none.
+
+    Done, of the scene as it is read now, on this machine with these versions.
+    """
+    if not (folder / show.NAME).is_file():
+        return None
+    found, added = show.results(folder), [f"{k}={text_of(v)}" for k, v in rung.settings.items()]
+    asked = (given.scene, given.preset, [*given.settings, *added], given.swap, given.transport)
+    same = parse(folder / "scene.toml") == load(*asked).resolved
+    done: bool = same and found["status"] == "done" and found["machine"] == results.machine()
+    return found if done else None
 
 
 def row_of(rung: Rung, found: Row) -> Row:
@@ -103,7 +119,7 @@ def conclude(scene: str, rows: list[Row]) -> Row:
 
 def tell(found: Row, picture: Path) -> None:
     """Print the table, the orders and the recommendation; draw errors against time."""
-    console, rows = on_screen(), found["rows"]
+    console, rows = show.on_screen(), found["rows"]
     console.print(table(rows))
     for name, order in found["orders"].items():
         said = [f"{order:.2f} by least squares" if order is not None else "no order observed"]

@@ -171,6 +171,25 @@ def test_an_interrupted_study_keeps_and_tells_the_rungs_that_ran(tmp_path, numbe
     assert json.loads((running.parent / "results.json").read_text())["status"] == "interrupted"
 
 
+def test_a_study_keeps_what_was_done_of_the_same_scene_alone(tmp_path, capsys):
+    path = write(tmp_path, ladder(0.02, 0.01))
+    _, before = found_by("study", path)
+    write(tmp_path, ladder(*STEPS))
+    capsys.readouterr()
+    status, found = found_by("study", path, "--keep")
+    said = capsys.readouterr().out
+    assert status == 0 and found["rows"][:2] == before["rows"]
+    assert [f"{step}: kept" in said for step in STEPS] == [True, True, False]
+    failed = tmp_path / "all" / "0.01" / "results.json"
+    failed.write_text(json.dumps(json.loads(failed.read_text()) | {"status": "failed"}))
+    found_by("study", path, "--keep")
+    said = capsys.readouterr().out
+    assert [f"{step}: kept" in said for step in STEPS] == [True, False, True]
+    write(tmp_path, ladder(*STEPS), within=1e-3)
+    found_by("study", path, "--keep")
+    assert "kept" not in capsys.readouterr().out
+
+
 def test_a_window_is_never_longer_than_the_step_it_is_made_from(tmp_path):
     path = write(tmp_path)
     assert command(
