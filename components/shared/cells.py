@@ -40,11 +40,19 @@ class Grid(NamedTuple):
         return self.nx * self.ny * self.nz
 
 
+def corners(points: Points) -> tuple[Points, Points]:
+    """Lowest and highest x, y, z (3,) m of points (n, 3 or more) m."""
+    # Column by column: numpy takes twenty times as long over all at once.
+    axes = points[:, 0], points[:, 1], points[:, 2]
+    return np.array([one.min() for one in axes]), np.array([one.max() for one in axes])
+
+
 def grid_around(points: Points, reach: float) -> Grid:
-    """Cells around points (n, 3) m that hold all that is nearer to one than `reach` [m]."""
+    """Cells around points (n, 3 or more) m that hold all that is nearer to one than `reach` [m]."""
     width = reach / REACH
-    low = points.min(axis=0) - 1.001 * reach
-    extent = points.max(axis=0) + 1.001 * reach - low
+    low, high = corners(points)
+    low -= 1.001 * reach
+    extent = high + 1.001 * reach - low
     nx, ny, nz = (math.floor(edge / width) + 1 for edge in extent.tolist())
     if nx * ny * nz > MOST:
         raise StepError(
@@ -59,7 +67,7 @@ def grid_around(points: Points, reach: float) -> Grid:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def number_cells(points: Points, grid: Grid, cell: Whole) -> None:
-    """Write the cell of each point (n, 3); one past the last cell for points outside."""
+    """Write the cell of each point (n, 3 or more); one past the last cell for points outside."""
     outside = grid.nx * grid.ny * grid.nz
     for i in range(points.shape[0]):
         x = (points[i, grid.first] - grid.x) * grid.per_metre

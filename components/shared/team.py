@@ -8,11 +8,10 @@ components of one process may run at once, and kernels compile in a fraction of 
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
 from typing import Any
 
 FEWEST = 1000  # rows that are worth handing to another thread
-SHARES = 6  # of each thread, for rows differ in cost
+SHARES = 16  # of each thread, for rows differ in cost: walls and spray take less than half
 
 
 def threads_wanted() -> int:
@@ -25,7 +24,7 @@ class Team:
 
     def __init__(self, size: int, fewest: int = FEWEST, shares: int = SHARES) -> None:
         self.size, self.fewest, self.shares = size, fewest, shares
-        self._pool = ThreadPoolExecutor(size) if size > 1 else None
+        self._pool = ThreadPoolExecutor(size - 1) if size > 1 else None  # and who calls `run`
 
     def run(self, kernel: Callable[..., Any], rows: int, *arguments: Any) -> list[Any]:
         """Call ``kernel(first, last, *arguments)`` on shares of the rows; return every result."""
@@ -33,7 +32,16 @@ class Team:
         if self._pool is None or shares < 2:
             return [kernel(0, rows, *arguments)]
         ends = [rows * share // shares for share in range(shares + 1)]
-        calls = [
-            self._pool.submit(kernel, first, last, *arguments) for first, last in pairwise(ends)
-        ]
-        return [call.result() for call in calls]
+        found: list[Any] = [None] * shares
+        left = iter(range(shares))
+
+        def work() -> None:
+            # Each thread takes the next share when it is done with one.
+            for share in left:
+                found[share] = kernel(ends[share], ends[share + 1], *arguments)
+
+        others = [self._pool.submit(work) for _ in range(self.size - 1)]
+        work()
+        for other in others:
+            other.result()
+        return found

@@ -126,11 +126,10 @@ class SphFluid(Component):
     def _sort(self) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
         state, split = self.state, self.state.fluid
-        kept = np.flatnonzero(lists.inside(state.place[:split, :3], self.params))
+        kept = np.flatnonzero(lists.inside(state.place[:split], self.params))
         if not len(kept):
             raise StepError("step: all fluid has left the domain. Check the walls and gravity.")
-        points = np.ascontiguousarray(state.place[: state.particles, :3])
-        fluid, boundary = points[kept], points[split:]
+        fluid, boundary = state.place.take(kept, axis=0), state.place[split : state.particles]
         grid = grid_around(fluid, lists.reach(self.params))
         state.lost += split - len(kept)
         state.keep(kept[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])

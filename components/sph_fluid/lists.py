@@ -23,18 +23,24 @@ def are_old(state: State, rows: Whole, params: SphFluidParams, dt: float) -> boo
     """Whether pairs may meet in a step of dt [s] that the lists lack; `rows` are the samples'."""
     if len(state.reference) == 0:
         return True
-    shift = state.place[rows, :3] - state.reference[rows]
-    shifted = np.einsum("nd,nd->n", shift, shift).max(initial=0.0)
-    if params.mirrored:
-        here = rows - state.fluid
-        shift = state.mirror[here] - state.reference[state.particles + here]
-        shifted = max(shifted, np.einsum("nd,nd->n", shift, shift).max(initial=0.0))
+    shifted = 0.0
+    if len(rows):
+        shifted = _longest(state.place.take(rows, 0)[:, :3] - state.reference.take(rows, 0))
+        if params.mirrored:
+            here = rows - state.fluid
+            before = state.reference[state.particles :]
+            shifted = max(shifted, _longest(state.mirror.take(here, 0) - before.take(here, 0)))
     margin = reach(params) - SUPPORT * params.length
     if params.integration == "symplectic":
         # Pairs meet in the middle of the step too: each of the two goes there at its speed.
-        velocity = state.motion[: state.fluid, :3]
-        margin -= dt * math.sqrt(np.einsum("nd,nd->n", velocity, velocity).max())
-    return bool(state.moved + max(state.moved, math.sqrt(shifted)) > margin)
+        margin -= dt * _longest(state.motion[: state.fluid])
+    return bool(state.moved + max(state.moved, shifted) > margin)
+
+
+def _longest(vectors: Array) -> float:
+    """Length of the longest of vectors (n, 3 or more)."""
+    x, y, z = vectors[:, 0], vectors[:, 1], vectors[:, 2]
+    return math.sqrt((x * x + y * y + z * z).max())
 
 
 def seekers(state: State, rows: Whole, params: SphFluidParams) -> tuple[Array | None, Whole]:
@@ -53,10 +59,12 @@ def seekers(state: State, rows: Whole, params: SphFluidParams) -> tuple[Array | 
 
 
 def inside(points: Array, params: SphFluidParams) -> NDArray[np.bool_]:
-    """Which points (n, 3) m are in the tank or not far outside of it."""
-    if params.walls is None:
-        return np.ones(len(points), bool)
-    low, high = np.array(params.walls)
-    stray = STRAY * float((high - low).max())
-    found: NDArray[np.bool_] = ((points > low - stray) & (points < high + stray)).all(axis=1)
+    """Which points (n, 3 or more) m are in the tank or not far outside of it."""
+    found = np.ones(len(points), bool)
+    if params.walls is not None:
+        low, high = np.array(params.walls)
+        stray = STRAY * float((high - low).max())
+        for axis in range(3):
+            one = points[:, axis]
+            found &= (one > low[axis] - stray) & (one < high[axis] + stray)
     return found

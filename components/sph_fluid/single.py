@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from quintet.components.shared.cells import corners
 from quintet.components.shared.neighbours import FAST
 from quintet.components.shared.team import Team
 from quintet.components.sph_fluid.laws import Fluid
@@ -46,8 +47,8 @@ class Single:
     """Room for the copies of one fluid's state, from one list of neighbours to the next."""
 
     def __init__(self, state: State, density: float) -> None:
-        fluid = state.reference[: state.fluid]
-        x, y, z = (0.5 * (fluid.min(axis=0) + fluid.max(axis=0))).tolist()
+        low, high = corners(state.reference[: state.fluid])
+        x, y, z = (0.5 * (low + high)).tolist()
         self.origin: Origin = (x, y, z, density)
         self.place: Singles = np.empty(state.place.shape, np.float32)  # (n, 4) as in the state
         self.motion: Singles = np.empty(state.motion.shape, np.float32)  # (n, 4)

@@ -69,13 +69,14 @@ class State:
     def keep(self, fluid: Whole, boundary: Whole) -> None:
         """Keep these rows of the fluid and of the boundary, in this order; all else goes."""
         rows = np.concatenate([fluid, self.fluid + boundary])
-        self.place, self.motion = self.place[rows], self.motion[rows]
+        # `take` copies rows many times faster than indexing does.
+        self.place, self.motion = self.place.take(rows, axis=0), self.motion.take(rows, axis=0)
         self.before = self.before[rows]
         if len(self.pull):
-            self.pull = self.pull[fluid]
+            self.pull = self.pull.take(fluid, axis=0)
         self.identity, self.sample = self.identity[fluid], self.sample[boundary]
         if len(self.mirror):
-            self.mirror = self.mirror[boundary]
+            self.mirror = self.mirror.take(boundary, axis=0)
 
     def add_samples(self, count: int, density: float, mirrored: bool = False) -> None:
         """Append surface samples to the boundary; they are nowhere until they are placed."""

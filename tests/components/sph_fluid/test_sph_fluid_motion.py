@@ -253,18 +253,18 @@ def test_a_surface_must_be_placed_before_a_step(drop: Make, plate: Join) -> None
         fluid.step(1e-4)
 
 
-def test_bits_do_not_depend_on_the_number_of_threads(
-    pool: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("quintet.components.shared.team.FEWEST", 50)
-    one, two = pool(xsph=0.5, shepard_every=7), pool(xsph=0.5, shepard_every=7)
-    one.team, two.team = Team(1), Team(2)
-    for fluid in (one, two):
+@pytest.mark.parametrize("precision", ["float64", "float32"])
+def test_bits_do_not_depend_on_the_number_of_threads(pool: Make, precision: str) -> None:
+    ends = []
+    for threads in (1, 2, 3):
+        fluid = pool(xsph=0.5, shepard_every=7, precision=precision)
+        fluid.team = Team(threads, fewest=20)
         stir(fluid)
         for _ in range(40):
             fluid.step(fluid.stable_dt())
-    mine, other = one.save(), two.save()
-    assert all(np.array_equal(mine[name], other[name]) for name in mine)
+        ends.append(fluid.save())
+    mine, *others = ends
+    assert all(np.array_equal(mine[name], other[name]) for other in others for name in mine)
 
 
 def test_lists_are_renewed_before_a_pair_is_missed(pool: Make) -> None:
