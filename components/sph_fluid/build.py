@@ -42,6 +42,8 @@ def state(params: SphFluidParams) -> State:
     if params.wave is not None:
         moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
         made.motion[: len(moves), :3] = moves
+    if params.damper > 0.0:
+        made.squeeze = np.zeros(len(made.before))
     made.acceleration = math.hypot(*params.gravity)
     return made
 

@@ -17,7 +17,7 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, refuse_dense, totals, view
 from quintet.components.sph_fluid.surface import chosen, surface
-from quintet.components.sph_fluid.terms import bulk, friction, mark, terms
+from quintet.components.sph_fluid.terms import bulk, damped, friction, mark, terms
 from quintet.interfaces.component import Component, Fields, Port, Totals
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import SURFACE_LOAD
@@ -87,7 +87,7 @@ class SphFluid(Component):
         # Where friction is a stress, what comes nearer feels three times what passes by.
         stiff = self.params.laminar * (3.0 if self.params.friction == "stress" else 1.0)
         viscous = 0.125 * h * h / stiff if stiff > 0.0 else math.inf
-        return min(self.params.courant * min(sound, pull), viscous, self.steepest)
+        return min(self.terms.courant * sound, self.params.courant * pull, viscous, self.steepest)
 
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
@@ -198,9 +198,11 @@ class SphFluid(Component):
             samples = (self.rows, self.listed, self.held)
             press_walls(state, self.near.arrays, *samples, self.params, self.team)
             self._mirror()
+        squeeze = damped(state, self.near.arrays, self.params, self.team, self._mirror)
         self.pairs = pairs, rubbing = self._pairs()
-        terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact, self.bulk)
-        found = self.team.run(interact, self._advancing, state.fluid, *pairs, gravity, *terms)
+        terms = (self.rate, self.drift, law.diffusion, rubbing, law.guard, law.contact)
+        pairs = (state.fluid, *pairs, gravity)
+        found = self.team.run(interact, self._advancing, *pairs, *terms, self.bulk, squeeze)
         state.acceleration = math.sqrt(max(greatest for greatest, _ in found))
         state.approach = max(fastest for _, fastest in found)
 

@@ -59,7 +59,7 @@ def interact(
     first: int, last: int, split: int, place: Array, motion: Array, near: List,
     fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
     diffusion: Diffusion | None, friction: Friction | None, guard: Guard | None,
-    contact: Contact | None, bulk: Array | None,
+    contact: Contact | None, bulk: Array | None, squeeze: Array | None,
 ) -> tuple[float, float]:  # fmt: skip
     """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r².
 
@@ -68,7 +68,7 @@ def interact(
     fluid be viscous (Lo & Shao 2002, or Monaghan & Gingold 1983); with `guard`, let walls repel
     what is about to pass between their particles; with `contact`, let the contact potential stand
     for the walls' pressure; with `bulk`, let boundary particles weigh that many times as much as
-    those of the fluid. Of what is None, numba leaves the lines out.
+    those of the fluid; with `squeeze`, write dρ/dt without diffusion. What is None is left out.
     """
     begin, middle, end, neighbour = near
     nil = place.dtype.type(0)  # sums are as precise as what they are summed from
@@ -83,7 +83,7 @@ def interact(
         if i < split:
             count = gather(begin[i], middle[i], neighbour, place, out, beside)
             gather(begin[i], middle[i], neighbour, motion, going, moving)
-            ax, ay, az, growth, mx, my, mz, fastest = meet(
+            ax, ay, az, growth, flow, mx, my, mz, fastest = meet(
                 count, here, going, beside, moving, moving, share, ONE, fluid, drift, diffusion,
                 friction, None, None, None, None, fastest,
             )  # fmt: skip
@@ -101,11 +101,12 @@ def interact(
                 held = None
                 if contact is not None:
                     held = pick(middle[i], end[i], neighbour, contact.some, some)
-                bx, by, bz, more, _, _, _, fastest = meet(
+                bx, by, bz, more, other, _, _, _, fastest = meet(
                     count, here, going, beside, moving, seen, share, fluid.grip, fluid, None, None,
                     friction, guard, contact, held, bulk, fastest,
                 )  # fmt: skip
-                ax, ay, az, growth = ax + bx, ay + by, az + bz, growth + more
+                ax, ay, az = ax + bx, ay + by, az + bz
+                growth, flow = growth + more, flow + other
             fx = fluid.mass * ax + gravity[0]
             fy = fluid.mass * ay + gravity[1]
             fz = fluid.mass * az + gravity[2]
@@ -116,8 +117,10 @@ def interact(
         else:
             count = gather(begin[i], end[i], neighbour, place, out, beside)
             gather(begin[i], end[i], neighbour, motion, going, moving)
-            growth = close(count, here, going, beside, moving, fluid)
+            growth = flow = close(count, here, going, beside, moving, fluid)
         rate[i, 3] = fluid.mass * growth
+        if squeeze is not None:
+            squeeze[i] = fluid.mass * flow
     return greatest, number(fastest)
 
 
@@ -141,17 +144,17 @@ def meet(  # type: ignore[no-untyped-def]
     count, here, going, beside, moving, seen, share, grip, fluid, drift, diffusion, friction, guard,
     contact, held, bulk, fastest,
 ):  # fmt: skip
-    """Sums over so many neighbours: force over m² (3), Σ u_ij·∇_iW_ij, XSPH's (3), greatest bits.
+    """Sums over so many neighbours: force over m² (3), growth, flow, XSPH's (3), greatest bits.
 
-    Friction sees velocities `seen`; `grip` is the share of viscosity that acts, `held` says which
-    neighbours the contact potential holds (None: all) and, with `bulk`, `share` how many times as
-    much as a particle of the fluid each weighs.
+    The flow is Σ u_ij·∇_iW_ij, the growth that and diffusion. Friction sees velocities `seen`;
+    `grip` is the share of viscosity that acts, `held` says which neighbours the contact potential
+    holds (None: all) and, with `bulk`, `share` how many times as much as a particle each weighs.
     """
     nil = beside.dtype.type(0)
     x, y, z, density = here
     u, v, w, term = going
     more = density + fluid.base + fluid.base
-    ax, ay, az, growth = nil, nil, nil, nil
+    ax, ay, az, growth, flow = nil, nil, nil, nil, nil
     mx, my, mz = nil, nil, nil
     for k in range(count):
         dx, dy, dz = x - beside[k, 0], y - beside[k, 1], z - beside[k, 2]
@@ -166,6 +169,7 @@ def meet(  # type: ignore[no-untyped-def]
             slope *= share[k]
         fastest = max(fastest, bits(abs(closing)))
         growth += dot * slope
+        flow += dot * slope
         terms = term + moving[k, 3]
         if contact is not None:
             terms = term + moving[k, 3] * bear(r2, k, held, contact, fluid)
@@ -196,7 +200,7 @@ def meet(  # type: ignore[no-untyped-def]
             mx -= weight * du
             my -= weight * dv
             mz -= weight * dw
-    return ax, ay, az, growth, mx, my, mz, fastest
+    return ax, ay, az, growth, flow, mx, my, mz, fastest
 
 
 @njit(**FAST)

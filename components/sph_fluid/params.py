@@ -46,6 +46,7 @@ class SphFluidParams:
     laminar: NotNegative = 0.0  # m2/s, kinematic viscosity of the fluid itself
     friction: Literal["laplacian", "stress"] = "laplacian"  # how `laminar` acts
     diffusion: NotNegative = 0.0  # 1, δ of Fourtakas' diffusion of density; 0.1 is usual
+    damper: NotNegative = 0.0  # 1, ζ of a bulk viscosity ζ h c₀ that damps sound; 1 is much
     grip: Fraction = 1.0  # 1, share of the viscosity that acts between fluid and walls or samples
     boundary: Literal["dbc", "mdbc", "potential"] = "dbc"  # dynamic wall particles, or mirrored
     # ones, or a contact potential in place of their pressure
@@ -86,6 +87,12 @@ class SphFluidParams:
             raise ValueError(
                 "boundary mdbc puts its particles half a spacing behind the face; found standoff "
                 f"{self.standoff} and inset {self.inset}. Remove them, or use dbc."
+            )
+        if self.damper > 0.0 and self.integration != "symplectic":
+            raise ValueError(
+                "damper needs integration symplectic, whose step limit with it is known; found "
+                f"damper {self.damper} and integration {self.integration}. Set integration, or "
+                "remove damper."
             )
         if self.potential_stiffness is not None and self.boundary == "dbc":
             raise ValueError(

@@ -24,6 +24,7 @@ class State:
     motion: Array  # (n + images, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
     before: Array  # (n,) kg/(m3 s), dρ/dt one step ago
     pull: Array  # (fluid, 3) m/s2, acceleration at the last step's end; (0, 3) if not symplectic
+    squeeze: Array  # (n,) kg/(m3 s), -ρ∇·u of the last pass over pairs; (0,) without a damper
     reference: Array  # (n, 3) m, where the neighbour list was made, with mirrors (n + boundary, 3);
     # (0, 3): there is none yet
     mirror: Array  # (boundary, 3) m, mirror points of walls and samples; (0, 3) without mdbc
@@ -48,6 +49,7 @@ class State:
             motion=np.zeros((n, 4)),
             before=np.zeros(n),
             pull=np.zeros((0, 3)),
+            squeeze=np.zeros(0),
             reference=np.zeros((0, 3)),
             mirror=np.zeros((0, 3)),
             identity=np.arange(fluid),
@@ -74,6 +76,8 @@ class State:
         self.before = self.before[rows]
         if len(self.pull):
             self.pull = self.pull.take(fluid, axis=0)
+        if len(self.squeeze):
+            self.squeeze = self.squeeze[rows]
         self.identity, self.sample = self.identity[fluid], self.sample[boundary]
         if len(self.mirror):
             self.mirror = self.mirror.take(boundary, axis=0)
@@ -85,6 +89,8 @@ class State:
         self.place = np.concatenate([self.place, place])
         self.motion = np.concatenate([self.motion, np.zeros((count, 4))])
         self.before = np.concatenate([self.before, np.zeros(count)])
+        if len(self.squeeze):
+            self.squeeze = np.concatenate([self.squeeze, np.zeros(count)])
         self.sample = np.concatenate([self.sample, np.arange(count)])
         if mirrored:
             self.mirror = np.concatenate([self.mirror, np.zeros((count, 3))])

@@ -1,5 +1,6 @@
 """The numbers of all laws that act between pairs, in the precision that pairs are computed in."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -35,6 +36,7 @@ class Terms:
     diffusion: Diffusion | None
     guard: Guard | None
     contact: Contact | None
+    courant: float  # 1, greatest step over the time that sound takes through h
     hold: "Hold | None" = None
 
     @property
@@ -51,11 +53,16 @@ def terms(params: SphFluidParams, held: bool) -> Terms:
 
         touch, strength = contact(params), Hold(params)
     laws = (constants(params), diffusion(params), guard(params), touch)
+    courant = params.courant
+    if params.damper > 0.0:
+        from quintet.components.sph_fluid.damper import limit
+
+        courant = min(courant, limit(params.damper))
     if params.precision == "float32":
         from quintet.components.sph_fluid.single import rounded
 
         laws = tuple(map(rounded, laws))
-    return Terms(*laws, strength)
+    return Terms(*laws, courant, strength)
 
 
 def mark(laws: Terms, rows: Whole, count: int, params: SphFluidParams) -> Terms:
@@ -82,6 +89,22 @@ def friction(
     if params.friction == "stress":
         return Friction(True, 4.0 * (params.dimensions + 2) * params.laminar, seen)
     return Friction(None, 4.0 * params.laminar, seen)
+
+
+def damped(
+    state: State, near: List, params: SphFluidParams, team: Team, mirror: Callable[[], None]
+) -> Array | None:
+    """Let the damper press, if there is one; return where its next part is to be written."""
+    if params.damper == 0.0:
+        return None
+    from quintet.components.sph_fluid.damper import damp, damp_walls
+
+    damp(state, params, team)
+    mirror()
+    if params.mirrored:
+        damp_walls(state, near, params, team)
+        mirror()
+    return state.squeeze
 
 
 def bulk(volume: Array, rows: Whole, count: int, params: SphFluidParams) -> Array | None:

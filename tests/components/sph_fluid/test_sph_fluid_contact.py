@@ -174,7 +174,7 @@ def wander(step: float) -> float:
     lists = (zero, one, all_of_them, np.arange(len(place), dtype=np.int32))
     furthest = 0.0
     for _ in range(25):  # before it slides off the ridge that it stands on
-        gravity, terms = (0.0, 0.0, -pull), (None, None, None, None, contact(law), None)
+        gravity, terms = (0.0, 0.0, -pull), (None, None, None, None, contact(law), None, None)
         interact(0, 1, 1, place, motion, lists, constants(law), gravity, rate, *terms)
         motion[0, :3] += dt * rate[0, :3]
         place[0, :3] += dt * motion[0, :3]

@@ -46,7 +46,7 @@ def rates(
     lists = near(points, fluid.smoothing / 1.5).arrays
     rate = np.empty_like(place)
     count = len(points)
-    terms = ((0.0, 0.0, 0.0), rate, None, None, None, None, None, None)
+    terms = ((0.0, 0.0, 0.0), rate, None, None, None, None, None, None, None)
     interact(0, count, count, place, motion, lists, fluid, *terms)
     return rate
 

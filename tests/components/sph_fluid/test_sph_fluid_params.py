@@ -60,6 +60,11 @@ def test_good_parameters_have_no_mistakes() -> None:
         ({"density": 0.0}, r"water.density should be greater than 0"),
         ({"gravity": [0.0, 0.0, "down"]}, r"water.gravity.2 .* found 'down'"),
         ({"tension": "no"}, r"water.tension .* found 'no'"),
+        (
+            {"damper": 0.5},
+            r"damper needs integration symplectic.* found damper 0.5 and integration extrap.* Set",
+        ),
+        ({"damper": -0.5}, r"water.damper should be greater than or equal to 0; found -0.5"),
         ({"kernel": "quintic"}, r"water.kernel .* found 'quintic'"),
     ],
 )

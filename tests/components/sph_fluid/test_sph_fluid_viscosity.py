@@ -25,7 +25,7 @@ def rubbed(points: np.ndarray, velocity: np.ndarray, friction: Friction) -> np.n
     motion = np.column_stack([velocity, np.zeros(count)])
     lists = near(points, SPACING).arrays
     rate = np.empty_like(place)
-    terms = (rate, None, None, friction._replace(seen=motion), None, None, None)
+    terms = (rate, None, None, friction._replace(seen=motion), None, None, None, None)
     interact(0, count, count, place, motion, lists, fluid, (0.0, 0.0, 0.0), *terms)
     return rate[:, :3]
 
