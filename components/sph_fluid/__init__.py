@@ -22,7 +22,8 @@ bears the fluid: it starts without weight.
 Pressure below zero is cut unless `tension` is on, which thin fast layers need to hold together;
 `diffusion` levels the density between particles (Fourtakas et al. 2019), `kernel` "wendland"
 keeps still water calm, `gaps` puts films into gaps narrower than 1.25 spacings, which press what
-particles leave of their faces (`gap.py`). Of what is off, nothing is compiled.
+particles leave of their faces (`gap.py`), a `damper` takes the ringing out of strikes
+(`damper.py`). Of what is off, nothing is compiled.
 
 Samples have the mass of fluid that their volume would hold, so that a body displaces its own
 volume whether or not the spacing divides it.
@@ -42,7 +43,8 @@ A particle that goes further than half of the tank's longest edge beyond the wal
 removed, and `totals` shows its mass missing. Without walls none is.
 
 `obstacles` are boxes of wall particles that stand still in the tank; a `wave` sets level water into
-the motion of a standing wave at the start.
+the motion of a standing wave at the start. `staggered` rows of the lattice that fluid begins with
+are moved against each other along x, so that they do not strike a face as one (`build.py`).
 
 A face of the tank named in `symmetry` has no walls and is a plane of symmetry: what is near it acts
 from behind it too, mirrored, so that half of a symmetric flow moves as the whole does. Nothing

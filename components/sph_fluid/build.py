@@ -9,6 +9,8 @@ from quintet.components.sph_fluid.params import FACES, Box, SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
 
 TAIT = 7  # exponent γ of the equation of state
+OFFSETS = np.array([0.0, 0.5 * (math.sqrt(5.0) - 1.0), math.sqrt(2.0) - 1.0])  # 1, per row in y, z
+FADING = 10.0  # spacings from a wall within which the offsets of rows fade
 
 
 def cells(box: Box, params: SphFluidParams) -> tuple[int, int, int]:
@@ -50,7 +52,27 @@ def state(params: SphFluidParams) -> State:
 
 def fill_box(box: Box, params: SphFluidParams) -> Array:
     """Middles of the cells of a box; (n, 3) m, x fastest."""
-    return _lattice(box, cells(box, params), [(0, 0)] * 3)
+    points = _lattice(box, cells(box, params), [(0, 0)] * 3)
+    if params.staggered:
+        points[:, 0] += _offsets(points, box, params)
+    return points
+
+
+def _offsets(points: Array, box: Box, params: SphFluidParams) -> Array:
+    """How far rows are moved along x, half a cell at most, none at the tank's own faces; (n,) m.
+
+    By multiples of two irrational numbers, which no two rows nearby share: whole they are a lattice
+    too, as much at rest as the cubic one, but none of its planes meets a face at once.
+    """
+    low, high, counts = np.array(box[0]), np.array(box[1]), cells(box, params)
+    row = np.floor((points - low) / (high - low) * counts)
+    offset = np.mod(0.5 + row @ OFFSETS, 1.0) - 0.5
+    for end, side in enumerate(("x-", "x+") if params.walls else ()):
+        if side not in params.open:
+            assert params.walls is not None
+            clear = np.abs(points[:, 0] - params.walls[end][0]) / (FADING * params.spacing)
+            offset *= np.minimum(clear, 1.0)
+    return np.asarray(offset * (high[0] - low[0]) / counts[0])
 
 
 def wall_points(params: SphFluidParams) -> Array:

@@ -40,6 +40,7 @@ class SphFluidParams:
     obstacles: tuple[Box, ...] = ()  # m, boxes that stand still in the tank
     kernel: Literal["cubic", "wendland"] = "cubic"  # Wendland's keeps particles apart and calm
     smoothing: Positive = 1.5  # 1, smoothing length / spacing
+    staggered: bool = False  # whether rows along x start moved against each other
     density: Positive = 1000.0  # kg/m3, at no pressure
     gravity: Vector = (0.0, 0.0, -9.81)  # m/s2
     viscosity: NotNegative = 0.1  # 1, α of Monaghan's artificial viscosity
