@@ -42,11 +42,11 @@ from quintet.components.sph_fluid import kernels
 box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
 fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
 fluid.step(fluid.stable_dt())
-for module in ("shepard", "contact", "mdbc", "single", "symplectic"):
+for module in ("shepard", "contact", "damper", "mdbc", "single", "symplectic"):
     assert f"quintet.components.sph_fluid.{module}" not in sys.modules
 assert not kernels.push_samples.signatures
 (signature,) = kernels.interact.signatures
-assert [str(one) for one in signature[-2:]] == ["none", "none"], signature
+assert [str(one) for one in signature[-3:]] == ["none", "none", "none"], signature
 assert fluid.drift is None and fluid.state.force.size == 0
 """
 
