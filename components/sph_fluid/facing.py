@@ -30,6 +30,7 @@ class Film:
     area: Array  # (m,) m2, of its cell in the face
     own: Array  # (m,) Σ V W of its own body's samples, around the middle of that cell
     rim: Array  # (m,) whether it is at the film's rim
+    size: Array  # (m,) m, of the film that it belongs to
     begin: Whole  # (m + 1,) where its neighbours in the film stand in `near`
     near: Whole  # rows of the film
 
@@ -66,6 +67,8 @@ def film(state: State, body: Array, volume: Array, spacing: float, fluid: Fluid)
     table = np.zeros((len(mine), MOST), np.int64)
     join(place[mine], away, owner[mine], owner[theirs], BESIDE * spacing, count, table)
     begin = np.concatenate([[0], np.cumsum(count)])
+    pairs = np.stack([owner[mine], owner[theirs]], axis=1)
+    _, which, members = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
     listed = table[np.arange(MOST) < count[:, None]]
     return Film(
         sample=state.sample[mine],
@@ -75,6 +78,7 @@ def film(state: State, body: Array, volume: Array, spacing: float, fluid: Fluid)
         area=volume[state.sample[mine]] / np.abs(below),
         own=own,
         rim=_rim(place[mine], begin, listed, RIM * spacing),
+        size=spacing * np.sqrt(members[which.reshape(-1)]),
         begin=begin,
         near=listed,
     )

@@ -8,10 +8,11 @@ is dry), and pushes its faces apart, one as much as the other. Reynolds' equatio
 
 says how fast the share θ of the width w that is full of water grows, and with which pressure: a
 film that is not full has none (Elrod, ASME J. Lubr. Technol. 103 (1981) 350), faces that part
-draw it down and faces that close press it up. Gaps of millimetres are wide: water runs in as fast
-as pressure drives it, and has little left of that inside. At the rim it loses 3/4 ρ₀v², what speeds
-it up and half as much again at a sharp edge; along smooth faces 4w²/(fρ₀v) bounds K (Darcy and
-Weisbach). In thin films v, and so the loss, is nought. Else the film's own mass is left out.
+draw it down and faces that close press it up. Gaps of millimetres are wide: water gets in there as
+fast as pressure drives it, and has little left of that pressure inside. At the rim it loses 3/4 ρ₀v²
+of it, what speeds it up and half as much again at a sharp edge; along smooth faces 4w²/(fρ₀v)
+bounds K (Darcy and Weisbach). In thin films v, and so the loss, is nought. The film's own mass is
+left out beyond that.
 
 Particles get into gaps of half a spacing and more, but the kernel reaches through a gap and finds
 less water there than in the open. Per area of a flat face, fluid of pressure p presses with
@@ -69,7 +70,6 @@ def flow(
                             head += weight[d] * (place[j, d] - place[i, d])
                         brought += path * head
                         paths += path
-                pressure[i] = outside[i]
                 if outside[i] > 0.0 and brought > 0.0:
                     # What comes in, q, is driven by what is left: q = brought - paths loss q².
                     q = 2.0 * brought / (1.0 + np.sqrt(1.0 + 4.0 * paths * loss[i] * brought))
