@@ -8,11 +8,8 @@ is dry), and pushes its faces apart, one as much as the other. Reynolds' equatio
 
 says how fast the share θ of the width w that is full of water grows, and with which pressure: a
 film that is not full has none (Elrod, ASME J. Lubr. Technol. 103 (1981) 350), faces that part
-draw it down and faces that close press it up. Gaps of millimetres are wide: water gets in there as
-fast as pressure drives it, and has little left of that pressure inside. At the rim it loses 3/4 ρ₀v²
-of it, what speeds it up and half as much again at a sharp edge; along smooth faces 4w²/(fρ₀v)
-bounds K (Darcy and Weisbach). In thin films v, and so the loss, is nought. The film's own mass is
-left out beyond that.
+draw it down and faces that close press it up. Water does not flow in faster than the pressure at
+the rim can drive it, √(2p/ρ₀): this bounds K in wide gaps. The film's own mass is left out.
 
 Particles get into gaps of half a spacing and more, but the kernel reaches through a gap and finds
 less water there than in the open. Per area of a flat face, fluid of pressure p presses with
@@ -36,8 +33,6 @@ from quintet.components.sph_fluid.state import Array, State, Whole
 
 FADING = 0.85  # spacings below WIDEST over which films fade out, as particles get in and press
 WATER = 1e-3  # Pa s, its viscosity
-FRICTION = 0.03  # Darcy's f, of smooth faces at a Reynolds number of 10⁴: 1 m/s in a gap of 5 mm
-ENTRANCE = 0.75  # of ρ₀v², which water loses on its way into a gap
 LARGEST = 0.1  # of the speed of sound, velocity: a pressure above ρu² is sound, not flow
 SWEEPS = 20  # over the film in each step; it starts from the last step's pressure
 
@@ -45,13 +40,13 @@ SWEEPS = 20  # over the film in each step; it starts from the last step's pressu
 @njit(**FAST)
 def flow(
     rim: Array, begin: Whole, near: Whole, width: Array, ease: Array, place: Array,
-    outside: Array, stored: Array, cell: float, loss: Array, weight: tuple[float, float, float],
+    outside: Array, stored: Array, cell: float, weight: tuple[float, float, float],
     sweeps: int, pressure: Array, share: Array,
 ) -> None:  # fmt: skip
     """Write pressure [Pa] and full share of a film at a step's end, by Gauss and Seidel.
 
     `ease` is K [m4 s/kg], `stored` the water per area at the step's beginning [m], `cell` the area
-    of a sample over the step [m2/s], `loss` that at the rim [Pa s2/m6], `weight` ρ₀ g.
+    of a sample over the step [m2/s], `weight` ρ₀ g.
     """
     for i in range(rim.shape[0]):
         if rim[i]:
@@ -59,22 +54,9 @@ def flow(
             share[i] = 1.0 if outside[i] > 0.0 else 0.0
     for _ in range(sweeps):
         for i in range(rim.shape[0]):
-            brought, paths = 0.0, 0.0
             if rim[i]:
-                for k in range(begin[i], begin[i + 1]):
-                    j = near[k]
-                    if not rim[j]:
-                        path = 0.5 * (ease[i] + ease[j])
-                        head = outside[i] - pressure[j]
-                        for d in range(3):
-                            head += weight[d] * (place[j, d] - place[i, d])
-                        brought += path * head
-                        paths += path
-                if outside[i] > 0.0 and brought > 0.0:
-                    # What comes in, q, is driven by what is left: q = brought - paths loss q².
-                    q = 2.0 * brought / (1.0 + np.sqrt(1.0 + 4.0 * paths * loss[i] * brought))
-                    pressure[i] = max(outside[i] - loss[i] * q * q, 0.0)
                 continue
+            brought, paths = 0.0, 0.0
             for k in range(begin[i], begin[i + 1]):
                 j = near[k]
                 path = 0.5 * (ease[i] + ease[j])
@@ -125,15 +107,14 @@ def push(
     outside = np.where(outside > 0.0, outside + (foot - place[film.row, :3]) @ weight, 0.0)
     outside = np.minimum(outside, density * (LARGEST * params.sound_speed) ** 2)
     driving = max(float(outside[film.rim].max(initial=0.0)), 1.0)
-    rough = 4.0 * width**2 / (FRICTION * np.sqrt(density * driving))
-    ease = np.minimum(width**3 / (12.0 * WATER), rough)
-    loss = ENTRANCE * density / (width * spacing) ** 2
+    bound = width * film.size * np.sqrt(2.0 / (density * driving))
+    ease = np.minimum(width**3 / (12.0 * WATER), bound)
     pressure, share, before = state.film[film.sample].T.copy()
     known = before > 0.0
     stored = np.where(known, share * before, 0.0)
     arrays = (film.rim, film.begin, film.near, width, ease, foot, outside, stored)
     x, y, z = weight.tolist()
-    flow(*arrays, spacing**2 / dt, loss, (x, y, z), SWEEPS, pressure, share)
+    flow(*arrays, spacing**2 / dt, (x, y, z), SWEEPS, pressure, share)
     state.film[:] = 0.0
     state.film[film.sample] = np.stack([pressure, share, width], axis=1)
     wet = np.empty(len(gap))
