@@ -59,7 +59,7 @@ def left(given: argparse.Namespace, rung: Rung, folder: Path) -> Row | None:
     found, added = show.results(folder), [f"{k}={text_of(v)}" for k, v in rung.settings.items()]
     asked = (given.scene, given.preset, [*given.settings, *added], given.swap, given.transport)
     same = parse(folder / "scene.toml") == load(*asked).resolved
-    done: bool = same and found["status"] == "done" and found["machine"] == results.machine()
+    done = same and found.get("status") == "done" and found.get("machine") == results.machine()
     return found if done else None
 
 

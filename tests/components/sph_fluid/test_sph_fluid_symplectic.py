@@ -96,8 +96,10 @@ def test_step_limit_is_where_rest_becomes_unstable(
     assert (fluid.totals().kinetic < 1e-3 * weight) is calm
 
 
-def test_a_saved_state_goes_on_with_the_same_bits(pool: Make) -> None:
-    one, other = (pool(integration="symplectic", boundary="mdbc", diffusion=0.1) for _ in range(2))
+@pytest.mark.parametrize("damper", [0.0, 0.5])
+def test_a_saved_state_goes_on_with_the_same_bits(pool: Make, damper: float) -> None:
+    given = {"integration": "symplectic", "boundary": "mdbc", "diffusion": 0.1, "damper": damper}
+    one, other = pool(**given), pool(**given)
     for _ in range(20):
         one.step(one.stable_dt())
     other.load(one.save())
