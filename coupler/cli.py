@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from quintet.interfaces.errors import QuintetError, SceneError
 
 if TYPE_CHECKING:
-    from quintet.coupler.scene import Scene
+    from quintet.coupler.scene.scene import Scene
 
 BAD = 2  # exit status of bad input: nothing was started
 
@@ -106,14 +106,14 @@ SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME
 
 
 def _load(given: argparse.Namespace) -> "Scene":
-    from quintet.coupler.read import load
+    from quintet.coupler.scene.read import load
 
     return load(given.scene, given.preset, given.settings, given.swap, given.transport)
 
 
 def list_scenes(given: argparse.Namespace) -> int:
     """List the scenes that come with quintet."""
-    from quintet.coupler.plan import list_all
+    from quintet.coupler.scene.listing import list_all
 
     list_all(given.json)
     return 0
@@ -121,7 +121,7 @@ def list_scenes(given: argparse.Namespace) -> int:
 
 def check(given: argparse.Namespace) -> int:
     """Print the plan of a scene."""
-    from quintet.coupler.plan import show_plan
+    from quintet.coupler.scene.listing import show_plan
 
     show_plan(_load(given))
     return 0
@@ -134,27 +134,27 @@ def run(given: argparse.Namespace) -> int:
     unknown = scene.elsewhere - set(scene.components)
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
-    from quintet.coupler.simulate import make_folder, simulate
+    from quintet.coupler.run.simulate import make_folder, simulate
 
     if not given.inside_mpi and snapshot is None:
         make_folder(scene, folder)
     if scene.transport == "mpi" and not given.inside_mpi:
-        from quintet.coupler.mpirun import run_under_mpi
+        from quintet.coupler.launch.mpi_job import run_under_mpi
 
         return run_under_mpi(given.words, scene, folder)
     if given.inside_mpi:
-        from quintet.coupler.mpirun import enter
+        from quintet.coupler.launch.mpi_job import enter
 
         enter(folder)
     threads = max(one.threads for one in scene.components.values())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
-    from quintet.coupler.show import show as tell
+    from quintet.coupler.report.show import show as tell
 
     status = simulate(scene, folder, snapshot)
     tell(folder)
     print(f"left in {os.path.relpath(folder)}", flush=True)
     if given.inside_mpi:
-        from quintet.coupler.mpirun import leave
+        from quintet.coupler.launch.mpi_job import leave
 
         leave(folder, status)
     return status
@@ -170,21 +170,21 @@ def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
 
 def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
     """Read the scene of a run that goes on, as it was asked for or as it is given now."""
-    from quintet.coupler import restart
+    from quintet.coupler.run import snapshots
 
     if given.out:
         raise SceneError("--resume goes on in the folder of the run. Remove --out.")
     folder = given.resume.resolve()
-    snapshot = restart.latest(folder)
-    scene = _load(given) if given.scene else restart.scene_of(snapshot, given.transport)
-    restart.check_same(scene, folder)
+    snapshot = snapshots.latest(folder)
+    scene = _load(given) if given.scene else snapshots.scene_of(snapshot, given.transport)
+    snapshots.check_same(scene, folder)
     return scene, folder, snapshot
 
 
 def join(given: argparse.Namespace) -> int:
     """Start one component of a scene, joined to a coupler elsewhere."""
     from quintet.interfaces.params import unknown
-    from quintet.interfaces.process import main as component
+    from quintet.interfaces.serving.process import main as component
 
     scene = _load(given)
     if given.name not in scene.components:
@@ -199,7 +199,7 @@ def join(given: argparse.Namespace) -> int:
 
 def show(given: argparse.Namespace) -> int:
     """Print what happened."""
-    from quintet.coupler.show import show as tell
+    from quintet.coupler.report.show import show as tell
 
     tell(given.folder, given.json)
     return 0
@@ -207,7 +207,7 @@ def show(given: argparse.Namespace) -> int:
 
 def diff(given: argparse.Namespace) -> int:
     """Compare two runs bit by bit."""
-    from quintet.coupler.diff import compare, sentence
+    from quintet.coupler.report.diff import compare, sentence
 
     found = compare(*given.folders)
     print(sentence(found))
@@ -216,14 +216,14 @@ def diff(given: argparse.Namespace) -> int:
 
 def study(given: argparse.Namespace) -> int:
     """Run a scene's ladder."""
-    from quintet.coupler.study import run_study
+    from quintet.coupler.study.study import run_study
 
     return run_study(given)
 
 
 def stability(given: argparse.Namespace) -> int:
     """Find a scene's limits."""
-    from quintet.coupler.stability import run_stability
+    from quintet.coupler.study.stability import run_stability
 
     return run_stability(given)
 
@@ -231,10 +231,10 @@ def stability(given: argparse.Namespace) -> int:
 def bench(given: argparse.Namespace) -> int:
     """Measure throughput."""
     if given.name == "exchange":
-        from quintet.coupler.bench import run_bench
+        from quintet.coupler.bench.exchange import run_bench
 
         return run_bench(given)
-    from quintet.coupler.throughput import run_kind
+    from quintet.coupler.bench.throughput import run_kind
 
     return run_kind(given)
 

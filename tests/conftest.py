@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from quintet.interfaces.endpoint import Security
+from quintet.interfaces.lines.endpoint import Security
 
 
 def openssl(folder, *arguments):

@@ -1,7 +1,7 @@
 """The process of this component."""
 
 from quintet.components.dem_bodies import MANIFEST
-from quintet.interfaces.process import main
+from quintet.interfaces.serving.process import main
 
 if __name__ == "__main__":
     main(MANIFEST)

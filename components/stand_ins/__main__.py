@@ -1,5 +1,5 @@
 """``python -m quintet.components.stand_ins KIND ...`` runs one of them as a process."""
 
-from quintet.interfaces.process import main
+from quintet.interfaces.serving.process import main
 
 main()

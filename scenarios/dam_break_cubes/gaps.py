@@ -15,8 +15,8 @@ import h5py
 import matplotlib
 import numpy as np
 
-from quintet.coupler.mapping import rotation
-from quintet.coupler.shapes import fill
+from quintet.coupler.coupling.body_samples import fill
+from quintet.coupler.coupling.mapping import rotation
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

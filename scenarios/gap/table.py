@@ -11,9 +11,9 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from quintet.coupler.record import Recording
-from quintet.coupler.shapes import BOX, fill
-from quintet.coupler.vtkhdf import read_step, times
+from quintet.coupler.coupling.body_samples import BOX, fill
+from quintet.coupler.files.recording import Recording
+from quintet.coupler.files.vtkhdf import read_step, times
 from quintet.interfaces.component import Array
 
 matplotlib.use("Agg")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from quintet.coupler.record import Recorder
+from quintet.coupler.files.recording import Recorder
 from quintet.interfaces.component import Array, Component, Fields
 from quintet.interfaces.manifest import find
 from quintet.interfaces.params import read

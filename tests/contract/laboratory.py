@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from quintet.coupler.connect import connect
-from quintet.coupler.exchange import Exchange
-from quintet.coupler.ledger import Account, Ledger
-from quintet.coupler.part import Part
-from quintet.coupler.read import load
-from quintet.coupler.run import run
-from quintet.coupler.schedule import Coupling
-from quintet.coupler.toml import dumps
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.ledger import Account, Ledger
+from quintet.coupler.coupling.participant import Part
+from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.files.toml_writer import dumps
+from quintet.coupler.launch.connect import connect
+from quintet.coupler.run.loop import run
+from quintet.coupler.scene.read import load
 from quintet.interfaces.component import Array, Component, Fields
 
 HERE = Path(__file__).parent

@@ -5,8 +5,8 @@ import pytest
 from cases import CASES, frozen
 
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.lines.message import decode, encode
 from quintet.interfaces.manifest import known_kinds
-from quintet.interfaces.message import decode, encode
 from quintet.interfaces.units import UNITS
 
 

@@ -4,13 +4,13 @@ import laboratory
 import numpy as np
 import pytest
 
-from quintet.coupler.mapping import RigidMap, ShapeMap
-from quintet.coupler.part import Part
-from quintet.coupler.schedule import Coupling
+from quintet.coupler.coupling.mapping import RigidMap, ShapeMap
+from quintet.coupler.coupling.participant import Part
+from quintet.coupler.coupling.schedule import Coupling
 from quintet.interfaces.errors import OrderError
-from quintet.interfaces.guard import Guard
-from quintet.interfaces.inputs import Inputs
-from quintet.interfaces.serve import Server
+from quintet.interfaces.serving.inputs import Inputs
+from quintet.interfaces.serving.order_guard import Guard
+from quintet.interfaces.serving.serve import Server
 
 LIMIT = 1e-12
 SCHEMES = ["serial", "parallel", "iterated"]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from quintet.coupler.mapping import sample_faces
+from quintet.coupler.coupling.mapping import sample_faces
 
 MASS, STIFFNESS, PRESSURE, WAVE, SPEED, DRAG, SPACING, END = (
     1.0,

@@ -89,9 +89,9 @@ def test_work_of_both_sides_agrees_ever_better(tmp_path):
 
 @pytest.mark.zenoh
 def test_zenoh_gives_the_bits_of_memory(tmp_path, monkeypatch):
-    from quintet.coupler.diff import compare
-    from quintet.coupler.read import load
-    from quintet.coupler.simulate import make_folder, simulate
+    from quintet.coupler.report.diff import compare
+    from quintet.coupler.run.simulate import make_folder, simulate
+    from quintet.coupler.scene.read import load
 
     monkeypatch.setenv("PYTHONPATH", str(laboratory.HERE))  # where the toys are
     path = laboratory.scene(

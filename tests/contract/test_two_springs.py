@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import quintet.scenarios
-from quintet.coupler.read import load
-from quintet.coupler.simulate import make_folder, simulate
+from quintet.coupler.run.simulate import make_folder, simulate
+from quintet.coupler.scene.read import load
 
 FOLDER = Path(quintet.scenarios.__path__[0]) / "two_springs"
 GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
@@ -48,7 +48,7 @@ def test_two_springs_meet_what_they_expect(tmp_path):
 
 @pytest.mark.zenoh
 def test_two_springs_run_as_two_processes_with_the_same_bits(tmp_path):
-    from quintet.coupler.diff import compare
+    from quintet.coupler.report.diff import compare
 
     assert load(str(FOLDER / "scene.toml")).transport == "zenoh"
     for transport in ("memory", "zenoh"):

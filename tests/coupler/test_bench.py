@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from quintet.coupler import bare, bench
+from quintet.coupler.bench import exchange, raw_transport
 from quintet.coupler.cli import main
 from quintet.interfaces.errors import QuintetError
 
@@ -25,7 +25,7 @@ KEYS = {
 
 @pytest.mark.parametrize("transport", OVER)
 def test_the_exchange_is_measured(tmp_path, monkeypatch, capsys, transport):
-    monkeypatch.setattr(bench, "SIZES", {100: 200, 1000: 100})
+    monkeypatch.setattr(exchange, "SIZES", {100: 200, 1000: 100})
     file = tmp_path / "found.json"
     with pytest.raises(SystemExit) as ended:
         main(["bench", "exchange", "--transport", transport, "--json", str(file)])
@@ -47,8 +47,8 @@ def test_an_unknown_benchmark_is_refused(capsys):
 
 
 def test_a_library_that_does_not_end_well_is_told_with_what_it_said(monkeypatch):
-    monkeypatch.setattr(bare, "free_port", lambda: "nowhere")
+    monkeypatch.setattr(raw_transport, "free_port", lambda: "nowhere")
     with pytest.raises(
         QuintetError, match=r"must end with status 0 within 120 s; found \[(.|\n)+Error"
     ):
-        bare.bare("zenoh", 2400, 10)
+        raw_transport.bare("zenoh", 2400, 10)

@@ -6,8 +6,8 @@ import pytest
 from started import Started, write_scene
 
 from quintet.coupler.cli import main
-from quintet.coupler.connect import free_port
-from quintet.coupler.read import library
+from quintet.coupler.launch.connect import free_port
+from quintet.coupler.scene.read import library
 
 EXPECT = """
 [[expect]]
@@ -155,7 +155,7 @@ def test_a_replayed_component_gives_the_same_bits(ran, tmp_path, capsys):
     assert status("run", path, "--out", tmp_path / "again", *swap, *one_way) == 0
     found = json.loads((tmp_path / "again" / "results.json").read_text())
     assert found["status"] == "done"
-    from quintet.coupler.record import Recording
+    from quintet.coupler.files.recording import Recording
 
     with Recording(ran) as one, Recording(tmp_path / "again") as other:
         gap = one.field("pong", "out.number") - other.field("pong", "out.number")

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quintet.coupler.diff import compare, sentence
-from quintet.coupler.record import Recorder
+from quintet.coupler.files.recording import Recorder
+from quintet.coupler.report.diff import compare, sentence
 from quintet.interfaces.ports import MOTION, SURFACE_LOAD
 
 ROWS = 150

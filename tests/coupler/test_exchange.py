@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.exchange import Exchange, Leg, misfits, requires
-from quintet.coupler.links.fsi import join as join_fsi
-from quintet.coupler.links.glue import join as join_glue
+from quintet.coupler.coupling.exchange import Exchange, Leg, misfits, requires
+from quintet.coupler.coupling.links.fsi import join as join_fsi
+from quintet.coupler.coupling.links.glue import join as join_glue
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError
 from quintet.interfaces.ports import (

@@ -5,8 +5,14 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from quintet.coupler.expect import Expectation, check, curve, evaluate, reference_curve
-from quintet.coupler.record import Recorder, Recording
+from quintet.coupler.files.recording import Recorder, Recording
+from quintet.coupler.measures.expectation import (
+    Expectation,
+    check,
+    curve,
+    evaluate,
+    reference_curve,
+)
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 from quintet.interfaces.ports import LOAD, MOTION

@@ -5,7 +5,7 @@ import time
 import pytest
 from started import Started, write_scene
 
-from quintet.coupler.record import Recording
+from quintet.coupler.files.recording import Recording
 
 SOON = 2.0  # s
 QUIET = 5.0 + 3 * 0.01 + 1.5  # s: the rule for stopped processes, and what ending takes

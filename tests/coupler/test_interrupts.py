@@ -7,7 +7,7 @@ import time
 import pytest
 from started import Started, write_scene
 
-from quintet.coupler.record import Recording
+from quintet.coupler.files.recording import Recording
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 SOON = 2.0  # s

@@ -9,11 +9,11 @@ import time
 import pytest
 from started import write_scene
 
-from quintet.coupler import launch, mpirun
-from quintet.coupler.launch import Watch, environment, tail
-from quintet.coupler.read import load
-from quintet.interfaces.alive import processor_time, running, state
+from quintet.coupler.launch import mpi_job, processes
+from quintet.coupler.launch.processes import Watch, environment, tail
+from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.lines.process_status import processor_time, running, state
 
 SLEEPS = "import time; time.sleep(60)"
 WORKS = "while True: pass"
@@ -29,8 +29,8 @@ while True:
 
 @pytest.fixture
 def watched(monkeypatch):
-    monkeypatch.setattr(launch, "QUIET_EXTRA", 0.6)
-    monkeypatch.setattr(launch, "LOOK", 0.2)
+    monkeypatch.setattr(processes, "QUIET_EXTRA", 0.6)
+    monkeypatch.setattr(processes, "LOOK", 0.2)
     started = []
 
     def start(code):
@@ -147,7 +147,7 @@ def test_ranks_are_the_coupler_and_every_component(tmp_path, monkeypatch):
     launcher.chmod(0o755)
     only(tmp_path, monkeypatch)
     scene = load(str(write_scene(tmp_path)))
-    line = mpirun.command(["run", "x.toml"], scene, tmp_path)
+    line = mpi_job.command(["run", "x.toml"], scene, tmp_path)
     assert line[:2] == [str(launcher), "-disable-auto-cleanup"]
     ranks = " ".join(line).split(" : ")
     assert len(ranks) == 3 and all("-m mpi4py" in rank for rank in ranks)
@@ -160,4 +160,4 @@ def test_a_missing_launcher_is_said(tmp_path, monkeypatch):
     only(tmp_path, monkeypatch)
     scene = load(str(write_scene(tmp_path)))
     with pytest.raises(SceneError, match=r"needs an mpiexec; there is none on PATH\. Install"):
-        mpirun.command([], scene, tmp_path)
+        mpi_job.command([], scene, tmp_path)

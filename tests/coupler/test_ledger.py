@@ -6,14 +6,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from quintet.coupler.exchange import Exchange
-from quintet.coupler.ledger import Account, Ledger, mean_rate
-from quintet.coupler.links import KINDS
-from quintet.coupler.motion import Motion
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.ledger import Account, Ledger, mean_rate
+from quintet.coupler.coupling.links import KINDS
+from quintet.coupler.coupling.motion_audit import Motion
 from quintet.interfaces.component import Port
-from quintet.interfaces.inputs import Inputs
-from quintet.interfaces.outputs import Handed
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
+from quintet.interfaces.serving.inputs import Inputs
+from quintet.interfaces.serving.outputs import Handed
 
 MOVED = Port("moved", (POSITION, VELOCITY))
 PUSHED = Port("pushed", (FORCE,))

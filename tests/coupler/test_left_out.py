@@ -8,7 +8,7 @@ import sys
 import pytest
 from started import Started, write_scene
 
-from quintet.coupler.read import library
+from quintet.coupler.scene.read import library
 
 HEAVY = {"zenoh", "mpi4py", "matplotlib", "scipy", "vtk", "numba"}
 ALONE = """
@@ -68,9 +68,9 @@ def test_one_component_in_memory_imports_no_transport_and_no_other_solver(tmp_pa
     scene.write_text(ALONE.format(name="echo", kind="echo", settings="items = 3"))
     names = modules(tmp_path, "run", str(scene))
     assert not names & HEAVY
-    assert not names & {"quintet.interfaces.zenoh", "quintet.interfaces.mpi"}
+    assert not names & {"quintet.interfaces.lines.zenoh", "quintet.interfaces.lines.mpi"}
     assert solvers(names) == ({"stand_ins"}, {"params", "echo"})
-    links = {name for name in names if name.startswith("quintet.coupler.links.")}
+    links = {name for name in names if name.startswith("quintet.coupler.coupling.links.")}
     assert not links
 
 
@@ -93,7 +93,7 @@ def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
     names = modules(tmp_path, "run", str(scene), "--transport", "zenoh")
     assert "zenoh" in names and not names & (HEAVY - {"zenoh"})
     assert solvers(names) == ({"stand_ins"}, {"params"})
-    assert "quintet.interfaces.memory" not in names
+    assert "quintet.interfaces.lines.memory" not in names
 
 
 @pytest.mark.parametrize("name", library())

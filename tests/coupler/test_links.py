@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quintet.coupler.exchange import Exchange
-from quintet.coupler.links import KINDS
-from quintet.coupler.links.direct import join as join_direct
-from quintet.coupler.links.fsi import FaceFsi, RigidFsi
-from quintet.coupler.links.fsi import join as join_fsi
-from quintet.coupler.links.glue import join as join_glue
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.links import KINDS
+from quintet.coupler.coupling.links.direct import join as join_direct
+from quintet.coupler.coupling.links.fsi import FaceFsi, RigidFsi
+from quintet.coupler.coupling.links.fsi import join as join_fsi
+from quintet.coupler.coupling.links.glue import join as join_glue
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.mapping import (
+from quintet.coupler.coupling.mapping import (
     RigidMap,
     ShapeMap,
     bilinear,

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from quintet.coupler.curves import Curve, distance
-from quintet.coupler.oscillation import fit
+from quintet.coupler.measures.oscillation import fit
+from quintet.coupler.measures.time_series import Curve, distance
 
 PERIOD, DECAY = 0.37, 0.8  # s, 1/s
 

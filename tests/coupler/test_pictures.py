@@ -7,10 +7,10 @@ import time
 import numpy as np
 import pytest
 
-from quintet.coupler.expect import Expectation, evaluate
-from quintet.coupler.pictures import comparison, snapshots
-from quintet.coupler.record import Recorder, Recording
-from quintet.coupler.vtkhdf import VtkHdf
+from quintet.coupler.files.recording import Recorder, Recording
+from quintet.coupler.files.vtkhdf import VtkHdf
+from quintet.coupler.measures.expectation import Expectation, evaluate
+from quintet.coupler.report.pictures import comparison, snapshots
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import MOTION
 
@@ -41,7 +41,7 @@ def _image(path):
 
 
 def test_a_run_without_pictures_imports_no_drawing():
-    script = "import sys, quintet.coupler.pictures; sys.exit('matplotlib' in sys.modules)"
+    script = "import sys, quintet.coupler.report.pictures; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
 

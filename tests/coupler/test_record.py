@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from quintet.coupler.record import Recorder, Recording
+from quintet.coupler.files.recording import Recorder, Recording
 from quintet.interfaces.errors import PortError, SceneError
 from quintet.interfaces.ports import LOAD, MOTION, SURFACE_LOAD
 
@@ -91,7 +91,7 @@ def test_recording_does_not_keep_the_arrays_it_is_given(tmp_path):
 def test_a_killed_run_leaves_all_flushed_rows(tmp_path):
     script = f"""
 import os, signal, numpy as np
-from quintet.coupler.record import Recorder
+from quintet.coupler.files.recording import Recorder
 from quintet.interfaces.ports import SURFACE_LOAD
 recorder = Recorder({str(tmp_path / "recording.h5")!r}, "", "")
 recorder.component("water", (SURFACE_LOAD,), {{}})

@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 from started import Started, write_scene
 
-from quintet.coupler import restart, vtkhdf
 from quintet.coupler.cli import main
-from quintet.coupler.diff import compare
-from quintet.coupler.read import load
-from quintet.coupler.simulate import make_folder, simulate
+from quintet.coupler.files import vtkhdf
+from quintet.coupler.report.diff import compare
+from quintet.coupler.run import snapshots
+from quintet.coupler.run.simulate import make_folder, simulate
+from quintet.coupler.scene.read import load
 
 SMALL_DAM = Path(__file__).parents[1] / "scenarios/small_dam.toml"
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
@@ -46,16 +47,16 @@ def gone_on(tmp_path, monkeypatch):
     """Run a scene to its end with snapshots kept; once more from the last of them."""
 
     def run(scene, *settings):
-        monkeypatch.setattr(restart, "remove", lambda paths: None)
+        monkeypatch.setattr(snapshots, "remove", lambda paths: None)
         made = load(str(scene), settings=settings, transport="memory")
         first, again = tmp_path / "first", tmp_path / "again"
         make_folder(made, first)
         done = simulate(made, first)
         shutil.copytree(first, again)
-        snapshot = restart.latest(again)
-        assert 0 < restart.window_of(snapshot)
+        snapshot = snapshots.latest(again)
+        assert 0 < snapshots.window_of(snapshot)
         assert simulate(load(str(scene), settings=settings), again, snapshot) == done
-        return first, again, restart.window_of(snapshot)
+        return first, again, snapshots.window_of(snapshot)
 
     return run
 
@@ -90,7 +91,7 @@ def test_an_interrupted_run_goes_on_with_the_same_bits(tmp_path, capsys, transpo
     assert "to go on: quintet run --resume" in run.err
     assert run.results["windows"] < 300 and "--resume" in run.results["resume"]
     assert status("run", "--resume", run.folder) == 0
-    assert not restart.snapshots(run.folder) and "resume" not in run.results
+    assert not snapshots.snapshots(run.folder) and "resume" not in run.results
     undisturbed = tmp_path / "undisturbed"
     assert status("run", path, "--transport", "memory", "--out", undisturbed) == 0
     assert same(undisturbed, run.folder)
@@ -100,11 +101,11 @@ def test_an_interrupted_run_goes_on_with_the_same_bits(tmp_path, capsys, transpo
 def test_a_run_whose_component_was_killed_goes_on_from_its_last_snapshot(tmp_path, capsys):
     path = write_scene(tmp_path, "zenoh", 0.2, pong="pause = 3e-3")
     run = Started(path, "--set", "output.snapshots=0.01")
-    run.wait_until(lambda: len(restart.snapshots(run.folder)) == restart.KEPT)
+    run.wait_until(lambda: len(snapshots.snapshots(run.folder)) == snapshots.KEPT)
     os.kill(run.pid_of("pong"), signal.SIGKILL)
     assert run.wait() == 3
     assert run.results["status"] == "failed" and "--resume" in run.results["resume"]
-    assert len(restart.snapshots(run.folder)) == restart.KEPT
+    assert len(snapshots.snapshots(run.folder)) == snapshots.KEPT
     # As it was asked for, or named again; over any transport.
     again = ("run", path, "--set", "output.snapshots=0.01", "--transport", "memory")
     assert status(*again, "--resume", run.folder) == 0

@@ -8,7 +8,7 @@ import pytest
 from started import write_scene
 
 from quintet.coupler.cli import main
-from quintet.coupler.read import load
+from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 
 PAIRS = 'pairs = [["ping.out", "pong.in"], ["pong.out", "ping.in"]]'

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.exchange import Exchange
-from quintet.coupler.ledger import Ledger
-from quintet.coupler.links import KINDS
-from quintet.coupler.schedule import SCHEMES, Aitken, Coupling, Iteration
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.ledger import Ledger
+from quintet.coupler.coupling.links import KINDS
+from quintet.coupler.coupling.schedule import SCHEMES, Aitken, Coupling, Iteration
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError
-from quintet.interfaces.message import Message
+from quintet.interfaces.lines.message import Message
 
 KEY = ("first", "in.value")
 PLACE = Field("value", (), "m")

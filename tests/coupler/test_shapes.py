@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from quintet.coupler.shapes import BOX, SPHERE, fill, mirrors
+from quintet.coupler.coupling.body_samples import BOX, SPHERE, fill, mirrors
 from quintet.interfaces.errors import LinkError
 
 DEEP = 1e9

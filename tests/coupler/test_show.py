@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from quintet.coupler.show import results, show
+from quintet.coupler.report.show import results, show
 from quintet.interfaces.errors import SceneError
 
 RESULTS = {

@@ -5,9 +5,9 @@ import json
 import pytest
 from spring_scene import command, found_by, write
 
-from quintet.coupler.bisect import narrow
-from quintet.coupler.invariants import judge
-from quintet.coupler.limits import LimitTable
+from quintet.coupler.scene.stability_table import LimitTable
+from quintet.coupler.study.bisection import narrow
+from quintet.coupler.study.invariants import judge
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 

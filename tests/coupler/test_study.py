@@ -10,7 +10,7 @@ import pytest
 from spring_scene import command, found_by, write
 from started import write_scene
 
-from quintet.coupler.orders import least_squares, richardson
+from quintet.coupler.measures.convergence import least_squares, richardson
 
 RUNG = """
 [[study]]

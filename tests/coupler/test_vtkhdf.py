@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from quintet.coupler.vtkhdf import VtkHdf, read_step, times
+from quintet.coupler.files.vtkhdf import VtkHdf, read_step, times
 from quintet.interfaces.errors import PortError, SceneError
 
 COUNTS = (5, 7, 7, 5, 0, 30, 6)
@@ -111,7 +111,7 @@ def test_a_picture_file_may_be_read_while_it_grows(tmp_path):
     path = tmp_path / "e.vtkhdf"
     file = VtkHdf(path)
     file.append(0.0, _views()[0])
-    script = f"from quintet.coupler.vtkhdf import times; print(len(times({str(path)!r})))"
+    script = f"from quintet.coupler.files.vtkhdf import times; print(len(times({str(path)!r})))"
     read = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     file.close()
     assert read.stdout.strip() == "1", read.stderr
@@ -121,7 +121,7 @@ def test_a_killed_writer_leaves_every_appended_step(tmp_path, vtk_steps):
     path = tmp_path / "f.vtkhdf"
     script = f"""
 import os, signal, numpy as np
-from quintet.coupler.vtkhdf import VtkHdf
+from quintet.coupler.files.vtkhdf import VtkHdf
 file = VtkHdf({str(path)!r})
 for k in range(9):
     ones = np.full((50 + k, 3), float(k))

@@ -19,8 +19,8 @@ COUPLER = """
 import sys, time
 from pathlib import Path
 import numpy as np
-from quintet.coupler.connect import connect
-from quintet.coupler.read import load
+from quintet.coupler.launch.connect import connect
+from quintet.coupler.scene.read import load
 folder, count = Path(sys.argv[1]), int(sys.argv[2])
 connection = connect(load(str(folder / "scene.toml")), folder, lambda: False)
 part = connection.parts["echo"]
@@ -38,7 +38,7 @@ for window in range(count):
 connection.close(True)
 (folder / "done").write_text(str(part.timing.steps))
 """
-COMPONENT = ["quintet.interfaces.process", "echo", "--name", "echo", "--mpi"]
+COMPONENT = ["quintet.interfaces.serving.process", "echo", "--name", "echo", "--mpi"]
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 
 

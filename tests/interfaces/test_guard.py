@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from quintet.interfaces.errors import OrderError
-from quintet.interfaces.guard import LEGAL, Guard
+from quintet.interfaces.serving.order_guard import LEGAL, Guard
 
 ORDERS = sorted({order for orders in LEGAL.values() for order in orders} | {"go", "", "advance2"})
 WAYS = {

@@ -7,8 +7,8 @@ import pytest
 
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import PortError
-from quintet.interfaces.inputs import Inputs
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
+from quintet.interfaces.serving.inputs import Inputs
 
 MOVED = Port("p", (POSITION, VELOCITY))
 PUSHED = Port("q", (FORCE,))

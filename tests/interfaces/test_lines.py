@@ -5,9 +5,9 @@ import time
 import pytest
 
 from quintet.interfaces.errors import LineError, MessageError
-from quintet.interfaces.memory import MemoryLine
-from quintet.interfaces.message import encode
-from quintet.interfaces.transport import FramedLine, wait
+from quintet.interfaces.lines.memory import MemoryLine
+from quintet.interfaces.lines.message import encode
+from quintet.interfaces.lines.transport import FramedLine, wait
 
 
 class ByHand(FramedLine):

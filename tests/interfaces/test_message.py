@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from quintet.interfaces.errors import MessageError
-from quintet.interfaces.layout import ALIGN, DTYPES
-from quintet.interfaces.message import PREFIX, decode, encode, require_finite
+from quintet.interfaces.lines.layout import ALIGN, DTYPES
+from quintet.interfaces.lines.message import PREFIX, decode, encode, require_finite
 
 
 def frame(arrays, body=b"", header=None, **prefix):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quintet.interfaces.memory import MemoryLine
+from quintet.interfaces.lines.memory import MemoryLine
 
 pytestmark = pytest.mark.mpi
 MPIEXEC = Path(sys.executable).with_name("mpiexec")
@@ -17,7 +17,7 @@ RANKS = """
 import sys, time
 import numpy as np
 from mpi4py import MPI
-from quintet.interfaces.mpi import MpiLine, self_check
+from quintet.interfaces.lines.mpi import MpiLine, self_check
 self_check(2)
 rank = MPI.COMM_WORLD.rank
 line = MpiLine("r1", "coupler", "other", 1 - rank)
@@ -75,7 +75,7 @@ def test_a_waiting_rank_leaves_the_processor_to_others(carried):
 
 
 def test_a_launcher_of_another_library_is_refused():
-    code = "from quintet.interfaces import mpi; mpi.self_check(3)"
+    code = "from quintet.interfaces.lines import mpi; mpi.self_check(3)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30)
     assert done.returncode == 1
     assert "MPI started 1 ranks where 3 were launched: the launcher and the library" in done.stderr

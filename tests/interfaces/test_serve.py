@@ -7,10 +7,10 @@ import pytest
 
 from quintet.interfaces.component import Component, Field, Port
 from quintet.interfaces.errors import MessageError, OrderError, PortError, StepError
-from quintet.interfaces.memory import MemoryLine
-from quintet.interfaces.message import Message
+from quintet.interfaces.lines.memory import MemoryLine
+from quintet.interfaces.lines.message import Message
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
-from quintet.interfaces.serve import Server, answer, divide
+from quintet.interfaces.serving.serve import Server, answer, divide
 
 MOVED = Port("foot", (POSITION, VELOCITY))
 PUSHED = Port("load", (FORCE,))

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quintet.interfaces.endpoint import Security, check_endpoint
 from quintet.interfaces.errors import LineError
-from quintet.interfaces.memory import MemoryLine
+from quintet.interfaces.lines.endpoint import Security, check_endpoint
+from quintet.interfaces.lines.memory import MemoryLine
 
 pytestmark = pytest.mark.zenoh
 PAUSE = 8.0  # s, longer than zenoh's own settings keep a blocked connection
@@ -19,7 +19,7 @@ PAUSE = 8.0  # s, longer than zenoh's own settings keep a blocked connection
 SENDER = """
 import sys
 import numpy as np
-from quintet.interfaces.zenoh import connect
+from quintet.interfaces.lines.zenoh import connect
 line = connect(sys.argv[1], "sender")
 line.run = "r1"
 array = np.zeros((200, 3))
@@ -40,7 +40,7 @@ def free_port():
 
 @pytest.fixture
 def hubs():
-    from quintet.interfaces.zenoh import Hub
+    from quintet.interfaces.lines.zenoh import Hub
 
     opened = []
 
@@ -55,7 +55,7 @@ def hubs():
 
 
 def lines(hubs, endpoint, security=None):
-    from quintet.interfaces.zenoh import ZenohLine
+    from quintet.interfaces.lines.zenoh import ZenohLine
 
     near, far = hubs(endpoint, security)
     one, two = ZenohLine(near, "r1", "water"), ZenohLine(far, "", "coupler")
@@ -94,7 +94,7 @@ def test_a_partner_that_leaves_is_noticed_at_once(hubs):
 
 @pytest.mark.slow
 def test_nothing_is_lost_while_a_receiver_pauses():
-    from quintet.interfaces.zenoh import Hub, ZenohLine
+    from quintet.interfaces.lines.zenoh import Hub, ZenohLine
 
     count = 10_000
     endpoint = f"tcp/127.0.0.1:{free_port()}"
@@ -168,7 +168,7 @@ def test_strangers_are_refused(certificates, who):
 
     import zenoh
 
-    from quintet.interfaces.zenoh import Hub, configuration
+    from quintet.interfaces.lines.zenoh import Hub, configuration
 
     ours, foreign = certificates
     port = free_port()
@@ -191,7 +191,7 @@ def test_strangers_are_refused(certificates, who):
 
 
 def test_nobody_there_is_said(monkeypatch):
-    from quintet.interfaces import zenoh as ours
+    from quintet.interfaces.lines import zenoh as ours
 
     plain = ours.configuration
 
@@ -207,5 +207,5 @@ def test_nobody_there_is_said(monkeypatch):
 
 
 def test_zenoh_is_imported_only_where_it_is_used():
-    code = "import quintet.interfaces.process, sys; sys.exit('zenoh' in sys.modules)"
+    code = "import quintet.interfaces.serving.process, sys; sys.exit('zenoh' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=Path.home()).returncode == 0

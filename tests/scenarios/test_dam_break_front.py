@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from quintet.coupler.record import Recording
+from quintet.coupler.files.recording import Recording
 
 Run = Callable[..., dict]
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from quintet.coupler.cli import main
-from quintet.coupler.record import Recording
+from quintet.coupler.files.recording import Recording
 
 
 def run(scene: str, out: Path) -> dict:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quintet.coupler.record import Recording
+from quintet.coupler.files.recording import Recording
 
 Run = Callable[..., dict]
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from quintet.coupler.cli import main
-from quintet.coupler.diff import compare
-from quintet.coupler.record import Recording
+from quintet.coupler.files.recording import Recording
+from quintet.coupler.report.diff import compare
 
 SCENE = str(Path(__file__).parent / "small_dam.toml")
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from quintet.coupler.record import Recording
+from quintet.coupler.files.recording import Recording
 
 Run = Callable[..., dict]
 

@@ -8,7 +8,7 @@ from dem_scenes import FLOOR, NOTHING, build, material, mistakes, run
 from quintet.components.dem_bodies.agglomerate import agglomerate
 from quintet.components.dem_bodies.shapes import voxels
 from quintet.components.dem_bodies.state import ELASTIC, WHICH
-from quintet.coupler.shapes import fill
+from quintet.coupler.coupling.body_samples import fill
 from quintet.interfaces.errors import LinkError
 
 EDGE = 0.15  # m

@@ -7,7 +7,7 @@ from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.facing import directions
 from quintet.components.sph_fluid.gap import pressed
-from quintet.coupler.shapes import BOX, fill, mirrors
+from quintet.coupler.coupling.body_samples import BOX, fill, mirrors
 
 SPACING = 0.01  # m
 SIZE = np.array([0.03, 0.06, 0.06])  # m, of each of two blocks side by side

@@ -8,7 +8,7 @@ import pytest
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.kernels import press
-from quintet.coupler.shapes import BOX, SPHERE, fill, mirrors
+from quintet.coupler.coupling.body_samples import BOX, SPHERE, fill, mirrors
 
 SPACING, EDGE, SIDE = 0.03, 0.15, 0.27  # m: of particles, body, tank
 LOW, HIGH = 0.5 * (SIDE - EDGE), 0.5 * (SIDE + EDGE)

@@ -1,0 +1,1 @@
+"""Benchmarks: throughput of a kind, time of one exchange."""

@@ -1,0 +1,135 @@
+"""``quintet bench exchange``: the time that one exchange with a component takes.
+
+One window is all that a run does: an order with a field goes out, is checked, taken, given
+back, checked again; sums are made on both sides. The component computes nothing. Beside it
+stands what the same bytes take over the library alone, on the same machine.
+"""
+
+import argparse
+import json
+import os
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.bench.raw_transport import bare
+from quintet.coupler.coupling.participant import Part
+from quintet.coupler.launch.connect import connect
+from quintet.coupler.run.simulate import make_folder
+from quintet.coupler.scene.read import load
+from quintet.coupler.scene.scene import Scene
+
+SIZES = {100: 5000, 10_000: 2000, 100_000: 300}  # items of three doubles: windows measured
+WARM = 100  # windows before the clock starts
+TRANSPORTS = ("zenoh", "mpi")
+SCENE = """
+name = "exchange"
+end = 1.0
+window = 1.0
+transport = "{transport}"
+[components.echo]
+kind = "echo"
+items = {items}
+"""
+
+
+def run_bench(given: argparse.Namespace) -> int:
+    """Measure the exchange; print the cases, and write them as JSON where asked."""
+    if given.inside_mpi:
+        return inside_mpi(Path(os.environ[FOLDER]))
+    found = []
+    for transport in [given.transport] if given.transport else TRANSPORTS:
+        for items, windows in SIZES.items():
+            with tempfile.TemporaryDirectory() as folder:
+                found.append(measure(transport, items, windows, Path(folder)))
+            found[-1]["bare_ms"] = 1e3 * bare(transport, 24 * items, windows)
+            print(sentence(found[-1]), flush=True)
+            if given.json:  # after each, so that a later one that fails costs none of it
+                given.json.write_text(json.dumps(found, indent=2))
+    return 0
+
+
+FOLDER = "QUINTET_BENCH"  # where a coupler started by mpiexec finds its scene
+
+
+def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str, Any]:
+    """Time windows with one echoing component."""
+    path = folder / "scene.toml"
+    path.write_text(SCENE.format(transport=transport, items=items))
+    (folder / "windows").write_text(str(windows))
+    scene = load(str(path))
+    make_folder(scene, folder / "run")
+    if transport == "mpi":
+        from quintet.coupler.launch.mpi_job import run_under_mpi
+
+        os.environ[FOLDER] = str(folder)
+        run_under_mpi(["bench", "exchange"], scene, folder / "run")
+    else:
+        exchange(scene, folder, windows)
+    return dict(json.loads((folder / "found.json").read_text()))
+
+
+def inside_mpi(folder: Path) -> int:
+    """Measure as rank 0."""
+    from quintet.coupler.launch.mpi_job import enter, leave
+
+    enter(folder / "run")
+    exchange(load(str(folder / "scene.toml")), folder, int((folder / "windows").read_text()))
+    leave(folder / "run", 0)
+    return 0
+
+
+def exchange(scene: Scene, folder: Path, windows: int) -> None:
+    """Join the component, exchange, and write down how long it took."""
+    connection = connect(scene, folder / "run", lambda: False)
+    part = connection.parts["echo"]
+    part.ask("describe")
+    part.ask("bind", {}, works=[])
+    value = np.random.default_rng(1).random(part.give()["returned.value"].shape)
+    part.ask("prime", {"passed.value": value})
+    took, spent = windows_of(part, value, windows)
+    connection.close(True)
+    found = {
+        "name": "exchange",
+        "case": f"{scene.transport}, {value.nbytes / 1e3:g} kB each way",
+        "items": len(value),
+        "threads": 1,
+        "rate": 1.0 / statistics.median(took),
+        "unit": "windows/s",
+        "median_ms": 1e3 * statistics.median(took),
+        "p99_ms": 1e3 * float(np.quantile(took, 0.99)),
+        "cpu_seconds": spent,
+        "wall_seconds": sum(took),
+        "options": {"transport": scene.transport, "windows": windows},
+    }
+    (folder / "found.json").write_text(json.dumps(found))
+
+
+def windows_of(part: Part, value: np.ndarray, windows: int) -> tuple[list[float], float]:
+    """Exchange so many windows; return the seconds of each, and the processor time of all."""
+    took = []
+    spent = 0.0
+    for window in range(WARM + windows):
+        if window == WARM:
+            spent = time.process_time()
+        began = time.perf_counter()
+        part.start(window, 1.0, {"passed.value": value}, ["passed.value"], False)
+        answer = part.finish()
+        took.append(time.perf_counter() - began)
+        if answer.fields["returned.value"][-1, -1] != value[-1, -1]:
+            print("the echo is not what was sent", file=sys.stderr)
+            raise SystemExit(1)
+    return took[WARM:], time.process_time() - spent
+
+
+def sentence(found: dict[str, Any]) -> str:
+    """One line for one case."""
+    return (
+        f"{found['case']}: median {found['median_ms']:.3f} ms, p99 {found['p99_ms']:.3f} ms, "
+        f"{found['rate']:.0f} {found['unit']}; the library alone {found['bare_ms']:.3f} ms"
+    )

@@ -1,0 +1,150 @@
+"""The library alone: what the exchange is compared with.
+
+Two processes fill an array, send its bytes, read what came, and send it back: no header, no
+numbers of messages, no check, no deadline but that of whoever started them.
+"""
+
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.launch.connect import free_port
+from quintet.coupler.launch.mpi_job import find_launcher
+from quintet.coupler.launch.processes import GRACE, environment
+from quintet.interfaces.errors import QuintetError
+
+WARM = 100  # windows before the clock starts
+PATIENCE = 120.0  # s for all windows
+LEAVING = 0.3  # s in which the last message leaves
+LINES = 8  # of what each process said
+Send = Callable[[bytearray], None]
+Receive = Callable[[], Any]
+Carrier = tuple[bool, Send, Receive]  # whether it leads
+
+
+def bare(transport: str, size: int, windows: int) -> float:
+    """Median time [s] in which `size` bytes go there and come back, over a library by itself."""
+    program = ["-m", "quintet.coupler.bench.raw_transport", transport, str(size), str(windows)]
+    if transport == "mpi":
+        both = [*find_launcher(), "-n", "2", sys.executable, "-m", "mpi4py", *program]
+        return _result([_started(both)])
+    line = [sys.executable, *program, f"tcp/127.0.0.1:{free_port()}"]
+    return _result([_started([*line, "there"]), _started([*line, "back"])])
+
+
+def _started(line: list[str]) -> "subprocess.Popen[bytes]":
+    return subprocess.Popen(
+        line,
+        env=environment(1, []),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+    )
+
+
+def _result(processes: "list[subprocess.Popen[bytes]]") -> float:
+    """What the first of them prints last; all of them have ended then."""
+    limit, first = time.monotonic() + PATIENCE, processes[0]
+    try:
+        while first.poll() is None and time.monotonic() < limit:
+            if any(process.poll() for process in processes):
+                break
+            time.sleep(0.05)
+    finally:
+        status = [process.poll() for process in processes]
+        said = [_end(process) for process in processes]
+    if status[0] != 0:
+        lines = "\n".join(f"    {line}" for one in said for line in one.splitlines()[-LINES:])
+        raise QuintetError(
+            f"bench exchange: the library alone must end with status 0 within {PATIENCE:.0f} s; "
+            f"found {status}:\n{lines}"
+        )
+    return float(said[0].split()[-1])
+
+
+def _end(process: "subprocess.Popen[bytes]") -> str:
+    """Make a process leave, and return what it said; a launcher takes its ranks along."""
+    process.terminate()
+    try:
+        said, _ = process.communicate(timeout=GRACE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        said, _ = process.communicate()
+    return said.decode(errors="replace")
+
+
+def main() -> None:
+    """Be one of the two processes."""
+    transport, size, windows = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    carry = _over_mpi if transport == "mpi" else _over_zenoh
+    with carry(size) as (leads, send, receive):
+        if leads:
+            print(statistics.median(_lead(send, receive, size, windows)), flush=True)
+        else:
+            _follow(send, receive, size, windows)
+
+
+def _lead(send: Send, receive: Receive, size: int, windows: int) -> list[float]:
+    value, frame = np.random.default_rng(1).random(size // 8), bytearray(size)
+    took = []
+    for _ in range(WARM + windows):
+        began = time.perf_counter()
+        np.frombuffer(frame)[:] = value
+        send(frame)
+        float(np.frombuffer(receive()).sum())
+        took.append(time.perf_counter() - began)
+    return took[WARM:]
+
+
+def _follow(send: Send, receive: Receive, size: int, windows: int) -> None:
+    frame = bytearray(size)
+    for _ in range(WARM + windows):
+        value = np.frombuffer(receive())
+        float(value.sum())
+        np.frombuffer(frame)[:] = value
+        send(frame)
+
+
+@contextmanager
+def _over_mpi(size: int) -> Iterator[Carrier]:
+    from mpi4py import MPI
+
+    comm, came = MPI.COMM_WORLD, bytearray(size)
+    other = 1 - comm.rank
+
+    def receive() -> bytearray:
+        comm.Recv([came, MPI.BYTE], other)
+        return came
+
+    yield comm.rank == 0, lambda frame: comm.Send([frame, MPI.BYTE], other), receive
+
+
+@contextmanager
+def _over_zenoh(_: int) -> Iterator[Carrier]:
+    import zenoh
+
+    from quintet.interfaces.lines.zenoh import configuration
+
+    endpoint, me = sys.argv[4:]
+    other = "back" if me == "there" else "there"
+    with zenoh.open(configuration(endpoint, me == "back", None)) as session:
+        inbox = session.declare_subscriber(f"bare/{me}", zenoh.handlers.FifoChannel(4))
+        outbox: Any = session.declare_publisher(  # its stub says that the status is a truth
+            f"bare/{other}", congestion_control=zenoh.CongestionControl.BLOCK
+        )
+        limit = time.monotonic() + PATIENCE
+        while not outbox.matching_status.matching and time.monotonic() < limit:
+            time.sleep(0.01)
+        yield me == "there", outbox.put, lambda: inbox.recv().payload.to_bytes()
+        time.sleep(LEAVING)
+
+
+if __name__ == "__main__":
+    main()

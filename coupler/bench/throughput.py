@@ -1,0 +1,100 @@
+"""``quintet bench KIND``: how many items a component steps per second, case by case.
+
+Rates are per second of processor time, summed over all threads, so that they are those of one
+thread; beside them stands the rate by the clock on the wall.
+"""
+
+import argparse
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from quintet.coupler.launch.processes import start, tail
+from quintet.coupler.report.show import on_screen
+from quintet.interfaces.errors import QuintetError, SceneError
+from quintet.interfaces.manifest import BenchCase, find, known_kinds
+from quintet.interfaces.params import unknown
+
+Found = dict[str, Any]
+
+
+def run_kind(given: argparse.Namespace) -> int:
+    """Measure the cases of a kind; print them, and write them as JSON where asked."""
+    cases = chosen(given.name, given.case)
+    threads = given.threads or usual_threads()
+    if wrong := [count for count in threads if count < 1]:
+        raise SceneError(f"--threads must be a whole number from 1; found {wrong[0]}.")
+    found = []
+    for number, case in cases:
+        for count in threads:
+            print(f"{case.name}, threads: {count} ... ", end="", flush=True)
+            found.append(apart(given.name, number, count))
+            print(f"{found[-1]['rate']:.3g} {found[-1]['unit']} a thread", flush=True)
+    on_screen().print(table(found))
+    if given.json:
+        given.json.write_text(json.dumps(found, indent=2))
+    return 0
+
+
+def chosen(kind: str, name: str) -> list[tuple[int, BenchCase]]:
+    """Find the cases of a kind, or the one that is named."""
+    try:
+        cases = find(kind).cases()
+    except KeyError as error:
+        raise SceneError(unknown(f"bench {kind}", kind, ["exchange", *known_kinds()])) from error
+    except ImportError as error:
+        raise SceneError(f"bench {kind}: it cannot be imported ({error}).") from error
+    if not cases:
+        raise SceneError(f"bench {kind}: it declares no case. Name a function as Manifest.bench.")
+    if name and name not in [case.name for case in cases]:
+        known = [case.name for case in cases]
+        raise SceneError(unknown(f"bench {kind}: case {name}", name, known))
+    return [(n, case) for n, case in enumerate(cases) if name in ("", case.name)]
+
+
+def usual_threads() -> Sequence[int]:
+    """One thread, and two where there are two cores."""
+    return (1, 2) if len(os.sched_getaffinity(0)) > 1 else (1,)
+
+
+def apart(kind: str, number: int, threads: int) -> Found:
+    """Measure a case in a process of its own, so that memory and compilation are its own too."""
+    with tempfile.TemporaryDirectory() as folder:
+        log, file = Path(folder) / "log", Path(folder) / "found.json"
+        line = ["-m", "quintet.coupler.bench.worker", kind, str(number), str(threads), str(file)]
+        process = start(line, log, threads, [str(Path.cwd())])
+        try:
+            status = process.wait()
+        finally:
+            process.kill()
+        if status:
+            said = "\n".join(f"    {one}" for one in tail(log))
+            raise QuintetError(f"bench {kind}: it ended with status {status}:\n{said}")
+        return dict(json.loads(file.read_text()))
+
+
+def table(found: Sequence[Found]) -> Table:
+    """One row for each case and number of threads."""
+    made = Table(box=None, pad_edge=False)
+    heads = ("case", "items", "threads", "per CPU-s", "per s", "speed-up", "unit", "bytes/item")
+    for head in heads:
+        made.add_column(head, justify="left" if head in ("case", "unit") else "right")
+    alone = {one["case"]: one["wall_rate"] for one in found if one["threads"] == 1}
+    for one in found:
+        ratio = one["wall_rate"] / alone[one["case"]] if one["case"] in alone else 0.0
+        made.add_row(
+            one["case"],
+            str(one["items"]),
+            str(one["threads"]),
+            f"{one['rate']:.3g}",
+            f"{one['wall_rate']:.3g}",
+            f"{ratio:.2f}" if ratio else "",
+            one["unit"],
+            f"{one['bytes_per_item']:.0f}",
+        )
+    return made

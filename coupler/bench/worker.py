@@ -1,0 +1,80 @@
+"""One benchmark case, in a process of its own.
+
+``python -m quintet.coupler.bench.worker KIND NUMBER THREADS FILE`` writes its result into FILE.
+The component is made twice. The first compiles all kernels and is dropped; what the process's
+resident memory grows by until the second has made its lists and come through its first steps is
+the component's own.
+"""
+
+import ctypes
+import gc
+import json
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from quintet.interfaces.component import Component
+from quintet.interfaces.manifest import BenchCase, Manifest, find
+from quintet.interfaces.serving.process import build
+
+
+def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]:
+    """Time one case; return what ``quintet bench --json`` says of it."""
+    order = {"params": case.params, "threads": threads}
+    component = begin(manifest, order, case)
+    advance(component, case.warm, case)
+    del component
+    before = resident()
+    component = begin(manifest, order, case)
+    advance(component, case.warm, case)
+    grown = resident() - before
+    items = component.items()
+    spent, began = time.process_time(), time.perf_counter()
+    advance(component, case.steps, case)
+    wall, cpu = time.perf_counter() - began, time.process_time() - spent
+    return {
+        "name": manifest.kind,
+        "case": case.name,
+        "items": items,
+        "threads": threads,
+        "rate": items * case.steps / cpu,  # per second of processor time, that of all threads
+        "wall_rate": items * case.steps / wall,
+        "unit": case.unit,
+        "cpu_seconds": cpu,
+        "wall_seconds": wall,
+        "bytes_per_item": grown / items,
+        "options": {"steps": case.steps, "warm": case.warm, "params": case.params},
+    }
+
+
+def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase) -> Component:
+    """Make the component, joined to what the case says."""
+    component = build(manifest, order)
+    component.bind(case.static)
+    component.take(case.fields)
+    return component
+
+
+def advance(component: Component, steps: int, case: BenchCase) -> None:
+    """Step so many times, each as far as the state allows, and exchange at every step."""
+    for _ in range(steps):
+        component.take(case.fields)
+        component.step(component.stable_dt())
+        component.give()
+
+
+def resident() -> int:
+    """Resident memory of this process, what was freed given back [bytes]."""
+    gc.collect()
+    ctypes.CDLL(None).malloc_trim(0)
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+if __name__ == "__main__":
+    kind, number, threads, file = sys.argv[1:]
+    known = find(kind)
+    found = measure(known, known.cases()[int(number)], int(threads))
+    Path(file).write_text(json.dumps(found))

@@ -1,0 +1,1 @@
+"""The coupling itself: links, mapping, schemes, acceleration, ledger."""

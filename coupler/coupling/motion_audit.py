@@ -1,0 +1,129 @@
+"""What motion a component should have been given in its steps, from what it was sent.
+
+Found here anew, from sums over the items, and compared with the sums of what the serving
+loop handed out: an input that is taken at the wrong time shows in the first step.
+"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.sums import column_sums, size
+
+
+@dataclass(slots=True)
+class Instant:
+    """Sums over the items of one instant field at the ends of a window."""
+
+    start: Array
+    size: float  # sum of the magnitudes at the start
+    end: Array | None = None
+    end_size: float = 0.0
+
+    def pass_on(self) -> None:
+        """Let what was the end be the next window's start."""
+        if self.end is not None:
+            self.start, self.size = self.end, self.end_size
+            self.end, self.end_size = None, 0.0
+
+
+class Motion:
+    """The instants that every component was sent last."""
+
+    def __init__(self, exchange: Exchange) -> None:
+        self._fields: dict[str, dict[str, str]] = {  # component -> instant -> its rate or ""
+            name: {
+                f"{port.name}.{one.name}": one.rate and f"{port.name}.{one.rate}"
+                for port in takes
+                for one in port.fields
+                if one.centring == "instant"
+            }
+            for name, (takes, _) in exchange.ports.items()
+        }
+        self._held: dict[str, dict[str, Instant]] = {name: {} for name in exchange.ports}
+        self._window: dict[str, float] = {}  # s
+
+    def arrive(self, name: str, fields: Fields, ends: Collection[str], window: float) -> None:
+        """Take note of what a component is sent for a window [s]."""
+        held = self._held[name]
+        self._window[name] = window
+        for one in held.values():
+            one.pass_on()
+        for key in self._fields[name]:
+            if key not in fields:
+                continue
+            sums, amount = np.asarray(column_sums(fields[key])), size(fields[key])
+            if key in ends and key in held:
+                held[key].end, held[key].end_size = sums, amount
+            else:
+                held[key] = Instant(sums, amount)
+
+    def save(self) -> dict[str, Any]:
+        """All that was sent last, for a snapshot."""
+        held = {
+            name: {
+                key: [
+                    one.start.tolist(),
+                    one.size,
+                    None if one.end is None else one.end.tolist(),
+                    one.end_size,
+                ]
+                for key, one in fields.items()
+            }
+            for name, fields in self._held.items()
+        }
+        return {"held": held, "window": self._window}
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to what was saved."""
+        self._window = dict(state["window"])
+        for name, fields in state["held"].items():
+            self._held[name] = {
+                key: Instant(
+                    np.array(start), amount, None if end is None else np.array(end), end_amount
+                )
+                for key, (start, amount, end, end_amount) in fields.items()
+            }
+
+    def residual(self, name: str, handed: Mapping[str, Any]) -> float:
+        """Worst difference between what was handed out and what should have been, relative."""
+        window, span = self._window[name], float(handed["span"])
+        rates = set(self._fields[name].values())
+        gaps = [0.0]
+        for key, first in handed["first"].items():
+            if key not in rates:
+                gaps.append(
+                    self._gap(name, key, np.subtract(first, self._at(name, key, 0.5 * span)))
+                )
+        for key, moved in handed["moved"].items():
+            whole = self._at(name, key, window) - self._at(name, key, 0.0)
+            gaps.append(self._gap(name, key, np.subtract(moved, whole)))
+        return max(gaps)
+
+    def _gap(self, name: str, key: str, gap: Array) -> float:
+        held, rate = self._held[name], self._fields[name][key]
+        scale = held[key].size + held[key].end_size
+        if rate in held:
+            scale += self._window[name] * (held[rate].size + held[rate].end_size)
+        worst = float(np.abs(gap).max()) if gap.size else 0.0
+        return worst / scale if worst else 0.0
+
+    def _at(self, name: str, key: str, time: float) -> Array:
+        """Sum over the items of a field at a time [s] of the window."""
+        one, window = self._held[name][key], self._window[name]
+        rate = self._held[name].get(self._fields[name][key])
+        if one.end is None:
+            return one.start + time * rate.start if rate else one.start
+        s = time / window
+        if rate is None or rate.end is None:
+            return (1.0 - s) * one.start + s * one.end
+        return (
+            (1.0 + 2.0 * s) * (1.0 - s) ** 2 * one.start
+            + s * (1.0 - s) ** 2 * window * rate.start
+            + s * s * (3.0 - 2.0 * s) * one.end
+            - s * s * (1.0 - s) * window * rate.end
+        )

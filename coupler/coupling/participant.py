@@ -1,0 +1,116 @@
+"""One component as the run loop sees it, wherever it runs."""
+
+import statistics
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import LineError, MessageError, QuintetError
+from quintet.interfaces.lines.message import Message, Shapes, require_finite
+from quintet.interfaces.lines.transport import Line
+
+PATIENCE = 3600.0  # s for one answer of a component that is seen to be working
+
+
+class ComponentFailed(QuintetError):
+    """A component, or the line to it, failed: who, in which window, why."""
+
+    def __init__(self, component: str, window: int, cause: str, trace: str = "") -> None:
+        self.component, self.window, self.cause, self.trace = component, window, cause, trace
+        super().__init__(f"{component} failed in window {window}: {cause}")
+
+
+@dataclass(slots=True)
+class Timing:
+    """Where a component's time went."""
+
+    compute: float = 0.0  # s, as the component itself measured
+    cpu: float = 0.0  # s of processor time in its windows, all threads
+    wait: float = 0.0  # s that the coupler waited for it
+    first: float = 0.0  # s, its first window
+    steps: int = 0
+    items: int = 0
+    memory: int = 0  # bytes, the most that its process held; of one apart that ended well
+    recent: deque[float] = field(default_factory=lambda: deque(maxlen=50))
+
+    @property
+    def usual(self) -> float:
+        """Its usual time for a window [s]."""
+        return statistics.median(self.recent) if self.recent else 0.0
+
+
+class Part:
+    """A component behind a line: orders go out, answers come back checked."""
+
+    def __init__(self, name: str, line: Line) -> None:
+        self.name, self.line = name, line
+        self.asking: Callable[[], None] = lambda: None  # called when a wait begins
+        self.window = 0
+        self.timing = Timing()
+        self.shapes: Shapes | None = None  # of its outputs, once known
+        self._asked = 0.0
+
+    def tell(self, order: str, fields: Fields | None = None, **header: Any) -> None:
+        """Send an order."""
+        self._asked = time.perf_counter()
+        self.asking()
+        try:
+            self.line.send({"order": order, "window": self.window, **header}, fields or {})
+        except LineError as error:
+            raise ComponentFailed(self.name, self.window, str(error)) from error
+
+    def hear(self, expected: Shapes | None = None, finite: bool = True) -> Message:
+        """Wait for the answer."""
+        try:
+            message = self.line.receive(PATIENCE, expected)
+            if finite:
+                require_finite(message.fields, "what it gave")
+        except (LineError, MessageError) as error:
+            raise ComponentFailed(self.name, self.window, str(error)) from error
+        if message.order == "failed":
+            said = f"{message.header.get('error')}: {message.header.get('text')}"
+            trace = str(message.header.get("traceback", ""))
+            raise ComponentFailed(self.name, self.window, said, trace)
+        return message
+
+    def ask(self, order: str, fields: Fields | None = None, **header: Any) -> Message:
+        """Send an order and wait for the answer."""
+        self.tell(order, fields, **header)
+        return self.hear()
+
+    def start(self, window: int, dt: float, fields: Fields, ends: list[str], totals: bool) -> None:
+        """Order one window, from `window` times `dt` on."""
+        self.window = window
+        self.tell("advance", fields, dt=dt, ends=ends, totals=totals)
+
+    def finish(self) -> Message:
+        """Wait for the end of the window that was ordered."""
+        message = self.hear(self.shapes)
+        took = time.perf_counter() - self._asked
+        timing, header = self.timing, message.header
+        timing.first = timing.first or took
+        timing.wait += took
+        timing.compute += float(header["busy"])
+        timing.cpu += float(header["cpu"])
+        timing.steps += int(header["steps"])
+        timing.recent.append(took)
+        return message
+
+    def give(self) -> dict[str, Array]:
+        """Ask for the outputs at the start, and remember their shapes."""
+        fields = self.ask("give").fields
+        self.shapes = {key: array.shape for key, array in fields.items()}
+        return fields
+
+    def save(self) -> dict[str, Array]:
+        """Ask for all state; it may hold what is not finite, as a limit that was not met yet."""
+        self.tell("save")
+        return self.hear(finite=False).fields
+
+
+def describe_all(parts: Mapping[str, Part]) -> dict[str, Fields]:
+    """Ask every component for its static fields."""
+    return {name: part.ask("describe").fields for name, part in parts.items()}

@@ -1,0 +1,90 @@
+"""The balance of a run: all that was ever given, against all that was ever applied.
+
+A window that is lost between two components, or carried twice, closes in itself: only the
+sums over the whole run show it.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.coupling.exchange import Exchange, Leg
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.sums import column_sums, size
+
+Gap = tuple[str, str, set[int], Array, float]  # taker, field, links, difference, scale
+
+
+@dataclass(slots=True)
+class Running:
+    """What one leg's giver gave of one impulse."""
+
+    total: Array = field(default_factory=lambda: np.zeros(1))  # since the start
+    last: Array = field(default_factory=lambda: np.zeros(1))  # in the last window
+    scale: float = 0.0  # sum of the sizes
+
+    def add(self, array: Array) -> None:
+        """Add a window."""
+        self.last = np.asarray(column_sums(array))
+        self.total = self.total + self.last
+        self.scale += size(array)
+
+
+class Balance:
+    """Sums over the run of every impulse whose sum a mapping keeps."""
+
+    def __init__(self, exchange: Exchange) -> None:
+        self.exchange = exchange
+        self._given: dict[tuple[str, str], list[tuple[int, Leg, str, Running]]] = {}  # by taker
+        self._applied: dict[tuple[str, str], Array] = {}
+        for number, link in enumerate(exchange.links):
+            for leg in link.legs:
+                for before, after in leg.sums:
+                    entry = (number, leg, before, Running())
+                    self._given.setdefault((leg.taker, after), []).append(entry)
+
+    def given(self, name: str, outputs: Mapping[str, Fields]) -> None:
+        """Add what a component gave in a window, as it arrived."""
+        for entries in self._given.values():
+            for number, leg, before, running in entries:
+                if leg.giver == name:
+                    running.add(self.exchange.rows(number, leg, outputs)[before])
+
+    def applied(self, name: str, sums: Mapping[str, list[float]]) -> None:
+        """Add what a component says it applied in a window."""
+        for taker, key in self._given:
+            if taker == name:
+                before = self._applied.get((taker, key), 0.0)
+                self._applied[taker, key] = before + np.asarray(sums.get(key, 0.0))
+
+    def save(self) -> dict[str, Any]:
+        """All sums, for a snapshot."""
+        entries = [one for entries in self._given.values() for one in entries]
+        given = [[run.total.tolist(), run.last.tolist(), run.scale] for *_, run in entries]
+        applied = [[*place, np.asarray(sums).tolist()] for place, sums in self._applied.items()]
+        return {"given": given, "applied": applied}
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to saved sums."""
+        entries = [one for entries in self._given.values() for one in entries]
+        for (*_, run), (total, last, scale) in zip(entries, state["given"], strict=True):
+            run.total, run.last, run.scale = np.array(total), np.array(last), scale
+        self._applied = {(name, key): np.array(sums) for name, key, sums in state["applied"]}
+
+    def gaps(
+        self, is_late: Callable[[str, str], bool], owed: Mapping[tuple[str, str], Array]
+    ) -> Iterator[Gap]:
+        """Yield what is missing of every impulse; late and owed ones are still on their way."""
+        for (taker, key), entries in self._given.items():
+            due: Array = np.zeros(1)
+            for _, leg, _, running in entries:
+                due = due + running.total
+                if is_late(leg.giver, taker):
+                    due = due - running.last
+            if (taker, key) in owed:
+                due = due - column_sums(owed[taker, key])
+            scale = sum(running.scale for *_, running in entries)
+            numbers = {number for number, *_ in entries}
+            yield taker, key, numbers, due - self._applied.get((taker, key), 0.0), scale

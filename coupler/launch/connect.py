@@ -1,0 +1,227 @@
+"""From a scene to lines: components in this process, over zenoh, or over MPI."""
+
+import contextlib
+import secrets
+import socket
+import time
+import traceback
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from quintet.coupler.coupling.participant import ComponentFailed, Part
+from quintet.coupler.launch.processes import GRACE, Watch, start
+from quintet.coupler.scene.scene import Scene
+from quintet.interfaces.errors import LineError, QuintetError
+from quintet.interfaces.lines.message import Message
+from quintet.interfaces.lines.transport import FramedLine
+from quintet.interfaces.serving.malloc import keep_freed_memory
+
+if TYPE_CHECKING:
+    from quintet.interfaces.lines.zenoh import ZenohLine
+
+JOINING = 180.0  # s until a component that we started says hello
+JOINING_BY_HAND = 3600.0  # s until one does that somebody starts elsewhere
+
+
+class Connection(Protocol):
+    """Components joined to the coupler."""
+
+    parts: dict[str, Part]
+
+    def close(self, well: bool) -> None:
+        """Part from them: told to finish if all is well, else ended at once."""
+
+
+def connect(scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> Connection:
+    """Start and join all components of a scene, over its transport."""
+    keep_freed_memory()
+    if scene.transport == "memory":
+        return InMemory(scene)
+    if scene.transport == "mpi":
+        return OverMpi(scene, folder, interrupted)
+    return OverZenoh(scene, folder, interrupted)
+
+
+def settings(scene: Scene, name: str) -> dict[str, Any]:
+    """What a component is told when it may go."""
+    one = scene.components[name]
+    return {"order": "go", "params": one.params, "threads": one.threads}
+
+
+class InMemory:
+    """All components in the coupler's own process."""
+
+    def __init__(self, scene: Scene) -> None:
+        from quintet.interfaces.lines.memory import MemoryLine
+        from quintet.interfaces.serving.process import build
+        from quintet.interfaces.serving.serve import Server, answer
+
+        self.parts: dict[str, Part] = {}
+        run = secrets.token_hex(4)
+        threads = max(one.threads for one in scene.components.values())
+        for name, one in scene.components.items():
+            try:
+                component = build(one.manifest, {**settings(scene, name), "threads": threads})
+            except Exception as error:
+                trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
+                raise ComponentFailed(name, 0, str(error), trace) from error
+            line = MemoryLine(run, name)
+            line.handle = partial(answer, Server(component, name), line.far)
+            self.parts[name] = Part(name, line)
+
+    def close(self, well: bool) -> None:
+        """See `Connection.close`."""
+
+
+class OverZenoh:
+    """One process per component, started here or joined by hand."""
+
+    def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
+        from quintet.interfaces.lines.zenoh import Hub, ZenohLine
+
+        endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
+        self.parts: dict[str, Part] = {}
+        self.watches: dict[str, Watch] = {}
+        self.hub = Hub(endpoint, True, "coupler", scene.security)
+        run = secrets.token_hex(4)
+        lines = {name: ZenohLine(self.hub, run, name) for name in scene.components}
+        try:
+            for name in scene.components:
+                if name not in scene.elsewhere:
+                    self._start(scene, name, endpoint, folder)
+            for name, line in lines.items():
+                self._greet(scene, name, line, interrupted)
+        except BaseException:
+            self.close(False)
+            raise
+
+    def _start(self, scene: Scene, name: str, endpoint: str, folder: Path) -> None:
+        one = scene.components[name]
+        arguments = [
+            "-m",
+            "quintet.interfaces.serving.process",
+            one.kind,
+            "--name",
+            name,
+            "--at",
+            endpoint,
+        ]
+        if scene.tls:
+            arguments += ["--tls", *scene.tls]
+        log = folder / "log" / f"{name}.log"
+        process = start(arguments, log, one.threads, scene.import_folders)
+        self.watches[name] = Watch(name, process.pid, process)
+
+    def _greet(
+        self, scene: Scene, name: str, line: "ZenohLine", interrupted: Callable[[], bool]
+    ) -> None:
+        watch = self.watches.get(name)
+        # Until it has said hello a component imports and connects, however little it computes.
+        line.watch = lambda: (
+            "the run was interrupted"
+            if interrupted()
+            else ("" if watch is None or watch.alive() else watch.ending())
+        )
+        seconds = JOINING if watch else JOINING_BY_HAND
+        try:
+            line.wait_for_partner(seconds)
+            hello = line.receive(seconds)
+        except LineError as error:
+            raise ComponentFailed(name, 0, f"did not join: {error}") from error
+        welcome(scene, name, line, hello, watch, self.parts)
+
+    def close(self, well: bool) -> None:
+        """See `Connection.close`."""
+        part_from(self.parts, list(self.watches.values()), well)
+        self.hub.close()
+
+
+class OverMpi:
+    """One rank per component; this process is rank 0."""
+
+    def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
+        from quintet.coupler.launch.mpi_job import announce
+        from quintet.interfaces.lines import mpi
+        from quintet.interfaces.serving.process import shared_files
+
+        mpi.self_check(1 + len(scene.components))
+        run = secrets.token_hex(4)
+        self.parts: dict[str, Part] = {}
+        self.watches: dict[str, Watch] = {}
+        announce(folder, None, shared_files())
+        for rank, name in enumerate(scene.components, start=1):
+            line = mpi.MpiLine(run, "coupler", name, rank)
+            line.watch = lambda: "the run was interrupted" if interrupted() else ""
+            try:
+                hello = line.receive(JOINING)
+            except LineError as error:
+                raise ComponentFailed(name, 0, f"did not join: {error}") from error
+            here = hello.header.get("host") == socket.gethostname()
+            watch = Watch(name, int(hello.header["pid"])) if here else None
+            if watch:
+                self.watches[name] = watch
+            welcome(scene, name, line, hello, watch, self.parts)
+        watches = self.watches.values()
+        shared = [path for watch in watches for path in watch.shared]
+        announce(folder, [watch.pid for watch in watches], [*shared_files(), *shared])
+
+    def close(self, well: bool) -> None:
+        """See `Connection.close`."""
+        if well:
+            finish(self.parts)
+            return
+        # A dead rank would keep MPI from ending in order: end the others ourselves.
+        for watch in self.watches.values():
+            watch.end(0.0)
+
+
+def welcome(
+    scene: Scene,
+    name: str,
+    line: FramedLine,
+    hello: Message,
+    watch: Watch | None,
+    parts: dict[str, Part],
+) -> None:
+    """Check who said hello, watch it from now on, and tell it its parameters."""
+    expected = scene.components[name].manifest.kind
+    if hello.order != "hello" or hello.header.get("kind") != expected:
+        raise ComponentFailed(
+            name, 0, f"{expected} must say hello; found {hello.header.get('kind')!r}. Start that."
+        )
+    part = parts[name] = Part(name, line)
+    if watch:
+        watch.shared = [str(path) for path in hello.header.get("shared", [])]
+        watch.usual = lambda: part.timing.usual
+        line.watch, part.asking = watch, watch.reset
+    line.send(settings(scene, name), {})
+
+
+def finish(parts: dict[str, Part]) -> None:
+    """Tell every component to finish, and hear that it does."""
+    for part in parts.values():
+        part.tell("finish")
+    for part in parts.values():
+        part.timing.memory = int(part.hear().header["memory"])
+
+
+def part_from(parts: dict[str, Part], watches: list[Watch], well: bool) -> None:
+    """End all processes: in order, or at once."""
+    if well:
+        finish(parts)
+    else:
+        for part in parts.values():
+            with contextlib.suppress(QuintetError):
+                part.line.send({"order": "abort"}, {})
+    limit = time.monotonic() + (GRACE if well else 0.3)
+    for watch in watches:
+        watch.end(max(0.0, limit - time.monotonic()))
+
+
+def free_port() -> int:
+    """Return a port of the loopback that nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

@@ -1,0 +1,1 @@
+"""Quantities that are compared with references: curves, periods, orders of convergence."""

@@ -1,0 +1,252 @@
+"""What a scene must reproduce: one number each, from the recording, with its source.
+
+The computed curve is ``scale * (recorded + offset)`` of one item of a recorded field. It is
+measured, and the same measure is taken of the reference: a number, or a curve in a file.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field as Limits
+
+from quintet.coupler.files.recording import Recording
+from quintet.coupler.measures import time_series
+from quintet.coupler.measures.oscillation import fit
+from quintet.coupler.measures.time_series import Curve
+from quintet.interfaces.component import Field, Port
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import NotNegative, Number, Positive, parameters, unknown
+
+Measure = Literal["rms", "relative_rms", "crossing", "at", "max", "min", "mean", "period", "decay"]
+DISTANCES = ("rms", "relative_rms")  # to a curve
+Index = Annotated[int, Limits(ge=0)]
+ROUNDING = 1e-9  # of a time: what a run's last window may lack
+
+
+@parameters
+class Expectation:
+    """One number that a run must reproduce.
+
+    ``rms`` is the distance to the curve of a file, over that curve's own times, and
+    ``relative_rms`` the same over the curve's own size; ``crossing`` the first time at which a
+    level is passed; ``at`` the value at ``begin``; ``period`` [s] and ``decay`` [1/s] those of the
+    damped oscillation that fits best; these and the others are taken between ``begin`` and
+    ``end``. Impulse fields are measured as mean rates.
+    """
+
+    name: str
+    component: str
+    field: str  # "port.field"
+    item: Index | Literal["mean", "max", "min"] = 0  # its number, or what to take of all
+    axis: Index | None = None  # of a vector; None: its magnitude, or the field is scalar
+    offset: Number = 0.0  # added to the recorded value
+    scale: Number = 1.0  # then multiplied with it
+    measure: Measure
+    value: Number | None = None  # reference as a number
+    csv: str | None = None  # reference as a curve: a file beside the scene
+    csv_second: Positive = 1.0  # s, one unit of the times in that file
+    begin: NotNegative = 0.0  # s
+    end: NotNegative | None = None  # s; None: of the reference curve, or of the run
+    level: Number | None = None  # of a crossing
+    within: NotNegative  # tolerance, in `unit`; a crossing's in s
+    unit: str
+    source: str
+
+    def __post_init__(self) -> None:
+        wrong = [sentence for is_wrong, sentence in self._rules() if is_wrong]
+        if wrong:
+            raise ValueError(f"expectation {self.name}: " + " ".join(wrong))
+
+    def _rules(self) -> list[tuple[bool, str]]:
+        is_rms = self.measure in DISTANCES
+        return [
+            (is_rms and self.csv is None, f"{self.measure} needs a reference curve; give csv."),
+            (
+                is_rms and self.value is not None,
+                f"{self.measure} compares with a curve; remove value.",
+            ),
+            (
+                not is_rms and (self.value is None) == (self.csv is None),
+                "it must have one reference; give either value or csv.",
+            ),
+            (
+                (self.measure == "crossing") != (self.level is not None),
+                "level belongs to a crossing, and a crossing needs one; "
+                f"measure is {self.measure}, level is {self.level}.",
+            ),
+            (
+                self.end is not None and self.measure == "at",
+                "a value at one time has no end; give its time as begin, and remove end.",
+            ),
+            (
+                self.end is not None and self.end <= self.begin and self.measure != "at",
+                f"end must be later than begin; found {self.end} and {self.begin}.",
+            ),
+            (self.field.count(".") != 1, f"field must be port.field; found {self.field!r}."),
+            (self.scale == 0.0, "scale must not be 0, as every run would do; remove it."),
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a run compares with an expectation; ``value`` is None where it has none."""
+
+    name: str
+    value: float | None
+    reference: float
+    within: float
+    unit: str
+    met: bool
+    source: str
+
+
+def check(
+    expectation: Expectation, gives: Mapping[str, tuple[Port, ...]], folder: Path
+) -> list[str]:
+    """Find every mistake that can be found before a run.
+
+    `gives` has the ports that each component gives, by its name; `folder` is the scene's, where
+    the reference curves are. Returns one sentence for each mistake; none when all is well.
+    """
+    where = f"expectation {expectation.name}"
+    mistakes = []
+    if expectation.component not in gives:
+        place = f"{where}: component {expectation.component}"
+        mistakes.append(unknown(place, expectation.component, gives))
+    else:
+        ports = gives[expectation.component]
+        fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
+        mistakes += _check_field(expectation, fields)
+    if expectation.csv is not None:
+        try:
+            reference_value(expectation, folder)
+        except SceneError as error:
+            mistakes += error.mistakes
+    return mistakes
+
+
+def _check_field(expectation: Expectation, fields: Mapping[str, Field]) -> list[str]:
+    where = f"expectation {expectation.name}"
+    if expectation.field not in fields:
+        place = f"{where}: field {expectation.component}.{expectation.field}"
+        return [unknown(place, expectation.field, fields)]
+    shape, axis = fields[expectation.field].shape, expectation.axis
+    if axis is not None and (len(shape) != 1 or axis >= shape[0]):
+        allowed = f"0 to {shape[0] - 1}" if len(shape) == 1 else "left out"
+        return [f"{where}: axis of {expectation.field} must be {allowed}; found {axis}."]
+    return []
+
+
+def curve(expectation: Expectation, recording: Recording) -> Curve:
+    """Return the computed curve, offset and scaled; the rate of an impulse at mid-window."""
+    ports = recording.ports(expectation.component)
+    fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
+    if mistakes := _check_field(expectation, fields):
+        raise SceneError(mistakes)
+    name, key, item = expectation.component, expectation.field, expectation.item
+    times = recording.times(name)
+    if isinstance(item, int):
+        values = recording.history(name, key, item)[:, None]
+    else:
+        values = recording.field(name, key)
+    if fields[key].centring == "impulse":
+        spans = np.diff(times).reshape(-1, *[1] * (values.ndim - 1))
+        values = values[1:] / spans
+        times = (times[1:] + times[:-1]) / 2
+    if expectation.axis is not None:
+        values = values[..., expectation.axis]
+    elif values.ndim > 2:
+        values = np.linalg.norm(values.reshape(*values.shape[:2], -1), axis=2)
+    values = values[:, 0] if isinstance(item, int) else getattr(values, item)(axis=1)
+    return Curve(times, expectation.scale * (values + expectation.offset))
+
+
+def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
+    """Read the reference curve, if there is one."""
+    if expectation.csv is None:
+        return None
+    where = f"expectation {expectation.name}: reference {expectation.csv}"
+    return time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
+
+
+def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
+    """Take the measure of a curve, all but the distances."""
+    if expectation.measure == "at":
+        return float(np.interp(expectation.begin, curve.times, curve.values))
+    part = time_series.between(curve, expectation.begin, end)
+    match expectation.measure:
+        case "crossing":
+            assert expectation.level is not None
+            return time_series.crossing(part, expectation.level)
+        case "period":
+            return fit(part).period
+        case "decay":
+            return fit(part).decay
+        case "mean":
+            return time_series.mean(part)
+        case "max":
+            return float(part.values.max())
+        case _:
+            return float(part.values.min())
+
+
+def reference_value(expectation: Expectation, folder: Path) -> float:
+    """Return what is expected: a number, or the same measure of the curve; 0 for a distance."""
+    reference = reference_curve(expectation, folder)
+    if reference is None:
+        return float(expectation.value or 0.0)
+    where = f"expectation {expectation.name}: reference {expectation.csv}"
+    end = math.inf if expectation.end is None else expectation.end
+    first, last = reference.times[[0, -1]]
+    if expectation.begin > last or end < first:
+        raise SceneError(
+            f"{where} must reach into {expectation.begin:g} to {end:g} s; it has {first:g} to "
+            f"{last:g} s. Correct begin or end."
+        )
+    if expectation.measure in DISTANCES:
+        return 0.0
+    value = _measured(expectation, reference, end)
+    if math.isnan(value):
+        rule = "oscillate" if expectation.level is None else f"pass the level {expectation.level}"
+        raise SceneError(f"{where} must {rule}; it does not.")
+    return value
+
+
+def evaluate(expectation: Expectation, recording: Recording, folder: Path) -> Outcome:
+    """Compare a run with an expectation; one that ended too early does not meet it."""
+    reference = reference_value(expectation, folder)
+    value = _value(expectation, recording, folder)
+    return Outcome(
+        expectation.name,
+        value if math.isfinite(value) else None,
+        reference,
+        expectation.within,
+        expectation.unit,
+        abs(value - reference) <= expectation.within,  # not so of nan
+        expectation.source,
+    )
+
+
+def _value(expectation: Expectation, recording: Recording, folder: Path) -> float:
+    if len(recording.times(expectation.component)) < 2:  # no window was finished
+        return math.nan
+    computed = curve(expectation, recording)
+    last = float(recording.times(expectation.component)[-1])  # s
+    wanted, target = expectation.end, reference_curve(expectation, folder)
+    if expectation.measure == "at":
+        wanted = expectation.begin
+    elif wanted is None and target is not None and expectation.measure != "crossing":
+        wanted = float(target.times[-1])
+    end = last if wanted is None else wanted
+    if max(end, expectation.begin) > last * (1.0 + ROUNDING):
+        return math.nan
+    if expectation.measure not in DISTANCES:
+        return _measured(expectation, computed, end)
+    assert target is not None
+    inside = (target.times >= expectation.begin) & (target.times <= end)
+    part = Curve(target.times[inside], target.values[inside])
+    return time_series.distance(computed, part, expectation.measure == "relative_rms")

@@ -1,0 +1,1 @@
+"""What is shown of a run: summary, pictures, differences, work against precision."""

@@ -1,0 +1,166 @@
+"""Where two recordings part: the first window, and the first number in it, bit for bit."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from quintet.coupler.files.recording import BATCH, Recording
+from quintet.interfaces.component import Array, Fields
+
+Value = float | str
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """The first thing that two recordings do not share.
+
+    ``kind`` says what: the names of components or fields, a port, something static, the
+    number of items, the number of windows, the time of a window, or a value.
+    """
+
+    kind: Literal["names", "ports", "static", "items", "windows", "time", "value"]
+    component: str
+    field: str  # "port.field", or ""
+    window: int  # 0 is the start
+    time: float  # s, of that window in the first recording
+    item: int
+    index: tuple[int, ...]  # within the item: (axis,) of a vector
+    a: Value
+    b: Value
+
+
+def compare(a: Path, b: Path) -> Difference | None:
+    """Compare two recordings bit for bit, so that -0.0 is not 0.0 and NaN is itself.
+
+    Parameters
+    ----------
+    a, b : Path
+        Recordings, or the folders of their runs.
+
+    Returns
+    -------
+    Difference or None
+        The earliest one, or None when all is the same. What is laid out differently comes
+        before what has different values; different lengths come last.
+    """
+    with Recording(a) as one, Recording(b) as other:
+        return next(_differences(one, other), None)
+
+
+def _differences(one: Recording, other: Recording) -> Iterator[Difference]:
+    yield from _names("", "components", one.names, other.names)
+    for name in one.names:
+        yield from _names(name, "fields", one.fields(name), other.fields(name))
+        yield from _layouts(one, other, name)
+    yield from _values(one, other)
+    for name in one.names:
+        lengths = [len(recording.times(name)) for recording in (one, other)]
+        if lengths[0] != lengths[1]:
+            yield _plain("windows", name, "", f"{lengths[0]} rows", f"{lengths[1]} rows")
+
+
+def _plain(
+    kind: Literal["names", "ports", "static", "items", "windows"],
+    component: str,
+    field: str,
+    a: Value,
+    b: Value,
+) -> Difference:
+    return Difference(kind, component, field, 0, 0.0, 0, (), a, b)
+
+
+def _names(
+    component: str, what: str, one: tuple[str, ...], other: tuple[str, ...]
+) -> Iterator[Difference]:
+    if set(one) != set(other):
+        lists = [", ".join(sorted(names)) or "nothing" for names in (one, other)]
+        yield _plain("names", component, "", f"{what} {lists[0]}", f"{what} {lists[1]}")
+
+
+def _layouts(one: Recording, other: Recording, name: str) -> Iterator[Difference]:
+    for port, its in zip(one.ports(name), other.ports(name), strict=False):
+        if port != its:
+            yield _plain("ports", name, port.name, repr(port), repr(its))
+    if len(one.ports(name)) != len(other.ports(name)):
+        counts = [f"{len(recording.ports(name))} ports" for recording in (one, other)]
+        yield _plain("ports", name, "", *counts)
+    yield from _statics(name, one.static(name), other.static(name))
+    for field in one.fields(name):
+        shapes = [recording.items(name, field) for recording in (one, other)]
+        if shapes[0] != shapes[1]:
+            yield _plain("items", name, field, f"shape {shapes[0]}", f"shape {shapes[1]}")
+
+
+def _statics(name: str, one: Fields, other: Fields) -> Iterator[Difference]:
+    for key in sorted(one.keys() | other.keys()):
+        arrays = [static.get(key, np.zeros(0)) for static in (one, other)]
+        shapes = [f"{array.dtype} of shape {array.shape}" for array in arrays]
+        if shapes[0] != shapes[1]:
+            yield _plain("static", name, key, *shapes)
+        elif (place := _first(*arrays)) is not None:
+            a, b = (float(array[place]) for array in arrays)
+            item, index = (place[0], place[1:]) if place else (0, ())
+            yield Difference("static", name, key, 0, 0.0, item, index, a, b)
+
+
+def _values(one: Recording, other: Recording) -> Iterator[Difference]:
+    """Yield the first different value, from blocks of rows of all components in step."""
+    rows = {name: min(len(one.times(name)), len(other.times(name))) for name in one.names}
+    for start in range(0, max(rows.values(), default=0), BATCH):
+        found = []
+        for name in one.names:
+            part = slice(start, min(start + BATCH, rows[name]))
+            found += [*_times(one, other, name, part), *_fields(one, other, name, part)]
+        if found:  # the first of the earliest window, in the order of the recording
+            yield min(found, key=lambda difference: difference.window)
+
+
+def _times(one: Recording, other: Recording, name: str, part: slice) -> Iterator[Difference]:
+    arrays = [recording.times(name)[part] for recording in (one, other)]
+    if (place := _first(*arrays)) is not None:
+        a, b = (float(array[place]) for array in arrays)
+        yield Difference("time", name, "", part.start + place[0], a, 0, (), a, b)
+
+
+def _fields(one: Recording, other: Recording, name: str, part: slice) -> Iterator[Difference]:
+    for field in one.fields(name):
+        arrays = [recording.field(name, field, part) for recording in (one, other)]
+        if (place := _first(*arrays)) is not None:
+            window = part.start + place[0]
+            time = float(one.times(name)[window])
+            a, b = (float(array[place]) for array in arrays)
+            yield Difference("value", name, field, window, time, place[1], place[2:], a, b)
+
+
+def _first(a: Array, b: Array) -> tuple[int, ...] | None:
+    """Place of the first number whose bits differ."""
+    whole = np.dtype(f"u{a.dtype.itemsize}")
+    unequal = np.ascontiguousarray(a).view(whole) != np.ascontiguousarray(b).view(whole)
+    if not unequal.any():
+        return None
+    place = np.unravel_index(int(np.argmax(unequal)), unequal.shape)
+    return tuple(int(i) for i in place)[: a.ndim]
+
+
+def sentence(difference: Difference | None) -> str:
+    """Say in one sentence where two recordings part."""
+    if difference is None:
+        return "The recordings are the same, bit for bit."
+    d = difference
+    where = ".".join(part for part in (d.component, d.field) if part)
+    if d.kind == "value" or (d.kind == "static" and not isinstance(d.a, str)):
+        when = "static" if d.kind == "static" else f"window {d.window} (t = {d.time:g} s)"
+        place = f"item {d.item}" + "".join(f"[{i}]" for i in d.index)
+        return f"{when}: {where}, {place}: {_exact(d.a)} against {_exact(d.b)}."
+    if d.kind == "time":
+        return f"window {d.window}: {where} is at {d.a!r} s against {d.b!r} s."
+    what = "the same until one ends" if d.kind == "windows" else f"different {d.kind}"
+    return f"{where or 'the recordings'}: {what}: {d.a} against {d.b}."
+
+
+def _exact(value: Value) -> str:
+    """Shortest decimal digits that give the number back, and its bits."""
+    return value if isinstance(value, str) else f"{value!r} ({value.hex()})"

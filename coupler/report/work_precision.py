@@ -1,0 +1,68 @@
+"""Error against run time, as a table and as a work-precision picture."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from quintet.coupler.report.pictures import panels_of, save
+
+Row = dict[str, Any]
+
+
+def table(rows: Sequence[Row]) -> Table:
+    """One line for each rung, one column for each expectation's error."""
+    made = Table(box=None, pad_edge=False)
+    units = {name: unit for row in rows for name, unit in row["units"].items()}
+    heads = ["CPU [s]", "wall [s]", "coupling", "memory [MB]", "items", "size"]
+    for head in ("", "rung"):
+        made.add_column(head)
+    for head in [*(f"{name} [{unit}]" for name, unit in units.items()), *heads]:
+        made.add_column(head, justify="right", overflow="fold")
+    for row in rows:
+        said = row["status"] if row["status"] != "done" else "met" if row["met"] else "not met"
+        errors = [number(row["errors"].get(name)) for name in units]
+        memory = row["memory"] / 1e6 if row["memory"] else None
+        share = "-" if row["overhead"] is None else f"{100.0 * row['overhead']:.1f} %"
+        numbers = [number(row["cpu"]), number(row["wall"]), share, number(memory)]
+        made.add_row(said, row["label"], *errors, *numbers, str(row["items"]), number(row["size"]))
+    return made
+
+
+def number(value: float | None) -> str:
+    """Three digits, or a dash."""
+    return "-" if value is None else f"{value:.3g}"
+
+
+def draw(rows: Sequence[Row], out: Path) -> Path | None:
+    """Draw error over processor time, both on a logarithmic scale, a panel for each expectation.
+
+    Returns `out`, or None where no rung has an error to be drawn.
+    """
+    done = [row for row in rows if row["status"] == "done" and row["cpu"] > 0.0]
+    names = list(dict.fromkeys(n for row in done for n, e in row["errors"].items() if e))
+    if not names:
+        return None
+    figure, panels = panels_of(len(names), 0.7)
+    for panel, name in zip(panels, names, strict=True):
+        _draw(panel, name, [row for row in done if row["errors"].get(name)])
+    return save(figure, out)
+
+
+def _draw(panel: Any, name: str, rows: Sequence[Row]) -> None:
+    for met, filling in ((True, "full"), (False, "none")):
+        some = [row for row in rows if row["met"] is met]
+        style = {"markersize": 6, "color": "tab:blue", "fillstyle": filling}
+        panel.loglog(
+            [row["cpu"] for row in some], [row["errors"][name] for row in some], "o", **style
+        )
+    for row in rows:
+        place = (row["cpu"], row["errors"][name])
+        panel.annotate(row["label"], place, (5, 4), textcoords="offset points", fontsize=8)
+    if within := rows[-1]["within"][name]:
+        panel.axhline(within, color="grey", linewidth=0.8, linestyle="--")
+    panel.set_title(name, fontsize=9)
+    panel.set(xlabel="processor time [s]", ylabel=f"error [{rows[-1]['units'][name]}]")
+    panel.margins(0.25)
+    panel.grid(which="both", alpha=0.3)

@@ -1,0 +1,1 @@
+"""One run: the window loop, output, progress, snapshots, results."""

@@ -1,0 +1,126 @@
+"""One run from a checked scene to its results, whatever happens on the way."""
+
+import os
+import shlex
+import sys
+import traceback
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.ledger import Ledger
+from quintet.coupler.coupling.participant import ComponentFailed
+from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.files.toml_writer import dumps
+from quintet.coupler.launch.connect import Connection, connect
+from quintet.coupler.launch.processes import tail
+from quintet.coupler.run import results, snapshots
+from quintet.coupler.run.loop import Progress, run
+from quintet.coupler.run.output import Stop, Writer
+from quintet.coupler.scene.scene import Scene
+
+OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png", "comparison.png")
+
+
+def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
+    """Run a scene into a folder, ready for it or with a snapshot; return the exit status."""
+    clock, stop = results.Clock(), Stop()
+    exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
+    size = snapshots.ledger_size(snapshot) if snapshot else 0
+    ledger = Ledger(exchange, folder / "ledger.csv", size)
+    writer = Writer(scene, folder, stop, snapshots.window_of(snapshot) if snapshot else None)
+    outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
+    connection: Connection | None = None
+    coupling = Coupling({}, exchange, ledger, 0.0, scene.iteration())
+    try:
+        with stop.listening():
+            connection = connect(scene, folder, stop)
+            coupling.parts = connection.parts
+            resume = partial(snapshots.restore, path=snapshot) if snapshot else lambda _: 0
+            progress = run(scene, coupling.parts, coupling, writer, resume)
+            writer.close()
+            outcome |= progress_of(progress)
+            connection.close(True)
+            connection = None
+    except KeyboardInterrupt:
+        outcome |= {"status": "interrupted", "windows": writer.done, "time": writer.time}
+    except Exception as error:  # whatever it is, the run leaves a report
+        outcome |= failed(error, scene, folder, writer)
+    finally:
+        if connection:
+            connection.close(False)
+        writer.close()
+        ledger.close()
+    if stop.asked and outcome["status"] != "done":
+        outcome["status"] = "interrupted"
+    return conclude(scene, folder, outcome, coupling, clock())
+
+
+def make_folder(scene: Scene, folder: Path) -> None:
+    """Make an empty place for a run; only what an earlier run left there is removed."""
+    (folder / "log").mkdir(parents=True, exist_ok=True)
+    for path in [
+        *(folder / name for name in OURS),
+        *folder.glob("*.vtkhdf"),
+        *folder.glob("log/*"),
+        *snapshots.snapshots(folder),
+    ]:
+        path.unlink(missing_ok=True)
+    (folder / "scene.toml").write_text(dumps(scene.resolved))
+
+
+def progress_of(progress: Progress) -> dict[str, Any]:
+    """Whether a run came to its end."""
+    status = "done" if progress.done == progress.windows else "interrupted"
+    return {"status": status, "windows": progress.done, "time": progress.time}
+
+
+def failed(error: Exception, scene: Scene, folder: Path, writer: Writer) -> dict[str, Any]:
+    """Report a failure: who, in which window, why, and the last lines of its log."""
+    if not isinstance(error, ComponentFailed):
+        error = ComponentFailed("coupler", writer.done, str(error), traceback.format_exc())
+    lines = tail(folder / "log" / f"{error.component}.log")
+    found = results.fault(error, folder, lines)
+    print(f"\nquintet: {error}", file=sys.stderr)
+    if error.trace:
+        print(error.trace, file=sys.stderr)
+    if lines:
+        print(f"  last lines of {found['log']}:", file=sys.stderr)
+        print("\n".join(f"    {line}" for line in lines), file=sys.stderr, flush=True)
+    return {"status": "failed", "fault": found, "windows": writer.done, "time": writer.time}
+
+
+def conclude(
+    scene: Scene,
+    folder: Path,
+    outcome: dict[str, Any],
+    coupling: Coupling,
+    wall: float,
+) -> int:
+    """Compare with what was expected, write the results, draw, and choose the exit status."""
+    found = results.outcomes(scene, folder) if outcome["status"] != "failed" else []
+    content = {
+        "scene": scene.file.name,
+        "preset": scene.preset,
+        "transport": scene.transport,
+        **outcome,
+        "expect": results.expectations(found),
+        "ledger": coupling.ledger.summary(),
+        "repetitions": coupling.repetitions,
+        "timing": results.timing(coupling.parts, wall, coupling.mapping),
+        "machine": results.machine(),
+        "command": shlex.join(["quintet", *sys.argv[1:]]),
+    }
+    if outcome["status"] == "done":
+        snapshots.remove(snapshots.snapshots(folder))
+    elif snapshots.snapshots(folder):
+        content["resume"] = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
+        print(f"to go on: {content['resume']}", file=sys.stderr)
+    results.write(folder, content)
+    if outcome["status"] == "failed":
+        return results.FAILED
+    results.draw(scene, folder, found)
+    if outcome["status"] == "interrupted":
+        return results.INTERRUPTED
+    return results.DONE if all(one.met for one in found) else results.UNMET

@@ -1,0 +1,1 @@
+"""Scenes: reading TOML, presets and overrides, tables of studies, listing."""

@@ -1,0 +1,85 @@
+"""What a scene will be: the list of scenes, and the plan of one."""
+
+import json
+import math
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from quintet.coupler.scene.read import library, parse
+from quintet.coupler.scene.scene import ComponentPlan, Scene
+from quintet.interfaces.component import Port
+
+
+def list_all(as_json: bool) -> None:
+    """Print the scenes that come with quintet: name, title, components, presets, run times."""
+    rows = [_row(name, parse(path)) for name, path in library().items()]
+    if as_json:
+        print(json.dumps(rows, indent=2))
+        return
+    table = Table(box=None, pad_edge=False)
+    for head in ("scene", "title", "components", "presets (minutes)"):
+        table.add_column(head)
+    for row in rows:
+        presets = ", ".join(f"{k} ({v:g})" if v else k for k, v in row["presets"].items())
+        table.add_row(row["scene"], row["title"], ", ".join(row["components"]), presets)
+    Console(highlight=False, markup=False).print(table)
+
+
+def _row(name: str, table: dict[str, Any]) -> dict[str, Any]:
+    presets = {"": table.get("minutes", 0.0)}
+    for preset, settings in table.get("presets", {}).items():
+        presets[preset] = settings.get("minutes", 0.0)
+    presets = {name or "(none)": minutes for name, minutes in presets.items()}
+    kinds = [f"{one}: {given['kind']}" for one, given in table.get("components", {}).items()]
+    return {"scene": name, "title": table.get("title", ""), "components": kinds, "presets": presets}
+
+
+def show_plan(scene: Scene) -> None:
+    """Print processes, ports, windows, message sizes, memory and expected time."""
+    console = Console(highlight=False, markup=False)
+    file = scene.file
+    console.print(f"{file.name}: {file.title}", style="bold")
+    windows = "auto" if file.window == "auto" else f"{round(file.end / file.window)}"
+    console.print(
+        f"{file.end:g} s in {windows} windows, {file.scheme}, over {scene.transport}; "
+        f"{_processes(scene)}"
+    )
+    table = Table(box=None, pad_edge=False)
+    for head in ("component", "kind", "threads", "items", "step", "memory", "time"):
+        table.add_column(head)
+    for one in scene.components.values():
+        table.add_row(one.name, one.kind, str(one.threads), *_needs(one, file.end))
+    console.print(table)
+    for one in scene.components.values():
+        console.print(f"{one.name} takes {_names(one.takes)}; gives {_names(one.gives)}")
+    for link in scene.links:
+        for leg in link.legs:
+            console.print(f"link {link.name}: {leg.giver} -> {leg.taker}")
+    for expected in scene.expect:
+        console.print(f"expects {expected.name} within {expected.within:g} {expected.unit}")
+
+
+def _processes(scene: Scene) -> str:
+    count = 1 if scene.transport == "memory" else 1 + len(scene.components)
+    return f"{count} process" + ("es, the coupler one of them" if count > 1 else "")
+
+
+def _needs(one: ComponentPlan, end: float) -> tuple[str, str, str, str]:
+    plan = one.plan()
+    if plan is None:
+        return "", "", "", ""
+    seconds = plan.items * math.ceil(end / plan.dt) / (plan.rate * one.threads)
+    memory = f"{plan.items * plan.bytes_per_item / 1e6:.0f} MB" if plan.bytes_per_item else ""
+    return f"{plan.items}", f"{plan.dt:.2g} s", memory, f"{seconds:.0f} s"
+
+
+def _names(ports: tuple[Port, ...]) -> str:
+    texts = []
+    for port in ports:
+        fields = [
+            f"{f.name} [{f.unit}{', impulse' * (f.centring == 'impulse')}]" for f in port.fields
+        ]
+        texts.append(f"{port.name} ({', '.join(fields)})")
+    return "; ".join(texts) or "nothing"

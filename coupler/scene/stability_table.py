@@ -1,0 +1,236 @@
+"""``[[stability]]``: a parameter driven until the scene breaks, and what breaking means.
+
+    [[stability]]
+    parameter = "components.spring.step"
+    from = 0.01                # holds
+    to = 1.0                   # breaks
+    log = true
+    predicted = 0.2
+    source = "explicit: 2/ω"
+    energy = { factor = 2.0 }
+
+`from` need not be the smaller one. Several paths are scaled together: each is its value in the
+scene times the parameter, which is then a factor. A run that fails is always a broken one.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal
+
+from pydantic import Field as Named
+
+from quintet.coupler.measures.expectation import Index
+from quintet.coupler.scene.study_table import Table, Trial, folder_name, value_at
+from quintet.interfaces.component import Port
+from quintet.interfaces.params import NotNegative, Number, Positive, parameters, read, unknown
+
+SAMPLES = 200  # rows of the ledger in a short run
+FEWEST_WINDOWS = 20  # in a run whose window is driven: windows are whole, so the last is rounded
+
+
+@parameters
+class Energy:
+    """How far the total energy may grow above that of the start."""
+
+    factor: Positive | None = None  # times the start's
+    amount: Positive | None = None  # J
+
+    def __post_init__(self) -> None:
+        if (self.factor is None) == (self.amount is None):
+            raise ValueError("energy must have either factor or amount. Give one of them.")
+        if self.factor is not None and self.factor <= 1.0:
+            raise ValueError(f"energy.factor must be above 1; found {self.factor}. Raise it.")
+
+
+@parameters
+class Bounds:
+    """Where a recorded field must stay, all of its items, at the end of every window."""
+
+    component: str
+    field: str  # "port.field"
+    axis: Index | None = None  # of a vector; None: all of them
+    low: Number | None = None
+    high: Number | None = None
+
+
+@parameters
+class Against:
+    """A second parameter; the limit is found for each of its values."""
+
+    parameter: str
+    values: tuple[Number, ...]
+
+
+@parameters
+class LimitTable:
+    """One limit as it stands in the file."""
+
+    name: str = ""
+    parameter: str | tuple[str, ...]
+    from_: Annotated[Number, Named(alias="from")]
+    to: Number
+    log: bool = False  # whether the middle is the geometric one
+    accuracy: Annotated[float, Named(gt=0.0, le=0.5)] = 0.05  # relative width of what is left
+    predicted: Number | tuple[Number, ...] | None = None  # one for each value of `against`
+    source: str = ""  # of the prediction
+    end: Positive | None = None  # s, of the short runs; the scene's if not given
+    transport: Literal["memory", "zenoh", "mpi"] = "memory"
+    settings: dict[str, Any] = Named(default_factory=dict)  # of the short runs, by dotted path
+    against: Against | None = None
+    energy: Energy | None = None
+    momentum: NotNegative | None = None  # largest residual of any link
+    bounds: tuple[Bounds, ...] = ()
+    expectation: tuple[str, ...] = ()  # names of those that must be met, else: degraded
+
+    def __post_init__(self) -> None:
+        wrong = [sentence for is_wrong, sentence in self._rules() if is_wrong]
+        if wrong:
+            raise ValueError(" ".join(wrong))
+
+    def _rules(self) -> list[tuple[bool, str]]:
+        listed = isinstance(self.predicted, tuple)
+        values = self.against.values if self.against else ()
+        count = len(self.predicted) if isinstance(self.predicted, tuple) else 0
+        return [
+            (self.from_ == self.to, f"from and to must differ; both are {self.to}."),
+            (
+                self.log and min(self.from_, self.to) <= 0.0,
+                f"log needs positive ends; found {self.from_} and {self.to}. Remove log.",
+            ),
+            (not self.parameter, "parameter must name a path or more; found none."),
+            (self.predicted is not None and not self.source, "predicted needs a source."),
+            (self.against is not None and not values, "against.values must not be empty."),
+            (
+                listed and count != len(values),
+                "predicted must be one number, or one for each of against.values; found "
+                f"{count} for {len(values)}.",
+            ),
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What of the scene a limit may speak of."""
+
+    end: float  # s
+    gives: Mapping[str, tuple[Port, ...]]  # ports that each component gives
+    links: int
+    expected: list[str]  # names
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """One limit, checked."""
+
+    table: LimitTable
+    name: str
+    end: float  # s, of its runs
+    scaled: dict[str, float] = field(default_factory=dict)  # what several paths are in the scene
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder of its runs."""
+        return folder_name(self.name)
+
+    def settings(self, value: float, other: float | None) -> dict[str, Any]:
+        """What a run is given: little to write, the short run's own, and the parameters."""
+        one = self.table
+        totals = self.end / SAMPLES if one.energy or one.momentum is not None else 0.0
+        quiet = {"output.pictures": [], "output.interval": 0.0, "output.totals": totals}
+        quiet["output.record"] = bool(one.bounds or one.expectation)
+        driven = {path: value * base for path, base in self.scaled.items()}
+        if isinstance(one.parameter, str):
+            driven = {one.parameter: value}
+        if one.against and other is not None:
+            driven[one.against.parameter] = other
+        return {**quiet, "end": self.end, **one.settings, **driven}
+
+    def others(self) -> tuple[float | None, ...]:
+        """Values of the second parameter, or one None."""
+        return self.table.against.values if self.table.against else (None,)
+
+    def predicted(self, number: int) -> float | None:
+        """What is predicted for one of them."""
+        said = self.table.predicted
+        return said[number] if isinstance(said, tuple) else said
+
+
+def read_limits(
+    given: list[Table], trial: Trial, scope: Scope | None
+) -> tuple[list[Limit], list[str]]:
+    """Check the limits of a scene; without a scope, which a wrong scene lacks, only their form."""
+    found, mistakes, names = [], [], set()
+    for number, table in enumerate(given):
+        where = f"stability.{table.get('name', number)}"
+        one, wrong = read(LimitTable, table, where)
+        mistakes += wrong
+        if one is None or scope is None:
+            continue
+        paths = [one.parameter] if isinstance(one.parameter, str) else list(one.parameter)
+        name = one.name or " ".join(paths)
+        if name in names:
+            mistakes.append(f"{where}: two limits have the name {name}. Give each its own.")
+        names.add(name)
+        limit, wrong = _limit(one, name, scope, trial)
+        wrong += _speaks_of(one, scope) or _runs(limit, trial)
+        mistakes += [f"{where}: {mistake}" for mistake in dict.fromkeys(wrong)]
+        found.append(limit)
+    return found, mistakes
+
+
+def _limit(one: LimitTable, name: str, scope: Scope, trial: Trial) -> tuple[Limit, list[str]]:
+    if isinstance(one.parameter, str):
+        return Limit(one, name, one.end or scope.end), []
+    under, mistakes = trial(one.settings)
+    scaled = {}
+    for path in one.parameter:
+        value, wrong = value_at(under, path)
+        if not wrong and (isinstance(value, bool) or not isinstance(value, (int, float))):
+            wrong = f"{path} must be a number to be scaled; found {value!r}. Name another."
+        mistakes += [wrong] if wrong else []
+        scaled[path] = 1.0 if wrong else float(value)
+    return Limit(one, name, one.end or scope.end, scaled), mistakes
+
+
+def _runs(limit: Limit, trial: Trial) -> list[str]:
+    """Say what is wrong with the scene at the ends of the range."""
+    one, mistakes = limit.table, []
+    for other in limit.others():
+        for value in (one.from_, one.to):
+            mistakes += trial(limit.settings(value, other))[1]
+    if one.parameter == "window" and limit.end < FEWEST_WINDOWS * max(one.from_, one.to):
+        mistakes.append(
+            f"end must be {FEWEST_WINDOWS} windows or more, as windows are whole; found "
+            f"{limit.end:g} s for windows up to {max(one.from_, one.to):g} s. Raise end."
+        )
+    return mistakes
+
+
+def _speaks_of(one: LimitTable, scope: Scope) -> list[str]:
+    """Check that what an invariant speaks of is there."""
+    mistakes = []
+    if one.momentum is not None and not scope.links:
+        mistakes.append("momentum is that of links; the scene has none. Remove it.")
+    for name in one.expectation:
+        if name not in scope.expected:
+            mistakes.append(unknown(f"expectation {name}", name, scope.expected))
+    for bounds in one.bounds:
+        mistakes += _bounds(bounds, scope)
+    return mistakes
+
+
+def _bounds(bounds: Bounds, scope: Scope) -> list[str]:
+    if bounds.component not in scope.gives:
+        return [unknown(f"bounds.component {bounds.component}", bounds.component, scope.gives)]
+    ports = scope.gives[bounds.component]
+    fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
+    if bounds.field not in fields:
+        return [unknown(f"bounds.field {bounds.field}", bounds.field, fields)]
+    one, wrong = fields[bounds.field], []
+    if one.centring == "impulse":
+        wrong.append(f"bounds.field {bounds.field} must be an instant; it is an impulse.")
+    if bounds.axis is not None and bounds.axis >= sum(one.shape):
+        wrong.append(f"bounds.axis must be below {sum(one.shape)}; found {bounds.axis}.")
+    if bounds.low is None and bounds.high is None:
+        wrong.append("bounds must have low or high; found neither. Give one.")
+    return wrong

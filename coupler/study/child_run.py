@@ -1,0 +1,101 @@
+"""Runs of one scene with settings on top, each in a process of its own.
+
+What one run does, be it to die or to hang, leaves the others alone; and its memory, threads
+and compiled kernels are its own, so that run times can be compared.
+"""
+
+import argparse
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.files.toml_writer import text_of
+from quintet.coupler.launch.processes import tail
+from quintet.coupler.report.show import NAME, results
+from quintet.coupler.run.output import Stop
+from quintet.interfaces.serving.process import STARTER
+
+GRACE = 10.0  # s for a run to end in order once it was asked to
+FOREVER = float("inf")
+LOG = "run.log"  # in the folder of the run: what it printed
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """How the scene is asked for, as on the command line."""
+
+    scene: str
+    preset: str
+    settings: list[str]
+    swaps: list[str]
+    transport: str
+    stop: Stop
+
+    @classmethod
+    def of(cls, given: argparse.Namespace, stop: Stop, transport: str = "") -> "Trial":
+        """Take over what the command line says; a transport that it names goes first."""
+        asked = (given.scene, given.preset, given.settings, given.swap)
+        return cls(*asked, given.transport or transport, stop)
+
+    def run(self, settings: dict[str, Any], folder: Path, seconds: float = FOREVER) -> Any:
+        """Run with these settings; return the results, with status stalled if it took longer."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / NAME).unlink(missing_ok=True)
+        with open(folder / LOG, "wb") as log:
+            process = subprocess.Popen(
+                self._command(settings, folder),
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,  # signals of the terminal come to us alone
+                env={**os.environ, STARTER: str(os.getpid())},
+            )
+        try:
+            stalled = self._await(process, seconds)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+            process.wait()
+        return _left(folder, process.returncode, stalled)
+
+    def _command(self, settings: dict[str, Any], folder: Path) -> list[str]:
+        line = [sys.executable, "-m", "quintet.coupler.cli", "run", self.scene]
+        line += ["--preset", self.preset] if self.preset else []
+        line += ["--transport", self.transport] if self.transport else []
+        for swap in self.swaps:
+            line += ["--swap", swap]
+        for one in [*self.settings, *(f"{k}={text_of(v)}" for k, v in settings.items())]:
+            line += ["--set", one]
+        return [*line, "--out", str(folder)]
+
+    def _await(self, process: "subprocess.Popen[bytes]", seconds: float) -> bool:
+        """Wait for its end; tell whether it was ended because it took too long."""
+        limit, asked, stalled = time.monotonic() + seconds, FOREVER, False
+        while process.poll() is None:
+            now = time.monotonic()
+            if asked == FOREVER and (self.stop() or now > limit):
+                stalled = not self.stop()
+                asked = now
+                process.send_signal(signal.SIGTERM)
+            if now > asked + GRACE:
+                break
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(0.1)
+        return stalled
+
+
+def _left(folder: Path, status: int, stalled: bool) -> Any:
+    """Read what a run left; one that left nothing failed."""
+    if (folder / NAME).is_file():
+        found = results(folder)
+    else:
+        lines = tail(folder / LOG)
+        cause = f"the run ended with status {status} and left no results: {' '.join(lines[-3:])}"
+        found = {"status": "failed", "windows": 0, "time": 0.0, "fault": {"cause": cause}}
+    return found | {"status": "stalled"} if stalled else found

@@ -1,0 +1,120 @@
+"""What must hold in a run, and the first that did not: stable, degraded or unstable."""
+
+import csv
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from quintet.coupler.files.recording import NAME, Recording
+from quintet.coupler.scene.stability_table import Bounds, Energy, LimitTable
+from quintet.interfaces.errors import SceneError
+
+ROWS = 256  # of a recording, looked at together
+State = Literal["stable", "degraded", "unstable"]
+Breach = tuple[float, str, str]  # s, invariant, how
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """How a run went; of a broken one the first invariant that was violated, how and when."""
+
+    state: State
+    broke: str = ""
+    how: str = ""
+    time: float | None = None  # s
+
+
+def judge(limit: LimitTable, found: dict[str, Any], folder: Path) -> Verdict:
+    """Judge a run by its results, its ledger and its recording."""
+    breaches = list(_breaches(limit, found, folder))
+    if breaches:
+        # What failed at the end of a window was seen to break within it.
+        time, broke, how = min(breaches, key=lambda one: (one[0], one[1] == "failed"))
+        return Verdict("unstable", broke, how, time)
+    for one in found.get("expect", []):
+        if one["name"] in limit.expectation and not one["met"]:
+            value = "no value" if one["value"] is None else f"{one['value']:.4g} {one['unit']}"
+            how = f"{one['name']} is {value}, not {one['reference']:.4g} within {one['within']:.4g}"
+            return Verdict("degraded", "expectation", how, found["time"])
+    return Verdict("stable")
+
+
+def _breaches(limit: LimitTable, found: dict[str, Any], folder: Path) -> Iterator[Breach]:
+    if found["status"] == "stalled":
+        yield found.get("time", 0.0), "failed", "it takes too long: its steps became too small"
+    elif found["status"] != "done":
+        yield found.get("time", 0.0), "failed", found.get("fault", {}).get("cause", "no results")
+    ledger = folder / "ledger.csv"
+    if ledger.is_file():
+        with open(ledger, newline="") as file:
+            rows = [row for row in csv.DictReader(file) if None not in row.values()]
+        if limit.energy:
+            if found["status"] == "done" and not any(energies(rows).values()):
+                raise SceneError(
+                    "stability: energy must be told by a component that has any; all say 0 J at "
+                    "all times. Give it totals(), or use bounds instead."
+                )
+            yield from _energy(limit.energy, rows)
+        if limit.momentum is not None:
+            yield from _momentum(limit.momentum, rows)
+    if limit.bounds and (folder / NAME).is_file():
+        try:
+            with Recording(folder) as recording:
+                for bounds in limit.bounds:
+                    yield from _bounds(bounds, recording)
+        except SceneError as error:  # a process that died left it half written
+            yield found.get("time", 0.0), "failed", str(error)
+
+
+def energies(rows: list[dict[str, str]]) -> dict[float, float]:
+    """Total energy of all components [J] at every time [s]."""
+    total: dict[float, float] = {}
+    for row in rows:
+        if row["kinetic"]:
+            parts = [float(row[kind]) for kind in ("kinetic", "potential", "internal")]
+            total[float(row["time"])] = total.get(float(row["time"]), 0.0) + sum(parts)
+    return total
+
+
+def _energy(rule: Energy, rows: list[dict[str, str]]) -> Iterator[Breach]:
+    total = energies(rows)
+    if not total:
+        return
+    start = next(iter(total.values()))
+    most = rule.amount if rule.factor is None else (rule.factor - 1.0) * abs(start)
+    assert most is not None
+    for time, energy in total.items():
+        if not energy - start <= most:  # also of nan
+            yield time, "energy", f"the total energy rose from {start:.4g} J to {energy:.4g} J"
+            return
+
+
+def _momentum(most: float, rows: list[dict[str, str]]) -> Iterator[Breach]:
+    for row in rows:
+        residual = float(row["momentum_residual"] or 0.0)
+        if not residual <= most:
+            how = f"the momentum residual of {row['name']} is {residual:.1e}"
+            yield float(row["time"]), "momentum", how
+            return
+
+
+def _bounds(rule: Bounds, recording: Recording) -> Iterator[Breach]:
+    times = recording.times(rule.component)
+    low = -math.inf if rule.low is None else rule.low
+    high = math.inf if rule.high is None else rule.high
+    for first in range(0, len(times), ROWS):
+        rows = recording.field(rule.component, rule.field, slice(first, first + ROWS))
+        if rule.axis is not None:
+            rows = rows[:, :, rule.axis]
+        rows = rows.reshape(len(rows), -1)
+        outside = ~((rows >= low) & (rows <= high)).all(axis=1)
+        if outside.any():
+            k = int(np.argmax(outside))
+            worst = float(rows[k][np.argmax(np.maximum(rows[k] - high, low - rows[k]))])
+            how = f"{rule.component}.{rule.field} reached {worst:.4g}"
+            yield float(times[first + k]), "bounds", how
+            return

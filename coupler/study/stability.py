@@ -1,0 +1,168 @@
+"""``quintet stability SCENE``: where the scene breaks, and how, against what is predicted.
+
+For each limit the two ends of its range are run, then the middle of what is left, again and again.
+Where only expectations fail a scene is degraded, not unstable; that limit is looked for too.
+"""
+
+import argparse
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from quintet.coupler.report.show import on_screen
+from quintet.coupler.report.work_precision import number
+from quintet.coupler.run import results
+from quintet.coupler.run.output import Stop
+from quintet.coupler.scene.read import load
+from quintet.coupler.scene.stability_table import Limit
+from quintet.coupler.scene.study_table import folder_name
+from quintet.coupler.study.bisection import middle, narrow
+from quintet.coupler.study.child_run import FOREVER, Trial
+from quintet.coupler.study.invariants import Verdict, judge
+from quintet.interfaces.errors import SceneError
+
+NAME = "stability.json"
+SLOWEST = 20.0  # times the first run of a limit, and MARGIN: what takes longer has stalled
+MARGIN = 60.0  # s
+Found = dict[str, Any]
+
+
+class Interrupted(Exception):
+    """The user asked for an end."""
+
+
+@dataclass(slots=True)
+class Search:
+    """All runs for one limit, by the value of its parameter."""
+
+    limit: Limit
+    other: float | None  # value of the second parameter
+    trial: Trial
+    folder: Path
+    verdicts: dict[float, Verdict] = field(default_factory=dict)
+    patience: float = FOREVER  # s
+
+    def __call__(self, value: float) -> Verdict:
+        """Run with a value, once, and judge."""
+        if value not in self.verdicts:
+            folder = self.folder / f"{value:.6g}"
+            found = self.trial.run(self.limit.settings(value, self.other), folder, self.patience)
+            if found["status"] == "interrupted" or self.trial.stop():
+                raise Interrupted
+            if self.patience == FOREVER:
+                self.patience = MARGIN + SLOWEST * found.get("timing", {}).get("wall", 0.0)
+            verdict = self.verdicts[value] = judge(self.limit.table, found, folder)
+            said = f" ({verdict.broke}: {verdict.how})" if verdict.broke else ""
+            print(f"{self.limit.name} = {value:.6g}: {verdict.state}{said}", flush=True)
+        return self.verdicts[value]
+
+    def edge(self, *held: str) -> tuple[float, float] | None:
+        """Bisect between states that count as held and the others."""
+        one = self.limit.table
+        known = sorted(self.verdicts, reverse=one.from_ > one.to)
+        return narrow(known, lambda v: self(v).state in held, one.log, one.accuracy)
+
+
+def run_stability(given: argparse.Namespace) -> int:
+    """Find every limit of the scene; print them, and write them as JSON."""
+    scene = load(given.scene, given.preset, given.settings, given.swap, given.transport)
+    if not scene.stability:
+        raise SceneError(
+            f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
+        )
+    folder = (given.out or Path("runs") / f"{scene.file.name}-stability").resolve()
+    stop, limits, interrupted = Stop(), [], False
+    with stop.listening():
+        for limit in scene.stability:
+            for number, other in enumerate(limit.others()):
+                if not interrupted:
+                    place = folder / limit.folder
+                    place = place if other is None else place / folder_name(f"{other:.6g}")
+                    trial = Trial.of(given, stop, limit.table.transport)
+                    search = Search(limit, other, trial, place)
+                    interrupted = not look(search)
+                    limits.append(tell(search, limit.predicted(number)))
+    found = {"scene": scene.file.name, "limits": limits, "machine": results.machine()}
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in (folder / NAME, given.json):
+        if path:
+            path.write_text(json.dumps(found, indent=2))
+    on_screen().print(table(limits))
+    if interrupted:
+        return results.INTERRUPTED
+    return results.DONE if all(one["found"] is not None for one in limits) else results.UNMET
+
+
+def look(search: Search) -> bool:
+    """Run what a limit needs; tell whether it came to its end."""
+    try:
+        for value in (search.limit.table.from_, search.limit.table.to):
+            search(value)
+        search.edge("stable", "degraded")
+        if any(verdict.state == "degraded" for verdict in search.verdicts.values()):
+            search.edge("stable")
+    except Interrupted:
+        return False
+    return True
+
+
+def tell(search: Search, predicted: float | None) -> Found:
+    """What is known of a limit from the runs that were made."""
+    limit, one = search.limit, search.limit.table
+    edges = {"unstable": _edge(search, "stable", "degraded"), "degraded": _edge(search, "stable")}
+    state = next((state for state, edge in edges.items() if edge), None)
+    edge = edges[state] if state else None
+    found = middle(*edge, one.log) if edge else None
+    verdict = search.verdicts.get(edge[1] if edge else one.from_, Verdict("stable"))
+    degraded = edges["degraded"] if state == "unstable" else None
+    was_degraded = degraded is not None and search.verdicts[degraded[1]].state == "degraded"
+    runs = [{"value": value, **asdict(said)} for value, said in sorted(search.verdicts.items())]
+    return {
+        "name": limit.name,
+        "parameter": one.parameter if isinstance(one.parameter, str) else list(one.parameter),
+        "against": {one.against.parameter: search.other} if one.against else None,
+        "predicted": predicted,
+        "found": found,
+        "ratio": found / predicted if found is not None and predicted else None,
+        "holds": edge[0] if edge else None,
+        "breaks": edge[1] if edge else None,
+        "state": state,
+        "broke": verdict.broke or None,
+        "how": verdict.how or None,
+        "degraded": middle(*degraded, one.log) if degraded and was_degraded else None,
+        "range": [one.from_, one.to],
+        "source": one.source,
+        "runs": runs,
+    }
+
+
+def _edge(search: Search, *held: str) -> tuple[float, float] | None:
+    """Return the last value that holds and the first that does not, of those that were run."""
+    one = search.limit.table
+    known = sorted(search.verdicts, reverse=one.from_ > one.to)
+    return narrow(known, lambda v: search.verdicts[v].state in held, one.log, float("inf"))
+
+
+def table(limits: list[Found]) -> Table:
+    """One line for each limit."""
+    made = Table(box=None, pad_edge=False)
+    for head in ("limit", "against", "predicted", "found", "ratio", "degraded", "then", "how"):
+        right = head in ("predicted", "found", "ratio", "degraded")
+        made.add_column(head, justify="right" if right else "left", overflow="fold")
+    for one in limits:
+        against = ", ".join(f"{k} = {number(v)}" for k, v in (one["against"] or {}).items())
+        numbers = [number(one[key]) for key in ("predicted", "found", "ratio", "degraded")]
+        made.add_row(one["name"], against, *numbers, one["state"] or "-", _how(one))
+    return made
+
+
+def _how(one: Found) -> str:
+    if one["found"] is not None:
+        return f"{one['broke']}: {one['how']}"
+    first, last = one["range"]
+    if one["broke"]:
+        return f"at {first:g} already: {one['broke']}: {one['how']}"
+    return f"holds from {first:g} to {last:g}"

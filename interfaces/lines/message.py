@@ -1,0 +1,134 @@
+"""One message: a small header and some arrays, to bytes and back.
+
+A frame is a 16-byte prefix, a msgpack header with the table of the arrays packed by itself, and
+each array's bytes, aligned. Nothing is pickled. Every size, type and shape is checked before a
+byte of an array is looked at.
+"""
+
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import msgpack
+import numpy as np
+
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import MessageError
+from quintet.interfaces.lines.layout import Layout, Shapes, aligned, lay_out, read_layout
+from quintet.interfaces.sums import finite
+
+Frame = Any  # bytes, a bytearray or an array of bytes: whatever has a buffer
+
+MAGIC = b"qnt2"
+PREFIX = struct.Struct("<4sIQ")  # magic, bytes of the header, bytes of the frame
+HEADER_LIMIT = 1 << 20  # bytes
+BARE = ("failed", "abort")  # orders that replace an expected message and bring no arrays
+
+
+@dataclass(slots=True)
+class Message:
+    """What was said: ``header["order"]`` names it; fields are read-only views."""
+
+    header: dict[str, Any]
+    fields: dict[str, Array] = field(default_factory=dict)
+
+    @property
+    def order(self) -> str:
+        """The verb of the message."""
+        return str(self.header.get("order", ""))
+
+
+def encode(header: Mapping[str, Any], fields: Fields, scratch: bytearray | None) -> bytearray:
+    """Pack a message into one frame; `scratch` is reused when it has the right length."""
+    layout = lay_out(tuple([(key, a.dtype.str, a.shape) for key, a in fields.items()]))
+    packed = msgpack.packb({**header, "arrays": layout.packed})
+    first = aligned(PREFIX.size + len(packed))
+    total = first + layout.size
+    frame = scratch if scratch is not None and len(scratch) == total else bytearray(total)
+    PREFIX.pack_into(frame, 0, MAGIC, len(packed), total)
+    frame[PREFIX.size : PREFIX.size + len(packed)] = packed
+    for place, array in zip(layout.places, fields.values(), strict=True):
+        if place.numbers:
+            into = np.frombuffer(frame, place.dtype, place.numbers, first + place.start)
+            into[:] = array.reshape(-1)
+    return frame
+
+
+def decode(frame: Frame, expected: Shapes | None = None) -> Message:
+    """Unpack a frame; with `expected`, its arrays must have just these names and shapes."""
+    header, first = _header(frame)
+    packed = header.pop("arrays", None)
+    if not isinstance(packed, bytes):
+        raise MessageError(f"a message must list its arrays; found {type(packed).__name__}.")
+    layout = read_layout(packed)
+    if expected is not None and header.get("order") not in BARE:
+        _compare(layout.shapes, expected)
+    if first + layout.size != len(frame):
+        _refuse_size(layout, len(frame) - first)
+    seen = memoryview(frame).toreadonly()
+    return Message(
+        header,
+        {
+            key: np.frombuffer(seen, dtype, numbers, first + start).reshape(shape)
+            for key, dtype, shape, numbers, start, _ in layout.places
+        },
+    )
+
+
+def _header(frame: Frame) -> tuple[dict[str, Any], int]:
+    """Read the header; return where the first array begins too."""
+    if len(frame) < PREFIX.size:
+        raise MessageError(f"a message has at least {PREFIX.size} bytes; found {len(frame)}.")
+    magic, size, total = PREFIX.unpack_from(frame)
+    if magic != MAGIC:
+        raise MessageError(f"a message must begin with {MAGIC!r}; found {magic!r}.")
+    if total != len(frame):
+        raise MessageError(f"the message says it has {total} bytes; {len(frame)} arrived.")
+    if size > min(HEADER_LIMIT, total - PREFIX.size):
+        raise MessageError(f"a header of {size} bytes does not fit a message of {total} bytes.")
+    try:
+        told = memoryview(frame)[PREFIX.size : PREFIX.size + size]
+        header = msgpack.unpackb(told, raw=False)
+    except (ValueError, msgpack.exceptions.UnpackException) as error:
+        raise MessageError(f"the header is not valid msgpack: {error}") from error
+    if not isinstance(header, dict):
+        raise MessageError(f"the header must be a map; found {type(header).__name__}.")
+    return header, aligned(PREFIX.size + size)
+
+
+def _refuse_size(layout: Layout, room: int) -> None:
+    for place in layout.places:
+        if place.end > room:
+            raise MessageError(
+                f"field {place.key}: {place.numbers} numbers of {place.dtype.str} must end within "
+                f"the {room} bytes of arrays of the message; they end at {place.end}."
+            )
+    raise MessageError(f"{room} bytes of arrays must be used up; {layout.size} were.")
+
+
+def _compare(found: Shapes, expected: Shapes) -> None:
+    if found == expected:
+        return
+    for key in sorted(set(found) | set(expected)):
+        if found.get(key) != expected.get(key):
+            raise MessageError(
+                f"field {key}: expected {_shape(expected.get(key))}, {_shape(found.get(key))} "
+                "arrived. The sender's item count must not change after it was joined."
+            )
+
+
+def _shape(shape: tuple[int, ...] | None) -> str:
+    return "nothing" if shape is None else f"shape {shape}"
+
+
+def require_finite(fields: Fields, where: str) -> None:
+    """Refuse a field with a number that is not finite; name the first."""
+    for key, array in fields.items():
+        if not finite(array):
+            rows = np.atleast_1d(array)
+            item = int(np.argmin(np.isfinite(rows.reshape(len(rows), -1)).all(axis=1)))
+            raise MessageError(
+                f"{where}: every number of {key} must be finite; item {item} is "
+                f"{np.array2string(rows[item])}. Reduce the time step, or look at that item."
+            )

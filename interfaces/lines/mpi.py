@@ -1,0 +1,88 @@
+"""Lines over MPI: one program per component, started together, never waiting in a library."""
+
+import functools
+import os
+import sys
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import LineError
+from quintet.interfaces.lines.message import Frame
+from quintet.interfaces.lines.process_status import running
+from quintet.interfaces.lines.transport import FramedLine, wait
+
+TAG = 17
+KEPT = 4  # frames kept for the next messages
+UNSEEN = 3  # references to a frame in `_buffer` when no message's fields look into it
+SENDING = 600.0  # s that a large message may take until the receiver has asked for it
+
+
+@functools.cache
+def world() -> Any:
+    """Return a communicator of our own, so that a solver's MPI cannot mix with ours."""
+    return MPI.COMM_WORLD.Dup()
+
+
+class MpiLine(FramedLine):
+    """A line to one rank."""
+
+    def __init__(self, run: str, name: str, other: str, rank: int, pid: int = 0) -> None:
+        super().__init__(run, name)
+        self.other = other
+        self.rank = rank
+        self.pid = pid  # of the other side when it runs on this host, else 0
+        self._comm = world()
+        self._frames: list[Array] = []
+
+    def _put(self, frame: bytearray) -> None:
+        request = self._comm.Isend([frame, MPI.BYTE], self.rank, TAG)
+        wait(lambda: request.Test() or None, SENDING, self._reason)
+
+    def _poll(self) -> Frame | None:
+        status = MPI.Status()
+        message = self._comm.Improbe(self.rank, TAG, status)
+        if message is None:
+            return None
+        frame = self._buffer(status.Get_count(MPI.BYTE))
+        request = message.Irecv([frame, MPI.BYTE])
+        wait(lambda: request.Test() or None, SENDING, self._reason)
+        return frame
+
+    def _buffer(self, size: int) -> Array:
+        """Return a frame that nobody looks at any more, or a new one.
+
+        Fresh memory costs more than the message: the system clears every page of it.
+        """
+        for frame in self._frames:
+            if len(frame) == size and sys.getrefcount(frame) == UNSEEN:
+                return frame
+        frame = np.empty(size, np.uint8)
+        self._frames = [*self._frames[1 - KEPT :], frame]
+        return frame
+
+    def _broken(self) -> str:
+        # MPI itself never tells of a dead rank; on the same host the system does.
+        return f"{self.other} is gone" if self.pid and not running(self.pid) else ""
+
+    def close(self) -> None:
+        """See `Line.close`."""
+
+
+def self_check(expected: int) -> None:
+    """Refuse to run when the launcher and the MPI library do not belong together."""
+    size = MPI.COMM_WORLD.size
+    if size != expected:
+        raise LineError(
+            f"MPI started {size} ranks where {expected} were launched: the launcher and the "
+            f"library differ ({MPI.Get_library_version().splitlines()[0]}). Use the mpiexec of "
+            "that library."
+        )
+
+
+def abort(status: int) -> None:
+    """End every rank at once."""
+    MPI.COMM_WORLD.Abort(status)
+    os._exit(status)

@@ -1,0 +1,138 @@
+"""A component as a process of its own: join the coupler, be told the parameters, serve."""
+
+import argparse
+import contextlib
+import os
+import signal
+import sys
+import time
+import traceback
+from typing import Any
+
+from quintet.interfaces.component import Component
+from quintet.interfaces.errors import LineError, QuintetError
+from quintet.interfaces.lines.endpoint import Security
+from quintet.interfaces.lines.transport import Line
+from quintet.interfaces.manifest import Manifest, find
+from quintet.interfaces.params import read
+from quintet.interfaces.serving.malloc import keep_freed_memory
+from quintet.interfaces.serving.serve import Server, failure, serve
+
+JOINING = 600.0  # s until every other component has joined
+LINGERING = 10.0  # s
+STARTER = "QUINTET_STARTER"  # set where a run was started by another process here: which one
+
+
+def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -> None:
+    """Run one component; ``python -m quintet.components.KIND`` comes here."""
+    parser = argparse.ArgumentParser(description="One component of a coupled run.")
+    if manifest is None:
+        parser.add_argument("kind", help="an installed kind, or module:Class")
+    parser.add_argument("--name", required=True, help="its name in the scene")
+    where = parser.add_mutually_exclusive_group(required=True)
+    where.add_argument("--at", metavar="ENDPOINT", help="the coupler's zenoh endpoint")
+    where.add_argument("--mpi", action="store_true", help="started by mpiexec; rank 0 couples")
+    parser.add_argument("--tls", nargs=3, metavar=("AUTHORITY", "CERTIFICATE", "KEY"))
+    parser.add_argument("--log", help="file for all that it prints")
+    given = parser.parse_args(arguments)
+    if given.log:
+        redirect(given.log)
+    sys.exit(run(manifest or find(given.kind), given))
+
+
+def redirect(path: str) -> None:
+    """Send all output of the process, and of the libraries in it, to a file."""
+    file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+    os.dup2(file, 1)
+    os.dup2(file, 2)
+    os.close(file)
+
+
+def run(manifest: Manifest, given: argparse.Namespace) -> int:
+    """Join, build, serve; return the exit status."""
+    # Ctrl-C reaches the whole terminal; the coupler answers it and tells the components.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    keep_freed_memory()
+    say(f"{given.name}: {manifest.title}, process {os.getpid()}")
+    try:
+        line = over_mpi(given.name) if given.mpi else over_zenoh(given)
+        line.send({"order": "hello", "kind": manifest.kind, **about_me()}, {})
+        order = line.receive(JOINING)
+    except QuintetError as error:
+        say(f"{given.name}: {error}")
+        return 3
+    if order.order != "go":
+        return 0
+    status = 3
+    try:
+        start = time.perf_counter()
+        component = build(manifest, order.header)
+        say(f"built in {time.perf_counter() - start:.1f} s: {component.items()} items")
+        if serve(Server(component, given.name), line):
+            status = 0
+    except LineError as error:
+        say(f"{given.name}: the coupler: {error}")
+    except Exception as error:
+        traceback.print_exc()
+        line.send(failure(error), {})
+    if status:
+        linger(line)
+    line.close()
+    say(f"{given.name}: " + ("stopped" if status else "finished"))
+    return status
+
+
+def linger(line: Line) -> None:
+    """Stay until the coupler has read what went wrong: leaving would end an MPI job at once."""
+    with contextlib.suppress(QuintetError):
+        line.receive(LINGERING)
+
+
+def build(manifest: Manifest, header: dict[str, Any]) -> Component:
+    """Check the parameters, then import the solver and make the component."""
+    # Before numba is imported: it reads the size of its thread pool once.
+    os.environ["NUMBA_NUM_THREADS"] = str(header["threads"])
+    params, mistakes = read(manifest.params, header["params"], manifest.kind)
+    if mistakes:
+        raise QuintetError("\n".join(mistakes))
+    return manifest.load()(params)
+
+
+def over_zenoh(given: argparse.Namespace) -> Line:
+    """Connect over zenoh; only a process that does so imports it."""
+    from quintet.interfaces.lines.zenoh import connect
+
+    return connect(given.at, given.name, Security(*given.tls) if given.tls else None)
+
+
+def over_mpi(name: str) -> Line:
+    """Connect over MPI to rank 0, which couples."""
+    from quintet.interfaces.lines.mpi import MpiLine
+
+    return MpiLine("", name, "coupler", 0, os.getppid() if launched_here() else 0)
+
+
+def launched_here() -> bool:
+    """Whether the launcher of the ranks runs on this host and ends with the run."""
+    return STARTER in os.environ
+
+
+def about_me() -> dict[str, Any]:
+    """What the coupler needs to watch this process, and to clean up after it."""
+    return {"pid": os.getpid(), "host": os.uname().nodename, "shared": shared_files()}
+
+
+def shared_files() -> list[str]:
+    """Files in shared memory that this process maps; a killed process leaves them behind."""
+    with open("/proc/self/maps") as maps:
+        found = {line.split(maxsplit=5)[5].strip() for line in maps if "/dev/shm/" in line}
+    return sorted(found)
+
+
+def say(text: str) -> None:
+    """Print one line to the component's log."""
+    print(text, flush=True)
+
+
+if __name__ == "__main__":
+    main()
