@@ -31,7 +31,7 @@ def put_set(table: dict[str, Any], setting: str) -> list[str]:
 
 
 def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
-    """Set a value at a dotted path; new tables are made only for components' own settings."""
+    """Set a value at a dotted path; new tables are made only within a component's settings."""
     *heads, last = path.split(".")
     at: Any = table
     for number, head in enumerate(heads):
@@ -40,7 +40,7 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
             if not (head.isdigit() and int(head) < len(at)):
                 return [f"{place}: must be a number below {len(at)}; found {head!r}."]
             at = at[int(head)]
-        elif isinstance(at, dict) and (head in at or place in ("output", "iteration")):
+        elif isinstance(at, dict) and (head in at or _may_be_made(heads[: number + 1])):
             at = at.setdefault(head, {})
         else:
             return [unknown(place, head, at if isinstance(at, dict) else ())]
@@ -48,6 +48,11 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
         return [f"{path} cannot be set: {'.'.join(heads)} is not a table."]
     at[last] = value
     return []
+
+
+def _may_be_made(heads: list[str]) -> bool:
+    """Whether a scene may lack the table: its own, or inside a component's, which checks it."""
+    return heads in (["output"], ["iteration"]) or (heads[0] == "components" and len(heads) > 2)
 
 
 def put_swap(table: dict[str, Any], swap: str) -> list[str]:
