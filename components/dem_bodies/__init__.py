@@ -1,4 +1,4 @@
-"""Rigid bodies in frictional contact: spheres, rounded boxes, clumps and planes.
+"""Rigid bodies in frictional contact: spheres, rounded boxes, unions of spheres and planes.
 
     m dv/dt = Σ F + m g + load,   dL/dt = Σ r × F + torque,   ω = R I⁻¹ Rᵀ L,   dq/dt = ½ (0, ω) ∘ q
     F_n = 4/3 E* √R* δ^{3/2} + 2√(5/6) ζ √(S_n m*) dδ/dt ≥ 0          Hertz, damped
@@ -9,10 +9,10 @@ exactly, e = exp(-2ζ arccos ζ/√(1-ζ²)), although the force is never a pull
 resists at the point of contact, 1/m* = Σ [1/m + (r × n)·I⁻¹(r × n)], so that e holds for the normal
 velocity of a box's corner too, and nearly for a box that falls flat on four of them.
 
-A box is what a sphere of radius `rounding` sweeps when its centre moves through a smaller box:
+A box is what a sphere of radius `edge_radius` sweeps when its centre moves through a smaller box:
 its faces are exact. Two boxes touch where a corner of one is near the other (8 + 8 spheres against
 rounded boxes) and where two edges cross; that is all that convex polyhedra can do. Spheres and
-clumps touch boxes by their exact distance. Contacts along an edge or face thus need no row of
+their unions touch boxes by their exact distance. Contacts along an edge or face thus need no row of
 small spheres, whose bumps would add to the friction.
 
 An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
@@ -20,14 +20,14 @@ cover from within; its mass and inertia are those of the shape. A fluid cannot s
 
 Two materials in contact have the lower of their frictions, restitutions and rolling coefficients;
 `pairs` in a scene overrides each of them for two materials, or for one and itself. Rolling
-resistance is that of `rolling.py`, between spheres, and spheres and planes.
+resistance is that of `contact/rolling_resistance.py`, between spheres, and spheres and planes.
 
 Spheres on their own, the many of a packing, have a list of pairs and kernels of their own: rows
 sorted in space, several contacts computed at once, blocks of rows shared out among threads. All
 sums have one order, so that the number of threads changes no bit. `contact_points` lists point,
-normal, force and depth of each contact; `state.contact` is what they do to each body together.
+normal, force and depth of each contact; `state.contact_load` is their sum on each body.
 
-Velocity Verlet, of second order also with dampers: their velocities are foreseen at the end of
+Velocity Verlet, of second order also with dampers: their velocities are predicted at the end of
 the step. Angular momentum is advanced in world axes, so that it is exact for a free body. The
 step is a share of a contact's duration, and shorter where many contacts hold one body, as their
 springs and dampers add up.
@@ -40,16 +40,12 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 """
 
 from quintet.components.dem_bodies import build
-from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
-from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
-from quintet.interfaces.manifest import Manifest, Plan, Ports
-from quintet.interfaces.ports import LOAD, MOTION
+from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.ports import ports
+from quintet.interfaces.manifest import Manifest, Plan
 
 __all__ = ["MANIFEST", "DemBodiesParams"]
-
-
-def _ports(params: DemBodiesParams) -> Ports:
-    return (LOAD,), (MOTION, CONTACT) if params.contact_forces else (MOTION,)
 
 
 def _plan(params: DemBodiesParams) -> Plan:
@@ -57,8 +53,8 @@ def _plan(params: DemBodiesParams) -> Plan:
     count, ω = len(solids), build.expected_frequency(params, solids)
     dt = DURATION * SPEED_UP / ω / params.steps_per_contact
     if count == 1 and not params.planes:  # nothing to touch: two steps for each half of the skin
-        dt = max(dt, 0.25 * build.SKIN * float(solids[0].radii.min()) / params.speed)
-    dt = min(params.longest_step, dt) if params.step is None else params.step
+        dt = max(dt, 0.25 * build.SKIN * float(solids[0].radii.min()) / params.impact_speed)
+    dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
     # Of a step, some time is for calling it, and some for each body: more where it is no ball.
     balls = sum(body.diameter is not None for body in params.bodies)
     step = 1.5e-5 + 1.7e-7 * balls + 1e-6 * (count - balls)  # s
@@ -70,7 +66,7 @@ MANIFEST = Manifest(
     title="Rigid bodies in frictional contact",
     params=DemBodiesParams,
     component="quintet.components.dem_bodies.component:DemBodies",
-    ports=_ports,
+    ports=ports,
     plan=_plan,
     bench="quintet.components.dem_bodies.bench:cases",
 )

@@ -16,7 +16,7 @@ DIAMETER = 0.01  # m
 SQUEEZE = 0.2  # 1/s, rate at which the lattice shrinks, so that all contacts begin at once
 UNEVEN = 1e-3  # m/s, of single spheres, so that contacts slip and roll
 CORNER = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-STUFF = {"young": 5e6, "poisson": 0.3, "restitution": 0.5, "friction": 0.5}
+STUFF = {"youngs_modulus": 5e6, "poissons_ratio": 0.3, "restitution": 0.5, "friction": 0.5}
 
 
 def lattice(nx: int, ny: int, nz: int) -> dict[str, Any]:
@@ -32,7 +32,7 @@ def lattice(nx: int, ny: int, nz: int) -> dict[str, Any]:
         "planes": [{"point": [0.0] * 3, "normal": list(n), "material": "grain"} for n in CORNER],
         "materials": {"grain": STUFF},
         "gravity": [-4.0, -4.0, -8.0],
-        "speed": 0.5,
+        "impact_speed": 0.5,
     }
 
 

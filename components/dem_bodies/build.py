@@ -6,11 +6,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.dem_bodies import materials
-from quintet.components.dem_bodies.clump import union
+from quintet.components.dem_bodies.contact import materials
 from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
-from quintet.components.dem_bodies.placement import reach, rotation, spheres
-from quintet.components.dem_bodies.state import Model, Numbers, State, V, W, Whole
+from quintet.components.dem_bodies.shapes.placement import (
+    bounding_radius,
+    contact_spheres,
+    cover,
+    edge_radius,
+    rotation_matrix,
+)
+from quintet.components.dem_bodies.shapes.sphere_union import measure_union
+from quintet.components.dem_bodies.state import (
+    COLUMNS,
+    OMEGA,
+    RADIUS,
+    REPORTED,
+    VELOCITY,
+    Model,
+    Numbers,
+    State,
+    Whole,
+)
 
 SKIN = 0.4  # over the smallest contact radius: pairs nearer than that are listed
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
@@ -38,51 +54,51 @@ def solid(body: Body) -> Solid:
         size = np.array(body.size)
         volume = float(size.prod())
         inertia = (np.eye(3) * (size**2).sum() - np.diag(size**2)) / 12.0 * volume
-        centres = CORNERS * (0.5 * size - body.round)
-        radii = np.full(8, body.round)
+        centres = CORNERS * (0.5 * size - edge_radius(body))
+        radii = np.full(8, edge_radius(body))
     else:
-        centres, radii = spheres(body)
+        centres, radii = contact_spheres(body)
         size = np.ptp(np.vstack([centres - radii[:, None], centres + radii[:, None]]), axis=0)
         if body.diameter is not None:
             volume = np.pi / 6.0 * body.diameter**3
             inertia = np.eye(3) * volume * body.diameter**2 / 10.0
-        elif body.agglomerate is not None:
-            volume, inertia = body.agglomerate.volume, body.agglomerate.inertia
+        elif (covered := cover(body)) is not None:
+            volume, inertia = covered.volume, covered.inertia
         else:
             assert body.centres is not None and body.radii is not None
-            volume, _, inertia = union((body.centres, body.radii))
+            volume, _, inertia = measure_union((body.centres, body.radii))
     density = body.density if body.mass is None else body.mass / volume
     assert density is not None
     return Solid(density * volume, density * inertia, centres, radii, size)
 
 
-def laws(params: DemBodiesParams) -> Numbers:
+def material_pairs(params: DemBodiesParams) -> Numbers:
     """Table (materials, materials, 5) of E* [Pa], G* [Pa], ζ, μ and μ_r."""
     names = list(params.materials)
     table = np.zeros((len(names), len(names), 5))
     for (i, a), (j, b) in product(enumerate(params.materials.values()), repeat=2):
-        table[i, j] = law(a, b)
+        table[i, j] = material_pair(a, b)
     for pair in params.pairs:
         i, j = (names.index(name) for name in pair.between)
         if pair.restitution is not None:
             table[i, j, 2] = table[j, i, 2] = materials.damping_ratio(pair.restitution)
         if pair.friction is not None:
             table[i, j, 3] = table[j, i, 3] = pair.friction
-        if pair.rolling is not None:
-            table[i, j, 4] = table[j, i, 4] = pair.rolling
+        if pair.rolling_friction is not None:
+            table[i, j, 4] = table[j, i, 4] = pair.rolling_friction
     return table
 
 
-def law(a: Material, b: Material) -> Numbers:
+def material_pair(a: Material, b: Material) -> Numbers:
     """E* [Pa], G* [Pa], ζ, μ and μ_r of two materials: the lower of both where they differ."""
-    young, poisson = (a.young, b.young), (a.poisson, b.poisson)
+    moduli, ratios = (a.youngs_modulus, b.youngs_modulus), (a.poissons_ratio, b.poissons_ratio)
     return np.array(
         [
-            materials.effective_modulus(young, poisson),
-            materials.effective_shear(young, poisson),
+            materials.effective_modulus(moduli, ratios),
+            materials.effective_shear(moduli, ratios),
             materials.damping_ratio(min(a.restitution, b.restitution)),
             min(a.friction, b.friction),
-            min(a.rolling, b.rolling),
+            min(a.rolling_friction, b.rolling_friction),
         ]
     )
 
@@ -97,12 +113,13 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
     planes = params.planes
     names = {name: k for k, name in enumerate(params.materials)}
     n = len(bodies) + 1
-    half, rounding = np.zeros((n, 3)), np.zeros(n)
+    half, rounded = np.zeros((n, 3)), np.zeros(n)
     counts, edges = np.zeros(n + 1, np.int64), np.zeros(n + 1, np.int64)
     for k, body in enumerate(bodies):
         counts[k + 1] = len(solids[k].radii)
         if body.size is not None:
-            half[k], rounding[k] = 0.5 * np.array(body.size) - body.round, body.round
+            rounded[k] = edge_radius(body)
+            half[k] = 0.5 * np.array(body.size) - rounded[k]
             edges[k + 1] = len(EDGES)
     material = [names[body.material] for body in bodies] + [0]
     balls = [body.diameter is not None for body in bodies]
@@ -115,25 +132,25 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
     return Model(
         inverse_mass=np.array([1.0 / one.mass for one in solids] + [0.0]),
         inverse_inertia=np.array([packed(one) for one in inverses] + [np.zeros(6)]),
-        inverse_turn=np.array([one[0, 0] for one in inverses] + [0.0]),
+        inverse_moment=np.array([one[0, 0] for one in inverses] + [0.0]),
         isotropic=np.array([isotropic(one.inertia) for one in solids] + [True]),
         ball=np.array([*balls, False]),
         others=np.flatnonzero(~np.array(balls)),
-        half=half,
-        rounding=rounding,
-        reach=np.array([reach(body) for body in bodies]),
+        half_extent=half,
+        edge_radius=rounded,
+        bounding_radius=np.array([bounding_radius(body) for body in bodies]),
         material=np.array(material),
         kind=kinds(solids, material),
-        sphere_from=first,
-        sphere_body=np.repeat(np.arange(n), counts[1:]),
+        sphere_begin=first,
+        sphere_row=np.repeat(np.arange(n), counts[1:]),
         sphere_centre=np.vstack([one.centres for one in solids]),
         sphere_radius=np.concatenate([one.radii for one in solids]),
-        edge_from=np.cumsum(edges),
+        edge_begin=np.cumsum(edges),
         edge_ends=np.vstack(boxes) if boxes else np.zeros((0, 2), np.int64),
         plane=np.column_stack([normals, (normals * points).sum(axis=1)]),
         plane_material=as_whole([names[plane.material] for plane in planes]),
-        law=laws(params),
-        fall=np.array([params.gravity]),
+        material_pairs=material_pairs(params),
+        gravity=np.array(params.gravity),
     )
 
 
@@ -163,33 +180,33 @@ def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> Sta
     """Arrays of all that moves, as it is at the start; `number` is that of each row's body."""
     n = len(bodies) + 1
     spheres = sum(len(one.radii) for one in solids)
-    spins, inverses = [], []
+    momenta, inverses = [], []
     for body, one in zip(bodies, solids, strict=True):
-        turn = rotation(body.orientation)
-        inertia = turn @ one.inertia @ turn.T
-        spins.append(inertia @ np.array(body.angular_velocity))
+        axes = rotation_matrix(body.orientation)
+        inertia = axes @ one.inertia @ axes.T
+        momenta.append(inertia @ np.array(body.angular_velocity))
         inverses.append(np.asarray(np.linalg.inv(inertia), np.float64))
     orientations = np.array([body.orientation for body in bodies] + [(1.0, 0.0, 0.0, 0.0)])
-    motion = np.zeros((n, 16))
+    motion = np.zeros((n, COLUMNS))
     motion[:-1, :3] = [body.position for body in bodies]
-    motion[:-1, 3] = [reach(body) for body in bodies]
-    motion[:-1, V : V + 3] = [body.velocity for body in bodies]
-    motion[:-1, W : W + 3] = [body.angular_velocity for body in bodies]
+    motion[:-1, RADIUS] = [bounding_radius(body) for body in bodies]
+    motion[:-1, VELOCITY : VELOCITY + 3] = [body.velocity for body in bodies]
+    motion[:-1, OMEGA : OMEGA + 3] = [body.angular_velocity for body in bodies]
     rows = np.array([*number, n - 1])
     return State(
         body=rows,
         row=np.argsort(rows),
         motion=motion,
         orientation=orientations / np.linalg.norm(orientations, axis=1, keepdims=True),
-        spin=np.array([*spins, np.zeros(3)]),
-        contact=np.zeros((n, 6)),
-        before=np.zeros((n, 6)),
+        angular_momentum=np.array([*momenta, np.zeros(3)]),
+        contact_load=np.zeros((n, 6)),
+        previous_contact_load=np.zeros((n, 6)),
         load=np.zeros((n, 6)),
         axes=np.tile(np.eye(3).reshape(9), (n, 1)),
-        mobility=np.array([packed(world) for world in inverses] + [np.zeros(6)]),
+        world_inverse_inertia=np.array([packed(world) for world in inverses] + [np.zeros(6)]),
         centre=np.zeros((spheres, 3)),
-        listed=np.full((spheres, 3), np.inf),
-        report=np.zeros(11),
+        listed_centre=np.full((spheres, 3), np.inf),
+        report=np.zeros(REPORTED),
     )
 
 
@@ -199,11 +216,11 @@ def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
     For each material the lightest contact and the largest radius are taken, though they may be
     of different bodies.
     """
-    table, names = laws(params)[:, :, 0], list(params.materials)
+    table, names = material_pairs(params)[:, :, 0], list(params.materials)
     lightest, largest = np.zeros(len(names)), np.zeros(len(names))
     for body, one in zip(params.bodies, solids, strict=True):
         k = names.index(body.material)
-        lightest[k] = max(lightest[k], mobility(one))
+        lightest[k] = max(lightest[k], largest_inverse_effective_mass(one))
         largest[k] = max(largest[k], one.radii.max())
     boxes = any(body.shape == "box" for body in params.bodies)
     found = []
@@ -213,15 +230,15 @@ def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
             if boxes:  # a sphere on a box's face has its own radius
                 radius = max(largest[i], largest[j])
             mass = 1.0 / (lightest[i] + lightest[j])
-            found.append(materials.impact_frequency(table[i, j], radius, mass, params.speed))
+            found.append(materials.impact_frequency(table[i, j], radius, mass, params.impact_speed))
         for plane in params.planes:
             modulus = table[i, names.index(plane.material)]
             mass = 1.0 / lightest[i]
-            found.append(materials.impact_frequency(modulus, largest[i], mass, params.speed))
+            found.append(materials.impact_frequency(modulus, largest[i], mass, params.impact_speed))
     return float(max(found))
 
 
-def mobility(one: Solid) -> float:
+def largest_inverse_effective_mass(one: Solid) -> float:
     """Largest 1/m* [1/kg] of a body's contact spheres over all directions of the normal."""
     x, y, z = one.centres.T
     o = np.zeros_like(x)

@@ -1,283 +1,383 @@
-"""Loops over bodies and their spheres: the two halves of a velocity-Verlet step."""
+"""Loops over bodies: the stages of a velocity-Verlet step, and what is read off its end."""
 
 from numba import njit
 
-from quintet.components.dem_bodies.ball_kernels import press_balls
-from quintet.components.dem_bodies.contact_kernels import find, press
-from quintet.components.dem_bodies.geometry import add, axes_of, scaled, three, vector, write
+from quintet.components.dem_bodies.contact.balls import ball_loads, batch_of
+from quintet.components.dem_bodies.contact.geometry import (
+    quaternion,
+    rotation_matrix,
+    row_vector,
+    set_quaternion,
+    set_row_vector,
+    set_vector,
+    vector,
+)
+from quintet.components.dem_bodies.contact.pairs import contact_loads, detect_contacts
+from quintet.components.dem_bodies.integration.reductions import reduce_bodies, reduce_pairs
+from quintet.components.dem_bodies.integration.rigid_rotation import (
+    angular_velocity,
+    rotate_body,
+    symmetric_product,
+)
 from quintet.components.dem_bodies.state import (
+    ACCELERATION2,
     BLOCK,
-    CURVED,
-    END_V,
-    END_W,
-    GIVEN,
-    MOVING,
-    PULLED,
-    SPINNING,
-    SPUN,
+    CENTRIPETAL,
+    COLUMNS,
+    CONTACT_WORK,
+    END_OMEGA,
+    END_VELOCITY,
+    LOAD_WORK,
+    OMEGA,
+    RADIUS,
+    ROTATION2,
+    SPIN_UP2,
     TOUCHING,
-    WAY,
-    WORK,
-    Balls,
-    Contacts,
+    TRAVEL,
+    VELOCITY,
+    VELOCITY2,
+    BallPairs,
+    BodyPairs,
     Model,
     Numbers,
+    Short,
     State,
-    V,
-    W,
+    Whole,
 )
-from quintet.components.dem_bodies.tallies import close, found, furthest
-from quintet.components.dem_bodies.turning import roll, spun, times, turn
 from quintet.components.shared.rotations import (
     INNER,
     PURE,
     Vector,
-    beside,
+    axpy,
     dot,
-    forward,
-    less,
+    rotated,
+    scaled,
+    sub,
+    to_world,
 )
+
+# The stages of a step. Drift, balls and kick are shared out among threads.
+DRIFT, BALLS, OTHERS, KICK, REPORT, DONE = range(6)
+LIST = -1  # in place of a stage: pairs must be listed anew first
 
 
 @njit(**INNER)
-def place(model: Model, state: State, i: int) -> float:
+def kick(half_gravity: Vector, inverse: float, force: Vector, load: Vector) -> Vector:
+    """Half a step's change of velocity [m/s]; `inverse` is half the step over the mass."""
+    return axpy(inverse, load, axpy(inverse, force, half_gravity))
+
+
+@njit(**INNER)
+def kick_rotation(ω: Vector, inverse: float, torque: Vector, load: Vector) -> Vector:
+    """Angular velocity [rad/s] of a ball after half a step, or a body's angular momentum."""
+    return axpy(inverse, load, axpy(inverse, torque, ω))
+
+
+@njit(**INNER)
+def kick_work(
+    half: float, force: Vector, torque: Vector, v: Vector, change: Vector, before: Vector, ω: Vector
+) -> float:
+    """Work [J] of a force and a torque in half a step that ended at v and ω.
+
+    With the mean of both ends' velocities, work is exactly the kinetic energy that it gives.
+    """
+    mean = axpy(-0.5, change, v)
+    return half * (dot(force, mean) + 0.5 * dot(torque, axpy(1.0, ω, before)))
+
+
+@njit(**INNER)
+def drift_balls(
+    start: int, end: int, model: Model, motion: Numbers, contact: Numbers, load: Numbers,
+    orientation: Numbers, listed: Numbers, dt: float, loaded: bool,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Drift of the balls in rows [start, end): works [J] and the longest way squared [m²].
+
+    All arrays are flat. None is handed on in a branch, or references are counted in the loop.
+    """
+    half, half_gravity = 0.5 * dt, scaled(0.5 * dt, vector(model.gravity, 0))
+    inverse_mass, inverse_moment = model.inverse_mass, model.inverse_moment
+    work, given, furthest = 0.0, 0.0, 0.0
+    for i in range(start, end):
+        m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
+        force, torque = vector(contact, c), vector(contact, c + 3)
+        outer, twist = vector(load, to), vector(load, to + 3)
+        change = kick(half_gravity, half * inverse_mass[i], force, outer)
+        v, before = axpy(1.0, change, vector(motion, m + VELOCITY)), vector(motion, m + OMEGA)
+        ω = kick_rotation(before, half * inverse_moment[i], torque, twist)
+        work += kick_work(half, force, torque, v, change, before, ω)
+        given += kick_work(half, outer, twist, v, change, before, ω)
+        x = axpy(dt, v, vector(motion, m))
+        set_vector(motion, m, x)
+        set_vector(motion, m + VELOCITY, v)
+        set_vector(motion, m + OMEGA, ω)
+        set_vector(motion, m + END_VELOCITY, axpy(1.0, change, v))
+        set_vector(motion, m + END_OMEGA, sub(scaled(2.0, ω), before))
+        q = rotated(quaternion(orientation, 4 * i), dt * ω[0], dt * ω[1], dt * ω[2])
+        set_quaternion(orientation, 4 * i, q)
+        way = sub(x, vector(listed, 3 * i))
+        furthest = max(furthest, dot(way, way))
+    return work, given, furthest
+
+
+@njit(**INNER)
+def place_spheres(model: Model, state: State, i: int) -> float:
     """Place the spheres of a body that is no ball; return the square of the longest way [m²]."""
     furthest = 0.0
-    centre, listed, x = state.centre, state.listed, vector(state.motion, i)
-    for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
-        a, b, d = vector(model.sphere_centre, s)
-        c = beside(x, 1.0, forward(axes_of(state.axes, i), a, b, d))
-        write(centre, s, 0, c)
-        way = less(c, vector(listed, s))
+    centre, listed, x = state.centre, state.listed_centre, row_vector(state.motion, i)
+    for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
+        a, b, c = row_vector(model.sphere_centre, s)
+        placed = axpy(1.0, to_world(rotation_matrix(state.axes, i), a, b, c), x)
+        set_row_vector(centre, s, 0, placed)
+        way = sub(placed, row_vector(listed, s))
         furthest = max(furthest, dot(way, way))
     return furthest
 
 
 @njit(**INNER)
-def push(model: Model, state: State, i: int, half: float, loaded: bool) -> Vector:
-    """Half a step's change of velocity of row i."""
-    inverse = half * model.inverse_mass[i]
-    change = scaled(half, vector(model.fall, 0))
-    change = beside(change, inverse, vector(state.contact, i))
-    if loaded:
-        change = beside(change, inverse, vector(state.load, i))
-    write(state.motion, i, V, beside(three(state.motion, i, V), 1.0, change))
-    return change
+def kick_body(
+    model: Model, state: State, i: int, half: float
+) -> tuple[Vector, Vector, float, float]:
+    """Half kick of a body that is no ball: change of v, new ω, and works [J]."""
+    half_gravity, motion = scaled(half, vector(model.gravity, 0)), state.motion
+    force, torque = row_vector(state.contact_load, i), row_vector(state.contact_load, i, 3)
+    outer, twist = row_vector(state.load, i), row_vector(state.load, i, 3)
+    change = kick(half_gravity, half * model.inverse_mass[i], force, outer)
+    v, before = axpy(1.0, change, row_vector(motion, i, VELOCITY)), angular_velocity(state, i)
+    momentum = kick_rotation(row_vector(state.angular_momentum, i), half, torque, twist)
+    set_row_vector(state.angular_momentum, i, 0, momentum)
+    ω = angular_velocity(state, i)
+    set_row_vector(motion, i, VELOCITY, v)
+    set_row_vector(motion, i, OMEGA, ω)
+    work = kick_work(half, force, torque, v, change, before, ω)
+    return change, ω, work, kick_work(half, outer, twist, v, change, before, ω)
 
 
 @njit(**INNER)
-def twist_ball(
-    model: Model, state: State, i: int, half: float, loaded: bool
-) -> tuple[Vector, Vector]:
-    """Half a step's kick of a ball's turning: ω before and after."""
-    inverse, before = half * model.inverse_turn[i], three(state.motion, i, W)
-    after = beside(before, inverse, three(state.contact, i, 3))
-    if loaded:
-        after = beside(after, inverse, three(state.load, i, 3))
-    write(state.motion, i, W, after)
-    return before, after
-
-
-@njit(**INNER)
-def twist(state: State, i: int, half: float, loaded: bool) -> tuple[Vector, Vector]:
-    """Half a step's kick of the turning of any other body: ω before and after."""
-    before = spun(state, i)
-    add(state.spin, i, scaled(half, three(state.contact, i, 3)))
-    if loaded:
-        add(state.spin, i, scaled(half, three(state.load, i, 3)))
-    after = spun(state, i)
-    write(state.motion, i, W, after)
-    return before, after
-
-
-@njit(**INNER)
-def works(
-    state: State, i: int, half: float, change: Vector, before: Vector, after: Vector, loaded: bool
-) -> tuple[float, float]:
-    """Works [J] of contacts and loads on a row in half a step that ended now.
-
-    With the mean of both ends' velocities, work is exactly the kinetic energy that it gives.
-    """
-    contact, load, given = state.contact, state.load, 0.0
-    v, w = beside(three(state.motion, i, V), -0.5, change), beside(before, 1.0, after)
-    if loaded:
-        given = half * (dot(vector(load, i), v) + 0.5 * dot(three(load, i, 3), w))
-    return half * (dot(vector(contact, i), v) + 0.5 * dot(three(contact, i, 3), w)), given
+def drift_body(model: Model, state: State, i: int, dt: float) -> tuple[float, float, float]:
+    """Drift of a body that is no ball: works [J] and the longest way squared [m²]."""
+    half, motion = 0.5 * dt, state.motion
+    change, _, work, given = kick_body(model, state, i, half)
+    v = row_vector(motion, i, VELOCITY)
+    set_row_vector(motion, i, 0, axpy(dt, v, row_vector(motion, i)))
+    set_row_vector(motion, i, END_VELOCITY, axpy(1.0, change, v))
+    set_row_vector(motion, i, OMEGA, rotate_body(model, state, i, dt))
+    torque, twist = row_vector(state.contact_load, i, 3), row_vector(state.load, i, 3)
+    x, y, z = kick_rotation(row_vector(state.angular_momentum, i), half, torque, twist)
+    end_ω = symmetric_product(state.world_inverse_inertia, i, x, y, z)
+    set_row_vector(motion, i, END_OMEGA, end_ω)
+    return work, given, place_spheres(model, state, i)
 
 
 @njit(**INNER)
 def drift(
-    first: int, last: int, model: Model, state: State, tally: Numbers, dt: float, loaded: bool
+    first: int, last: int, model: Model, state: State, sums: Numbers, dt: float, loaded: bool
 ) -> None:
     """Half kick, then move the bodies of the blocks [first, last) and their spheres.
 
     Velocity and angular momentum are left at the middle of the step. Dampers need a velocity at
-    its end: it is foreseen with the forces of the step's beginning, which keeps second order.
+    its end: it is predicted with the forces of the step's beginning, which keeps second order.
     """
-    half, bodies, others = 0.5 * dt, model.reach.shape[0], model.others.shape[0]
-    motion, contact, load = state.motion, state.contact, state.load
+    bodies = model.bounding_radius.shape[0]
+    balls = bodies - model.others.shape[0]
+    motion, contact = state.motion.reshape(-1), state.contact_load.reshape(-1)
+    load, orientation = state.load.reshape(-1), state.orientation.reshape(-1)
+    listed = state.listed_centre.reshape(-1)
     for block in range(first, last):
-        furthest, work, given = 0.0, 0.0, 0.0
         start, end = block * BLOCK, min((block + 1) * BLOCK, bodies)
-        for i in range(start, min(end, bodies - others)):
-            change = push(model, state, i, half, loaded)
-            before, w = twist_ball(model, state, i, half, loaded)
-            done, gave = works(state, i, half, change, before, w, loaded)
-            work, given = work + done, given + gave
-            v = three(motion, i, V)
-            x = beside(vector(motion, i), dt, v)
-            write(motion, i, 0, x)
-            write(motion, i, END_V, beside(v, 1.0, change))
-            write(motion, i, END_W, less(scaled(2.0, w), before))
-            roll(state, i, w, dt)
-            if others > 0:
-                write(state.centre, i, 0, x)
-            way = less(x, vector(state.listed, i))
-            furthest = max(furthest, dot(way, way))
-        for i in range(max(start, bodies - others), end):
-            change = push(model, state, i, half, loaded)
-            before, w = twist(state, i, half, loaded)
-            done, gave = works(state, i, half, change, before, w, loaded)
-            work, given = work + done, given + gave
-            v = three(motion, i, V)
-            write(motion, i, 0, beside(vector(motion, i), dt, v))
-            write(motion, i, END_V, beside(v, 1.0, change))
-            write(motion, i, W, turn(model, state, i, dt))
-            x, y, z = beside(vector(state.spin, i), half, three(contact, i, 3))
-            x, y, z = beside((x, y, z), half, three(load, i, 3))
-            write(motion, i, END_W, times(state.mobility, i, x, y, z))
-            furthest = max(furthest, place(model, state, i))
-        tally[block, WAY] = furthest
-        tally[block, WORK], tally[block, GIVEN] = work, given
+        work, given, furthest = drift_balls(
+            start, min(end, balls), model, motion, contact, load, orientation, listed, dt, loaded
+        )
+        if balls < bodies:
+            for i in range(start, min(end, balls)):
+                set_row_vector(state.centre, i, 0, row_vector(state.motion, i))
+        for i in range(max(start, balls), end):
+            done, gave, way = drift_body(model, state, i, dt)
+            work, given, furthest = work + done, given + gave, max(furthest, way)
+        sums[block, CONTACT_WORK], sums[block, LOAD_WORK] = work, given
+        sums[block, TRAVEL] = furthest
 
 
 @njit(**INNER)
-def gather(state: State, balls: Balls, i: int) -> None:
-    """Add what pairs of earlier blocks brought row i."""
-    contact, pushes = state.contact, balls.push
-    fx, fy, fz, tx, ty, tz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for c in range(balls.come[i], balls.come[i + 1]):
-        k = balls.coming[c]
-        fx, fy, fz = fx + pushes[k, 0], fy + pushes[k, 1], fz + pushes[k, 2]
-        tx, ty, tz = tx + pushes[k, 3], ty + pushes[k, 4], tz + pushes[k, 5]
-    contact[i, 0], contact[i, 1], contact[i, 2] = (
-        contact[i, 0] + fx, contact[i, 1] + fy, contact[i, 2] + fz,
-    )  # fmt: skip
-    contact[i, 3], contact[i, 4], contact[i, 5] = (
-        contact[i, 3] + tx, contact[i, 4] + ty, contact[i, 5] + tz,
-    )  # fmt: skip
+def add_incoming(
+    start: int, end: int, contact: Numbers, outgoing: Numbers, begin: Whole, incoming: Short
+) -> None:
+    """Add the loads that pairs of earlier blocks have on the rows [start, end)."""
+    for i in range(start, end):
+        c, force, torque = 6 * i, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        for one in range(begin[i], begin[i + 1]):
+            k = 6 * incoming[one]
+            force = axpy(1.0, vector(outgoing, k), force)
+            torque = axpy(1.0, vector(outgoing, k + 3), torque)
+        set_vector(contact, c, axpy(1.0, force, vector(contact, c)))
+        set_vector(contact, c + 3, axpy(1.0, torque, vector(contact, c + 3)))
 
 
 @njit(**INNER)
-def finish(
-    first: int, last: int, model: Model, state: State, balls: Balls, tally: Numbers, dt: float,
+def end_kick_balls(
+    start: int, end: int, model: Model, motion: Numbers, contact: Numbers, load: Numbers,
+    half: float, loaded: bool,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """Half kick of the balls in rows [start, end): works [J] and how fast they move."""
+    half_gravity = scaled(half, vector(model.gravity, 0))
+    inverse_mass, inverse_moment = model.inverse_mass, model.inverse_moment
+    work, given, velocity2, rotation2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(start, end):
+        m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
+        force, torque = vector(contact, c), vector(contact, c + 3)
+        outer, twist = vector(load, to), vector(load, to + 3)
+        change = kick(half_gravity, half * inverse_mass[i], force, outer)
+        v, before = axpy(1.0, change, vector(motion, m + VELOCITY)), vector(motion, m + OMEGA)
+        ω = kick_rotation(before, half * inverse_moment[i], torque, twist)
+        set_vector(motion, m + VELOCITY, v)
+        set_vector(motion, m + OMEGA, ω)
+        work += kick_work(half, force, torque, v, change, before, ω)
+        given += kick_work(half, outer, twist, v, change, before, ω)
+        radius, ω2 = motion[m + RADIUS], dot(ω, ω)
+        velocity2, rotation2 = max(velocity2, dot(v, v)), max(rotation2, radius * radius * ω2)
+        centripetal = max(centripetal, radius * ω2)
+    return work, given, velocity2, rotation2, centripetal
+
+
+@njit(**INNER)
+def load_accelerations(start: int, end: int, model: Model, state: State) -> tuple[float, float]:
+    """Squares [m²/s⁴] of the largest accelerations: by gravity and loads, and by their torques."""
+    gravity, largest, rotation = vector(model.gravity, 0), 0.0, 0.0
+    for i in range(start, end):
+        pull = axpy(model.inverse_mass[i], row_vector(state.load, i), gravity)
+        x, y, z = row_vector(state.load, i, 3)
+        up = symmetric_product(state.world_inverse_inertia, i, x, y, z)
+        largest = max(largest, dot(pull, pull))
+        rotation = max(rotation, model.bounding_radius[i] ** 2 * dot(up, up))
+    return largest, rotation
+
+
+@njit(**INNER)
+def end_kick(
+    block: int, model: Model, state: State, pairs: BallPairs, sums: Numbers, dt: float,
     loaded: bool,
 ) -> None:  # fmt: skip
-    """Half kick with the new forces, of the rows of blocks [first, last); tally how fast all move.
-
-    Rows get forces from rows before them only, so that blocks may be finished one by one.
-    """
-    half, bodies = 0.5 * dt, model.reach.shape[0]
-    load, fall, motion = state.load, vector(model.fall, 0), state.motion
-    for block in range(first, last):
-        work, given = 0.0, 0.0
-        moving, spinning, pulled, spinup, curved = 0.0, 0.0, dot(fall, fall), 0.0, 0.0
-        for i in range(block * BLOCK, min((block + 1) * BLOCK, bodies)):
-            gather(state, balls, i)
-            change = push(model, state, i, half, loaded)
-            if model.ball[i]:
-                before, w = twist_ball(model, state, i, half, loaded)
-            else:
-                before, w = twist(state, i, half, loaded)
-            done, gave = works(state, i, half, change, before, w, loaded)
-            work, given = work + done, given + gave
-            v, reach, turns = three(motion, i, V), motion[i, 3], dot(w, w)
-            moving, spinning = max(moving, dot(v, v)), max(spinning, reach * reach * turns)
-            curved = max(curved, reach * turns)
-            if loaded:
-                pull = beside(fall, model.inverse_mass[i], vector(load, i))
-                up = times(state.mobility, i, load[i, 3], load[i, 4], load[i, 5])
-                pulled, spinup = max(pulled, dot(pull, pull)), max(spinup, reach**2 * dot(up, up))
-        tally[block, WORK] += work
-        tally[block, GIVEN] += given
-        tally[block, MOVING], tally[block, SPINNING] = moving, spinning
-        tally[block, PULLED], tally[block, SPUN], tally[block, CURVED] = pulled, spinup, curved
+    """Half kick of a block's rows with the new forces; how fast all move."""
+    half, gravity, bodies = 0.5 * dt, vector(model.gravity, 0), model.bounding_radius.shape[0]
+    motion, contact = state.motion.reshape(-1), state.contact_load.reshape(-1)
+    load, outgoing = state.load.reshape(-1), pairs.outgoing.reshape(-1)
+    start, end, balls = block * BLOCK, min((block + 1) * BLOCK, bodies), bodies
+    balls -= model.others.shape[0]
+    add_incoming(start, end, contact, outgoing, pairs.incoming_begin, pairs.incoming)
+    work, given, velocity2, rotation2, centripetal = end_kick_balls(
+        start, min(end, balls), model, motion, contact, load, half, loaded
+    )
+    for i in range(max(start, balls), end):
+        _, ω, done, gave = kick_body(model, state, i, half)
+        work, given = work + done, given + gave
+        v, radius, ω2 = row_vector(state.motion, i, VELOCITY), state.motion[i, RADIUS], dot(ω, ω)
+        velocity2, rotation2 = max(velocity2, dot(v, v)), max(rotation2, radius * radius * ω2)
+        centripetal = max(centripetal, radius * ω2)
+    acceleration2, spin_up2 = dot(gravity, gravity), 0.0
+    if loaded:
+        largest, spin_up2 = load_accelerations(start, end, model, state)
+        acceleration2 = max(acceleration2, largest)
+    sums[block, CONTACT_WORK] += work
+    sums[block, LOAD_WORK] += given
+    sums[block, VELOCITY2], sums[block, ROTATION2] = velocity2, rotation2
+    sums[block, ACCELERATION2], sums[block, SPIN_UP2] = acceleration2, spin_up2
+    sums[block, CENTRIPETAL] = centripetal
 
 
 @njit(**PURE)
-def kinetic(model: Model, state: State) -> float:
+def step(
+    first: int, last: int, begin: int, end: int, model: Model, state: State, balls: BallPairs,
+    others: BodyPairs, sums: Numbers, dt: float, loaded: bool, limit: float,
+) -> int:  # fmt: skip
+    """Run the stages [begin, end) of a velocity-Verlet step for the blocks [first, last).
+
+    One thread runs all stages in one call; several threads share out the blocks stage by stage.
+    No bit depends on it: all sums are rounded block by block, and a row gets the loads of
+    earlier blocks in the order of the pairs.
+
+    Parameters
+    ----------
+    first, last : int
+        Blocks of rows.
+    begin, end : int
+        Stages, from DRIFT up to DONE.
+    model, state, balls, others
+        All bodies and their pairs.
+    sums : (blocks, SUMS)
+        Extremes and sums of each block.
+    dt : float, s
+    loaded : bool
+        Whether any body has a load.
+    limit : float, m2
+        Square of the way that a sphere may go before pairs are listed anew.
+
+    Returns
+    -------
+    int
+        The next stage, or LIST: nothing but the drift was done, for pairs must be listed anew.
+    """
+    alone = others.key.shape[0] == 0
+    if begin <= DRIFT < end:
+        drift(first, last, model, state, sums, dt, loaded)
+    if begin <= BALLS < end:
+        if not sums[:, TRAVEL].max() <= limit:
+            return LIST
+        batch, constants_of = batch_of(balls)
+        for block in range(first, last):
+            rolling_moment = balls.rolling_moment
+            ball_loads(block, model, state, balls, rolling_moment, sums, batch, constants_of, dt)
+            # As soon as all its loads have come, while it is in the nearest cache.
+            if alone and balls.earliest[block] >= first:
+                end_kick(block, model, state, balls, sums, dt, loaded)
+    if begin <= OTHERS < end:
+        reduce_pairs(state.report, sums)
+        count = detect_contacts(model, state, others, balls.partner.shape[0])
+        state.report[TOUCHING] = count
+        contact_loads(model, state, others, count, dt)
+    if begin <= KICK < end:
+        for block in range(first, last):
+            if not (alone and balls.earliest[block] >= first):
+                end_kick(block, model, state, balls, sums, dt, loaded)
+    if begin <= REPORT < end:
+        reduce_bodies(state, sums)
+    return end
+
+
+@njit(**PURE)
+def kinetic_energy(model: Model, state: State) -> float:
     """Kinetic energy [J] of all bodies."""
     energy, motion = 0.0, state.motion
-    for i in range(model.reach.shape[0]):
-        v, w = three(motion, i, V), three(motion, i, W)
+    for i in range(model.bounding_radius.shape[0]):
+        v, ω = row_vector(motion, i, VELOCITY), row_vector(motion, i, OMEGA)
         energy += 0.5 * dot(v, v) / model.inverse_mass[i]
         if model.ball[i]:
-            energy += 0.5 * dot(w, w) / model.inverse_turn[i]
+            energy += 0.5 * dot(ω, ω) / model.inverse_moment[i]
         else:
-            energy += 0.5 * dot(vector(state.spin, i), w)
+            energy += 0.5 * dot(row_vector(state.angular_momentum, i), ω)
     return energy
 
 
 @njit(**PURE)
-def spins(model: Model, state: State) -> Numbers:
+def angular_momenta(model: Model, state: State) -> Numbers:
     """Angular momentum [kg m²/s] of each row about its centre."""
-    spin = state.spin.copy()
-    for i in range(model.reach.shape[0]):
+    momenta, motion = state.angular_momentum.copy(), state.motion
+    for i in range(model.bounding_radius.shape[0]):
         if model.ball[i]:
-            write(spin, i, 0, scaled(1.0 / model.inverse_turn[i], three(state.motion, i, W)))
-    return spin
+            moment = 1.0 / model.inverse_moment[i]
+            set_row_vector(momenta, i, 0, scaled(moment, row_vector(motion, i, OMEGA)))
+    return momenta
 
 
 @njit(**PURE)
-def moves(
-    state: State, position: Numbers, velocity: Numbers, orientation: Numbers, turning: Numbers
-) -> None:
+def copy_motion(
+    state: State, position: Numbers, velocity: Numbers, orientation: Numbers,
+    angular_velocities: Numbers,
+) -> None:  # fmt: skip
     """Copy out the motion of all bodies, in the scene's order."""
     motion = state.motion
     for k in range(position.shape[0]):
         i = state.row[k]
-        write(position, k, 0, vector(motion, i))
-        write(velocity, k, 0, three(motion, i, V))
-        write(turning, k, 0, three(motion, i, W))
+        set_row_vector(position, k, 0, row_vector(motion, i))
+        set_row_vector(velocity, k, 0, row_vector(motion, i, VELOCITY))
+        set_row_vector(angular_velocities, k, 0, row_vector(motion, i, OMEGA))
         for d in range(4):
             orientation[k, d] = state.orientation[i, d]
-
-
-@njit(**INNER)
-def press_others(
-    model: Model, state: State, balls: Balls, contacts: Contacts, tally: Numbers, dt: float
-) -> None:
-    """Report on the pairs of balls, and press all other pairs."""
-    found(state, tally)
-    count = find(model, state, contacts, balls.partner.shape[0])
-    state.report[TOUCHING] = count
-    press(model, state, contacts, count, dt)
-
-
-@njit(**PURE)
-def resolve(
-    model: Model, state: State, balls: Balls, contacts: Contacts, tally: Numbers, dt: float,
-    loaded: bool,
-) -> None:  # fmt: skip
-    """Let contacts press on the bodies where they now are, and end the step."""
-    blocks = tally.shape[0]
-    each = 1 if contacts.key.shape[0] == 0 else blocks  # finished while still in cache
-    for block in range(0, blocks, each):
-        press_balls(block, block + each, model, state, balls, tally, dt)
-        if block + each == blocks:
-            press_others(model, state, balls, contacts, tally, dt)
-        finish(block, block + each, model, state, balls, tally, dt, loaded)
-    close(state, tally)
-
-
-@njit(**PURE)
-def advance(
-    model: Model, state: State, balls: Balls, contacts: Contacts, tally: Numbers, dt: float,
-    loaded: bool, limit: float,
-) -> bool:  # fmt: skip
-    """Step, unless a sphere has gone further (m²) than `limit`: then stop before the contacts."""
-    drift(0, tally.shape[0], model, state, tally, dt, loaded)
-    if not furthest(state, tally) <= limit:
-        return False
-    resolve(model, state, balls, contacts, tally, dt, loaded)
-    return True

@@ -11,36 +11,59 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.rotations import INNER, Vector, beside, dot
+from quintet.components.shared.rotations import INNER, Vector, axpy, dot, scaled
 
 DAMPING = 2.0 * math.sqrt(5.0 / 6.0)
-LEAST = 1e-200  # what is smaller counts as nothing
+LEAST = 1e-200  # what is smaller counts as zero
+ROLLING_STIFFNESS = 2.25
+ROLLING_DAMPING = 0.3  # η, share of critical damping; Ai et al. use the same
 
 # k_n, k_t, c_n, c_t, μ, S_n/(m* √δ) and 1/k_t of a pair.
 Constants = tuple[float, float, float, float, float, float, float]
 
 
 @njit(**INNER)
-def constants(
+def pair_constants(
     modulus: float, shear: float, ζ: float, μ: float, radius: float, mass: float
 ) -> Constants:
-    """Row of a pair with E*, G* [Pa], R* [m] and m* [kg]."""
+    """Constants of a pair, from which its forces follow by few roots.
+
+    Parameters
+    ----------
+    modulus, shear : float, Pa
+        E* and G*.
+    ζ, μ : float
+        Damping ratio and coefficient of friction.
+    radius : float, m
+        R*, 1/R* = Σ 1/R.
+    mass : float, kg
+        m*, the mass that resists at the point of contact.
+
+    Returns
+    -------
+    k_n, k_t, c_n, c_t, μ, S_n/(m* √δ), 1/k_t
+
+    References
+    ----------
+    Hertz (1882), J. reine angew. Math. 92, 156; Mindlin & Deresiewicz (1953), J. Appl. Mech. 20,
+    327; Tsuji, Tanaka & Ishida (1992), Powder Technol. 71, 239 (the damping).
+    """
     root = math.sqrt(radius)
-    normal, side = 2.0 * modulus * root, 8.0 * shear * root
+    normal, tangential = 2.0 * modulus * root, 8.0 * shear * root
     damping = DAMPING * ζ * math.sqrt(mass)
     return (
         2.0 / 3.0 * normal,
-        side,
+        tangential,
         damping * math.sqrt(normal),
-        damping * math.sqrt(side),
+        damping * math.sqrt(tangential),
         μ,
         normal / mass,
-        1.0 / side,
+        1.0 / tangential,
     )
 
 
 @njit(**INNER)
-def first_weight(share: float) -> float:
+def first_step_weight(share: float) -> float:
     """Weight of the damping force at the end of the step in which a contact begins.
 
     That force grows as t^{1/4} from the moment of touching, a `share` of the step ago. Two
@@ -51,55 +74,104 @@ def first_weight(share: float) -> float:
 
 
 @njit(**INNER)
-def carried(force: Vector, normal: Vector, scale: float) -> Vector:
-    """Elastic tangential force after the contact plane has turned, times a scale."""
-    x, y, z = beside(force, -dot(force, normal), normal)
+def rotate_tangential_force(force: Vector, normal: Vector, scale: float) -> Vector:
+    """Elastic tangential force [N] in the contact plane that has turned, times a scale."""
+    x, y, z = axpy(-dot(force, normal), normal, force)
     scale *= math.sqrt(dot(force, force) / max(x * x + y * y + z * z, LEAST))
     return scale * x, scale * y, scale * z
 
 
 @njit(**INNER)
-def friction(elastic: Vector, slip: Vector, damping: float, limit: float) -> tuple[Vector, Vector]:
+def limit_friction(
+    elastic: Vector, slip: Vector, damping: float, limit: float
+) -> tuple[Vector, Vector]:
     """Tangential force [N] and its elastic part, within Coulomb's limit; slip velocity in m/s.
 
     Spring and damper slip by the same share. To give the spring the whole force would store
     energy that only the damper has taken.
     """
-    x, y, z = beside(elastic, -damping, slip)
+    x, y, z = axpy(-damping, slip, elastic)
     share = limit / max(max(math.sqrt(x * x + y * y + z * z), limit), LEAST)
-    held = share * elastic[0], share * elastic[1], share * elastic[2]
-    return (share * x, share * y, share * z), held
+    spring = share * elastic[0], share * elastic[1], share * elastic[2]
+    return (share * x, share * y, share * z), spring
 
 
 @njit(**INNER)
-def beginning(before: float, depth: float, closing: float, dt: float) -> float:
+def damping_weight(before: float, depth: float, closing: float, dt: float) -> float:
     """Weight of the damping force: 1, but in the step in which a contact begins."""
     if before == 0.0 and depth > 0.0 and closing * dt > 0.0:
-        return first_weight(min(1.0, depth / (closing * dt)))
+        return first_step_weight(min(1.0, depth / (closing * dt)))
     return 1.0
 
 
 @njit(inline="always", **INNER)
-def contact(
-    c: Constants, held: Vector, before: float, n: Vector, depth: float, roots: Vector,
-    first: float, mean: Vector, end: Vector, dt: float,
+def contact_force(
+    c: Constants, tangential: Vector, before: float, n: Vector, depth: float, roots: Vector,
+    weight: float, mean: Vector, end: Vector, dt: float,
 ) -> tuple[Vector, Vector, float]:  # fmt: skip
-    """Force [N] on the first of two bodies, its elastic tangential part, and energy [J].
+    """Force on the first of two bodies in contact, its elastic tangential part, and energy.
 
     There are no branches, so that several contacts can be computed at once: without depth all is
-    zero. `held` is the elastic tangential part of the last step and `before` its 1/√δ, both 0
-    in a contact that begins; `roots` are √δ, its root, and 1/√δ; `first` weighs the damping;
-    `mean` and `end` are relative velocities [m/s] of the point of contact, the mean of the step
-    and at its end; the normal n points to the first body.
+    zero.
+
+    Parameters
+    ----------
+    c : Constants
+        Of the pair, as `pair_constants` gives them.
+    tangential : (3,) N
+        Elastic tangential force of the last step; 0 in a contact that begins.
+    before : float, m^-1/2
+        1/√δ of the last step; 0 in a contact that begins.
+    n : (3,)
+        Unit normal, towards the first body.
+    depth : float, m
+        Overlap δ ≥ 0.
+    roots : √δ, δ^{1/4} and 1/√δ
+    weight : float
+        Of the damping, as `damping_weight` gives it.
+    mean, end : (3,) m/s
+        Velocity of the point of contact over the other body's, the mean of the step and at its end.
+    dt : float, s
+
+    Returns
+    -------
+    force : (3,) N
+    tangential : (3,) N
+        Its elastic tangential part.
+    energy : float, J
+        Held by both springs.
+
+    References
+    ----------
+    Hertz (1882); Tsuji, Tanaka & Ishida (1992); Antypov & Elliott (2011), EPL 94, 50004 (the
+    damping as a share of the critical one); Walton & Braun (1986), J. Rheol. 30, 949 (the spring
+    shrinks with the area on unloading); Schwager & Pöschel (2007), Granular Matter 9, 465 (the
+    force is never a pull).
     """
     root, quarter, inverse = roots
     opening = dot(end, n)
     elastic = c[0] * root * depth
-    normal = max(0.0, elastic - first * c[2] * quarter * opening)
+    normal = max(0.0, elastic - weight * c[2] * quarter * opening)
     # Tangential: the elastic part turns with the contact, shrinks with its area on unloading
-    # (Walton & Braun 1986) and grows with the mean slip of the step.
-    spring = carried(held, n, min(1.0, root * before))
-    spring = beside(spring, -c[1] * root * dt, beside(mean, -dot(mean, n), n))
-    side, spring = friction(spring, beside(end, -opening, n), c[3] * quarter, c[4] * normal)
+    # and grows with the mean slip of the step.
+    spring = rotate_tangential_force(tangential, n, min(1.0, root * before))
+    spring = axpy(-c[1] * root * dt, axpy(-dot(mean, n), n, mean), spring)
+    slip = axpy(-opening, n, end)
+    side, spring = limit_friction(spring, slip, c[3] * quarter, c[4] * normal)
     energy = 0.4 * elastic * depth + 0.5 * dot(spring, spring) * inverse * c[6]
-    return beside(side, normal, n), spring, energy
+    return axpy(normal, n, side), spring, energy
+
+
+@njit(**INNER)
+def limit_rolling(spring: Vector, dashpot: Vector, limit: float) -> tuple[Vector, Vector]:
+    """Rolling moment [N m] and its elastic part: a spring that yields, then without dashpot.
+
+    References
+    ----------
+    Ai, Chen, Rotter & Ooi (2011), Powder Technol. 206, 269, eqs. 14 to 23.
+    """
+    square = dot(spring, spring)
+    if square <= limit * limit:
+        return axpy(-1.0, dashpot, spring), spring
+    spring = scaled(limit / math.sqrt(square), spring)
+    return spring, spring

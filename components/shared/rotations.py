@@ -43,7 +43,7 @@ def exponential(x: float, y: float, z: float) -> Quaternion:
 
 
 @njit(**INNER)
-def turned(q: Quaternion, x: float, y: float, z: float) -> Quaternion:
+def rotated(q: Quaternion, x: float, y: float, z: float) -> Quaternion:
     """Orientation q after turning by a rotation vector [rad], in world axes.
 
     One step of Newton's method keeps the length at one: q is off by rounding only.
@@ -65,7 +65,7 @@ def matrix(q: Quaternion) -> Matrix:
 
 
 @njit(**INNER)
-def forward(r: Matrix, x: float, y: float, z: float) -> Vector:
+def to_world(r: Matrix, x: float, y: float, z: float) -> Vector:
     """Return R v: body -> world."""
     return (
         r[0] * x + r[1] * y + r[2] * z,
@@ -75,7 +75,7 @@ def forward(r: Matrix, x: float, y: float, z: float) -> Vector:
 
 
 @njit(**INNER)
-def backward(r: Matrix, x: float, y: float, z: float) -> Vector:
+def to_body(r: Matrix, x: float, y: float, z: float) -> Vector:
     """Return Rᵀ v: world -> body."""
     return (
         r[0] * x + r[3] * y + r[6] * z,
@@ -97,12 +97,18 @@ def dot(a: Vector, b: Vector) -> float:
 
 
 @njit(**INNER)
-def less(a: Vector, b: Vector) -> Vector:
+def sub(a: Vector, b: Vector) -> Vector:
     """Return a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 @njit(**INNER)
-def beside(a: Vector, scale: float, b: Vector) -> Vector:
-    """Return a + scale b."""
-    return a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]
+def axpy(α: float, x: Vector, y: Vector) -> Vector:
+    """Return α x + y."""
+    return α * x[0] + y[0], α * x[1] + y[1], α * x[2] + y[2]
+
+
+@njit(**INNER)
+def scaled(α: float, x: Vector) -> Vector:
+    """Return α x."""
+    return α * x[0], α * x[1], α * x[2]

@@ -83,7 +83,7 @@ DROP = {
 }
 BESIDE = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])
 # Two boxes without weight that hover over a floor.
-STUFF = {"young": 1e7, "poisson": 0.3, "restitution": 0.5, "friction": 0.4}
+STUFF = {"youngs_modulus": 1e7, "poissons_ratio": 0.3, "restitution": 0.5, "friction": 0.4}
 FLOAT = {**BODY, "density": 500.0, "material": "wood"}
 BALL = {"shape": "sphere", "diameter": 0.1, "density": 500.0, "material": "wood"}
 BOXES = {

@@ -114,7 +114,7 @@ def test_stiff_cubes_rest_on_the_floor_under_water(go: Run, young: float) -> Non
     sunk = {
         f"{BODY}.density": 7800.0,
         f"{BODY}.position": [0.175, 0.175, 0.0751],
-        "components.cube.materials.plastic.young": young,
+        "components.cube.materials.plastic.youngs_modulus": young,
         "components.water.fluid": [[[0.0, 0.0, 0.2], [0.35, 0.35, 0.4]]],
         "end": 0.1,
     }

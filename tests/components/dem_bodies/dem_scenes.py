@@ -8,15 +8,20 @@ from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.interfaces.params import read
 
-GLASS = {"young": 4.8e10, "poisson": 0.2, "restitution": 1.0, "friction": 0.0}
-PLASTIC = {"young": 3.0e9, "poisson": 0.3, "restitution": 0.6, "friction": 0.45}
-STEEL = {"young": 2.1e11, "poisson": 0.3, "restitution": 0.8, "friction": 0.35}
+GLASS = {"youngs_modulus": 4.8e10, "poissons_ratio": 0.2, "restitution": 1.0, "friction": 0.0}
+PLASTIC = {"youngs_modulus": 3.0e9, "poissons_ratio": 0.3, "restitution": 0.6, "friction": 0.45}
+STEEL = {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "restitution": 0.8, "friction": 0.35}
 FLOOR = {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "material": "a"}
 NOTHING = [0.0, 0.0, 0.0]
 
 
 def material(**given):
-    return {"young": 1e8, "poisson": 0.3, "restitution": 0.5, "friction": 0.3} | given
+    return {
+        "youngs_modulus": 1e8,
+        "poissons_ratio": 0.3,
+        "restitution": 0.5,
+        "friction": 0.3,
+    } | given
 
 
 def sphere(position, diameter=0.02, **given):
@@ -60,7 +65,7 @@ def three_cubes():
     """The cubes of the dam break, on its floor."""
     bodies = [box([5.275, 0.35, z]) for z in (0.075, 0.225, 0.375)]
     floor = FLOOR | {"material": "floor"}
-    return build(bodies, {"a": PLASTIC, "floor": STEEL}, planes=[floor], speed=3.0)
+    return build(bodies, {"a": PLASTIC, "floor": STEEL}, planes=[floor], impact_speed=3.0)
 
 
 def about(axis, angle):

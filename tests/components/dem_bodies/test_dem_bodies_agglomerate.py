@@ -5,9 +5,9 @@ import pytest
 import trimesh
 from dem_scenes import FLOOR, NOTHING, build, material, mistakes, run
 
-from quintet.components.dem_bodies.agglomerate import agglomerate
-from quintet.components.dem_bodies.shapes import voxels
-from quintet.components.dem_bodies.state import ELASTIC, WHICH
+from quintet.components.dem_bodies.shapes.agglomerate import agglomerate
+from quintet.components.dem_bodies.shapes.mesh_files import voxels
+from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
 from quintet.coupler.coupling.body_samples import fill
 from quintet.interfaces.errors import LinkError
 
@@ -32,9 +32,10 @@ def files(tmp_path):
     return tmp_path
 
 
-def body(file, dim=8, radius=0.0125, **given):
+def body(file, dim=8, radius=0.0125, scale=1.0, **given):
     plain = {"shape": "agglomerate", "density": 800.0, "material": "a", "position": NOTHING}
-    return plain | {"file": str(file), "dim": dim, "radius": radius} | given
+    one = {"file": str(file), "scale": scale, "dim": dim, "sphere_radius": radius}
+    return plain | {"agglomerate": one} | given
 
 
 def exact_l():
@@ -110,16 +111,16 @@ def test_spheres_of_one_body_never_touch(files):
     )
     start = free.totals()
     run(free, 0.5)
-    assert free.state.report[WHICH] == -1 and free.state.report[ELASTIC] == 0.0
+    assert free.state.report[DEEPEST_PAIR] == -1 and free.state.report[ELASTIC_ENERGY] == 0.0
     np.testing.assert_allclose(free.totals().angular_momentum, start.angular_momentum, rtol=1e-12)
     assert free.totals().kinetic == pytest.approx(start.kinetic, rel=1e-4)
 
 
 def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
-    stuff = {"a": material(young=1e7, restitution=0.2, friction=0.4)}
+    stuff = {"a": material(youngs_modulus=1e7, restitution=0.2, friction=0.4)}
     bodies = [body(files / "ball.ply", position=[0.0, 0.0, 0.0755])]
     bodies += [body(files / "cube.stl", scale=1e-3, position=[0.16, 0.0, 0.0755])]
-    pile = build(bodies, stuff, planes=[FLOOR], contact_forces=True, speed=0.5)
+    pile = build(bodies, stuff, planes=[FLOOR], contact_forces=True, impact_speed=0.5)
     run(pile, 0.3)
     given = pile.give()
     assert given["motion.position"][1, 2] == pytest.approx(0.075, abs=2e-4)
@@ -155,19 +156,15 @@ def test_what_is_wrong_with_a_file_is_told(files):
         "text.npy must be one array": body(files / "text.npy"),
         "must have three axes of numbers": body(files / "flat.npy"),
         "of which not all are zero": body(files / "none.npy"),
-        "radius must be at most half the shape's shortest edge, 0.075 m": body(
+        "sphere_radius must be at most half the shape's shortest edge, 0.075 m": body(
             files / "ball.ply", radius=0.08
         ),
         "found 0.0125 m for": body(files / "cube.stl"),
-        "Make dim 6000 or larger, or radius larger, or correct scale": body(files / "cube.stl"),
+        "Make dim 6000 or larger, or sphere_radius larger, or correct": body(files / "cube.stl"),
         "must have at most 2000 spheres; dim 40": body(files / "l.npy", 40, scale=0.05),
         "must have room for a sphere within": body(files / "pyramid.ply", 3, 0.3),
-        "described by file and dim and radius alone; found diameter": body("x", diameter=1.0),
-        "scale is for what is read from a file": {
-            "shape": "sphere", "diameter": 1.0, "density": 1.0, "material": "a",
-            "position": NOTHING, "scale": 0.1,
-        },
-        "bodies.0.dim should be greater than or equal to 2": body("x", 1),
+        "is described by agglomerate alone; found agglomerate, diameter": body("x", diameter=1.0),
+        "bodies.0.agglomerate.dim should be greater than or equal to 2": body("x", 1),
     }  # fmt: skip
     for sentence, given in wrong.items():
         assert sentence in " ".join(mistakes([given])), (sentence, mistakes([given]))

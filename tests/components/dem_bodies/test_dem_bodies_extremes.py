@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from dem_scenes import FLOOR, NOTHING, about, box, build, energy, material, run, sphere
 
-from quintet.components.dem_bodies.crowd import DAMPING
-from quintet.components.dem_bodies.materials import DURATION
-from quintet.components.dem_bodies.state import DEEPEST, WHICH
+from quintet.components.dem_bodies.contact.materials import DURATION
+from quintet.components.dem_bodies.laws import DAMPING
+from quintet.components.dem_bodies.state import DEEPEST, DEEPEST_PAIR
 from quintet.interfaces.errors import StepError
 
 STIFF = [3.0e9, 6.5e10, 2.1e11]  # Pa: plastic, glass, steel
@@ -18,8 +18,8 @@ RADIUS = 0.05  # m
 def dropped(young, speed, restitution, **given):
     """A ball that is about to touch the floor, without weight."""
     body = sphere([0.0, 0.0, RADIUS + 1e-6], 2 * RADIUS, velocity=[0.0, 0.0, -speed])
-    stuff = {"a": material(young=young, restitution=restitution)}
-    return build([body], stuff, gravity=NOTHING, planes=[FLOOR], speed=speed, **given)
+    stuff = {"a": material(youngs_modulus=young, restitution=restitution)}
+    return build([body], stuff, gravity=NOTHING, planes=[FLOOR], impact_speed=speed, **given)
 
 
 def hertz_depth(ball, young, speed, share=1.0):
@@ -57,7 +57,7 @@ def test_energy_never_grows_where_contacts_damp(young, speed):
     run(
         ball, 5.0 * hertz_depth(ball, young, speed) / speed, lambda _: energies.append(energy(ball))
     )
-    assert ball.state.report[WHICH] == -1  # apart again
+    assert ball.state.report[DEEPEST_PAIR] == -1  # apart again
     assert np.diff(energies).max() <= 0.0
     assert energies[-1] == pytest.approx(0.36 * energies[0], rel=5e-3)
 
@@ -77,8 +77,8 @@ def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(turned):
     """On its face, and on its corner."""
     high = 0.0751 if turned[0] == 1.0 else 0.1301
     body = box([0.0, 0.0, high], orientation=turned, velocity=[0.0, 0.0, -20.0])
-    stuff = {"a": material(young=2.1e11, restitution=0.6)}
-    cube = build([body], stuff, gravity=NOTHING, planes=[FLOOR], speed=20.0)
+    stuff = {"a": material(youngs_modulus=2.1e11, restitution=0.6)}
+    cube = build([body], stuff, gravity=NOTHING, planes=[FLOOR], impact_speed=20.0)
     energies = [energy(cube)]
     run(cube, 2e-3, lambda _: energies.append(energy(cube)))
     assert cube.give()["motion.velocity"][0, 2] == pytest.approx(12.0, rel=5e-2)
@@ -87,11 +87,11 @@ def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(turned):
 
 def test_an_impact_too_hard_for_hertz_is_refused():
     """A plastic cube at 20 m/s sinks in by half the radius of its corners."""
-    stuff = {"a": material(young=3e9, restitution=0.6)}
+    stuff = {"a": material(youngs_modulus=3e9, restitution=0.6)}
     body = box([0.0, 0.0, 0.0751], velocity=[0.0, 0.0, -20.0])
-    cube = build([body], stuff, planes=[FLOOR], speed=20.0)
+    cube = build([body], stuff, planes=[FLOOR], impact_speed=20.0)
     with pytest.raises(
-        StepError, match=r"body 0 is 0\.5.* deep in a plane.*Make young or rounding"
+        StepError, match=r"body 0 is 0\.5.* deep in a plane.*Make youngs_modulus or edge_radius"
     ):
         run(cube, 1e-3)
 
@@ -101,9 +101,9 @@ def swing(young, restitution, step):
 
     Returns the largest speed within 400 steps over that of the nudge, and ζ.
     """
-    stuff = {"a": material(young=young, restitution=restitution, friction=0.0)}
+    stuff = {"a": material(youngs_modulus=young, restitution=restitution, friction=0.0)}
     ball = build([sphere([0.0, 0.0, RADIUS], 2 * RADIUS)], stuff, planes=[FLOOR])
-    modulus, ζ = ball.model.law[0, 0, 0], ball.damping
+    modulus, ζ = ball.model.material_pairs[0, 0, 0], ball.damping
     weight = 9.81 * ball.mass[0]
     depth = (0.75 * weight / (modulus * math.sqrt(RADIUS))) ** (2.0 / 3.0)
     ω = math.sqrt(2.0 * modulus * math.sqrt(RADIUS * depth) / ball.mass[0])
@@ -131,8 +131,8 @@ def test_many_dampers_on_one_body_are_stable():
     places = [[0.03 * i, 0.03 * j, 0.0] for i in range(8) for j in range(8)]
     slab = {"shape": "spheres", "centres": places, "radii": [0.0125] * 64, "material": "a"}
     slab |= {"density": 800.0, "position": [0.0, 0.0, 0.0126]}
-    stuff = {"a": material(young=1e7, restitution=0.05)}
-    body = build([slab], stuff, planes=[FLOOR], speed=0.5, contact_forces=True)
+    stuff = {"a": material(youngs_modulus=1e7, restitution=0.05)}
+    body = build([slab], stuff, planes=[FLOOR], impact_speed=0.5, contact_forces=True)
     run(body, 0.3)
     assert body.give()["contact.force"][0, 2] == pytest.approx(9.81 * body.mass[0], rel=1e-6)
     assert np.abs(body.give()["motion.velocity"]).max() < 1e-9
@@ -143,17 +143,18 @@ def test_damped_balls_in_a_heap_come_to_rest():
     walls = [([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])]
     walls += [([0.041, 0.0, 0.0], [-1.0, 0.0, 0.0]), ([0.0, 0.041, 0.0], [0.0, -1.0, 0.0])]
     planes = [FLOOR] + [{"point": p, "normal": n, "material": "a"} for p, n in walls]
-    ball = sphere([0.0055, 0.0055, 0.006], 0.01, copies=[4, 4, 8], apart=[0.0101] * 3)
-    stuff = {"a": material(young=2e6, restitution=0.05, friction=0.3)}
-    heap = build([ball | {"scatter": 2e-5}], stuff, planes=planes, speed=0.5)
+    copies = {"number": [4, 4, 8], "spacing": [0.0101] * 3, "scatter": 2e-5}
+    ball = sphere([0.0055, 0.0055, 0.006], 0.01, copies=copies)
+    stuff = {"a": material(youngs_modulus=2e6, restitution=0.05, friction=0.3)}
+    heap = build([ball], stuff, planes=planes, impact_speed=0.5)
     run(heap, 0.4)
     assert np.median(np.linalg.norm(heap.give()["motion.velocity"], axis=1)) < 1e-5
 
 
 def test_a_damped_stack_of_cubes_stands_still():
     bodies = [box([0.0, 0.0, 0.075 + 0.15 * k]) for k in range(4)]
-    stuff = {"a": material(young=3e9, restitution=0.05, friction=0.4)}
-    stack = build(bodies, stuff, planes=[FLOOR], speed=0.1)
+    stuff = {"a": material(youngs_modulus=3e9, restitution=0.05, friction=0.4)}
+    stack = build(bodies, stuff, planes=[FLOOR], impact_speed=0.1)
     run(stack, 0.3)
     assert np.abs(stack.give()["motion.velocity"]).max() < 1e-6
 

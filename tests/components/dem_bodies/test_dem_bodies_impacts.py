@@ -19,10 +19,10 @@ from dem_scenes import (
 )
 from scipy.integrate import solve_ivp
 
-from quintet.components.dem_bodies.materials import damping_ratio, restitution
-from quintet.components.dem_bodies.state import ELASTIC, WHICH
+from quintet.components.dem_bodies.contact.materials import damping_ratio, restitution
+from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
 
-LIMESTONE = {"young": 2.0e10, "poisson": 0.25, "restitution": 1.0, "friction": 0.0}
+LIMESTONE = {"youngs_modulus": 2.0e10, "poissons_ratio": 0.25, "restitution": 1.0, "friction": 0.0}
 
 
 def pair(stuff, density, speed=10.0, steps=400):
@@ -30,7 +30,7 @@ def pair(stuff, density, speed=10.0, steps=400):
         sphere([side * 0.01, 0.0, 0.0], density=density, velocity=[-side * speed, 0.0, 0.0])
         for side in (-1.0, 1.0)
     ]
-    scene = {"gravity": NOTHING, "speed": 2 * speed, "steps_per_contact": steps}
+    scene = {"gravity": NOTHING, "impact_speed": 2 * speed, "steps_per_contact": steps}
     return build(bodies, {"a": stuff}, **scene)
 
 
@@ -48,7 +48,7 @@ def test_elastic_impact_of_two_spheres_is_hertz(stuff, density, force, depth, du
 
     def watch(_):
         x = spheres.give()["motion.position"][:, 0]
-        pushes.append(abs(spheres.state.contact[0, 0]))
+        pushes.append(abs(spheres.state.contact_load[0, 0]))
         depths.append(0.02 - (x[1] - x[0]))
 
     run(spheres, 1.2 * duration, watch, duration / 400)
@@ -97,24 +97,24 @@ def test_damping_ratio_realises_restitution_in_the_equation_of_motion(e):
 @pytest.mark.parametrize("e", [0.2, 0.4, 0.6, 0.8, 1.0])
 @pytest.mark.parametrize("other", ["plane", "sphere"])
 def test_restitution_is_realised(e, other):
-    stuff = {"young": 3.8e11, "poisson": 0.23, "restitution": e, "friction": 0.0}
+    stuff = {"youngs_modulus": 3.8e11, "poissons_ratio": 0.23, "restitution": e, "friction": 0.0}
     bodies = [sphere([0.0, 0.0, 2.5e-3 + 1e-6], 5e-3, density=4000.0, velocity=[0.0, 0.0, -3.9])]
     if other == "sphere":
         below = [0.0, 0.0, -2.5e-3]
         bodies.append(sphere(below, 5e-3, density=4000.0, velocity=[0.0, 0.0, 3.9]))
     planes = [FLOOR] if other == "plane" else []
     speed = 3.9 if other == "plane" else 7.8
-    spheres = build(bodies, {"a": stuff}, gravity=NOTHING, speed=speed, planes=planes)
+    spheres = build(bodies, {"a": stuff}, gravity=NOTHING, impact_speed=speed, planes=planes)
     run(spheres, 5e-5)
-    assert spheres.state.report[WHICH] == -1  # apart again
+    assert spheres.state.report[DEEPEST_PAIR] == -1  # apart again
     assert spheres.give()["motion.velocity"][0, 2] / 3.9 == pytest.approx(e, rel=5e-3)
 
 
 @pytest.mark.parametrize("first", range(10))
 def test_restitution_does_not_depend_on_when_a_step_meets_the_contact(first):
-    stuff = {"young": 3.8e11, "poisson": 0.23, "restitution": 0.2, "friction": 0.0}
+    stuff = {"youngs_modulus": 3.8e11, "poissons_ratio": 0.23, "restitution": 0.2, "friction": 0.0}
     body = sphere([0.0, 0.0, 2.5e-3], 5e-3, density=4000.0, velocity=[0.0, 0.0, -3.9])
-    ball = build([body], {"a": stuff}, gravity=NOTHING, speed=3.9, planes=[FLOOR])
+    ball = build([body], {"a": stuff}, gravity=NOTHING, impact_speed=3.9, planes=[FLOOR])
     dt = ball.stable_dt()
     ball.state.position[0, 2] += 0.1 * first * dt * 3.9
     run(ball, 5e-5, dt=dt)
@@ -124,12 +124,12 @@ def test_restitution_does_not_depend_on_when_a_step_meets_the_contact(first):
 def test_restitution_holds_for_a_corner_that_strikes_off_centre():
     turned = about([1.0, 2.0, 0.5], 0.6)
     body = box([0.0, 0.0, 0.2], orientation=turned, velocity=[0.0, 0.0, -1.0])
-    given = {"gravity": NOTHING, "planes": [FLOOR], "speed": 1.0}
+    given = {"gravity": NOTHING, "planes": [FLOOR], "impact_speed": 1.0}
     cube = build([body], {"a": STEEL | {"friction": 0.0, "restitution": 0.6}}, **given)
     lowest = int(np.argmin(cube.state.centre[:, 2]))
-    while cube.state.report[WHICH] < 0.0:
+    while cube.state.report[DEEPEST_PAIR] < 0.0:
         cube.step(cube.stable_dt())
-    while cube.state.report[WHICH] >= 0.0:
+    while cube.state.report[DEEPEST_PAIR] >= 0.0:
         cube.step(cube.stable_dt())
     arm = cube.state.centre[lowest] - cube.state.position[0]
     arm[2] -= cube.model.sphere_radius[lowest]
@@ -141,7 +141,7 @@ def test_restitution_holds_for_a_corner_that_strikes_off_centre():
 
 def test_box_that_falls_flat_bounces_about_as_asked():
     """Its four corners are inset by the rounding, which makes them a little lighter than m/4."""
-    given = {"gravity": NOTHING, "planes": [FLOOR], "speed": 1.0}
+    given = {"gravity": NOTHING, "planes": [FLOOR], "impact_speed": 1.0}
     stuff = {"a": STEEL | {"friction": 0.0, "restitution": 0.6}}
     flat = build([box([0.0, 0.0, 0.075 + 1e-6], velocity=[0.0, 0.0, -1.0])], stuff, **given)
     run(flat, 2e-3)
@@ -155,9 +155,9 @@ def test_gross_sliding_in_an_oblique_impact(angle):
     θ, μ, e, radius = math.radians(90.0 - angle), 0.092, 0.98, 2.5e-3
     vn, vt = 3.9 * math.cos(θ), 3.9 * math.sin(θ)
     assert math.tan(θ) > 3.5 * μ * (1.0 + e)
-    stuff = {"young": 3.8e11, "poisson": 0.23, "restitution": e, "friction": μ}
+    stuff = {"youngs_modulus": 3.8e11, "poissons_ratio": 0.23, "restitution": e, "friction": μ}
     body = sphere([0.0, 0.0, radius + 1e-8], 5e-3, density=4000.0, velocity=[vt, 0.0, -vn])
-    ball = build([body], {"a": stuff}, gravity=NOTHING, speed=3.9, planes=[FLOOR])
+    ball = build([body], {"a": stuff}, gravity=NOTHING, impact_speed=3.9, planes=[FLOOR])
     run(ball, 1.2e-4, dt=2e-7)
     given = ball.give()
     assert given["motion.velocity"][0, 2] == pytest.approx(e * vn, rel=5e-3)
@@ -172,12 +172,12 @@ def test_collision_conserves_momentum_and_angular_momentum():
         box([0.2, 0.05, 0.03], (0.1, 0.15, 0.12), angular_velocity=[-2.0, 1.0, 5.0]),
         sphere([-0.2, 0.0, 0.01], 0.1, velocity=[3.0, 0.0, 0.0]),
     ]
-    scene = build(bodies, {"a": material(young=1e9)}, gravity=NOTHING, speed=2.0)
+    scene = build(bodies, {"a": material(youngs_modulus=1e9)}, gravity=NOTHING, impact_speed=2.0)
     start, least, most = scene.totals(), energy(scene), 0.0
 
     def watch(_):
         nonlocal most
-        most = max(most, scene.state.report[ELASTIC])
+        most = max(most, scene.state.report[ELASTIC_ENERGY])
 
     run(scene, 0.2, watch)
     end = scene.totals()
@@ -187,5 +187,5 @@ def test_collision_conserves_momentum_and_angular_momentum():
         end.angular_momentum, start.angular_momentum, atol=1e-13 * scale, rtol=0
     )
     assert most > 0.1  # J: they did meet
-    assert energy(scene) + scene.books.dissipated == pytest.approx(least, rel=2e-3)
-    assert scene.books.dissipated > 0.05 * least
+    assert energy(scene) + scene.accumulated.dissipated == pytest.approx(least, rel=2e-3)
+    assert scene.accumulated.dissipated > 0.05 * least

@@ -8,7 +8,7 @@ import pytest
 from dem_scenes import FLOOR, NOTHING, box, build, energy, material, run, sphere, three_cubes
 from scipy.integrate import solve_ivp
 
-from quintet.components.dem_bodies.clump import union
+from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.interfaces.errors import StepError
 
 SIZE = (0.1, 0.2, 0.3)
@@ -37,10 +37,10 @@ def test_free_box_turns_by_eulers_equations():
 
 def test_free_box_keeps_angular_momentum_and_energy():
     body = free_box()
-    start, spin = body.totals(), body.state.spin.copy()
+    start, spin = body.totals(), body.state.angular_momentum.copy()
     drifts = []
     run(body, 5.0, lambda _: drifts.append(body.totals().kinetic / start.kinetic - 1.0), dt=1e-3)
-    assert (body.state.spin == spin).all()
+    assert (body.state.angular_momentum == spin).all()
     assert np.abs(drifts).max() < 2e-5
     assert abs(np.mean(drifts[-1000:])) < 1e-5
     np.testing.assert_allclose(body.totals().momentum, start.momentum, rtol=1e-14)
@@ -53,9 +53,9 @@ def test_load_acts_as_an_impulse():
     body.take({"load.force": force, "load.torque": torque})
     run(body, 0.5, dt=1e-3)
     np.testing.assert_allclose(body.totals().momentum, 0.5 * force[0], rtol=1e-12)
-    spin = body.state.spin[body.state.row[0]]
+    spin = body.state.angular_momentum[body.state.row[0]]
     np.testing.assert_allclose(spin, 0.5 * torque[0], rtol=1e-12, atol=1e-15)
-    assert body.books.given == pytest.approx(body.totals().kinetic, rel=1e-12)
+    assert body.accumulated.given == pytest.approx(body.totals().kinetic, rel=1e-12)
     body.take({})
     before = body.totals().momentum
     run(body, 0.1, dt=1e-3)
@@ -63,13 +63,13 @@ def test_load_acts_as_an_impulse():
 
 
 def test_energy_balance_closes_and_contacts_only_take():
-    stuff = {"a": material(young=1e9, friction=0.3, restitution=0.7)}
+    stuff = {"a": material(youngs_modulus=1e9, friction=0.3, restitution=0.7)}
     body = box([0.0, 0.0, 0.2], velocity=[0.5, 0.0, -1.0], angular_velocity=[2.0, 1.0, 0.0])
     scene = build([body], stuff, planes=[FLOOR])
     scene.take({"load.force": np.array([[0.0, 1.0, 0.0]]), "load.torque": np.zeros((1, 3))})
     start, taken = energy(scene), [0.0]
-    run(scene, 0.4, lambda _: taken.append(scene.books.dissipated))
-    given, dissipated = scene.books.given, scene.books.dissipated
+    run(scene, 0.4, lambda _: taken.append(scene.accumulated.dissipated))
+    given, dissipated = scene.accumulated.given, scene.accumulated.dissipated
     assert energy(scene) + dissipated - given == pytest.approx(start, rel=1e-9)
     assert np.diff(taken).min() > -1e-9 * start
     assert dissipated > 0.2 * start
@@ -80,7 +80,7 @@ def test_contact_forces_are_what_changes_momentum():
     bodies = [box([0.0, 0.0, 0.0751]), box([0.03, 0.0, 0.2252], angular_velocity=[0.0, 2.0, 0.0])]
     scene = build(bodies, planes=[FLOOR], contact_forces=True)
     force, torque, time = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
-    start, spin = scene.give(), scene.state.spin.copy()
+    start, spin = scene.give(), scene.state.angular_momentum.copy()
     while time < 0.2:
         dt = scene.stable_dt()
         scene.step(dt)
@@ -89,14 +89,14 @@ def test_contact_forces_are_what_changes_momentum():
     gained = scene.mass[:, None] * (given["motion.velocity"] - start["motion.velocity"])
     gained[:, 2] += 9.81 * time * scene.mass
     np.testing.assert_allclose(force[:2], gained, atol=1e-12 * np.abs(gained).max())
-    np.testing.assert_allclose(torque[:2], (scene.state.spin - spin)[:2], atol=1e-12)
+    np.testing.assert_allclose(torque[:2], (scene.state.angular_momentum - spin)[:2], atol=1e-12)
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-12 * np.abs(force).max())
     assert force[0, 2] > 0.0 > force[2, 2]
 
 
 def elastic_error(steps):
     """Largest energy error of a slender box that bounces without loss."""
-    stuff = {"a": material(young=1e10, friction=0.0, restitution=1.0)}
+    stuff = {"a": material(youngs_modulus=1e10, friction=0.0, restitution=1.0)}
     body = box([0.0, 0.0, 0.3], SIZE, velocity=[0.0, 0.0, -1.0], angular_velocity=[2.0, 1.0, 0.0])
     scene = build([body], stuff, planes=[FLOOR], steps_per_contact=steps, longest_step=1e-4)
     start, errors = energy(scene), [0.0]
@@ -113,7 +113,7 @@ def test_elastic_bounces_keep_energy_to_second_order():
 
 def test_two_half_steps_are_one_to_second_order():
     """On one and the same damped contact that slips nowhere: local error dt³."""
-    stuff = {"a": material(young=1e6, friction=5.0, restitution=0.4)}
+    stuff = {"a": material(youngs_modulus=1e6, friction=5.0, restitution=0.4)}
     differences = []
     for dt in (2e-4, 1e-4):
         found = []
@@ -130,17 +130,19 @@ def test_two_half_steps_are_one_to_second_order():
 
 
 def test_union_of_spheres_counts_overlaps_once():
-    radius, apart = 1.0, 1.2
-    volume, centre, inertia = union((((0.0, 0.0, 0.0), (apart, 0.0, 0.0)), (radius, radius)))
-    h = radius - 0.5 * apart  # two caps of this height are counted twice
+    radius, distance = 1.0, 1.2
+    volume, centre, inertia = measure_union(
+        (((0.0, 0.0, 0.0), (distance, 0.0, 0.0)), (radius, radius))
+    )
+    h = radius - 0.5 * distance  # two caps of this height are counted twice
     exact = 8.0 / 3.0 * np.pi - 2.0 * np.pi * h**2 * (3.0 * radius - h) / 3.0
     assert volume == pytest.approx(exact, rel=5e-3)
-    np.testing.assert_allclose(centre, [0.5 * apart, 0.0, 0.0], atol=1e-9)
-    x = np.linspace(-radius, 0.5 * apart, 20001)
+    np.testing.assert_allclose(centre, [0.5 * distance, 0.0, 0.0], atol=1e-9)
+    x = np.linspace(-radius, 0.5 * distance, 20001)
     area = np.pi * (radius**2 - x**2)
     about_x = 2.0 * np.trapezoid(area**2 / (2.0 * np.pi), x)
     assert inertia[0, 0] == pytest.approx(about_x, rel=1e-2)
-    about_y = 2.0 * np.trapezoid(area**2 / (4.0 * np.pi) + area * (x - 0.5 * apart) ** 2, x)
+    about_y = 2.0 * np.trapezoid(area**2 / (4.0 * np.pi) + area * (x - 0.5 * distance) ** 2, x)
     assert inertia[1, 1] == pytest.approx(about_y, rel=1e-2)
 
 
@@ -222,9 +224,9 @@ def test_steps_are_long_while_nothing_can_touch():
 
 
 def test_too_deep_a_contact_ends_the_run():
-    soft = {"a": material(young=1e4)}
+    soft = {"a": material(youngs_modulus=1e4)}
     ball = build([sphere([0.0, 0.0, 0.06], 0.1, velocity=[0.0, 0.0, -9.0])], soft, planes=[FLOOR])
-    with pytest.raises(StepError, match=r"body 0 is .* deep in a plane.*Make young"):
+    with pytest.raises(StepError, match=r"body 0 is .* deep in a plane.*Make youngs_modulus"):
         run(ball, 0.1)
 
 

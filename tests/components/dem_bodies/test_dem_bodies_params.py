@@ -9,10 +9,13 @@ from dem_scenes import FLOOR, about, box, material, mistakes, params, run, spher
 
 from quintet.components.dem_bodies import MANIFEST
 from quintet.components.dem_bodies.component import DemBodies
-from quintet.components.dem_bodies.params import CONTACT
+from quintet.components.dem_bodies.ports import CONTACT
 from quintet.interfaces.ports import LOAD, MOTION
 
 LOOSE = {"shape": "spheres", "density": 1.0, "material": "a", "position": [0.0, 0.0, 0.0]}
+
+
+TWO = {"number": [2, 1, 1], "spacing": [0.01] * 3}
 
 
 @pytest.mark.parametrize(
@@ -28,20 +31,37 @@ LOOSE = {"shape": "spheres", "density": 1.0, "material": "a", "position": [0.0, 
         ([sphere([0, 0, 0]), sphere([0.01, 0, 0])], {}, "they do by 0.01 m"),
         ([box([0, 0, 0], orientation=[1.0, 1.0, 0.0, 0.0])], {}, "must be a unit quaternion"),
         ([box([0, 0, 0], diameter=1.0)], {}, "a box is described by size alone"),
-        ([sphere([0, 0, 0], rounding=0.1)], {}, "rounding is for boxes"),
-        ([box([0, 0, 0], rounding=0.08)], {}, "rounding must be less than half"),
+        ([sphere([0, 0, 0], edge_radius=0.1)], {}, "edge_radius is for boxes"),
+        ([box([0, 0, 0], edge_radius=0.08)], {}, "edge_radius must be less than half"),
         ([box([0, 0, 0], mass=1.0)], {}, "exactly one of density and mass"),
         ([LOOSE | {"centres": [[0, 0, 0]], "radii": [1.0, 2.0]}], {}, "one radius for each centre"),
         ([LOOSE | {"centres": [[0, 0, 0]]}], {}, "a spheres is described by centres and radii"),
         ([], {}, "bodies"),
         ([box([0, 0, 0])], {"steps_per_contact": 5}, "steps_per_contact"),
         ([box([0, 0, 0], densty=1.0)], {}, "Did you mean density?"),
-        ([sphere([0, 0, 0], copies=[2, 1, 1])], {}, "copies and apart belong together"),
-        ([sphere([0, 0, 0], scatter=0.1)], {}, "scatter is for copies; found 0.1 m"),
-        ([sphere([0, 0, 0], copies=[2, 1, 1], apart=[0.01] * 3)], {}, "must not overlap"),
+        ([sphere([0, 0, 0], copies={"number": [2, 1, 1]})], {}, "copies.spacing is needed"),
+        ([sphere([0, 0, 0], copies=TWO)], {}, "must not overlap"),
     ],
 )
 def test_wrong_scenes_are_refused(bodies, given, sentence):
+    assert sentence in " ".join(mistakes(bodies, **given))
+
+
+@pytest.mark.parametrize(
+    ("bodies", "given", "sentence"),
+    [
+        ([], {"speed": 2.0}, "bodies.speed is now impact_speed. Rename it."),
+        ([], {"step": 1e-5}, "bodies.step is now fixed_step. Rename it."),
+        ([], {"materials": {"a": {"young": 1e7}}}, "materials.a.young is now youngs_modulus."),
+        ([], {"pairs": [{"rolling": 0.1}]}, "pairs.0.rolling is now rolling_friction."),
+        ([box([0, 0, 0], rounding=0.1)], {}, "bodies.0.rounding is now edge_radius."),
+        ([sphere([0, 0, 0], copies=[2, 1, 1])], {}, "bodies.0.copies is now copies.number."),
+        ([sphere([0, 0, 0], apart=[1, 1, 1])], {}, "bodies.0.apart is now copies.spacing."),
+        ([sphere([0, 0, 0], file="a.stl")], {}, "bodies.0.file is now agglomerate.file."),
+        ([sphere([0, 0, 0], radius=0.1)], {}, "radius is now agglomerate.sphere_radius."),
+    ],
+)
+def test_old_keys_are_answered_with_the_new_ones(bodies, given, sentence):
     assert sentence in " ".join(mistakes(bodies, **given))
 
 
@@ -53,11 +73,13 @@ def test_touching_is_allowed_at_every_orientation():
 
 
 def test_copies_stand_on_a_lattice_and_scatter_the_same_way_each_time():
-    one = sphere([1.0, 2.0, 3.0], copies=[2, 1, 3], apart=[0.1, 0.2, 0.3])
+    lattice = {"number": [2, 1, 3], "spacing": [0.1, 0.2, 0.3]}
+    one = sphere([1.0, 2.0, 3.0], copies=lattice)
     plain = np.array([body.position for body in params([one]).bodies])
     expected = [[1.0 + x, 2.0, 3.0 + z] for x in (0.0, 0.1) for z in (0.0, 0.3, 0.6)]
     np.testing.assert_allclose(plain, expected)
-    loose = [params([one | {"scatter": 0.01, "seed": seed}]).bodies for seed in (1, 1, 2)]
+    scattered = [lattice | {"scatter": 0.01, "seed": seed} for seed in (1, 1, 2)]
+    loose = [params([one | {"copies": copies}]).bodies for copies in scattered]
     assert loose[0] == loose[1] != loose[2]
     moved = np.array([body.position for body in loose[0]]) - expected
     assert 0.005 < np.abs(moved).max() <= 0.01
@@ -80,7 +102,9 @@ def test_manifest_needs_no_solver():
 @pytest.mark.parametrize("speed", [1.0, 20.0])
 def test_steps_of_a_body_that_nothing_can_touch_are_planned_as_they_are(speed):
     ball = sphere([0.0, 0.0, 0.0], velocity=[speed, 0.0, 0.0])
-    given = params([ball], {"a": material(young=1e9)}, gravity=[0.0, 0.0, 0.0], speed=speed)
+    given = params(
+        [ball], {"a": material(youngs_modulus=1e9)}, gravity=[0.0, 0.0, 0.0], impact_speed=speed
+    )
     lone, steps = DemBodies(given), []
     run(lone, 0.1, watch=steps.append)
     assert MANIFEST.plan(given).dt == pytest.approx(0.1 / len(steps), rel=0.5)

@@ -6,64 +6,83 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.components.dem_bodies.clump import union
+from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
+from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
     from quintet.components.dem_bodies.params import Body, Plane
 
+ROUNDED = 0.05  # of a box's shortest edge: radius of its edges unless a scene says otherwise
 ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what touches exactly
 
-Balls = tuple[Array, Array]  # centres (n, 3) m, radii (n,) m
+Spheres = tuple[Array, Array]  # centres (n, 3) m, radii (n,) m
 
 
-def copied(bodies: "Sequence[Body]") -> "tuple[Body, ...]":
+def with_copies(bodies: "Sequence[Body]") -> "tuple[Body, ...]":
     """Put the copies of each body in its place, on their lattice."""
     return tuple(one for body in bodies for one in copies(body))
 
 
 def copies(body: "Body") -> "Iterator[Body]":
-    """One body, or all that stand on its lattice."""
+    """Yield one body, or all that stand on its lattice."""
     if body.copies is None:
         yield body
         return
-    numbers = np.stack(np.meshgrid(*map(np.arange, body.copies), indexing="ij"), axis=-1)
-    places = np.array(body.position) + numbers.reshape(-1, 3) * np.array(body.apart)  # (n, 3) m
-    random = np.random.default_rng(body.seed)
-    places += body.scatter * random.uniform(-1.0, 1.0, places.shape)
+    lattice = body.copies
+    numbers = np.stack(np.meshgrid(*map(np.arange, lattice.number), indexing="ij"), axis=-1)
+    places = np.array(body.position) + numbers.reshape(-1, 3) * np.array(lattice.spacing)  # m
+    random = np.random.default_rng(lattice.seed)
+    places += lattice.scatter * random.uniform(-1.0, 1.0, places.shape)
     for x, y, z in places.tolist():
-        yield replace(body, position=(x, y, z), copies=None, apart=None, scatter=0.0)
+        yield replace(body, position=(x, y, z), copies=None)
 
 
-def rotation(orientation: tuple[float, float, float, float]) -> Array:
+def edge_radius(body: "Body") -> float:
+    """Radius of a box's edges [m]."""
+    assert body.size is not None
+    return ROUNDED * min(body.size) if body.edge_radius is None else body.edge_radius
+
+
+def cover(body: "Body") -> Agglomerate | None:
+    """Read and cover the shape of a body that is an agglomerate."""
+    if body.agglomerate is None:
+        return None
+    one = body.agglomerate
+    return agglomerate(one.file, one.scale, one.dim, one.sphere_radius)
+
+
+def rotation_matrix(orientation: tuple[float, float, float, float]) -> Array:
     """Matrix (3, 3) of a unit quaternion: body -> world."""
     w, x, y, z = np.array(orientation) / np.linalg.norm(orientation)
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.asarray(np.eye(3) + 2.0 * w * skew + 2.0 * skew @ skew)
 
 
-def spheres(body: "Body") -> Balls:
+def contact_spheres(body: "Body") -> Spheres:
     """Contact spheres of a body that is not a box, in body axes about its centre of mass."""
     if body.diameter is not None:
         return np.zeros((1, 3)), np.array([0.5 * body.diameter])
-    if body.agglomerate is not None:
-        one = body.agglomerate
+    one = cover(body)
+    if one is not None:
         return one.centres, np.full(len(one.centres), one.radius)
     assert body.centres is not None and body.radii is not None
-    return np.array(body.centres) - union((body.centres, body.radii))[1], np.array(body.radii)
+    return np.array(body.centres) - measure_union((body.centres, body.radii))[1], np.array(
+        body.radii
+    )
 
 
-def balls(body: "Body") -> Balls:
+def world_spheres(body: "Body") -> Spheres:
     """Find the same spheres in the world."""
-    centres, radii = spheres(body)
-    return np.array(body.position) + centres @ rotation(body.orientation).T, radii
+    centres, radii = contact_spheres(body)
+    return np.array(body.position) + centres @ rotation_matrix(body.orientation).T, radii
 
 
-def reach(body: "Body") -> float:
+def bounding_radius(body: "Body") -> float:
     """Radius [m] about the centre of mass that holds the body."""
     if body.size is not None:
         return 0.5 * float(np.linalg.norm(body.size))
-    centres, radii = spheres(body)
+    centres, radii = contact_spheres(body)
     return float((np.linalg.norm(centres, axis=1) + radii).max())
 
 
@@ -71,36 +90,36 @@ def check(bodies: "Sequence[Body]", planes: "Sequence[Plane]") -> None:
     """Refuse bodies that start inside one another or below a plane."""
     for k, body in enumerate(bodies):
         for m, plane in enumerate(planes):
-            gap = above(body, plane)
-            if gap < -ALLOWED * reach(body):
+            gap = plane_gap(body, plane)
+            if gap < -ALLOWED * bounding_radius(body):
                 raise ValueError(
                     f"bodies[{k}] must start above planes[{m}]; it reaches {-gap:.6g} m below. "
                     "Raise it, or turn the plane's normal to the free side."
                 )
-    for i, j in near(bodies):
-        gap = between(bodies[i], bodies[j])
-        if gap < -ALLOWED * min(reach(bodies[i]), reach(bodies[j])):
+    for i, j in near_pairs(bodies):
+        gap = body_gap(bodies[i], bodies[j])
+        if gap < -ALLOWED * min(bounding_radius(bodies[i]), bounding_radius(bodies[j])):
             raise ValueError(
                 f"bodies[{i}] and bodies[{j}] must not overlap at the start; they do by "
                 f"{-gap:.6g} m. Move one of them; touching is allowed."
             )
 
 
-def above(body: "Body", plane: "Plane") -> float:
+def plane_gap(body: "Body", plane: "Plane") -> float:
     """Distance [m] of a body's lowest point from a plane."""
     normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
     origin = np.array(plane.point)
     if body.size is not None:
-        down = np.abs(normal @ rotation(body.orientation)) @ (0.5 * np.array(body.size))
+        down = np.abs(normal @ rotation_matrix(body.orientation)) @ (0.5 * np.array(body.size))
         return float(normal @ (np.array(body.position) - origin) - down)
-    centres, radii = balls(body)
+    centres, radii = world_spheres(body)
     return float(((centres - origin) @ normal - radii).min())
 
 
-def near(bodies: "Sequence[Body]") -> Iterator[tuple[int, int]]:
+def near_pairs(bodies: "Sequence[Body]") -> Iterator[tuple[int, int]]:
     """Pairs of bodies whose bounding spheres overlap, by a sweep along x."""
     middle = np.array([body.position for body in bodies])
-    radius = np.array([reach(body) for body in bodies])
+    radius = np.array([bounding_radius(body) for body in bodies])
     order = np.argsort(middle[:, 0] - radius, kind="stable")
     middle, radius = middle[order], radius[order]
     left, right = middle[:, 0] - radius, middle[:, 0] + radius
@@ -108,39 +127,39 @@ def near(bodies: "Sequence[Body]") -> Iterator[tuple[int, int]]:
         # Sorted by their left ends: once nobody reaches the step-th next, nobody reaches further.
         if not (left[step:] < right[:-step]).any():
             return
-        apart = np.linalg.norm(middle[step:] - middle[:-step], axis=1)
-        for k in np.flatnonzero(apart < radius[step:] + radius[:-step]):
+        distance = np.linalg.norm(middle[step:] - middle[:-step], axis=1)
+        for k in np.flatnonzero(distance < radius[step:] + radius[:-step]):
             i, j = sorted((int(order[k]), int(order[k + step])))
             yield i, j
 
 
-def between(a: "Body", b: "Body") -> float:
+def body_gap(a: "Body", b: "Body") -> float:
     """Gap [m] between two bodies, negative where they overlap."""
     if a.size is not None and b.size is not None:
-        return separation(a, b)
+        return box_gap(a, b)
     if a.size is not None or b.size is not None:
         box, other = (a, b) if a.size is not None else (b, a)
-        centres, radii = balls(other)
-        return float((outside(box, centres) - radii).min())
-    (c, r), (d, s) = balls(a), balls(b)
+        centres, radii = world_spheres(other)
+        return float((box_distance(box, centres) - radii).min())
+    (c, r), (d, s) = world_spheres(a), world_spheres(b)
     return float((np.linalg.norm(c[:, None] - d, axis=2) - r[:, None] - s).min())
 
 
-def outside(box: "Body", points: Array) -> Array:
+def box_distance(box: "Body", points: Array) -> Array:
     """Signed distances (n,) m of points (n, 3) m from a box."""
-    local = (points - np.array(box.position)) @ rotation(box.orientation)
+    local = (points - np.array(box.position)) @ rotation_matrix(box.orientation)
     beyond = np.abs(local) - 0.5 * np.array(box.size)
     far = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
     return np.asarray(far + np.minimum(beyond.max(axis=1), 0.0))
 
 
-def separation(a: "Body", b: "Body") -> float:
-    """Widest gap [m] between two boxes over the 15 axes that can part them (Gottschalk 1996)."""
-    R, S = rotation(a.orientation), rotation(b.orientation)
+def box_gap(a: "Body", b: "Body") -> float:
+    """Widest gap [m] of two boxes over the 15 axes that can separate them (Gottschalk 1996)."""
+    R, S = rotation_matrix(a.orientation), rotation_matrix(b.orientation)
     crossed = np.cross(R.T[:, None], S.T[None]).reshape(9, 3)
     lengths = np.linalg.norm(crossed, axis=1)
     axes = np.vstack([R.T, S.T, crossed[lengths > 1e-9] / lengths[lengths > 1e-9, None]])
-    apart = np.abs(axes @ (np.array(a.position) - np.array(b.position)))
+    distance = np.abs(axes @ (np.array(a.position) - np.array(b.position)))
     half_a = np.abs(axes @ R) @ (0.5 * np.array(a.size))
     half_b = np.abs(axes @ S) @ (0.5 * np.array(b.size))
-    return float((apart - half_a - half_b).max())
+    return float((distance - half_a - half_b).max())

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.geometry import vector
+from quintet.components.dem_bodies.contact.geometry import row_vector
 from quintet.components.dem_bodies.state import Numbers, Whole
 from quintet.components.shared.rotations import INNER, PURE
 
@@ -23,11 +23,11 @@ def cell_of(x: float, width: float) -> int:
 
 
 @njit(**PURE)
-def number(position: Numbers, bodies: Whole, width: float) -> Whole:
+def number_cells(position: Numbers, bodies: Whole, width: float) -> Whole:
     """Return the cells of some bodies, each as one number."""
     cells = np.empty(bodies.shape[0], np.int64)
     for k in range(bodies.shape[0]):
-        x, y, z = vector(position, bodies[k])
+        x, y, z = row_vector(position, bodies[k])
         cells[k] = (cell_of(z, width) << 2 * BITS) + (cell_of(y, width) << BITS)
         cells[k] += cell_of(x, width)
     return cells

@@ -1,46 +1,46 @@
 """Listing the pairs that may touch before some point has moved by half the skin.
 
-Here are those of which one body at least is no ball; what two balls, or a ball and a plane, may
-do is listed in ball_search.
+Here are those of which one body at least is no ball; ball_search lists those of two balls, and of
+a ball and a plane.
 """
 
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.ball_search import (
+from quintet.components.dem_bodies.contact.ball_search import (
     Sorted,
-    listed_balls,
+    list_ball_pairs,
     sorted_balls,
 )
-from quintet.components.dem_bodies.cells import BITS, cell_of, number
-from quintet.components.dem_bodies.geometry import (
-    axes_of,
-    on_box,
-    on_plane,
+from quintet.components.dem_bodies.contact.cells import BITS, cell_of, number_cells
+from quintet.components.dem_bodies.contact.geometry import (
+    rotation_matrix,
+    row_vector,
     segment_distance,
-    vector,
+    sphere_box,
+    sphere_plane,
 )
 from quintet.components.dem_bodies.state import (
-    BOX,
-    EDGE,
+    EDGE_EDGE,
     FIRST,
     KIND,
-    PLANE,
-    SPHERE,
-    Balls,
-    Contacts,
+    SPHERE_BOX,
+    SPHERE_PLANE,
+    SPHERE_SPHERE,
+    BallPairs,
+    BodyPairs,
     Model,
     Numbers,
     State,
     Whole,
-    arrange,
-    empty_contacts,
+    body_pairs,
+    sort_rows,
 )
-from quintet.components.shared.rotations import INNER, PURE, dot, less
+from quintet.components.shared.rotations import INNER, PURE, dot, sub
 
 
 @njit(**INNER)
-def emit(keys: Whole, count: int, kind: int, first: int, second: int) -> int:
+def add_key(keys: Whole, count: int, kind: int, first: int, second: int) -> int:
     """Write a pair's key while there is room; return the number of pairs."""
     if count < keys.shape[0]:
         keys[count] = (kind << KIND) + (first << FIRST) + second
@@ -48,10 +48,10 @@ def emit(keys: Whole, count: int, kind: int, first: int, second: int) -> int:
 
 
 @njit(**INNER)
-def edges_apart(ends: Whole, centre: Numbers, e: int, f: int) -> float:
+def edge_distance(ends: Whole, centre: Numbers, e: int, f: int) -> float:
     """Distance [m] of two edges' axes."""
-    a, b = vector(centre, ends[e, 0]), vector(centre, ends[f, 0])
-    along, other = less(vector(centre, ends[e, 1]), a), less(vector(centre, ends[f, 1]), b)
+    a, b = row_vector(centre, ends[e, 0]), row_vector(centre, ends[f, 0])
+    along, other = sub(row_vector(centre, ends[e, 1]), a), sub(row_vector(centre, ends[f, 1]), b)
     return segment_distance(a, along, b, other)
 
 
@@ -60,11 +60,12 @@ def list_spheres_of_box(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
     """List the spheres of body i that are near the box j."""
-    r, o = axes_of(state.axes, j), vector(state.motion, j)
-    half, q = vector(model.half, j), model.rounding[j]
-    for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
-        if on_box(vector(state.centre, s), model.sphere_radius[s], o, r, half, q)[0] < skin:
-            count = emit(keys, count, BOX, s, j)
+    r, o = rotation_matrix(state.axes, j), row_vector(state.motion, j)
+    half, q = row_vector(model.half_extent, j), model.edge_radius[j]
+    for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
+        centre, radius = row_vector(state.centre, s), model.sphere_radius[s]
+        if sphere_box(centre, radius, o, r, half, q)[0] < skin:
+            count = add_key(keys, count, SPHERE_BOX, s, j)
     return count
 
 
@@ -73,44 +74,44 @@ def list_bodies(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
     """List what is near of two bodies: spheres, spheres and faces, edges."""
-    box_i, box_j = model.rounding[i] > 0.0, model.rounding[j] > 0.0
+    box_i, box_j = model.edge_radius[i] > 0.0, model.edge_radius[j] > 0.0
     if box_j:
         count = list_spheres_of_box(model, state, i, j, skin, keys, count)
     if box_i:
         count = list_spheres_of_box(model, state, j, i, skin, keys, count)
     if not box_i and not box_j:
-        for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
-            for p in range(model.sphere_from[j], model.sphere_from[j + 1]):
+        for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
+            for p in range(model.sphere_begin[j], model.sphere_begin[j + 1]):
                 near = model.sphere_radius[s] + model.sphere_radius[p] + skin
-                d = less(vector(state.centre, s), vector(state.centre, p))
+                d = sub(row_vector(state.centre, s), row_vector(state.centre, p))
                 if dot(d, d) < near * near:
-                    count = emit(keys, count, SPHERE, s, p)
-    rounds = model.rounding[i] + model.rounding[j]
-    for e in range(model.edge_from[i], model.edge_from[i + 1]):
-        for f in range(model.edge_from[j], model.edge_from[j + 1]):
-            if edges_apart(model.edge_ends, state.centre, e, f) < rounds + skin:
-                count = emit(keys, count, EDGE, e, f)
+                    count = add_key(keys, count, SPHERE_SPHERE, s, p)
+    rounds = model.edge_radius[i] + model.edge_radius[j]
+    for e in range(model.edge_begin[i], model.edge_begin[i + 1]):
+        for f in range(model.edge_begin[j], model.edge_begin[j + 1]):
+            if edge_distance(model.edge_ends, state.centre, e, f) < rounds + skin:
+                count = add_key(keys, count, EDGE_EDGE, e, f)
     return count
 
 
 @njit(**INNER)
 def list_planes(model: Model, state: State, i: int, skin: float, keys: Whole, count: int) -> int:
     """List the planes that the spheres of a body are near."""
-    for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
+    for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
         for p in range(model.plane.shape[0]):
-            normal, c = vector(model.plane, p), vector(state.centre, s)
-            if on_plane(c, model.sphere_radius[s], normal, model.plane[p, 3])[0] < skin:
-                count = emit(keys, count, PLANE, s, p)
+            normal, c = row_vector(model.plane, p), row_vector(state.centre, s)
+            if sphere_plane(c, model.sphere_radius[s], normal, model.plane[p, 3])[0] < skin:
+                count = add_key(keys, count, SPHERE_PLANE, s, p)
     return count
 
 
 @njit(**INNER)
-def list_near(
+def list_if_near(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
     """List what is near of two bodies, if they are near one another."""
-    d = less(vector(state.motion, i), vector(state.motion, j))
-    near = model.reach[i] + model.reach[j] + skin
+    d = sub(row_vector(state.motion, i), row_vector(state.motion, j))
+    near = model.bounding_radius[i] + model.bounding_radius[j] + skin
     if dot(d, d) < near * near:
         return list_bodies(model, state, min(i, j), max(i, j), skin, keys, count)
     return count
@@ -122,18 +123,25 @@ def list_balls(
     count: int,
 ) -> int:  # fmt: skip
     """List what row i is near of balls, which are sorted by cells (b,) of a width [m]."""
-    x, far = vector(state.motion, i), model.reach[i] + 0.5 * width + 0.5 * skin
-    for z in range(cell_of(x[2] - far, width), cell_of(x[2] + far, width) + 1):
-        for y in range(cell_of(x[1] - far, width), cell_of(x[1] + far, width) + 1):
+    x, far = row_vector(state.motion, i), model.bounding_radius[i] + 0.5 * width + 0.5 * skin
+    z_low, z_high = cell_of(x[2] - far, width), cell_of(x[2] + far, width)
+    y_low, y_high = cell_of(x[1] - far, width), cell_of(x[1] + far, width)
+    if (z_high - z_low + 1) * (y_high - y_low + 1) > cells.shape[0]:
+        # Around a body that is large beside the balls are more rows of cells than balls.
+        for b in range(cells.shape[0]):
+            count = list_if_near(model, state, i, b, skin, keys, count)
+        return count
+    for z in range(z_low, z_high + 1):
+        for y in range(y_low, y_high + 1):
             row = (z << 2 * BITS) + (y << BITS)
             last = np.searchsorted(cells, row + cell_of(x[0] + far, width), side="right")
             for b in range(np.searchsorted(cells, row + cell_of(x[0] - far, width)), last):
-                count = list_near(model, state, i, b, skin, keys, count)
+                count = list_if_near(model, state, i, b, skin, keys, count)
     return count
 
 
 @njit(**PURE)
-def list_pairs(
+def list_keys(
     model: Model, state: State, cells: Whole, order: Whole, ball_cells: Whole, width: float,
     skin: float, keys: Whole,
 ) -> int:  # fmt: skip
@@ -154,13 +162,13 @@ def list_pairs(
                 last = np.searchsorted(cells, row + 1, side="right")
                 for b in range(np.searchsorted(cells, row - 1), last):
                     if order[b] > i:
-                        count = list_near(model, state, i, order[b], skin, keys, count)
+                        count = list_if_near(model, state, i, order[b], skin, keys, count)
     return count
 
 
 @njit(**PURE)
-def carry(old: Contacts, new: Contacts) -> None:
-    """Write what the new pairs join, and take over the history of those that were listed before."""
+def transfer_history(old: BodyPairs, new: BodyPairs) -> None:
+    """Write the ends of the new pairs, and take over the history of those that were listed."""
     a, mask = 0, (1 << FIRST) - 1
     for b in range(new.key.shape[0]):
         key = new.key[b]
@@ -171,59 +179,59 @@ def carry(old: Contacts, new: Contacts) -> None:
             new.history[b] = old.history[a]
 
 
-def contacts_from(keys: Whole, old: Contacts) -> Contacts:
-    """Contacts of sorted keys, with the history of the old ones."""
-    new = empty_contacts(len(keys))
+def body_pairs_of(keys: Whole, old: BodyPairs) -> BodyPairs:
+    """Pairs of sorted keys, with the history of the old ones."""
+    new = body_pairs(len(keys))
     new.key[:] = keys
     new.begin[:] = np.searchsorted(keys, np.arange(5, dtype=np.int64) << KIND)
-    carry(old, new)
+    transfer_history(old, new)
     return new
 
 
-def renamed(old: Contacts, order: Whole) -> Contacts:
+def with_sorted_rows(old: BodyPairs, order: Whole) -> BodyPairs:
     """Keep the history of pairs with balls, whose present rows (b,) are put in a new order."""
     key, mask = old.key.copy(), (1 << FIRST) - 1
     first = key >> FIRST & mask
-    ball = np.flatnonzero((key >> KIND < EDGE) & (first < len(order)))
+    ball = np.flatnonzero((key >> KIND < EDGE_EDGE) & (first < len(order)))
     key[ball] += (np.argsort(order)[first[ball]] - first[ball]) << FIRST
     rising = np.argsort(key)
     return old._replace(key=key[rising], history=old.history[rising])
 
 
-def listed_others(
-    model: Model, state: State, around: Sorted, old: Contacts, skin: float
-) -> Contacts:
+def list_body_pairs(
+    model: Model, state: State, around: Sorted, old: BodyPairs, skin: float
+) -> BodyPairs:
     """List anew all pairs nearer than the skin [m] that are not of balls and planes alone."""
-    width = 2.0 * float(model.reach[model.others].max(initial=0.0)) + skin
-    cells = number(state.motion, model.others, width)
+    width = 2.0 * float(model.bounding_radius[model.others].max(initial=0.0)) + skin
+    cells = number_cells(state.motion, model.others, width)
     order = np.argsort(cells, kind="stable")
     given = (model, state, cells[order], model.others[order], around.cells, around.width, skin)
     keys = np.empty(2 * len(old.key) + 64, np.int64)
-    count = list_pairs(*given, keys)
+    count = list_keys(*given, keys)
     if count > len(keys):
         keys = np.empty(count, np.int64)
-        list_pairs(*given, keys)
-    return contacts_from(np.sort(keys[:count]), old)
+        list_keys(*given, keys)
+    return body_pairs_of(np.sort(keys[:count]), old)
 
 
-def listed(
-    model: Model, state: State, balls: Balls, contacts: Contacts, skin: float, asked: bool
-) -> tuple[Balls, Contacts]:
+def list_pairs(
+    model: Model, state: State, balls: BallPairs, contacts: BodyPairs, skin: float, asked: bool
+) -> tuple[BallPairs, BodyPairs]:
     """Sort the rows, and list anew all pairs nearer than the skin [m]."""
     body = state.body.copy()
     around, order = sorted_balls(model, state, skin)
-    arrange(model, state, order)
-    balls = listed_balls(model, state, around, balls, body, skin, asked)
-    contacts = listed_others(model, state, around, renamed(contacts, order), skin)
-    mark(model, state)
+    sort_rows(model, state, order)
+    balls = list_ball_pairs(model, state, around, balls, body, skin, asked)
+    contacts = list_body_pairs(model, state, around, with_sorted_rows(contacts, order), skin)
+    set_listed_centres(model, state)
     return balls, contacts
 
 
 @njit(**PURE)
-def mark(model: Model, state: State) -> None:
+def set_listed_centres(model: Model, state: State) -> None:
     """Write down where spheres are."""
-    for i in range(model.reach.shape[0]):
-        for s in range(model.sphere_from[i], model.sphere_from[i + 1]):
+    for i in range(model.bounding_radius.shape[0]):
+        for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
             for k in range(3):
                 at = state.motion[i, k] if model.ball[i] else state.centre[s, k]
-                state.listed[s, k] = at
+                state.listed_centre[s, k] = at

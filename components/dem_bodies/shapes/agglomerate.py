@@ -2,8 +2,8 @@
 
 Centres stand on a lattice of `dim` places along the longest edge of the box that holds the shape,
 set in by R, so that the outermost spheres touch its faces from within. Along the other edges
-there are as few places as leave them no further apart. Of these centres are kept, the first first,
-and none that is closer to a kept one than half the lattice's distance:
+there are as few places as leave them no further from each other. Of these centres are kept, the
+first first, and none that is closer to a kept one than half the lattice's distance:
 
     - those that lie at the depth R below the surface;
     - those nearer to the surface or a little outside, moved along the normal to the depth R, so
@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.dem_bodies.shapes import Shape, inside, nearest, read
+from quintet.components.dem_bodies.shapes.mesh_files import Shape, inside, nearest, read
 from quintet.interfaces.component import Array
 
 MOST = 2000  # spheres of one body
@@ -59,20 +59,20 @@ def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate
     low, high = shape.triangles.min(axis=(0, 1)), shape.triangles.max(axis=(0, 1))
     size = high - low
     require_fit(file, scale, size, dim, radius)
-    apart = (size.max() - 2.0 * radius) / (dim - 1)
-    counts = np.ceil((size - 2.0 * radius) / apart - 1e-9).astype(int) + 1
+    spacing = (size.max() - 2.0 * radius) / (dim - 1)
+    counts = np.ceil((size - 2.0 * radius) / spacing - 1e-9).astype(int) + 1
     require_few(file, dim, radius, int(counts.prod()) // PLACES)
     axes = [
         np.linspace(a + radius, b - radius, n) if n > 1 else np.array([0.5 * (a + b)])
         for a, b, n in zip(low, high, counts, strict=True)
     ]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    centres = covering(places, shape, radius, apart)
+    centres = covering(places, shape, radius, spacing)
     require_few(file, dim, radius, len(centres))
     if not len(centres):
         raise ValueError(
-            f"file {file}: the shape must have room for a sphere within; at radius {radius:g} m "
-            "it has none. Make radius smaller."
+            f"file {file}: the shape must have room for a sphere within; at sphere_radius "
+            f"{radius:g} m it has none. Make sphere_radius smaller."
         )
     return Agglomerate(shape.volume, shape.inertia, centres - shape.centre, radius, size)
 
@@ -81,8 +81,8 @@ def require_few(file: str, dim: int, radius: float, count: int) -> None:
     """Refuse more spheres than are of use to a body."""
     if count > MOST:
         raise ValueError(
-            f"file {file}: an agglomerate must have at most {MOST} spheres; dim {dim} and radius "
-            f"{radius:g} m give more. Make dim smaller."
+            f"file {file}: an agglomerate must have at most {MOST} spheres; dim {dim} and "
+            f"sphere_radius {radius:g} m give more. Make dim smaller."
         )
 
 
@@ -92,31 +92,31 @@ def require_fit(file: str, scale: float, size: Array, dim: int, radius: float) -
     found = f"found {radius:g} m for {file} of {edges} m at scale {scale:g}."
     if 2.0 * radius > size.min() * (1.0 + 1e-9):
         raise ValueError(
-            "radius must be at most half the shape's shortest edge, "
+            "sphere_radius must be at most half the shape's shortest edge, "
             f"{0.5 * size.min():.4g} m; {found} Make it smaller, or correct scale: it is 0.001 for "
             "a file in mm."
         )
     least = math.ceil(0.5 * float(size.max()) / radius - 1e-9)
     if dim < max(2, least):
         raise ValueError(
-            "the spheres must touch, which dim * 2 * radius >= the longest edge gives; "
-            f"{found} dim is {dim}. Make dim {max(2, least)} or larger, or radius larger, or "
-            "correct scale: it is 0.001 for a file in mm."
+            "the spheres must touch, which dim * 2 * sphere_radius >= the longest edge gives; "
+            f"{found} dim is {dim}. Make dim {max(2, least)} or larger, or sphere_radius larger, "
+            "or correct scale: it is 0.001 for a file in mm."
         )
 
 
-def covering(places: Array, shape: Shape, radius: float, apart: float) -> Array:
+def covering(places: Array, shape: Shape, radius: float, spacing: float) -> Array:
     """Centres (n, 3) m of the outermost layer: lattice places, and outer ones moved in."""
     foot, away = distances(places, shape)
-    near = away < radius + apart * (1.0 - CLOSE)  # others are too deep or outside
+    near = away < radius + spacing * (1.0 - CLOSE)  # others are too deep or outside
     places, foot = places[near], foot[near]
     depth = signed(places, away[near], shape)
     above, deep = depth < radius * (1.0 - CLOSE), depth > radius * (1.0 + CLOSE)
-    outer = above & (depth > radius - apart)
+    outer = above & (depth > radius - spacing)
     moved = moved_in(places[outer], foot[outer], depth[outer], shape, radius)
     kept = np.zeros((0, 3))
     for centre in np.concatenate([places[~above & ~deep], moved, places[deep]]):
-        if not len(kept) or np.linalg.norm(kept - centre, axis=1).min() > 0.5 * apart:
+        if not len(kept) or np.linalg.norm(kept - centre, axis=1).min() > 0.5 * spacing:
             kept = np.vstack([kept, centre])
     return kept
 

@@ -15,7 +15,7 @@ Spheres = tuple[tuple[tuple[float, float, float], ...], tuple[float, ...]]
 
 
 @lru_cache(maxsize=64)
-def union(spheres: Spheres) -> tuple[float, Array, Array]:
+def measure_union(spheres: Spheres) -> tuple[float, Array, Array]:
     """Measure a union of spheres: what lies in several of them counts once.
 
     Parameters

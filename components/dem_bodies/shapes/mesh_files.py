@@ -143,11 +143,13 @@ def nearest(points: Array, triangles: Array) -> Array:
     from trimesh.triangles import closest_point
 
     middle = triangles.mean(axis=1)
-    reach = np.linalg.norm(triangles - middle[:, None], axis=2).max(axis=1)
+    radius = np.linalg.norm(triangles - middle[:, None], axis=2).max(axis=1)
     found = np.empty_like(points)
     for k, point in enumerate(points):
-        apart = np.linalg.norm(middle - point, axis=1)
-        near = triangles[apart - reach <= apart.min()]  # no other can be nearer than a middle
+        distance = np.linalg.norm(middle - point, axis=1)
+        near = triangles[
+            distance - radius <= distance.min()
+        ]  # no other can be nearer than a middle
         all_near = closest_point(near, np.broadcast_to(point, (len(near), 3)))
         found[k] = all_near[np.argmin(((all_near - point) ** 2).sum(axis=1))]
     return found

@@ -1,0 +1,1 @@
+"""Contacts: which pairs may touch, which do, and the forces between them."""

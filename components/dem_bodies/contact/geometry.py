@@ -1,0 +1,146 @@
+"""Gaps of one pair: spheres, planes, rounded boxes and edges; and vectors in arrays."""
+
+import math
+
+from numba import njit
+
+from quintet.components.dem_bodies.state import Numbers
+from quintet.components.shared.rotations import (
+    INNER,
+    Matrix,
+    Quaternion,
+    Vector,
+    axpy,
+    dot,
+    sub,
+    to_body,
+    to_world,
+)
+
+Gap = tuple[float, Vector, Vector]  # gap m, normal from j to i, point half way m
+
+FAR = 1e300  # m, of edges that do not cross
+
+
+@njit(**INNER)
+def vector(flat: Numbers, k: int) -> Vector:
+    """Return three numbers from one on."""
+    return flat[k], flat[k + 1], flat[k + 2]
+
+
+@njit(**INNER)
+def set_vector(flat: Numbers, k: int, a: Vector) -> None:
+    """Write three numbers from one on."""
+    flat[k], flat[k + 1], flat[k + 2] = a
+
+
+@njit(**INNER)
+def quaternion(flat: Numbers, k: int) -> Quaternion:
+    """Return four numbers from one on."""
+    return flat[k], flat[k + 1], flat[k + 2], flat[k + 3]
+
+
+@njit(**INNER)
+def set_quaternion(flat: Numbers, k: int, q: Quaternion) -> None:
+    """Write four numbers from one on."""
+    flat[k], flat[k + 1], flat[k + 2], flat[k + 3] = q
+
+
+@njit(**INNER)
+def row_vector(rows: Numbers, i: int, first: int = 0) -> Vector:
+    """Return three numbers of a row."""
+    return rows[i, first], rows[i, first + 1], rows[i, first + 2]
+
+
+@njit(**INNER)
+def set_row_vector(rows: Numbers, i: int, first: int, a: Vector) -> None:
+    """Write three numbers of a row."""
+    rows[i, first], rows[i, first + 1], rows[i, first + 2] = a
+
+
+@njit(**INNER)
+def rotation_matrix(axes: Numbers, i: int) -> Matrix:
+    """Return the rotation matrix in a row."""
+    return (
+        axes[i, 0], axes[i, 1], axes[i, 2],
+        axes[i, 3], axes[i, 4], axes[i, 5],
+        axes[i, 6], axes[i, 7], axes[i, 8],
+    )  # fmt: skip
+
+
+@njit(**INNER)
+def clamped(x: float, limit: float) -> float:
+    """Return x within ±limit."""
+    return min(max(x, -limit), limit)
+
+
+@njit(**INNER)
+def nearest_on_lines(p: Vector, u: Vector, q: Vector, v: Vector) -> tuple[float, float]:
+    """Where the lines p + s u and q + t v are nearest; (-1, -1) unless inside both segments.
+
+    Segments within 1/1000 rad of parallel do not cross: their ends make the contact.
+
+    References
+    ----------
+    Ericson, Real-Time Collision Detection (2005), section 5.1.9.
+    """
+    r = sub(p, q)
+    uu, vv, uv, ur, vr = dot(u, u), dot(v, v), dot(u, v), dot(u, r), dot(v, r)
+    area = uu * vv - uv * uv
+    if area <= 1e-6 * uu * vv:
+        return -1.0, -1.0
+    s = (uv * vr - ur * vv) / area
+    t = (uu * vr - uv * ur) / area
+    if s <= 0.0 or s >= 1.0 or t <= 0.0 or t >= 1.0:
+        return -1.0, -1.0
+    return s, t
+
+
+@njit(**INNER)
+def segment_distance(p: Vector, u: Vector, q: Vector, v: Vector) -> float:
+    """Distance [m] of the segments p + s u and q + t v, 0 ≤ s, t ≤ 1 (Ericson, as above)."""
+    r = sub(p, q)
+    uu, vv, uv, ur, vr = dot(u, u), dot(v, v), dot(u, v), dot(u, r), dot(v, r)
+    area = uu * vv - uv * uv
+    s = min(max((uv * vr - ur * vv) / area, 0.0), 1.0) if area > 1e-12 * uu * vv else 0.0
+    t = min(max((uv * s + vr) / vv, 0.0), 1.0)
+    s = min(max((uv * t - ur) / uu, 0.0), 1.0)
+    d = axpy(-t, v, axpy(s, u, r))
+    return math.sqrt(dot(d, d))
+
+
+@njit(**INNER)
+def sphere_plane(centre: Vector, radius: float, normal: Vector, offset: float) -> Gap:
+    """Sphere above a plane."""
+    gap = dot(normal, centre) - offset - radius
+    return gap, normal, axpy(-radius - 0.5 * gap, normal, centre)
+
+
+@njit(**INNER)
+def sphere_sphere(a: Vector, b: Vector, radius_a: float, radius_b: float) -> Gap:
+    """Two spheres about the points a and b."""
+    d = sub(a, b)
+    distance = math.sqrt(dot(d, d))
+    n = (d[0] / distance, d[1] / distance, d[2] / distance) if distance > 0.0 else (0.0, 0.0, 1.0)
+    gap = distance - radius_a - radius_b
+    return gap, n, axpy(-radius_a - 0.5 * gap, n, a)
+
+
+@njit(**INNER)
+def sphere_box(
+    centre: Vector, radius: float, middle: Vector, r: Matrix, half: Vector, edge_radius: float
+) -> Gap:
+    """Sphere and a rounded box: a sphere of `edge_radius` swept through the box of `half`."""
+    d = sub(centre, middle)
+    x, y, z = to_body(r, d[0], d[1], d[2])
+    x, y, z = clamped(x, half[0]), clamped(y, half[1]), clamped(z, half[2])
+    return sphere_sphere(centre, axpy(1.0, to_world(r, x, y, z), middle), radius, edge_radius)
+
+
+@njit(**INNER)
+def edge_edge(p: Vector, u: Vector, q: Vector, v: Vector, radius_p: float, radius_q: float) -> Gap:
+    """Rounded edges p + s u and q + t v where they cross inside both."""
+    s, t = nearest_on_lines(p, u, q, v)
+    if s < 0.0:
+        return FAR, p, p
+    return sphere_sphere(axpy(s, u, p), axpy(t, v, q), radius_p, radius_q)

@@ -1,0 +1,198 @@
+"""Loops over all other pairs: which touch and how deep, then the force of each contact."""
+
+import math
+
+from numba import njit
+
+from quintet.components.dem_bodies.contact.geometry import (
+    Gap,
+    edge_edge,
+    rotation_matrix,
+    row_vector,
+    sphere_box,
+    sphere_plane,
+    sphere_sphere,
+)
+from quintet.components.dem_bodies.laws import contact_force, damping_weight, pair_constants
+from quintet.components.dem_bodies.state import (
+    DEEPEST,
+    DEEPEST_PAIR,
+    EDGE_EDGE,
+    ELASTIC_ENERGY,
+    END_VELOCITY,
+    SMALLEST_GAP,
+    SPHERE_BOX,
+    SPHERE_PLANE,
+    SPHERE_SPHERE,
+    STIFFEST,
+    VELOCITY,
+    BodyPairs,
+    Model,
+    Numbers,
+    State,
+    Whole,
+)
+from quintet.components.shared.rotations import INNER, Vector, cross, dot, sub
+
+
+@njit(**INNER)
+def add_contact(
+    report: Numbers, history: Numbers, touching: Whole, geometry: Numbers, count: int, pair: int,
+    ahead: int, i: int, j: int, materials: int, found: Gap, radius: float, smallest: float,
+) -> int:  # fmt: skip
+    """Write down a pair if it touches, forget its history if not; return the number of contacts."""
+    gap, n, point = found
+    report[SMALLEST_GAP] = min(report[SMALLEST_GAP], gap)
+    if not gap < 0.0:
+        if history[pair, 3] > 0.0:
+            for k in range(5):
+                history[pair, k] = 0.0
+        return count
+    if -gap > report[DEEPEST] * smallest:
+        report[DEEPEST] = -gap / smallest
+        report[DEEPEST_PAIR] = ahead + pair
+    touching[count, 0], touching[count, 1] = pair, i
+    touching[count, 2], touching[count, 3] = j, materials
+    for k in range(3):
+        geometry[count, k] = n[k]
+        geometry[count, 3 + k] = point[k]
+    geometry[count, 6], geometry[count, 7] = -gap, radius
+    return count + 1
+
+
+@njit(**INNER)
+def detect_contacts(model: Model, state: State, pairs: BodyPairs, ahead: int) -> int:
+    """Write down all pairs that touch, numbered after those of balls; return how many."""
+    count, kinds, ground = 0, model.material_pairs.shape[0], model.bounding_radius.shape[0]
+    begin, ends, history = pairs.begin, pairs.ends, pairs.history
+    touching, geometry, report = pairs.touching, pairs.geometry, state.report
+    material, row, size, edge_radius = (
+        model.material, model.sphere_row, model.sphere_radius, model.edge_radius,
+    )  # fmt: skip
+    centre, plane, edge = state.centre, model.plane, model.edge_ends
+    for k in range(begin[SPHERE_PLANE], begin[SPHERE_PLANE + 1]):
+        s, p = ends[k, 0], ends[k, 1]
+        i, r = row[s], size[s]
+        both = material[i] * kinds + model.plane_material[p]
+        found = sphere_plane(row_vector(centre, s), r, row_vector(plane, p), plane[p, 3])
+        count = add_contact(
+            report, history, touching, geometry, count, k, ahead, i, ground, both, found, r, r
+        )
+    for k in range(begin[SPHERE_SPHERE], begin[SPHERE_SPHERE + 1]):
+        s, p = ends[k, 0], ends[k, 1]
+        i, j, r, q = row[s], row[p], size[s], size[p]
+        both = material[i] * kinds + material[j]
+        found = sphere_sphere(row_vector(centre, s), row_vector(centre, p), r, q)
+        mean, low = r * q / (r + q), min(r, q)
+        count = add_contact(
+            report, history, touching, geometry, count, k, ahead, i, j, both, found, mean, low
+        )
+    for k in range(begin[SPHERE_BOX], begin[SPHERE_BOX + 1]):
+        s, j = ends[k, 0], ends[k, 1]
+        i, r = row[s], size[s]
+        both, q = material[i] * kinds + material[j], edge_radius[j]
+        middle, half, low = row_vector(state.motion, j), row_vector(model.half_extent, j), min(r, q)
+        axes = rotation_matrix(state.axes, j)
+        found = sphere_box(row_vector(centre, s), r, middle, axes, half, q)
+        count = add_contact(
+            report, history, touching, geometry, count, k, ahead, i, j, both, found, r, low
+        )
+    for k in range(begin[EDGE_EDGE], begin[EDGE_EDGE + 1]):
+        e, f = ends[k, 0], ends[k, 1]
+        i, j = row[edge[e, 0]], row[edge[f, 0]]
+        both, r, q = material[i] * kinds + material[j], edge_radius[i], edge_radius[j]
+        a, b = row_vector(centre, edge[e, 0]), row_vector(centre, edge[f, 0])
+        along = sub(row_vector(centre, edge[e, 1]), a)
+        found = edge_edge(a, along, b, sub(row_vector(centre, edge[f, 1]), b), r, q)
+        # Crossed cylinders: as a sphere on a plane, of the mean radius.
+        mean, low = math.sqrt(r * q), min(r, q)
+        count = add_contact(
+            report, history, touching, geometry, count, k, ahead, i, j, both, found, mean, low
+        )
+    return count
+
+
+@njit(**INNER)
+def point_velocity(motion: Numbers, i: int, first: int, arm: Vector) -> Vector:
+    """Velocity [m/s] of row i's point at an arm from its centre.
+
+    `first` is VELOCITY for the mean of the step, END_VELOCITY for its end.
+    """
+    ω = (motion[i, first + 3], motion[i, first + 4], motion[i, first + 5])
+    x, y, z = cross(ω, arm)
+    return motion[i, first] + x, motion[i, first + 1] + y, motion[i, first + 2] + z
+
+
+@njit(**INNER)
+def inverse_effective_mass(
+    inverse_mass: float, inverse_inertia: Numbers, i: int, arm: Vector, n: Vector
+) -> float:
+    """1/m* [1/kg] of a body's point along n: 1/m + (r × n)·I⁻¹(r × n)."""
+    x, y, z = cross(arm, n)
+    s = inverse_inertia
+    square = s[i, 0] * x * x + s[i, 1] * y * y + s[i, 2] * z * z
+    mixed = s[i, 3] * x * y + s[i, 4] * x * z + s[i, 5] * y * z
+    return inverse_mass + square + 2.0 * mixed
+
+
+@njit(**INNER)
+def bearing_depth(history: Numbers, pair: int, depth: float, closing: float, dt: float) -> float:
+    """Depth [m] that bears load; a crossing of edges bears none where it came into being.
+
+    Edges begin to cross when a corner slides over an edge, with the faces already pressed
+    together. To let that depth bear at once would make energy from nothing.
+    """
+    if history[pair, 3] == 0.0 and dt > 0.0:
+        history[pair, 4] = max(0.0, depth - max(0.0, closing) * dt)
+    history[pair, 4] = min(history[pair, 4], depth)
+    return float(depth - history[pair, 4])
+
+
+@njit(**INNER)
+def contact_loads(model: Model, state: State, pairs: BodyPairs, count: int, dt: float) -> None:
+    """Forces and torques of all contacts written down: what one body gets the other loses."""
+    table, inverse_mass = model.material_pairs, model.inverse_mass
+    motion, loads, inverse_inertia = state.motion, state.contact_load, state.world_inverse_inertia
+    touching, geometry, history = pairs.touching, pairs.geometry, pairs.history
+    kinds, edges = table.shape[0], pairs.begin[EDGE_EDGE]
+    energy, stiffest = state.report[ELASTIC_ENERGY], state.report[STIFFEST]
+    for k in range(count):
+        pair, i, j, both = touching[k, 0], touching[k, 1], touching[k, 2], touching[k, 3]
+        n, depth, radius = row_vector(geometry, k), geometry[k, 6], geometry[k, 7]
+        point = (geometry[k, 3], geometry[k, 4], geometry[k, 5])
+        arm_i, arm_j = sub(point, row_vector(motion, i)), sub(point, row_vector(motion, j))
+        inverse_i = inverse_effective_mass(inverse_mass[i], inverse_inertia, i, arm_i, n)
+        inverse_j = inverse_effective_mass(inverse_mass[j], inverse_inertia, j, arm_j, n)
+        mass = 1.0 / (inverse_i + inverse_j)
+        end_i = point_velocity(motion, i, END_VELOCITY, arm_i)
+        end = sub(end_i, point_velocity(motion, j, END_VELOCITY, arm_j))
+        before, bearing = history[pair, 3] - history[pair, 4], depth
+        if pair >= edges:
+            bearing = bearing_depth(history, pair, depth, -dot(end, n), dt)
+        history[pair, 3] = depth
+        if bearing <= 0.0:
+            for d in range(3):
+                history[pair, d], geometry[k, 8 + d] = 0.0, 0.0
+            continue
+        p, q = both // kinds, both % kinds
+        modulus, shear, ζ, μ = table[p, q, 0], table[p, q, 1], table[p, q, 2], table[p, q, 3]
+        c = pair_constants(modulus, shear, ζ, μ, radius, mass)
+        mean_i = point_velocity(motion, i, VELOCITY, arm_i)
+        mean = sub(mean_i, point_velocity(motion, j, VELOCITY, arm_j))
+        inverse_root = 1.0 / math.sqrt(before) if before > 0.0 else 0.0
+        root = math.sqrt(bearing)
+        roots = (root, math.sqrt(root), 1.0 / root)
+        weight = damping_weight(inverse_root, bearing, -dot(end, n), dt)
+        force, tangential, elastic = contact_force(
+            c, row_vector(history, pair), inverse_root, n, bearing, roots, weight, mean, end, dt
+        )
+        torque_i, torque_j = cross(arm_i, force), cross(arm_j, force)
+        for d in range(3):
+            history[pair, d], geometry[k, 8 + d] = tangential[d], force[d]
+            loads[i, d] += force[d]
+            loads[j, d] -= force[d]
+            loads[i, 3 + d] += torque_i[d]
+            loads[j, 3 + d] -= torque_j[d]
+        energy += elastic
+        stiffest = max(stiffest, c[5] * root)
+    state.report[ELASTIC_ENERGY], state.report[STIFFEST] = energy, stiffest

@@ -1,0 +1,14 @@
+"""What the bodies take and give: loads; motion, and if asked for what contacts do to them."""
+
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.component import Port
+from quintet.interfaces.manifest import Ports
+from quintet.interfaces.ports import LOAD, MOTION
+
+# Of all contacts of a body; the last item is the load on all planes together.
+CONTACT = Port("contact", LOAD.fields)
+
+
+def ports(params: DemBodiesParams) -> Ports:
+    """Ports taken and given."""
+    return (LOAD,), (MOTION, CONTACT) if params.contact_forces else (MOTION,)

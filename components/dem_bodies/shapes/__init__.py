@@ -1,0 +1,1 @@
+"""Shapes of bodies: files, agglomerates, unions of spheres, and where they stand."""
