@@ -17,7 +17,8 @@ from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import Progress, run
-from quintet.coupler.run.output import Stop, Writer
+from quintet.coupler.run.output import OutputWriter
+from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.scene import Scene
 
 OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png", "comparison.png")
@@ -25,11 +26,11 @@ OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png",
 
 def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     """Run a scene into a folder, ready for it or with a snapshot; return the exit status."""
-    clock, stop = results.Clock(), Stop()
+    clock, stop = results.Clock(), StopRequest()
     exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
     size = snapshots.ledger_size(snapshot) if snapshot else 0
     ledger = Ledger(exchange, folder / "ledger.csv", size)
-    writer = Writer(scene, folder, stop, snapshots.window_of(snapshot) if snapshot else None)
+    writer = OutputWriter(scene, folder, stop, snapshots.window_of(snapshot) if snapshot else None)
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
     coupling = Coupling({}, exchange, ledger, 0.0, scene.iteration())
@@ -76,7 +77,7 @@ def progress_of(progress: Progress) -> dict[str, Any]:
     return {"status": status, "windows": progress.done, "time": progress.time}
 
 
-def failed(error: Exception, scene: Scene, folder: Path, writer: Writer) -> dict[str, Any]:
+def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -> dict[str, Any]:
     """Report a failure: who, in which window, why, and the last lines of its log."""
     if not isinstance(error, ComponentFailed):
         error = ComponentFailed("coupler", writer.done, str(error), traceback.format_exc())

@@ -18,7 +18,7 @@ from typing import Any
 from quintet.coupler.files.toml_writer import text_of
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.report.show import NAME, results
-from quintet.coupler.run.output import Stop
+from quintet.coupler.run.signals import StopRequest
 from quintet.interfaces.serving.process import STARTER
 
 GRACE = 10.0  # s for a run to end in order once it was asked to
@@ -35,10 +35,10 @@ class Trial:
     settings: list[str]
     swaps: list[str]
     transport: str
-    stop: Stop
+    stop: StopRequest
 
     @classmethod
-    def of(cls, given: argparse.Namespace, stop: Stop, transport: str = "") -> "Trial":
+    def of(cls, given: argparse.Namespace, stop: StopRequest, transport: str = "") -> "Trial":
         """Take over what the command line says; a transport that it names goes first."""
         asked = (given.scene, given.preset, given.settings, given.swap)
         return cls(*asked, given.transport or transport, stop)

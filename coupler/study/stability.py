@@ -15,7 +15,7 @@ from rich.table import Table
 from quintet.coupler.report.show import on_screen
 from quintet.coupler.report.work_precision import number
 from quintet.coupler.run import results
-from quintet.coupler.run.output import Stop
+from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import folder_name
@@ -74,7 +74,7 @@ def run_stability(given: argparse.Namespace) -> int:
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
         )
     folder = (given.out or Path("runs") / f"{scene.file.name}-stability").resolve()
-    stop, limits, interrupted = Stop(), [], False
+    stop, limits, interrupted = StopRequest(), [], False
     with stop.listening():
         for limit in scene.stability:
             for number, other in enumerate(limit.others()):

@@ -14,7 +14,7 @@ from quintet.coupler.measures.convergence import least_squares, richardson
 from quintet.coupler.report import show
 from quintet.coupler.report.work_precision import draw, table
 from quintet.coupler.run import results
-from quintet.coupler.run.output import Stop
+from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.study_table import Rung
 from quintet.coupler.study.child_run import Trial
@@ -30,7 +30,7 @@ def run_study(given: argparse.Namespace) -> int:
     if not scene.study:
         raise SceneError(f"{scene.path.name}: there is no ladder. Add a [[study]] for every rung.")
     folder = (given.out or Path("runs") / f"{scene.file.name}-study").resolve()
-    stop, rows = Stop(), []
+    stop, rows = StopRequest(), []
     trial = Trial.of(given, stop)
     with stop.listening():
         for rung in scene.study:
