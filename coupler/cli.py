@@ -106,6 +106,7 @@ SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME
 
 
 def _load(given: argparse.Namespace) -> "Scene":
+    # Start-up: only this command needs it.
     from quintet.coupler.scene.read import load
 
     return load(given.scene, given.preset, given.settings, given.swap, given.transport)
@@ -113,6 +114,7 @@ def _load(given: argparse.Namespace) -> "Scene":
 
 def list_scenes(given: argparse.Namespace) -> int:
     """List the scenes that come with quintet."""
+    # Start-up: only this command needs it.
     from quintet.coupler.scene.listing import list_all
 
     list_all(given.json)
@@ -121,6 +123,7 @@ def list_scenes(given: argparse.Namespace) -> int:
 
 def check(given: argparse.Namespace) -> int:
     """Print the plan of a scene."""
+    # Start-up: only this command needs it.
     from quintet.coupler.scene.listing import show_plan
 
     show_plan(_load(given))
@@ -134,26 +137,31 @@ def run(given: argparse.Namespace) -> int:
     unknown = scene.elsewhere - set(scene.components)
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
+    # Start-up: only this command needs it.
     from quintet.coupler.run.simulate import make_folder, simulate
 
     if not given.inside_mpi and snapshot is None:
         make_folder(scene, folder)
     if scene.transport == "mpi" and not given.inside_mpi:
+        # Start-up: only this way of running needs it.
         from quintet.coupler.launch.mpi_job import run_under_mpi
 
         return run_under_mpi(given.words, scene, folder)
     if given.inside_mpi:
+        # Start-up: only this way of running needs it.
         from quintet.coupler.launch.mpi_job import enter
 
         enter(folder)
     threads = max(one.threads for one in scene.components.values())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
+    # Start-up: only this command needs it.
     from quintet.coupler.report.show import show as tell
 
     status = simulate(scene, folder, snapshot)
     tell(folder)
     print(f"left in {os.path.relpath(folder)}", flush=True)
     if given.inside_mpi:
+        # Start-up: only this way of running needs it.
         from quintet.coupler.launch.mpi_job import leave
 
         leave(folder, status)
@@ -170,6 +178,7 @@ def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
 
 def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
     """Read the scene of a run that goes on, as it was asked for or as it is given now."""
+    # Start-up: only this command needs it.
     from quintet.coupler.run import snapshots
 
     if given.out:
@@ -183,6 +192,7 @@ def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
 
 def join(given: argparse.Namespace) -> int:
     """Start one component of a scene, joined to a coupler elsewhere."""
+    # Start-up: only this command needs it.
     from quintet.interfaces.params import unknown
     from quintet.interfaces.serving.process import main as component
 
@@ -199,6 +209,7 @@ def join(given: argparse.Namespace) -> int:
 
 def show(given: argparse.Namespace) -> int:
     """Print what happened."""
+    # Start-up: only this command needs it.
     from quintet.coupler.report.show import show as tell
 
     tell(given.folder, given.json)
@@ -207,6 +218,7 @@ def show(given: argparse.Namespace) -> int:
 
 def diff(given: argparse.Namespace) -> int:
     """Compare two runs bit by bit."""
+    # Start-up: only this command needs it.
     from quintet.coupler.report.diff import compare, sentence
 
     found = compare(*given.folders)
@@ -216,6 +228,7 @@ def diff(given: argparse.Namespace) -> int:
 
 def study(given: argparse.Namespace) -> int:
     """Run a scene's ladder."""
+    # Start-up: only this command needs it.
     from quintet.coupler.study.study import run_study
 
     return run_study(given)
@@ -223,6 +236,7 @@ def study(given: argparse.Namespace) -> int:
 
 def stability(given: argparse.Namespace) -> int:
     """Find a scene's limits."""
+    # Start-up: only this command needs it.
     from quintet.coupler.study.stability import run_stability
 
     return run_stability(given)
@@ -231,9 +245,11 @@ def stability(given: argparse.Namespace) -> int:
 def bench(given: argparse.Namespace) -> int:
     """Measure throughput."""
     if given.name == "exchange":
+        # Start-up: only this way of running needs it.
         from quintet.coupler.bench.exchange import run_bench
 
         return run_bench(given)
+    # Start-up: only this command needs it.
     from quintet.coupler.bench.throughput import run_kind
 
     return run_kind(given)

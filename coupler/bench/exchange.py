@@ -20,6 +20,7 @@ import numpy as np
 from quintet.coupler.bench.raw_transport import bare
 from quintet.coupler.coupling.participant import Part
 from quintet.coupler.launch.connect import connect
+from quintet.coupler.launch.mpi_job import enter, leave, run_under_mpi
 from quintet.coupler.run.simulate import make_folder
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
@@ -65,8 +66,6 @@ def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str,
     scene = load(str(path))
     make_folder(scene, folder / "run")
     if transport == "mpi":
-        from quintet.coupler.launch.mpi_job import run_under_mpi
-
         os.environ[FOLDER] = str(folder)
         run_under_mpi(["bench", "exchange"], scene, folder / "run")
     else:
@@ -76,8 +75,6 @@ def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str,
 
 def inside_mpi(folder: Path) -> int:
     """Measure as rank 0."""
-    from quintet.coupler.launch.mpi_job import enter, leave
-
     enter(folder / "run")
     exchange(load(str(folder / "scene.toml")), folder, int((folder / "windows").read_text()))
     leave(folder / "run", 0)

@@ -114,6 +114,7 @@ def _follow(send: Send, receive: Receive, size: int, windows: int) -> None:
 
 @contextmanager
 def _over_mpi(size: int) -> Iterator[Carrier]:
+    # Only the library that is measured is loaded.
     from mpi4py import MPI
 
     comm, came = MPI.COMM_WORLD, bytearray(size)
@@ -128,6 +129,7 @@ def _over_mpi(size: int) -> Iterator[Carrier]:
 
 @contextmanager
 def _over_zenoh(_: int) -> Iterator[Carrier]:
+    # Only the library that is measured is loaded.
     import zenoh
 
     from quintet.interfaces.lines.zenoh import configuration

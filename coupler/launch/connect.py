@@ -11,12 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from quintet.coupler.coupling.participant import ComponentFailed, Part
+from quintet.coupler.launch.mpi_job import announce
 from quintet.coupler.launch.processes import GRACE, Watch, start
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import LineError, QuintetError
 from quintet.interfaces.lines.message import Message
 from quintet.interfaces.lines.transport import FramedLine
 from quintet.interfaces.serving.malloc import keep_freed_memory
+from quintet.interfaces.serving.process import build, shared_files
+from quintet.interfaces.serving.serve import Server, answer
 
 if TYPE_CHECKING:
     from quintet.interfaces.lines.zenoh import ZenohLine
@@ -54,9 +57,8 @@ class InMemory:
     """All components in the coupler's own process."""
 
     def __init__(self, scene: Scene) -> None:
+        # Only the transport that a run uses is loaded.
         from quintet.interfaces.lines.memory import MemoryLine
-        from quintet.interfaces.serving.process import build
-        from quintet.interfaces.serving.serve import Server, answer
 
         self.parts: dict[str, Part] = {}
         run = secrets.token_hex(4)
@@ -79,6 +81,7 @@ class OverZenoh:
     """One process per component, started here or joined by hand."""
 
     def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
+        # Only the transport that a run uses is loaded: zenoh starts threads.
         from quintet.interfaces.lines.zenoh import Hub, ZenohLine
 
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
@@ -142,9 +145,8 @@ class OverMpi:
     """One rank per component; this process is rank 0."""
 
     def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
-        from quintet.coupler.launch.mpi_job import announce
+        # Only the transport that a run uses is loaded: mpi4py starts MPI.
         from quintet.interfaces.lines import mpi
-        from quintet.interfaces.serving.process import shared_files
 
         mpi.self_check(1 + len(scene.components))
         run = secrets.token_hex(4)

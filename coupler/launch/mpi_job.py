@@ -180,6 +180,7 @@ def leave(folder: Path, status: int) -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     if status not in (0, 1, 130):
+        # Only a rank has MPI: who starts the launcher must not load it.
         from quintet.interfaces.lines.mpi import abort
 
         abort(status)

@@ -8,18 +8,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field as Limits
 
-from quintet.coupler.files.recording import Recording
 from quintet.coupler.measures import time_series
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters, unknown
+
+if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for it
+    from quintet.coupler.files.recording import Recording
 
 Measure = Literal["rms", "relative_rms", "crossing", "at", "max", "min", "mean", "period", "decay"]
 DISTANCES = ("rms", "relative_rms")  # to a curve
@@ -141,7 +143,7 @@ def _check_field(expectation: Expectation, fields: Mapping[str, Field]) -> list[
     return []
 
 
-def curve(expectation: Expectation, recording: Recording) -> Curve:
+def curve(expectation: Expectation, recording: "Recording") -> Curve:
     """Return the computed curve, offset and scaled; the rate of an impulse at mid-window."""
     ports = recording.ports(expectation.component)
     fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
@@ -216,7 +218,7 @@ def reference_value(expectation: Expectation, folder: Path) -> float:
     return value
 
 
-def evaluate(expectation: Expectation, recording: Recording, folder: Path) -> Outcome:
+def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> Outcome:
     """Compare a run with an expectation; one that ended too early does not meet it."""
     reference = reference_value(expectation, folder)
     value = _value(expectation, recording, folder)
@@ -231,7 +233,7 @@ def evaluate(expectation: Expectation, recording: Recording, folder: Path) -> Ou
     )
 
 
-def _value(expectation: Expectation, recording: Recording, folder: Path) -> float:
+def _value(expectation: Expectation, recording: "Recording", folder: Path) -> float:
     if len(recording.times(expectation.component)) < 2:  # no window was finished
         return math.nan
     computed = curve(expectation, recording)

@@ -146,6 +146,7 @@ def _title(one: Expectation, outcome: Outcome | None) -> str:
 
 def panels_of(count: int, height: float) -> tuple[Any, list[Any]]:
     """Make a figure of panels; `height` is that of one, as part of its width."""
+    # A run without pictures does not load matplotlib.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -232,6 +233,7 @@ def _spacing(points: Array) -> float:
 
 
 def _draw(panel: Any, shot: Shot, top: float) -> Any:
+    # A run without pictures does not load matplotlib.
     from matplotlib.collections import PolyCollection
 
     drawn = None

@@ -2,17 +2,15 @@
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.files.recording import NAME, Recorder
+from quintet.coupler.files.vtkhdf import VtkHdf, go_on
 from quintet.coupler.run.progress import ProgressReport
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.run.snapshots import save
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.component import Fields
-
-if TYPE_CHECKING:
-    from quintet.coupler.files.recording import Recorder
-    from quintet.coupler.files.vtkhdf import VtkHdf
 
 SNAPSHOT_INTERVAL = 600.0  # s of wall time between two snapshots, where the scene gives none
 
@@ -51,9 +49,7 @@ class OutputWriter:
             self._note(coupling, 0.0)
         self._progress = ProgressReport(windows, scene.file.end, self.done)
 
-    def _recording(self, described: dict[str, Fields]) -> "Recorder":
-        from quintet.coupler.files.recording import NAME, Recorder
-
+    def _recording(self, described: dict[str, Fields]) -> Recorder:
         path = self.folder / NAME
         if self.first is not None:
             return Recorder.resume(path, self.first + 1)
@@ -86,8 +82,6 @@ class OutputWriter:
 
     def _keep(self, coupling: Coupling, window: int) -> None:
         """Make a snapshot, with all rows written that the run had until then."""
-        from quintet.coupler.run.snapshots import save
-
         if self._recorder:
             self._recorder.flush()
         save(coupling, self.scene, self.folder, window)
@@ -112,9 +106,7 @@ class OutputWriter:
                 self._file(name).append(time, answer.fields)
         coupling.ledger.note(time, totals)
 
-    def _file(self, name: str) -> "VtkHdf":
-        from quintet.coupler.files.vtkhdf import VtkHdf, go_on
-
+    def _file(self, name: str) -> VtkHdf:
         found = self._files.get(name)
         if found is None:
             path = self.folder / f"{name}.vtkhdf"

@@ -13,6 +13,7 @@ from typing import Any
 from quintet.coupler.coupling.participant import ComponentFailed, Part
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
+from quintet.coupler.report.pictures import comparison, snapshots
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
@@ -40,15 +41,11 @@ def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
 
 
 def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
-    """Draw the pictures that the scene asks for; import nothing where it asks for none."""
+    """Draw the pictures that the scene asks for; nothing of it is loaded where there are none."""
     times = scene.file.output.pictures
     if times and list(folder.glob("*.vtkhdf")):
-        from quintet.coupler.report.pictures import snapshots
-
         snapshots(folder, folder / "scene.png", times)
     if any(one.csv for one in scene.expect) and found:
-        from quintet.coupler.report.pictures import comparison
-
         with Recording(folder / "recording.h5") as recording:
             comparison(scene.folder, scene.expect, found, recording, folder / "comparison.png")
 
