@@ -64,11 +64,11 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("diff", diff, "first difference between two runs; 0 if there is none")
     one.add_argument("folders", nargs=2, type=Path, metavar="DIR")
-    one = command("study", study, "error against run time over the scene's ladder")
+    one = command("study", study, "error against run time over the refinements of a scene")
     _scene(one)
     _report(one, "runs/SCENE-study")
     one.add_argument("--keep", action="store_true", help=KEEP)
-    one = command("stability", stability, "where a scene breaks, and how")
+    one = command("stability", stability, "stability limits of a scene")
     _scene(one)
     _report(one, "runs/SCENE-stability")
     one = command("bench", bench, "throughput of one component, or of the exchange")
@@ -83,7 +83,7 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-KEEP = "do not run again what a study left done in DIR, of the same scene on the same machine"
+KEEP = "keep runs that an earlier study completed in DIR, of the same scene on the same machine"
 RESUME = "go on with an interrupted or failed run, from its last snapshot"
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
@@ -149,9 +149,9 @@ def run(given: argparse.Namespace) -> int:
         return run_under_mpi(given.words, scene, folder)
     if given.inside_mpi:
         # Start-up: only this way of running needs it.
-        from quintet.coupler.launch.mpi_job import enter
+        from quintet.coupler.launch.mpi_job import begin_rank
 
-        enter(folder)
+        begin_rank(folder)
     threads = max(one.threads for one in scene.components.values())
     os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
     # Start-up: only this command needs it.
@@ -162,14 +162,14 @@ def run(given: argparse.Namespace) -> int:
     print(f"left in {os.path.relpath(folder)}", flush=True)
     if given.inside_mpi:
         # Start-up: only this way of running needs it.
-        from quintet.coupler.launch.mpi_job import leave
+        from quintet.coupler.launch.mpi_job import end_rank
 
-        leave(folder, status)
+        end_rank(folder, status)
     return status
 
 
 def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
-    """Read the scene of a new run, and where it goes."""
+    """Read the scene of a new run; return it with the folder of the run."""
     if given.scene is None:
         raise SceneError("run needs a scene, or --resume DIR. Give one.")
     scene = _load(given)
@@ -177,7 +177,7 @@ def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
 
 
 def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
-    """Read the scene of a run that goes on, as it was asked for or as it is given now."""
+    """Read the scene of a run to be resumed, as it was run or as it is given now."""
     # Start-up: only this command needs it.
     from quintet.coupler.run import snapshots
 
@@ -208,7 +208,7 @@ def join(given: argparse.Namespace) -> int:
 
 
 def show(given: argparse.Namespace) -> int:
-    """Print what happened."""
+    """Print the summary of a run."""
     # Start-up: only this command needs it.
     from quintet.coupler.report.show import show as tell
 
@@ -227,7 +227,7 @@ def diff(given: argparse.Namespace) -> int:
 
 
 def study(given: argparse.Namespace) -> int:
-    """Run a scene's ladder."""
+    """Run a convergence study."""
     # Start-up: only this command needs it.
     from quintet.coupler.study.study import run_study
 
@@ -235,7 +235,7 @@ def study(given: argparse.Namespace) -> int:
 
 
 def stability(given: argparse.Namespace) -> int:
-    """Find a scene's limits."""
+    """Find the stability limits of a scene."""
     # Start-up: only this command needs it.
     from quintet.coupler.study.stability import run_stability
 
