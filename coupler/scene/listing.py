@@ -1,4 +1,4 @@
-"""What a scene will be: the list of scenes, and the plan of one."""
+"""The list of scenes, and the plan of one scene."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What is put on top of a scene file: a preset, single settings, other components."""
+"""Overrides of a scene file: presets, single settings, replaced components."""
 
 import tomllib
 from pathlib import Path
@@ -9,7 +9,7 @@ from quintet.interfaces.params import unknown
 
 
 def put_preset(table: dict[str, Any], preset: str) -> list[str]:
-    """Set what a preset of the scene says; return the mistakes."""
+    """Apply a preset of the scene; return the mistakes."""
     presets = table.get("presets", {})
     if not isinstance(presets, dict) or not isinstance(presets.get(preset, {}), dict):
         return [f"presets.{preset} must be a table of paths and values. Write [presets.{preset}]."]
@@ -19,7 +19,7 @@ def put_preset(table: dict[str, Any], preset: str) -> list[str]:
 
 
 def put_set(table: dict[str, Any], setting: str) -> list[str]:
-    """Set ``PATH=VALUE``, the value in TOML; return the mistakes."""
+    """Apply ``PATH=VALUE``, the value in TOML; return the mistakes."""
     path, equals, text = setting.partition("=")
     if not equals:
         return [f"--set needs PATH=VALUE; found {setting!r}. Give it as in --set window=1e-3."]

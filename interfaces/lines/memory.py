@@ -1,4 +1,4 @@
-"""A line without a wire: the component lives in the coupler's own process."""
+"""Lines within one process: the component runs in that of the coupler."""
 
 from collections import deque
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from quintet.interfaces.lines.transport import FramedLine
 
 
 class MemoryLine(FramedLine):
-    """The coupler's end; a message sent is handled at once, its answer waits to be received.
+    """The coupler's end; a message is handled when it is sent, its answer queued.
 
     Messages are packed and checked as on any other line: a scene that runs here runs there.
     """
