@@ -21,6 +21,7 @@ from types import FrameType
 from typing import IO
 
 from quintet.coupler.launch.processes import environment, tail
+from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
@@ -148,12 +149,8 @@ def _forward_signals(job_file: Path, process: "subprocess.Popen[bytes]") -> Iter
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
 
-    old = {one: signal.signal(one, forward) for one in (signal.SIGINT, signal.SIGTERM)}
-    try:
+    with handled_by(forward):
         yield signals
-    finally:
-        for one, handler in old.items():
-            signal.signal(one, handler)
 
 
 def _read(job_file: Path) -> dict[str, object]:
