@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
 
@@ -23,3 +25,10 @@ def test_the_picture_and_the_files_it_links_are_there():
 def test_the_scenes_it_runs_exist():
     named = set(re.findall(r"quintet (?:run|check|join) (\w+)", README))
     assert named and all((ROOT / "scenarios" / name / "scene.toml").exists() for name in named)
+
+
+@pytest.mark.parametrize("name", ["CONTRIBUTING.md", "CHANGELOG.md"])
+def test_what_texts_for_developers_link_is_there(name):
+    text = ROOT / ".github" / name
+    for link in re.findall(r"\]\(([^)#]+)\)", text.read_text()):
+        assert link.startswith("https://") or (text.parent / link).exists(), link
