@@ -206,9 +206,9 @@ def join(given: argparse.Namespace) -> int:
 def show(given: argparse.Namespace) -> int:
     """Print the summary of a run."""
     # Start-up: only this command needs it.
-    from quintet.coupler.report.show import show as tell
+    from quintet.coupler.report.show import show as print_run
 
-    tell(given.folder, given.json)
+    print_run(given.folder, given.json)
     return 0
 
 

@@ -17,6 +17,13 @@ def test_the_tutorial_is_the_component_beside_its_scene():
     assert (ROOT / "scenarios/two_springs/springs.py").read_text() in blocks("python")
 
 
+def test_the_python_example_runs(tmp_path, monkeypatch, capsys):
+    (example,) = (block for block in blocks("python") if block.startswith("import quintet\n"))
+    monkeypatch.chdir(tmp_path)
+    exec(example)
+    assert capsys.readouterr().out.endswith("done (251, 1, 3) m 0.5\n")
+
+
 def test_the_picture_and_the_files_it_links_are_there():
     for link in re.findall(r"\]\(([^)#]+)\)", README):
         assert (ROOT / link).exists(), link

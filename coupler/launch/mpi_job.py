@@ -177,7 +177,7 @@ def write_processes(folder: Path, pids: list[int] | None, shared: list[str]) -> 
 def end_rank(folder: Path, status: int) -> None:
     """End the coupler's rank: in order when all is well, else with an abort of the job."""
     found = _read(folder / "log" / JOB_FILE)
-    _unlink(found)  # all ranks have it open by now; who started the job may be gone
+    _unlink(found)  # all ranks have it open by now; the process that started the job may have ended
     _write(folder, {**found, "status": status})
     sys.stdout.flush()
     sys.stderr.flush()

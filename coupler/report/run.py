@@ -186,9 +186,9 @@ def _columns(rows: list[dict[str, str]], name: str) -> dict[str, Series]:
     keys = [key for key in own[0] if key not in ("time", "name")]
     found = {}
     for key in keys:
-        told = [(float(row["time"]), float(row[key])) for row in own if row[key]]
-        if told:
-            times, values = np.array(told).T
+        known = [(float(row["time"]), float(row[key])) for row in own if row[key]]
+        if known:
+            times, values = np.array(known).T
             unit = "1" if "residual" in key else LEDGER_UNITS.get(key.partition("_")[0], "")
             found[key] = Series(values, times, unit)
     return found
