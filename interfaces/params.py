@@ -2,6 +2,14 @@
 
 ``@parameters`` makes one. Fields are annotated with the constrained types below, so that a
 wrong scene is refused with every mistake at once and no solver imported.
+
+A class whose keys were renamed says so in ``RENAMED``, by which an old key is answered with the
+new one, a dotted path from the same table:
+
+    @parameters
+    class Water:
+        RENAMED: ClassVar = {"laminar": "viscosity.kinematic"}
+        viscosity: Viscosity = Viscosity()
 """
 
 import dataclasses
@@ -40,7 +48,8 @@ def read(params: type, given: dict[str, Any], where: str) -> tuple[Any, list[str
         text = json.dumps(given)
         return TypeAdapter(params).validate_json(text, strict=True), []
     except ValidationError as error:
-        return None, [_sentence(params, where, one) for one in _by_place(error.errors())]
+        found = _by_place(error.errors())
+        return None, [_sentence(params, where, one) for one in _without_old(params, found)]
     except (TypeError, ValueError) as error:
         return None, [f"{where}: {error}. Use numbers, text, lists and tables only."]
 
@@ -57,11 +66,29 @@ def _by_place(mistakes: Iterable[Any]) -> list[dict[str, Any]]:
     return list(found.values())
 
 
+def _without_old(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """All but keys said to be missing that are there under their old names."""
+    there = {
+        (*one["loc"][:-1], *new.split("."))
+        for one in mistakes
+        if (new := _renamed(params, [str(part) for part in one["loc"]]))
+    }
+    return [one for one in mistakes if one["loc"] not in there]
+
+
+def _renamed(params: type, names: list[str]) -> str:
+    """Path of what the key at the end of these names is called now; "" if it keeps its name."""
+    *heads, last = names or [""]
+    return str(getattr(_class_at(params, heads), "RENAMED", {}).get(last, ""))
+
+
 def _sentence(params: type, where: str, mistake: Any) -> str:
     names = [str(part) for part in mistake["loc"]]
     place = ".".join([where, *names])
+    if new := _renamed(params, names):
+        return f"{place} is now {new}. Rename it."
     if mistake["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
-        return unknown(place, names[-1], _names_at(params, names[:-1]))
+        return unknown(place, names[-1], _names(_class_at(params, names[:-1])))
     if mistake["type"] in ("missing", "missing_argument"):
         return f"{place} is needed. Add {names[-1]} to it."
     if mistake["type"] == "value_error":
@@ -78,17 +105,21 @@ def unknown(place: str, name: str, known: Iterable[str]) -> str:
     return f"{place} is not known. {hint}"
 
 
-def _names_at(params: Any, path: list[str]) -> list[str]:
-    """Names that a nested parameter class knows; lists and tables are stepped through."""
+def _class_at(params: Any, path: list[str]) -> Any:
+    """Return a nested parameter class; lists and tables are stepped through."""
     found = params
     for part in path:
         fields = {f.name: f.type for f in dataclasses.fields(found)}
         found = _inner(fields[part]) if part in fields else found
-    return (
-        [f.name.rstrip("_") for f in dataclasses.fields(found)]
-        if dataclasses.is_dataclass(found)
-        else []
-    )
+        if not dataclasses.is_dataclass(found):
+            return found
+    return found
+
+
+def _names(params: Any) -> list[str]:
+    """Names that a parameter class knows; none of what is no parameter class."""
+    known = dataclasses.fields(params) if dataclasses.is_dataclass(params) else ()
+    return [f.name.rstrip("_") for f in known]
 
 
 def _inner(annotation: Any) -> Any:

@@ -11,7 +11,7 @@ from quintet.components.dem_bodies.crowd import crowd_step, crowding, crowding_o
 from quintet.components.dem_bodies.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import CONTACT, DemBodiesParams
 from quintet.components.dem_bodies.state import arrange, empty_contacts
-from quintet.components.shared.team import Team, threads_wanted
+from quintet.components.shared.threads import Team, threads_wanted
 from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import LOAD, MOTION

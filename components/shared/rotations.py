@@ -8,13 +8,11 @@ import math
 
 from numba import njit
 
+from quintet.components.shared.numba_options import EXACT, INNER
+
 Quaternion = tuple[float, float, float, float]
 Vector = tuple[float, float, float]
 Matrix = tuple[float, float, float, float, float, float, float, float, float]  # by rows
-
-PURE = {"cache": True, "nogil": True, "error_model": "numpy"}
-# Of functions that only other kernels call: without the code for calls from Python and C.
-INNER = PURE | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 @njit(**INNER)
@@ -65,7 +63,7 @@ def matrix(q: Quaternion) -> Matrix:
 
 
 @njit(**INNER)
-def forward(r: Matrix, x: float, y: float, z: float) -> Vector:
+def to_world(r: Matrix, x: float, y: float, z: float) -> Vector:
     """Return R v: body -> world."""
     return (
         r[0] * x + r[1] * y + r[2] * z,
@@ -75,7 +73,7 @@ def forward(r: Matrix, x: float, y: float, z: float) -> Vector:
 
 
 @njit(**INNER)
-def backward(r: Matrix, x: float, y: float, z: float) -> Vector:
+def to_body(r: Matrix, x: float, y: float, z: float) -> Vector:
     """Return Rᵀ v: world -> body."""
     return (
         r[0] * x + r[3] * y + r[6] * z,
@@ -97,12 +95,17 @@ def dot(a: Vector, b: Vector) -> float:
 
 
 @njit(**INNER)
-def less(a: Vector, b: Vector) -> Vector:
+def sub(a: Vector, b: Vector) -> Vector:
     """Return a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 @njit(**INNER)
-def beside(a: Vector, scale: float, b: Vector) -> Vector:
+def axpy(a: Vector, scale: float, b: Vector) -> Vector:
     """Return a + scale b."""
     return a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]
+
+
+# Names that are still in use.
+PURE = EXACT
+forward, backward, less, beside = to_world, to_body, sub, axpy

@@ -148,6 +148,7 @@ ARGUMENTS = {
     "set without =": (["--set", "end"], "--set needs PATH=VALUE; found 'end'."),
     "set wrong value": (["--set", "end=-1"], "scene.end should be greater than 0; found -1."),
     "set wrong key": (["--set", "components.pong.itms=2"], "components.pong.itms is not known. Did you mean items?"),
+    "set in a table that it lacks": (["--set", "components.pong.grops.size=2"], "components.pong.grops is not known. "),
     "swap name": (["--swap", "peng=echo"], "--swap peng=echo: component peng is not known. Did you mean pong?"),
     "swap kind": (["--swap", "pong=ecko"], "--swap pong=ecko: kind ecko is not known. Did you mean echo?"),
     "swap form": (["--swap", "pong"], "--swap needs NAME=KIND; found 'pong'."),
