@@ -5,8 +5,8 @@ guessed inputs and x̃ those that the components then gave. Residuals are scaled
 they enter a norm, and what outlives a window is kept as rates (`residual_scaling`).
 
 Literature: Küttler and Wall (2008), Comput. Mech. 43, 61 (Aitken); Degroote, Bathe and Vierendeels
-(2009), Comput. Struct. 87, 793 (IQN-ILS); Mehl et al. (2016), Comput. Math. Appl. 71, 869, and
-Lindner et al. (2015), Proc. COUPLED PROBLEMS, 933 (reuse of columns over windows).
+(2009), Comput. Struct. 87, 793 (IQN-ILS, reuse of columns over windows); Mehl et al. (2016), Comput.
+Math. Appl. 71, 869.
 """
 
 import math
@@ -88,7 +88,7 @@ class Aitken:
         self._last: Array | None = None  # residual of this window
 
     def begin_window(self, length: float) -> None:
-        """Begin with the last factor, bounded (Degroote et al. 2009, section 3.2)."""
+        """Begin with the last factor, bounded (Degroote et al. 2009)."""
         self.scaling.begin_window(length)
         self.factor = math.copysign(min(abs(self.factor), self.most), self.factor)
         self._last = None

@@ -35,7 +35,7 @@ def filtered_least_squares(columns: Array, target: Array, limit: float) -> tuple
 
     References
     ----------
-    Haelterman et al. (2016), Comput. Struct. 171, 9, algorithm 3.
+    Haelterman et al. (2016), Comput. Struct. 171, 9.
     """
     count, length = columns.shape
     rest = np.concatenate([columns, target[None]])  # (k + 1, n): all that is left, target last

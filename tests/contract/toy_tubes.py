@@ -1,7 +1,7 @@
 """Toys: a membrane on a layer of still water, whose mass it must move with its own.
 
-The model of Causin, Gerbeau and Nobile (2005), Comput. Methods Appl. Mech. Engrg. 194, 4506,
-section 3: potential flow in a straight channel, no pressure at its ends, a wall that moves on one
+The model of Causin, Gerbeau and Nobile (2005), Comput. Methods Appl. Mech. Engrg. 194, 4506:
+potential flow in a straight channel, no pressure at its ends, a wall that moves on one
 side. Its pressure answers an acceleration by an added mass that is diagonal in sines and full in
 the nodes; Förster, Wall and Ramm (2007), ibid. 196, 1278, show that no staggered scheme holds it.
 """
@@ -29,7 +29,7 @@ def sines(count: int) -> Array:
 
 
 def added_masses(count: int, length: float, depth: float, density: float) -> Array:
-    """Added mass of each sine [kg per m of membrane], per unit width (Causin et al., eq. 15)."""
+    """Added mass of each sine [kg per m of membrane], per unit width (Causin et al. 2005)."""
     waves = math.pi / length * np.arange(1, count + 1)  # 1/m
     return np.asarray(density / (waves * np.tanh(waves * depth)))
 
