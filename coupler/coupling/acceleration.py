@@ -5,8 +5,8 @@ guessed inputs and x̃ those that the components then gave. Residuals are scaled
 they enter a norm, and what outlives a window is kept as rates (`residual_scaling`).
 
 Literature: Küttler and Wall (2008), Comput. Mech. 43, 61 (Aitken); Degroote, Bathe and Vierendeels
-(2009), Comput. Struct. 87, 793 (IQN-ILS, reuse of columns over windows); Mehl et al. (2016), Comput.
-Math. Appl. 71, 869.
+(2009), Comput. Struct. 87, 793 (IQN-ILS, reuse of columns over windows); Mehl et al. (2016),
+Comput. Math. Appl. 71, 869.
 """
 
 import math
