@@ -18,7 +18,6 @@ BAD = 2  # exit status of bad input: nothing was started
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run one command and exit with its status."""
     given = parser().parse_args(arguments)
-    given.words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         status = given.does(given)
     except SceneError as error:
@@ -64,11 +63,11 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("diff", diff, "first difference between two runs; 0 if there is none")
     one.add_argument("folders", nargs=2, type=Path, metavar="DIR")
-    one = command("study", study, "error against run time over the scene's ladder")
+    one = command("study", study, "error against run time over the refinements of a scene")
     _scene(one)
     _report(one, "runs/SCENE-study")
     one.add_argument("--keep", action="store_true", help=KEEP)
-    one = command("stability", stability, "where a scene breaks, and how")
+    one = command("stability", stability, "stability limits of a scene")
     _scene(one)
     _report(one, "runs/SCENE-stability")
     one = command("bench", bench, "throughput of one component, or of the exchange")
@@ -83,7 +82,7 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-KEEP = "do not run again what a study left done in DIR, of the same scene on the same machine"
+KEEP = "keep runs that an earlier study completed in DIR, of the same scene on the same machine"
 RESUME = "go on with an interrupted or failed run, from its last snapshot"
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
@@ -106,6 +105,7 @@ SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME
 
 
 def _load(given: argparse.Namespace) -> "Scene":
+    # Start-up: only this command needs it.
     from quintet.coupler.scene.read import load
 
     return load(given.scene, given.preset, given.settings, given.swap, given.transport)
@@ -113,6 +113,7 @@ def _load(given: argparse.Namespace) -> "Scene":
 
 def list_scenes(given: argparse.Namespace) -> int:
     """List the scenes that come with quintet."""
+    # Start-up: only this command needs it.
     from quintet.coupler.scene.listing import list_all
 
     list_all(given.json)
@@ -121,9 +122,10 @@ def list_scenes(given: argparse.Namespace) -> int:
 
 def check(given: argparse.Namespace) -> int:
     """Print the plan of a scene."""
-    from quintet.coupler.scene.listing import show_plan
+    # Start-up: only this command needs it.
+    from quintet.coupler.scene.listing import console, print_plan
 
-    show_plan(_load(given))
+    print_plan(_load(given), console())
     return 0
 
 
@@ -134,42 +136,45 @@ def run(given: argparse.Namespace) -> int:
     unknown = scene.elsewhere - set(scene.components)
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
-    from quintet.coupler.run.simulate import make_folder, simulate
+    # Start-up: only this command needs it.
+    from quintet.coupler.report import show as report
+    from quintet.coupler.run.run_scene import run_scene
 
-    if not given.inside_mpi and snapshot is None:
-        make_folder(scene, folder)
-    if scene.transport == "mpi" and not given.inside_mpi:
-        from quintet.coupler.launch.mpi_job import run_under_mpi
-
-        return run_under_mpi(given.words, scene, folder)
     if given.inside_mpi:
-        from quintet.coupler.launch.mpi_job import enter
+        return _run_rank(scene, folder, snapshot)
+    status = run_scene(scene, folder, snapshot)
+    if (folder / report.NAME).is_file():
+        report.show(folder)
+        print(f"left in {os.path.relpath(folder)}", flush=True)
+    return status
 
-        enter(folder)
-    threads = max(one.threads for one in scene.components.values())
-    os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
-    from quintet.coupler.report.show import show as tell
 
+def _run_rank(scene: "Scene", folder: Path, snapshot: Path | None) -> int:
+    """Run as the coupler's rank of an MPI job."""
+    # Start-up: only this way of running needs it.
+    from quintet.coupler.launch.mpi_job import begin_rank, end_rank
+    from quintet.coupler.run.simulate import simulate
+
+    begin_rank(folder)
     status = simulate(scene, folder, snapshot)
-    tell(folder)
-    print(f"left in {os.path.relpath(folder)}", flush=True)
-    if given.inside_mpi:
-        from quintet.coupler.launch.mpi_job import leave
-
-        leave(folder, status)
+    end_rank(folder, status)
     return status
 
 
 def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
-    """Read the scene of a new run, and where it goes."""
+    """Read the scene of a new run; return it with the folder of the run."""
     if given.scene is None:
         raise SceneError("run needs a scene, or --resume DIR. Give one.")
+    # Start-up: only this command needs it.
+    from quintet.coupler.run.run_scene import run_folder
+
     scene = _load(given)
-    return scene, (given.out or Path("runs") / scene.file.name).resolve(), None
+    return scene, run_folder(scene, given.out), None
 
 
 def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
-    """Read the scene of a run that goes on, as it was asked for or as it is given now."""
+    """Read the scene of a run to be resumed, as it was run or as it is given now."""
+    # Start-up: only this command needs it.
     from quintet.coupler.run import snapshots
 
     if given.out:
@@ -183,6 +188,7 @@ def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
 
 def join(given: argparse.Namespace) -> int:
     """Start one component of a scene, joined to a coupler elsewhere."""
+    # Start-up: only this command needs it.
     from quintet.interfaces.params import unknown
     from quintet.interfaces.serving.process import main as component
 
@@ -198,15 +204,17 @@ def join(given: argparse.Namespace) -> int:
 
 
 def show(given: argparse.Namespace) -> int:
-    """Print what happened."""
-    from quintet.coupler.report.show import show as tell
+    """Print the summary of a run."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.report.show import show as print_run
 
-    tell(given.folder, given.json)
+    print_run(given.folder, given.json)
     return 0
 
 
 def diff(given: argparse.Namespace) -> int:
     """Compare two runs bit by bit."""
+    # Start-up: only this command needs it.
     from quintet.coupler.report.diff import compare, sentence
 
     found = compare(*given.folders)
@@ -215,14 +223,16 @@ def diff(given: argparse.Namespace) -> int:
 
 
 def study(given: argparse.Namespace) -> int:
-    """Run a scene's ladder."""
+    """Run a convergence study."""
+    # Start-up: only this command needs it.
     from quintet.coupler.study.study import run_study
 
     return run_study(given)
 
 
 def stability(given: argparse.Namespace) -> int:
-    """Find a scene's limits."""
+    """Find the stability limits of a scene."""
+    # Start-up: only this command needs it.
     from quintet.coupler.study.stability import run_stability
 
     return run_stability(given)
@@ -231,9 +241,11 @@ def stability(given: argparse.Namespace) -> int:
 def bench(given: argparse.Namespace) -> int:
     """Measure throughput."""
     if given.name == "exchange":
+        # Start-up: only this way of running needs it.
         from quintet.coupler.bench.exchange import run_bench
 
         return run_bench(given)
+    # Start-up: only this command needs it.
     from quintet.coupler.bench.throughput import run_kind
 
     return run_kind(given)

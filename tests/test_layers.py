@@ -13,9 +13,30 @@ MAY_IMPORT = {
     "coupler": {"interfaces", "coupler"},
     "scenarios": {"interfaces", "coupler"},
 }
+# Floors of the two folders, the ground first: what lies on one may import what lies below it, and,
+# in its own wing, anything. What stands on one floor does not know of each other.
+FLOORS = {
+    "interfaces": [
+        {"errors"},
+        {"units", "params"},
+        {"component"},
+        {"ports", "manifest", "rotation", "sums"},
+        {"lines"},
+        {"serving"},
+    ],
+    "coupler": [
+        {"coupling", "files"},
+        {"measures"},
+        {"scene"},
+        {"launch", "report"},
+        {"run"},
+        {"study", "bench"},
+        {"cli", "python"},
+    ],
+}
 LINES = 400
 FILES = [p for folder in MAY_IMPORT for p in sorted((ROOT / folder).rglob("*.py"))]
-TESTS = sorted((ROOT / "tests").rglob("*.py"))
+TESTS = [p for p in sorted((ROOT / "tests").rglob("*.py")) if "typing" not in p.parts]
 SOLVERS = {p.name for p in (ROOT / "components").iterdir() if (p / "__init__.py").exists()}
 
 
@@ -28,7 +49,7 @@ def imported(path):
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}:{node.lineno}: write the import in full"
-            names = [node.module or ""]
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
         elif isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         else:
@@ -48,6 +69,54 @@ def test_imports_follow_the_layers(path):
         assert target[0] in MAY_IMPORT[folder] or tuple(target[:2]) in own, ".".join(target)
 
 
+def wing_of(parts):
+    """First folder or module of a wing's path; `__init__` is the whole folder's own."""
+    return parts[0].removesuffix(".py")
+
+
+@pytest.mark.parametrize("folder", FLOORS)
+def test_every_wing_has_its_floor(folder):
+    floors = FLOORS[folder]
+    wings = {wing_of(p.relative_to(ROOT / folder).parts) for p in FILES if folder in p.parts}
+    assert wings <= {"__init__"}.union(*floors)
+    assert sum(map(len, floors)) == len(set().union(*floors))
+
+
+@pytest.mark.parametrize("path", FILES, ids=where)
+def test_imports_run_downwards_between_the_wings(path):
+    folder, *inner = path.relative_to(ROOT).parts
+    if folder not in FLOORS or inner == ["__init__.py"]:
+        return
+    level = {wing: n for n, floor in enumerate(FLOORS[folder]) for wing in floor}
+    own = wing_of(inner)
+    for target in imported(path):
+        if len(target) > 1 and target[0] == folder and target[1] != own:
+            assert level[target[1]] < level[own], f"{own} must not import {'.'.join(target)}"
+
+
+def late_imports(path):
+    """Yield the lines of imports within functions that no comment explains."""
+    lines = path.read_text().splitlines()
+    late = {
+        node.lineno
+        for function in ast.walk(ast.parse(path.read_text()))
+        if isinstance(function, ast.FunctionDef)
+        for node in ast.walk(function)
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+    }
+    for line in sorted(late):
+        first = line
+        while first - 1 in late or not lines[first - 2].strip():
+            first -= 1  # one comment explains imports that follow each other
+        if not lines[first - 2].lstrip().startswith("#") and "  # " not in lines[line - 1]:
+            yield line
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if "components" not in p.parts], ids=where)
+def test_what_is_imported_late_says_why(path):
+    assert not list(late_imports(path)), "give the reason in a comment above, or import at the top"
+
+
 @pytest.mark.parametrize("path", FILES, ids=where)
 def test_neither_contract_nor_coupler_knows_a_solver_by_name(path):
     if path.relative_to(ROOT).parts[0] in ("interfaces", "coupler"):
@@ -64,7 +133,9 @@ def test_files_are_small(path):
 def test_every_folder_is_packaged():
     setup = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     folders = {p.parent.relative_to(ROOT) for p in FILES if p.name == "__init__.py"}
-    assert set(setup["packages"]) == {"quintet." + ".".join(f.parts) for f in folders}
+    top = {Path(folder): name for name, folder in setup["package-dir"].items()}
+    names = {top.get(f, "quintet." + ".".join(f.parts)) for f in folders}
+    assert set(setup["packages"]) == names
 
 
 def test_every_scene_is_packaged():

@@ -16,7 +16,7 @@ from quintet.components.dem_bodies.integration.step_limit import (
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import ports
-from quintet.components.shared.team import Team, threads_wanted
+from quintet.components.shared.threads import Team, threads_wanted
 from quintet.interfaces.component import Array, Component, Fields, Totals
 from quintet.interfaces.errors import StepError
 

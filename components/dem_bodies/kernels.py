@@ -44,17 +44,8 @@ from quintet.components.dem_bodies.state import (
     State,
     Whole,
 )
-from quintet.components.shared.rotations import (
-    INNER,
-    PURE,
-    Vector,
-    axpy,
-    dot,
-    rotated,
-    scaled,
-    sub,
-    to_world,
-)
+from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.shared.rotations import Vector, axpy, dot, rotated, scaled, sub, to_world
 
 # The stages of a step. Drift, balls and kick are shared out among threads.
 DRIFT, BALLS, OTHERS, KICK, REPORT, DONE = range(6)
@@ -283,7 +274,7 @@ def end_kick(
     sums[block, CENTRIPETAL] = centripetal
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def step(
     first: int, last: int, begin: int, end: int, model: Model, state: State, balls: BallPairs,
     others: BodyPairs, sums: Numbers, dt: float, loaded: bool, limit: float,
@@ -342,7 +333,7 @@ def step(
     return end
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def kinetic_energy(model: Model, state: State) -> float:
     """Kinetic energy [J] of all bodies."""
     energy, motion = 0.0, state.motion
@@ -356,7 +347,7 @@ def kinetic_energy(model: Model, state: State) -> float:
     return energy
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def angular_momenta(model: Model, state: State) -> Numbers:
     """Angular momentum [kg m²/s] of each row about its centre."""
     momenta, motion = state.angular_momentum.copy(), state.motion
@@ -367,7 +358,7 @@ def angular_momenta(model: Model, state: State) -> Numbers:
     return momenta
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def copy_motion(
     state: State, position: Numbers, velocity: Numbers, orientation: Numbers,
     angular_velocities: Numbers,

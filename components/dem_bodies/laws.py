@@ -11,7 +11,8 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.rotations import INNER, Vector, axpy, dot, scaled
+from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.rotations import Vector, axpy, dot, scaled
 
 DAMPING = 2.0 * math.sqrt(5.0 / 6.0)
 LEAST = 1e-200  # what is smaller counts as zero

@@ -8,13 +8,11 @@ import math
 
 from numba import njit
 
+from quintet.components.shared.numba_options import INNER
+
 Quaternion = tuple[float, float, float, float]
 Vector = tuple[float, float, float]
 Matrix = tuple[float, float, float, float, float, float, float, float, float]  # by rows
-
-PURE = {"cache": True, "nogil": True, "error_model": "numpy"}
-# Of functions that only other kernels call: without the code for calls from Python and C.
-INNER = PURE | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 @njit(**INNER)

@@ -62,9 +62,9 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 026705.
 """
 
-from quintet.components.sph_fluid.build import particles
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.particle_count import particles
 from quintet.components.sph_fluid.surface import surface
 from quintet.interfaces.manifest import Manifest, Plan, Ports
 from quintet.interfaces.ports import SURFACE_LOAD

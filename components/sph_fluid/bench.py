@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.interfaces.component import Fields
 from quintet.interfaces.manifest import BenchCase
 

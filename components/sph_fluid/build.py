@@ -1,34 +1,18 @@
-"""Where the particles are at the start, and how dense; needs numpy alone."""
+"""Where the particles are at the start, and how dense."""
 
 import math
 
 import numpy as np
 
+from quintet.components.shared.lattice import cell_centres, lattice_points
+from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.obstacles import obstacle_points
-from quintet.components.sph_fluid.params import FACES, Box, SphFluidParams
+from quintet.components.sph_fluid.params import Box, SphFluidParams
+from quintet.components.sph_fluid.particle_count import cells, layers_beyond
 from quintet.components.sph_fluid.state import Array, State
 
-TAIT = 7  # exponent γ of the equation of state
 OFFSETS = np.array([0.0, 0.5 * (math.sqrt(5.0) - 1.0), math.sqrt(2.0) - 1.0])  # 1, per row in y, z
 FADING = 10.0  # spacings from a wall within which the offsets of rows fade
-
-
-def cells(box: Box, params: SphFluidParams) -> tuple[int, int, int]:
-    """Whole number of particles along each edge of a box."""
-    low, high = box
-    x, y, z = (max(1, round((b - a) / params.spacing)) for a, b in zip(low, high, strict=True))
-    return (x, y, z) if params.dimensions == 3 else (x, 1, z)
-
-
-def particles(params: SphFluidParams) -> int:
-    """Fluid and wall particles, counted without making any but those of obstacles."""
-    fluid = sum(math.prod(cells(box, params)) for box in params.fluid)
-    fluid += len(obstacle_points(params))
-    if params.tank is None:
-        return fluid
-    inside = cells(params.tank, params)
-    outside = [n + sum(shut) for n, shut in zip(inside, _shut(params), strict=True)]
-    return fluid + math.prod(outside) - math.prod(inside)
 
 
 def state(params: SphFluidParams) -> State:
@@ -83,7 +67,7 @@ def wall_points(params: SphFluidParams) -> Array:
     """
     if params.tank is None:
         return np.zeros((0, 3))
-    points = _lattice(params.tank, cells(params.tank, params), _shut(params))
+    points = _lattice(params.tank, cells(params.tank, params), layers_beyond(params))
     low, high = np.array(params.tank)
     return points[((points < low) | (points > high)).any(axis=1)]
 
@@ -99,18 +83,9 @@ def wall_velocity(wall: Array, params: SphFluidParams) -> Array:
     return found
 
 
-def _shut(params: SphFluidParams) -> list[tuple[int, int]]:
-    beyond = {face: params.layers if face in params.shut else 0 for face in FACES}
-    return [(beyond[f"{x}-"], beyond[f"{x}+"]) for x in "xyz"]
-
-
 def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int]]) -> Array:
-    axes = [
-        low + (np.arange(-before, n + after) + 0.5) * (high - low) / n
-        for low, high, n, (before, after) in zip(*box, counts, beyond, strict=True)
-    ]
-    z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
-    return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    edges = zip(*box, counts, beyond, strict=True)
+    return lattice_points([cell_centres(low, high, n, *more) for low, high, n, more in edges])
 
 
 def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:

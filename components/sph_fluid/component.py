@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from quintet.components.shared.cells import grid_around, sorted_into
-from quintet.components.shared.cubic_spline import SUPPORT
-from quintet.components.shared.neighbours import Neighbours, neighbours_within
-from quintet.components.shared.team import Team, threads_wanted
+from quintet.components.shared.search.cells import grid_around, sorted_into
+from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.shared.threads import Team, threads_wanted
 from quintet.components.sph_fluid import build, lists
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples, shift
@@ -32,7 +32,7 @@ class SphFluid(Component):
         self.fluid = constants(params)
         self.team, self.state = Team(threads_wanted()), build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
-        self.near = Neighbours()
+        self.near = NeighbourLists()
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
         self.held: Whole = self.rows  # (k,) samples that a contact potential holds
         self.steepest = math.inf  # s, step that it allows
@@ -58,7 +58,7 @@ class SphFluid(Component):
         """At which spacing, and how deep, surfaces should be sampled."""
         return {
             "surface.spacing": np.array([self.params.spacing]),
-            "surface.depth": np.array([SUPPORT * self.fluid.smoothing]),
+            "surface.depth": np.array([SUPPORT * self.fluid.smoothing.length]),
             "surface.inset": np.array([self.params.inset * self.params.spacing]),
         }
 
@@ -81,7 +81,7 @@ class SphFluid(Component):
 
     def stable_dt(self) -> float:
         """Largest step [s]; Monaghan & Kos 1999 and Morris 1997, from the rates of the last one."""
-        h, state = self.fluid.smoothing, self.state
+        h, state = self.fluid.smoothing.length, self.state
         sound = h / (self.params.sound_speed + h * state.approach)
         pull = math.sqrt(h / state.acceleration) if state.acceleration > 0.0 else math.inf
         # Where friction is a stress, what comes nearer feels three times what passes by.
@@ -130,7 +130,7 @@ class SphFluid(Component):
         if not len(kept):
             raise StepError("step: all fluid has left the domain. Check the walls and gravity.")
         fluid, boundary = state.place.take(kept, axis=0), state.place[split : state.particles]
-        grid = grid_around(fluid, lists.reach(self.params))
+        grid = grid_around(fluid, lists.skin(self.params).reach)
         state.lost += split - len(kept)
         state.keep(kept[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         state.reference, state.moved = np.concatenate([state.place[:, :3], state.mirror]), 0.0
@@ -143,14 +143,12 @@ class SphFluid(Component):
 
     def _list(self) -> None:
         state, points = self.state, self.state.reference[: self.state.particles]
-        seekers, self.listed = lists.seekers(state, self.rows, self.params)
-        reach, after = lists.reach(self.params), (self.team, seekers, self.near.list)
+        query_points, self.listed = lists.query_points(state, self.rows, self.params)
+        reach, after = lists.skin(self.params).reach, (self.team, query_points, self.near.list)
         if self.images is None:
             self.near = neighbours_within(reach, points, state.fluid, *after)
         else:
-            from quintet.components.sph_fluid.symmetry import neighbours
-
-            self.near = neighbours(self.images, state, reach, *after)
+            self.near = self.images.neighbours(state, reach, *after)
         self.bulk = bulk(self.volume, self.rows, len(state.place), self.params)
         if self.params.mirrored and self.terms.contact is not None:
             self.terms = mark(self.terms, self.rows[self.held], len(state.place), self.params)
@@ -183,7 +181,7 @@ class SphFluid(Component):
             self.images.turn(rubbing.seen, state.particles)
         arrays: tuple[Any, Any] = state.place, state.motion
         if self.params.precision == "float32":
-            from quintet.components.sph_fluid.single import rounded
+            from quintet.components.shared.single_precision import rounded
 
             rubbing, arrays = rounded(rubbing), self.single.of(state, self.team)
         return (*arrays, near, self.terms.fluid), rubbing

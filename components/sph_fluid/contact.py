@@ -28,12 +28,13 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.shared import cubic_spline, wendland
-from quintet.components.shared.cubic_spline import SUPPORT
-from quintet.components.shared.neighbours import FAST
-from quintet.components.shared.team import Team
-from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Contact, Fluid, Guard, constants, guard, kernel
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing import cubic_spline, wendland
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.laws import Contact, Fluid, Guard, constants, guard
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 
@@ -42,7 +43,9 @@ SAFE = 0.2  # of √(m/(∂F/∂d)): the step
 
 def contact(params: SphFluidParams) -> Contact:
     """Numbers of the contact potential."""
-    width = constants(params).height * shape(1.0 / params.smoothing, params)  # 1/m3, W(Δp)
+    width = constants(params).smoothing.height * shape(
+        1.0 / params.smoothing, params
+    )  # 1/m3, W(Δp)
     power = params.potential_exponent - 1
     strength = (power + 1) / (width * params.spacing**params.dimensions)
     once, twice, four = (float(power >> bit & 1) for bit in range(3))
@@ -157,7 +160,7 @@ def slope(q: float, params: SphFluidParams) -> float:
     return 3.0 * float(cubic_spline.slope.py_func(q))
 
 
-def energy(state: State, near: List, touch: Contact, params: SphFluidParams, team: Team) -> float:
+def energy(state: State, near: Lists, touch: Contact, params: SphFluidParams, team: Team) -> float:
     """Energy [J] of the contact potential and of the guard."""
     turn, fluid = guard(params), constants(params)
     held_by = state.motion[:, 3] * (1.0 if touch.some is None else touch.some)
@@ -171,7 +174,7 @@ def energy(state: State, near: List, touch: Contact, params: SphFluidParams, tea
 
 @njit(**FAST)
 def store(
-    first: int, last: int, place: Array, held_by: Array, near: List, inverse: float, exponent: int,
+    first: int, last: int, place: Array, held_by: Array, near: Lists, inverse: float, exponent: int,
     per_volume: float, guard: Guard, fluid: Fluid, found: Array,
 ) -> None:  # fmt: skip
     """Write the energy over m² of fluid rows [first, last) with their boundary neighbours."""
@@ -186,7 +189,7 @@ def store(
                 place[i, 2] - place[j, 2],
             )
             r2 = x * x + y * y + z * z
-            total += held_by[j] * per_volume * (kernel(r2, fluid) * inverse) ** exponent
+            total += held_by[j] * per_volume * (kernel(r2, fluid.smoothing) * inverse) ** exponent
             close = max(1.0 - r2 / guard.reach2, 0.0)
             total += 0.25 * guard.stiffness * guard.reach2 * close * close
         found[i] = total

@@ -19,10 +19,11 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.shared.neighbours import FAST
-from quintet.components.shared.team import Team
-from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Fluid, constants, kernel, pressure_term
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.laws import Fluid, constants, pressure_term
 from quintet.components.sph_fluid.mdbc import NONE
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
@@ -45,7 +46,7 @@ def damp(state: State, params: SphFluidParams, team: Team) -> None:
     team.run(add, rows, strength, state.squeeze, constants(params), state.place, state.motion)
 
 
-def damp_walls(state: State, near: List, params: SphFluidParams, team: Team) -> None:
+def damp_walls(state: State, near: Lists, params: SphFluidParams, team: Team) -> None:
     """Add to p/ρ² of mirrored walls and samples what the fluid at their mirror points has."""
     arrays = (state.mirror, state.place, state.motion, near)
     team.run(carry, len(state.mirror), state.fluid, *arrays, constants(params))
@@ -65,7 +66,7 @@ def add(
 
 @njit(**FAST)
 def carry(
-    first: int, last: int, split: int, mirrors: Array, place: Array, motion: Array, near: List,
+    first: int, last: int, split: int, mirrors: Array, place: Array, motion: Array, near: Lists,
     fluid: Fluid,
 ) -> None:  # fmt: skip
     """Add the damper's mean part around their mirror points to p/ρ² of boundary rows."""
@@ -77,7 +78,7 @@ def carry(
         for k in range(np.uint64(begin[i]), np.uint64(end[i])):
             j = np.uint64(neighbour[k])
             dx, dy, dz = place[j, 0] - x, place[j, 1] - y, place[j, 2] - z
-            weight = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / place[j, 3]
+            weight = kernel(dx * dx + dy * dy + dz * dz, fluid.smoothing) * fluid.mass / place[j, 3]
             weights += weight
             sums += weight * (motion[j, 3] - pressure_term(place[j, 3], fluid))
         if weights >= NONE:

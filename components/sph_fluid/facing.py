@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from quintet.components.shared.neighbours import FAST
-from quintet.components.sph_fluid.laws import Fluid, kernel
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.sph_fluid.laws import Fluid
 from quintet.components.sph_fluid.state import Array, State, Whole
 
 WIDEST = 1.25  # spacings, of the gaps that are films: in wider ones particles press enough
@@ -164,7 +165,7 @@ def fill(
                 r2 = 0.0
                 for d in range(3):
                     r2 += (foot[i, d] - place[k, d]) ** 2
-                own[i] += kernel(r2, fluid) * volume[k]
+                own[i] += kernel(r2, fluid.smoothing) * volume[k]
 
 
 @njit(**FAST)

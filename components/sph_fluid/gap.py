@@ -24,10 +24,11 @@ particles leave, as many of them as there are in the gap, and nothing is pressed
 import numpy as np
 from numba import njit
 
-from quintet.components.shared.neighbours import FAST
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.sph_fluid.facing import WIDEST, Film, directions
-from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Fluid, kernel
+from quintet.components.sph_fluid.laws import Fluid
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 
@@ -75,7 +76,7 @@ def flow(
 
 @njit(**FAST)
 def pressed(
-    row: Whole, face: Array, split: int, place: Array, near: List, fluid: Fluid, share: Array
+    row: Whole, face: Array, split: int, place: Array, near: Lists, fluid: Fluid, share: Array
 ) -> None:
     """Write Σ V W of the fluid around points (m, 3) m of faces, by the lists of mirror points."""
     begin, _, end, neighbour = near
@@ -87,11 +88,11 @@ def pressed(
             r2 = 0.0
             for d in range(3):
                 r2 += (face[s, d] - place[j, d]) ** 2
-            share[s] += kernel(r2, fluid) * fluid.mass / place[j, 3]
+            share[s] += kernel(r2, fluid.smoothing) * fluid.mass / place[j, 3]
 
 
 def push(
-    film: Film, state: State, near: List, dt: float, params: SphFluidParams, fluid: Fluid
+    film: Film, state: State, near: Lists, dt: float, params: SphFluidParams, fluid: Fluid
 ) -> None:
     """Advance the film by a step [s], and add its push to the samples' force."""
     spacing, density = params.spacing, params.density

@@ -4,12 +4,12 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.cubic_spline import SUPPORT
-from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Fluid, kernel
+from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.sph_fluid.laws import Fluid
 from quintet.components.sph_fluid.state import Array
-
-EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
 
 
 @njit(**EXACT)
@@ -21,7 +21,7 @@ def add_around(
 
     `points` (m, 3) m; `weight` (3,) N/m3, of the fluid.
     """
-    reach2 = (SUPPORT * fluid.smoothing) ** 2
+    reach2 = (SUPPORT * fluid.smoothing.length) ** 2
     sums[:] = 0.0
     for g in range(points.shape[0]):
         for j in range(place.shape[0]):
@@ -31,7 +31,7 @@ def add_around(
             if r2 >= reach2:
                 continue
             density = place[j, 3]
-            share = kernel(r2, fluid) * fluid.mass / density
+            share = kernel(r2, fluid.smoothing) * fluid.mass / density
             if j < split:
                 pressure = motion[j, 3] * density * density
                 sums[g, 0] += share
@@ -45,7 +45,7 @@ def fill_columns(
     spots: Array, bottom: float, rise: float, split: int, place: Array, fluid: Fluid, share: Array
 ) -> None:
     """Write the share of volume Σ_j V_j W_j above spots (m, 2) m, at heights bottom + k rise."""
-    reach2 = (SUPPORT * fluid.smoothing) ** 2
+    reach2 = (SUPPORT * fluid.smoothing.length) ** 2
     share[:] = 0.0
     for g in range(spots.shape[0]):
         for j in range(split):
@@ -58,14 +58,16 @@ def fill_columns(
                 last = min(share.shape[1] - 1, int((height + half) / rise))
                 for k in range(first, last + 1):
                     z = height - k * rise
-                    share[g, k] += volume * kernel(aside2 + z * z, fluid)
+                    share[g, k] += volume * kernel(aside2 + z * z, fluid.smoothing)
 
 
 @njit(**EXACT)
-def furthest(axis: int, fewest: float, split: int, place: Array, near: List, fluid: Fluid) -> float:
+def furthest(
+    axis: int, fewest: float, split: int, place: Array, near: Lists, fluid: Fluid
+) -> float:
     """Greatest position along an axis of fluid that has so many fluid neighbours or more."""
     begin, middle, _, neighbour = near
-    reach2 = (SUPPORT * fluid.smoothing) ** 2
+    reach2 = (SUPPORT * fluid.smoothing.length) ** 2
     found = -math.inf
     for i in range(split):
         if place[i, axis] > found:

@@ -18,10 +18,11 @@ import math
 
 import numpy as np
 
-from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.sph_fluid.gauge_kernels import add_around, fill_columns, furthest
-from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Fluid, kernel
+from quintet.components.sph_fluid.laws import Fluid
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
@@ -52,9 +53,9 @@ class Gauges:
             self.seen, self.above = images.reflect(self.points), images.reflect(self.spots)
         boxes = [params.walls] if params.walls else params.fluid
         self.floor = min(box[0][2] for box in boxes)  # m
-        self.lone = fluid.mass / fluid.density * float(kernel(0.0, fluid))  # 1, V W(0)
+        self.lone = fluid.mass / fluid.density * float(kernel(0.0, fluid.smoothing))  # 1, V W(0)
 
-    def read(self, state: State, near: List) -> Fields:
+    def read(self, state: State, near: Lists) -> Fields:
         """Read all gauges; `near` are the neighbour lists of this state, if it has any yet."""
         found: dict[str, Array] = {}
         if len(self.points):
@@ -80,7 +81,7 @@ class Gauges:
 
     def _height(self, state: State) -> Array:
         z, spacing = state.place[: state.fluid, 2], self.params.spacing
-        reach, rise = SUPPORT * self.fluid.smoothing, FINE * spacing
+        reach, rise = SUPPORT * self.fluid.smoothing.length, FINE * spacing
         bottom = z.min() - reach
         count = math.ceil((z.max() + reach - bottom) / rise) + 1
         share = np.empty((len(self.above), count))
@@ -97,7 +98,7 @@ class Gauges:
         part = (share[k] - half) / (share[k] - share[k + 1])
         return float(bottom + (k + part) * rise)
 
-    def _front(self, state: State, near: List) -> Array:
+    def _front(self, state: State, near: Lists) -> Array:
         axis = "xyz".index(str(self.params.front))
         along = state.place[: state.fluid, axis]
         found = -math.inf

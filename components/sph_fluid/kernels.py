@@ -5,11 +5,18 @@ import math
 import numpy as np
 from numba import njit, types
 from numba.extending import overload
-from numpy.typing import NDArray
 
-from quintet.components.shared.cubic_spline import ONE
-from quintet.components.shared.neighbours import FAST
-from quintet.components.sph_fluid.gather import away, gather, longest, pick, room
+from quintet.components.shared.numba_options import EXACT, FAST
+from quintet.components.shared.packing import (
+    empty_rows,
+    longest_list,
+    out_of_reach,
+    pack_rows,
+    pack_values,
+)
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.cubic_spline import ONE
+from quintet.components.shared.smoothing.smoothing import gradient, kernel
 from quintet.components.sph_fluid.laws import (
     Contact,
     Diffusion,
@@ -17,17 +24,13 @@ from quintet.components.sph_fluid.laws import (
     Friction,
     Guard,
     bear,
-    gradient,
     inverses,
-    kernel,
     pressure_term,
     push,
     repel,
     spread,
 )
 from quintet.components.sph_fluid.state import Array, Whole
-
-List = tuple[Whole, Whole, Whole, NDArray[np.int32]]
 
 
 # Numbers from 0 on are in the order of their bits, and the compiler makes vectors of the greatest
@@ -56,7 +59,7 @@ def _number(bits):  # type: ignore[no-untyped-def]
 
 @njit(**FAST)
 def interact(
-    first: int, last: int, split: int, place: Array, motion: Array, near: List,
+    first: int, last: int, split: int, place: Array, motion: Array, near: Lists,
     fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
     diffusion: Diffusion | None, friction: Friction | None, guard: Guard | None,
     contact: Contact | None, bulk: Array | None, squeeze: Array | None,
@@ -72,17 +75,17 @@ def interact(
     """
     begin, middle, end, neighbour = near
     nil = place.dtype.type(0)  # sums are as precise as what they are summed from
-    beside = room(longest(first, last, begin, end), place.dtype)
+    beside = empty_rows(longest_list(first, last, begin, end), 4, place.dtype)
     moving, seen = np.empty_like(beside), np.empty_like(beside)
     share, some = np.ones_like(beside[:, 0]), np.ones_like(beside[:, 0])
     greatest, fastest = 0.0, bits(nil)
     for i in range(first, last):
         here = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
         going = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
-        out = away(here[0], fluid), here[1], here[2], here[3]
+        out = out_of_reach(here[0], fluid.smoothing.length), here[1], here[2], here[3]
         if i < split:
-            count = gather(begin[i], middle[i], neighbour, place, out, beside)
-            gather(begin[i], middle[i], neighbour, motion, going, moving)
+            count = pack_rows(begin[i], middle[i], neighbour, place, out, beside)
+            pack_rows(begin[i], middle[i], neighbour, motion, going, moving)
             ax, ay, az, growth, flow, mx, my, mz, fastest = meet(
                 count, here, going, beside, moving, moving, share, ONE, fluid, drift, diffusion,
                 friction, None, None, None, None, fastest,
@@ -92,15 +95,15 @@ def interact(
                 drift[i, 1] = 2.0 * fluid.mass * my
                 drift[i, 2] = 2.0 * fluid.mass * mz
             if middle[i] < end[i]:
-                count = gather(middle[i], end[i], neighbour, place, out, beside)
-                gather(middle[i], end[i], neighbour, motion, going, moving)
+                count = pack_rows(middle[i], end[i], neighbour, place, out, beside)
+                pack_rows(middle[i], end[i], neighbour, motion, going, moving)
                 if friction is not None:
-                    gather(middle[i], end[i], neighbour, friction.seen, going, seen)
+                    pack_rows(middle[i], end[i], neighbour, friction.seen, going, seen)
                 if bulk is not None:
-                    pick(middle[i], end[i], neighbour, bulk, share)
+                    pack_values(middle[i], end[i], neighbour, bulk, share)
                 held = None
                 if contact is not None:
-                    held = pick(middle[i], end[i], neighbour, contact.some, some)
+                    held = pack_values(middle[i], end[i], neighbour, contact.some, some)
                 bx, by, bz, more, other, _, _, _, fastest = meet(
                     count, here, going, beside, moving, seen, share, fluid.grip, fluid, None, None,
                     friction, guard, contact, held, bulk, fastest,
@@ -115,8 +118,8 @@ def interact(
             rate[i, 1] = fy
             rate[i, 2] = fz
         else:
-            count = gather(begin[i], end[i], neighbour, place, out, beside)
-            gather(begin[i], end[i], neighbour, motion, going, moving)
+            count = pack_rows(begin[i], end[i], neighbour, place, out, beside)
+            pack_rows(begin[i], end[i], neighbour, motion, going, moving)
             growth = flow = close(count, here, going, beside, moving, fluid)
         rate[i, 3] = fluid.mass * growth
         if squeeze is not None:
@@ -134,8 +137,8 @@ def close(count, here, going, beside, moving, fluid):  # type: ignore[no-untyped
         dx, dy, dz = x - beside[k, 0], y - beside[k, 1], z - beside[k, 2]
         dot = dx * (u - moving[k, 0]) + dy * (v - moving[k, 1]) + dz * (w - moving[k, 2])
         r2 = dx * dx + dy * dy + dz * dz
-        per_r = ONE / math.sqrt(r2 + fluid.tiny)
-        growth += dot * gradient(r2, per_r, fluid)
+        per_r = ONE / math.sqrt(r2 + fluid.smoothing.tiny)
+        growth += dot * gradient(r2, per_r, fluid.smoothing)
     return growth
 
 
@@ -164,7 +167,7 @@ def meet(  # type: ignore[no-untyped-def]
         both = more + beside[k, 3]
         per_r, per_r2, per_both = inverses(r2, both, fluid)
         closing = dot * per_r2
-        slope = gradient(r2, per_r, fluid)
+        slope = gradient(r2, per_r, fluid.smoothing)
         if bulk is not None:
             slope *= share[k]
         fastest = max(fastest, bits(abs(closing)))
@@ -196,7 +199,7 @@ def meet(  # type: ignore[no-untyped-def]
                 ay += shear * rv
                 az += shear * rw
         if drift is not None:
-            weight = kernel(r2, fluid) * per_both
+            weight = kernel(r2, fluid.smoothing) * per_both
             mx -= weight * du
             my -= weight * dv
             mz -= weight * dw
@@ -205,7 +208,7 @@ def meet(  # type: ignore[no-untyped-def]
 
 @njit(**FAST)
 def push_samples(
-    first: int, last: int, row: Whole, listed: Whole, place: Array, motion: Array, near: List,
+    first: int, last: int, row: Whole, listed: Whole, place: Array, motion: Array, near: Lists,
     fluid: Fluid, friction: Friction | None, guard: Guard | None, contact: Contact | None,
     bulk: Array | None, force: Array,
 ) -> None:  # fmt: skip
@@ -226,7 +229,7 @@ def push_samples(
             both = density + place[j, 3] + fluid.base + fluid.base
             per_r, per_r2, per_both = inverses(r2, both, fluid)
             closing = fluid.grip * dot * per_r2
-            slope = gradient(r2, per_r, fluid)
+            slope = gradient(r2, per_r, fluid.smoothing)
             if bulk is not None:
                 slope *= bulk[i]
             terms = term + motion[j, 3]
@@ -257,7 +260,7 @@ def push_samples(
 
 
 # Not `fastmath`: that would take every number for finite, and this loop finds those that are not.
-@njit(error_model="numpy", cache=True, nogil=True)
+@njit(**EXACT)
 def advance(
     first: int, last: int, split: int, dt: float, ahead: float, furthest: float, fluid: Fluid,
     rate: Array, reference: Array, place: Array, motion: Array, before: Array,
@@ -293,7 +296,7 @@ def shift(first: int, last: int, time: float, drift: Array, place: Array) -> Non
             place[i, d] += time * drift[i, d]
 
 
-@njit(error_model="numpy", cache=True, nogil=True)
+@njit(**EXACT)
 def press(fluid: Fluid, place: Array, motion: Array) -> None:
     """Write p/ρ² of all rows from their densities."""
     for i in range(place.shape[0]):

@@ -8,10 +8,11 @@ from numba import njit, types
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from quintet.components.shared import cubic_spline, wendland
-from quintet.components.shared.cubic_spline import ONE, ZERO
-from quintet.components.sph_fluid.build import TAIT
+from quintet.components.shared.smoothing.cubic_spline import ONE, ZERO
+from quintet.components.shared.smoothing.smoothing import Smoothing, kernel, smoothing
 from quintet.components.sph_fluid.params import SphFluidParams
+
+TAIT = 7  # γ, exponent of the equation of state
 
 # How many steps ahead of its last value the rate of density is taken, by extrapolation. One makes
 # sound waves neutral to second order in ω dt; a little more damps them, up to ω dt = 0.5.
@@ -23,19 +24,13 @@ AHEAD = 1.25
 GUARD = 0.2
 NEAREST = 0.9
 
-TINY = 1e-12  # h²
-
 
 class Fluid(NamedTuple):
     """The numbers that the laws need."""
 
     mass: float  # kg, of every particle; kg/m in two dimensions
-    smoothing: float  # m, h
-    tiny: float  # m2, added to r² so that a particle does not divide by its distance from itself
+    smoothing: Smoothing
     soft: float  # m2, 0.01h², added to r² where velocities are divided by it
-    wendland: bool | None  # True, or None if the kernel is the cubic spline
-    height: float  # 1/m3, scale of W
-    slope: float  # 1/m4, scale of dW/dr; of Wendland's 1/m5, of (dW/dr)/r
     density: float  # kg/m3, ρ₀
     stiffness: float  # Pa, B
     lowest: float  # Pa, pressure is cut below
@@ -101,16 +96,10 @@ class Contact(NamedTuple):
 def constants(params: SphFluidParams) -> Fluid:
     """Numbers of the laws from the parameters."""
     h, dimensions = params.length, params.dimensions
-    smooth = params.kernel == "wendland"
-    alpha = (wendland if smooth else cubic_spline).normalisation(dimensions, h)
     return Fluid(
         mass=params.density * params.spacing**dimensions,
-        smoothing=h,
-        tiny=TINY * h * h,
+        smoothing=smoothing(params.kernel, dimensions, h),
         soft=0.01 * h * h,
-        wendland=True if smooth else None,
-        height=alpha / 16.0 if smooth else 0.25 * alpha,
-        slope=-0.625 * alpha / h**2 if smooth else -0.75 * alpha / h,
         density=params.density,
         stiffness=params.sound_speed**2 * params.density / TAIT,
         lowest=-math.inf if params.tension else 0.0,
@@ -137,28 +126,10 @@ def pressure_term(density, fluid):  # type: ignore[no-untyped-def]
 @njit(inline="always")
 def inverses(r2, both, fluid):  # type: ignore[no-untyped-def]
     """1/r, 1/(r² + 0.01h²) and 1/(ρ_i + ρ_j), all by one division, the slowest operation here."""
-    r2 = r2 + fluid.tiny
+    r2 = r2 + fluid.smoothing.tiny
     soft = r2 + fluid.soft
     inverse = ONE / (r2 * soft * both)
     return math.sqrt(r2) * soft * both * inverse, r2 * both * inverse, r2 * soft * inverse
-
-
-@njit(inline="always")
-def gradient(r2, per_r, fluid):  # type: ignore[no-untyped-def]
-    """(dW/dr)/r, so that ∇_iW_ij = gradient · r_ij; finite where particles coincide."""
-    q = math.sqrt(r2 + fluid.tiny) / fluid.smoothing
-    if fluid.wendland is not None:
-        return fluid.slope * wendland.slope(q)
-    return fluid.slope * cubic_spline.slope(q) * per_r
-
-
-@njit(inline="always")
-def kernel(r2, fluid):  # type: ignore[no-untyped-def]
-    """W; from the same root as the gradient, so that one serves both."""
-    q = math.sqrt(r2 + fluid.tiny) / fluid.smoothing
-    if fluid.wendland is not None:
-        return fluid.height * wendland.shape(q)
-    return fluid.height * cubic_spline.shape(q)
 
 
 @njit(inline="always")
@@ -204,7 +175,7 @@ def bear(r2, j, some, contact, fluid):  # type: ignore[no-untyped-def]
 
     Of a row that is not among `some` (None: all), which it holds, p_j/ρ_j² stays as it is.
     """
-    one = kernel(r2, fluid) * contact.inverse
+    one = kernel(r2, fluid.smoothing) * contact.inverse
     two = one * one
     power = (ONE + contact.once * (one - ONE)) * (ONE + contact.twice * (two - ONE))
     factor = contact.strength * power * (ONE + contact.four * (two * two - ONE))

@@ -1,11 +1,10 @@
 """When the neighbour lists are made anew, how far they reach, and what is still in the domain."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.shared.search.verlet_list import VerletSkin, longest
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 
@@ -14,9 +13,9 @@ SKIN = {"extrapolated": 0.1, "symplectic": 0.2}
 STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
 
 
-def reach(params: SphFluidParams) -> float:
-    """Distance [m] within which the lists hold all neighbours."""
-    return (1.0 + SKIN[params.integration]) * SUPPORT * params.length
+def skin(params: SphFluidParams) -> VerletSkin:
+    """How far pairs act, and how much further the lists reach."""
+    return VerletSkin(SUPPORT * params.length, SKIN[params.integration])
 
 
 def are_old(state: State, rows: Whole, params: SphFluidParams, dt: float) -> bool:
@@ -25,25 +24,19 @@ def are_old(state: State, rows: Whole, params: SphFluidParams, dt: float) -> boo
         return True
     shifted = 0.0
     if len(rows):
-        shifted = _longest(state.place.take(rows, 0)[:, :3] - state.reference.take(rows, 0))
+        shifted = longest(state.place.take(rows, 0)[:, :3] - state.reference.take(rows, 0))
         if params.mirrored:
             here = rows - state.fluid
             before = state.reference[state.particles :]
-            shifted = max(shifted, _longest(state.mirror.take(here, 0) - before.take(here, 0)))
-    margin = reach(params) - SUPPORT * params.length
+            shifted = max(shifted, longest(state.mirror.take(here, 0) - before.take(here, 0)))
+    coming = 0.0
     if params.integration == "symplectic":
         # Pairs meet in the middle of the step too: each of the two goes there at its speed.
-        margin -= dt * _longest(state.motion[: state.fluid])
-    return bool(state.moved + max(state.moved, shifted) > margin)
+        coming = dt * longest(state.motion[: state.fluid])
+    return skin(params).is_outworn(state.moved, shifted, coming)
 
 
-def _longest(vectors: Array) -> float:
-    """Length of the longest of vectors (n, 3 or more)."""
-    x, y, z = vectors[:, 0], vectors[:, 1], vectors[:, 2]
-    return math.sqrt((x * x + y * y + z * z).max())
-
-
-def seekers(state: State, rows: Whole, params: SphFluidParams) -> tuple[Array | None, Whole]:
+def query_points(state: State, rows: Whole, params: SphFluidParams) -> tuple[Array | None, Whole]:
     """Places (m, 3) m from which the boundary looks for fluid, and where the samples' lists stand.
 
     None: all of it from where it is. Mirrored walls look from their mirror points; samples, which

@@ -14,12 +14,13 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.shared.neighbours import FAST
-from quintet.components.shared.team import Team
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.packing import empty_rows, longest_list, out_of_reach, pack_rows
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.build import wall_points
-from quintet.components.sph_fluid.gather import away, gather, longest, room
-from quintet.components.sph_fluid.kernels import List
-from quintet.components.sph_fluid.laws import Fluid, constants, kernel, pressure_term
+from quintet.components.sph_fluid.laws import Fluid, constants, pressure_term
 from quintet.components.sph_fluid.obstacles import obstacle_mirrors
 from quintet.components.sph_fluid.params import FACES, SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
@@ -43,7 +44,7 @@ def mirrors(params: SphFluidParams) -> Array:
 
 
 def press_walls(
-    state: State, near: List, rows: Whole, listed: Whole, held: Whole, params: SphFluidParams,
+    state: State, near: Lists, rows: Whole, listed: Whole, held: Whole, params: SphFluidParams,
     team: Team,
 ) -> None:  # fmt: skip
     """Walls and samples: density as if the fluid went on into them.
@@ -62,7 +63,7 @@ def press_walls(
 @njit(**FAST)
 def extrapolate(
     first: int, last: int, split: int, own: Whole, mirrors: Array, place: Array, motion: Array,
-    near: List, weight: float, fluid: Fluid,
+    near: Lists, weight: float, fluid: Fluid,
 ) -> None:  # fmt: skip
     """Write density and p/ρ² of boundary rows [first, last).
 
@@ -73,11 +74,11 @@ def extrapolate(
     gradient is noise.
     """
     begin, _, end, _ = near
-    most = longest(split + first, split + last, begin, end)
+    most = longest_list(split + first, split + last, begin, end)
     for b in range(first, last):
         if own[b] >= 0:
             most = max(most, end[own[b]] - begin[own[b]])
-    beside = room(most, place.dtype)
+    beside = empty_rows(most, 4, place.dtype)
     for b in range(first, last):
         if own[b] == HELD:
             continue
@@ -95,7 +96,7 @@ def extrapolate(
 
 @njit(**FAST)
 def reflect(
-    first: int, last: int, split: int, mirrors: Array, place: Array, motion: Array, near: List,
+    first: int, last: int, split: int, mirrors: Array, place: Array, motion: Array, near: Lists,
     fluid: Fluid, seen: Array,
 ) -> None:  # fmt: skip
     """Write velocities of boundary rows [first, last) that bring the fluid to rest at the face.
@@ -114,7 +115,11 @@ def reflect(
         for k in range(np.uint64(begin[i]), np.uint64(end[i])):
             j = np.uint64(neighbour[k])
             dx, dy, dz = place[j, 0] - x, place[j, 1] - y, place[j, 2] - z
-            share = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / (place[j, 3] * s)
+            share = (
+                kernel(dx * dx + dy * dy + dz * dz, fluid.smoothing)
+                * fluid.mass
+                / (place[j, 3] * s)
+            )
             share *= 1.0 + ax * (dx - mx) + ay * (dy - my) + az * (dz - mz)
             u += share * motion[j, 0]
             v += share * motion[j, 1]
@@ -136,15 +141,15 @@ def fit(row, x, y, z, target, place, near, fluid, beside):  # type: ignore[no-un
     begin, _, end, neighbour = near
     if begin[row] == end[row]:
         return 0.0, 0.0, 0.0
-    out = away(x, fluid), y, z, fluid.density
-    count = gather(begin[row], end[row], neighbour, place, out, beside)
-    inverse = 1.0 / fluid.smoothing
+    out = out_of_reach(x, fluid.smoothing.length), y, z, fluid.density
+    count = pack_rows(begin[row], end[row], neighbour, place, out, beside)
+    inverse = 1.0 / fluid.smoothing.length
     s, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
     xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     b, bx, by, bz = 0.0, 0.0, 0.0, 0.0
     for k in range(count):
         dx, dy, dz = beside[k, 0] - x, beside[k, 1] - y, beside[k, 2] - z
-        w = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / beside[k, 3]
+        w = kernel(dx * dx + dy * dy + dz * dz, fluid.smoothing) * fluid.mass / beside[k, 3]
         dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
         excess = beside[k, 3] - fluid.density
         s += w
@@ -182,13 +187,13 @@ def level(row, x, y, z, place, near, fluid):  # type: ignore[no-untyped-def]
     Its value at the point is Σ V W (1 + a·(r - m)) f / Σ V W, r from the point.
     """
     begin, _, end, neighbour = near
-    inverse = 1.0 / fluid.smoothing
+    inverse = 1.0 / fluid.smoothing.length
     s, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
     xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(np.uint64(begin[row]), np.uint64(end[row])):
         j = np.uint64(neighbour[k])
         dx, dy, dz = place[j, 0] - x, place[j, 1] - y, place[j, 2] - z
-        w = kernel(dx * dx + dy * dy + dz * dz, fluid) * fluid.mass / place[j, 3]
+        w = kernel(dx * dx + dy * dy + dz * dz, fluid.smoothing) * fluid.mass / place[j, 3]
         dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
         s += w
         wx, wy, wz = w * dx, w * dy, w * dz
@@ -207,7 +212,7 @@ def level(row, x, y, z, place, near, fluid):  # type: ignore[no-untyped-def]
     xx, xy, xz = xx / s - mx * mx, xy / s - mx * my, xz / s - mx * mz
     yy, yz, zz = yy / s - my * my, yz / s - my * mz, zz / s - mz * mz
     ax, ay, az = solve(xx, xy, xz, yy, yz, zz, -mx, -my, -mz)
-    h = fluid.smoothing
+    h = fluid.smoothing.length
     return s, mx * h, my * h, mz * h, ax * inverse, ay * inverse, az * inverse
 
 

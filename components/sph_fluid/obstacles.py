@@ -8,6 +8,7 @@ their images. (A whole box that would have particles on the plane itself gets a 
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.shared.lattice import lattice_points
 from quintet.components.sph_fluid.params import Box, SphFluidParams
 from quintet.components.sph_fluid.state import Array
 
@@ -50,8 +51,7 @@ def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     low, high = low + half[0] * step, high - half[1] * step
     counts = steps.astype(int) + 1
     axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
-    z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
-    points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    points = lattice_points(axes)
     below = [points - np.array(box[0]), np.array(box[1]) - points]
     depth = np.where(wet[:, np.newaxis], below, np.inf)
     felt = depth.min(axis=(0, 2)) < FELT * params.length

@@ -3,14 +3,16 @@
 import numpy as np
 from numba import njit
 
-from quintet.components.shared.neighbours import FAST
-from quintet.components.shared.team import Team
-from quintet.components.sph_fluid.kernels import List, press
-from quintet.components.sph_fluid.laws import Fluid, kernel
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.kernels import press
+from quintet.components.sph_fluid.laws import Fluid
 from quintet.components.sph_fluid.state import Array, State
 
 
-def smooth(state: State, near: List, fluid: Fluid, team: Team) -> None:
+def smooth(state: State, near: Lists, fluid: Fluid, team: Team) -> None:
     """Filter the fluid's density, and press all anew."""
     density = np.empty(state.fluid)
     team.run(shepard, state.fluid, state.place, near, fluid, density)
@@ -19,7 +21,7 @@ def smooth(state: State, near: List, fluid: Fluid, team: Team) -> None:
 
 
 @njit(**FAST)
-def shepard(first: int, last: int, place: Array, near: List, fluid: Fluid, density: Array) -> None:
+def shepard(first: int, last: int, place: Array, near: Lists, fluid: Fluid, density: Array) -> None:
     """Write Σ_j m_j W_ij / Σ_j (m_j/ρ_j) W_ij over the fluid, j = i included; Panizzo 2004."""
     begin, middle, _, neighbour = near
     for i in range(first, last):
@@ -28,7 +30,7 @@ def shepard(first: int, last: int, place: Array, near: List, fluid: Fluid, densi
         for k in range(np.uint64(begin[i]), np.uint64(middle[i])):
             j = np.uint64(neighbour[k])
             dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
-            weight = kernel(dx * dx + dy * dy + dz * dz, fluid)
+            weight = kernel(dx * dx + dy * dy + dz * dz, fluid.smoothing)
             weights += weight
             volumes += weight / place[j, 3]
         density[i] = weights / volumes

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from quintet.components.sph_fluid.build import TAIT
-from quintet.components.sph_fluid.laws import Fluid
+from quintet.components.sph_fluid.laws import TAIT, Fluid
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields, Totals

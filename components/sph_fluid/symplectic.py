@@ -15,11 +15,10 @@ from collections.abc import Callable
 
 from numba import njit
 
-from quintet.components.shared.team import Team
+from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.laws import Fluid, pressure_term
 from quintet.components.sph_fluid.state import Array, State
-
-EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
 
 
 def step(

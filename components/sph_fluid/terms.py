@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.team import Team
-from quintet.components.sph_fluid.kernels import List
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.laws import (
     Contact,
     Diffusion,
@@ -59,9 +59,9 @@ def terms(params: SphFluidParams, held: bool) -> Terms:
 
         courant = min(courant, limit(params.damper))
     if params.precision == "float32":
-        from quintet.components.sph_fluid.single import rounded
+        from quintet.components.sph_fluid.single import rounded_law
 
-        laws = tuple(map(rounded, laws))
+        laws = tuple(map(rounded_law, laws))
     return Terms(*laws, courant, strength)
 
 
@@ -74,7 +74,7 @@ def mark(laws: Terms, rows: Whole, count: int, params: SphFluidParams) -> Terms:
 
 
 def friction(
-    params: SphFluidParams, state: State, near: List, fluid: Fluid, team: Team
+    params: SphFluidParams, state: State, near: Lists, fluid: Fluid, team: Team
 ) -> Friction | None:
     """Viscosity of the fluid itself, and the velocities that it sees in mirrored walls."""
     if params.laminar == 0.0:
@@ -92,7 +92,7 @@ def friction(
 
 
 def damped(
-    state: State, near: List, params: SphFluidParams, team: Team, mirror: Callable[[], None]
+    state: State, near: Lists, params: SphFluidParams, team: Team, mirror: Callable[[], None]
 ) -> Array | None:
     """Let the damper press, if there is one; return where its next part is to be written."""
     if params.damper == 0.0:

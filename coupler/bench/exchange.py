@@ -1,8 +1,8 @@
 """``quintet bench exchange``: the time that one exchange with a component takes.
 
-One window is all that a run does: an order with a field goes out, is checked, taken, given
-back, checked again; sums are made on both sides. The component computes nothing. Beside it
-stands what the same bytes take over the library alone, on the same machine.
+A window is that of a run: an order with a field is sent, checked, taken, given back and checked
+again, with sums on both sides; the component computes nothing. It is compared with the round
+trip of the same bytes over the library alone, on the same machine.
 """
 
 import argparse
@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from quintet.coupler.bench.raw_transport import bare
+from quintet.coupler.bench.raw_transport import round_trip
 from quintet.coupler.coupling.participant import Part
 from quintet.coupler.launch.connect import connect
+from quintet.coupler.launch.mpi_job import begin_rank, end_rank, run_under_mpi
 from quintet.coupler.run.simulate import make_folder
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
@@ -47,7 +48,7 @@ def run_bench(given: argparse.Namespace) -> int:
         for items, windows in SIZES.items():
             with tempfile.TemporaryDirectory() as folder:
                 found.append(measure(transport, items, windows, Path(folder)))
-            found[-1]["bare_ms"] = 1e3 * bare(transport, 24 * items, windows)
+            found[-1]["library_ms"] = 1e3 * round_trip(transport, 24 * items, windows)
             print(sentence(found[-1]), flush=True)
             if given.json:  # after each, so that a later one that fails costs none of it
                 given.json.write_text(json.dumps(found, indent=2))
@@ -58,15 +59,13 @@ FOLDER = "QUINTET_BENCH"  # where a coupler started by mpiexec finds its scene
 
 
 def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str, Any]:
-    """Time windows with one echoing component."""
+    """Time windows with one component that returns what it takes."""
     path = folder / "scene.toml"
     path.write_text(SCENE.format(transport=transport, items=items))
     (folder / "windows").write_text(str(windows))
     scene = load(str(path))
     make_folder(scene, folder / "run")
     if transport == "mpi":
-        from quintet.coupler.launch.mpi_job import run_under_mpi
-
         os.environ[FOLDER] = str(folder)
         run_under_mpi(["bench", "exchange"], scene, folder / "run")
     else:
@@ -75,17 +74,15 @@ def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str,
 
 
 def inside_mpi(folder: Path) -> int:
-    """Measure as rank 0."""
-    from quintet.coupler.launch.mpi_job import enter, leave
-
-    enter(folder / "run")
+    """Measure as the coupler's rank of an MPI job."""
+    begin_rank(folder / "run")
     exchange(load(str(folder / "scene.toml")), folder, int((folder / "windows").read_text()))
-    leave(folder / "run", 0)
+    end_rank(folder / "run", 0)
     return 0
 
 
 def exchange(scene: Scene, folder: Path, windows: int) -> None:
-    """Join the component, exchange, and write down how long it took."""
+    """Join the component, time its windows, and write the result to a file."""
     connection = connect(scene, folder / "run", lambda: False)
     part = connection.parts["echo"]
     part.ask("describe")
@@ -111,7 +108,7 @@ def exchange(scene: Scene, folder: Path, windows: int) -> None:
 
 
 def windows_of(part: Part, value: np.ndarray, windows: int) -> tuple[list[float], float]:
-    """Exchange so many windows; return the seconds of each, and the processor time of all."""
+    """Exchange over many windows; return the time of each and the processor time of all [s]."""
     took = []
     spent = 0.0
     for window in range(WARM + windows):
@@ -128,8 +125,8 @@ def windows_of(part: Part, value: np.ndarray, windows: int) -> tuple[list[float]
 
 
 def sentence(found: dict[str, Any]) -> str:
-    """One line for one case."""
+    """Describe one case in a line."""
     return (
         f"{found['case']}: median {found['median_ms']:.3f} ms, p99 {found['p99_ms']:.3f} ms, "
-        f"{found['rate']:.0f} {found['unit']}; the library alone {found['bare_ms']:.3f} ms"
+        f"{found['rate']:.0f} {found['unit']}; the library alone {found['library_ms']:.3f} ms"
     )

@@ -1,7 +1,7 @@
-"""The library alone: what the exchange is compared with.
+"""Round trip of bytes over zenoh or MPI alone, as a reference for the exchange.
 
 Two processes fill an array, send its bytes, read what came, and send it back: no header, no
-numbers of messages, no check, no deadline but that of whoever started them.
+numbers of messages, no check, no deadline but that of the process that started them.
 """
 
 import statistics
@@ -21,21 +21,21 @@ from quintet.interfaces.errors import QuintetError
 
 WARM = 100  # windows before the clock starts
 PATIENCE = 120.0  # s for all windows
-LEAVING = 0.3  # s in which the last message leaves
-LINES = 8  # of what each process said
+LINGER = 0.3  # s for the last message to be sent before the session closes
+LINES = 8  # of each process's output, in an error message
 Send = Callable[[bytearray], None]
 Receive = Callable[[], Any]
-Carrier = tuple[bool, Send, Receive]  # whether it leads
+Channel = tuple[bool, Send, Receive]  # whether it is the leader
 
 
-def bare(transport: str, size: int, windows: int) -> float:
-    """Median time [s] in which `size` bytes go there and come back, over a library by itself."""
+def round_trip(transport: str, size: int, windows: int) -> float:
+    """Median round-trip time [s] of `size` bytes over the library alone."""
     program = ["-m", "quintet.coupler.bench.raw_transport", transport, str(size), str(windows)]
     if transport == "mpi":
         both = [*find_launcher(), "-n", "2", sys.executable, "-m", "mpi4py", *program]
         return _result([_started(both)])
     line = [sys.executable, *program, f"tcp/127.0.0.1:{free_port()}"]
-    return _result([_started([*line, "there"]), _started([*line, "back"])])
+    return _result([_started([*line, "leader"]), _started([*line, "follower"])])
 
 
 def _started(line: list[str]) -> "subprocess.Popen[bytes]":
@@ -50,7 +50,7 @@ def _started(line: list[str]) -> "subprocess.Popen[bytes]":
 
 
 def _result(processes: "list[subprocess.Popen[bytes]]") -> float:
-    """What the first of them prints last; all of them have ended then."""
+    """Wait for all processes to end; return the number that the first printed last."""
     limit, first = time.monotonic() + PATIENCE, processes[0]
     try:
         while first.poll() is None and time.monotonic() < limit:
@@ -59,32 +59,32 @@ def _result(processes: "list[subprocess.Popen[bytes]]") -> float:
             time.sleep(0.05)
     finally:
         status = [process.poll() for process in processes]
-        said = [_end(process) for process in processes]
+        outputs = [_end(process) for process in processes]
     if status[0] != 0:
-        lines = "\n".join(f"    {line}" for one in said for line in one.splitlines()[-LINES:])
+        lines = "\n".join(f"    {line}" for one in outputs for line in one.splitlines()[-LINES:])
         raise QuintetError(
             f"bench exchange: the library alone must end with status 0 within {PATIENCE:.0f} s; "
             f"found {status}:\n{lines}"
         )
-    return float(said[0].split()[-1])
+    return float(outputs[0].split()[-1])
 
 
 def _end(process: "subprocess.Popen[bytes]") -> str:
-    """Make a process leave, and return what it said; a launcher takes its ranks along."""
+    """Terminate a process, or a launcher with its ranks; return what it printed."""
     process.terminate()
     try:
-        said, _ = process.communicate(timeout=GRACE)
+        output, _ = process.communicate(timeout=GRACE)
     except subprocess.TimeoutExpired:
         process.kill()
-        said, _ = process.communicate()
-    return said.decode(errors="replace")
+        output, _ = process.communicate()
+    return output.decode(errors="replace")
 
 
 def main() -> None:
-    """Be one of the two processes."""
+    """Run one of the two processes."""
     transport, size, windows = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-    carry = _over_mpi if transport == "mpi" else _over_zenoh
-    with carry(size) as (leads, send, receive):
+    channel = _over_mpi if transport == "mpi" else _over_zenoh
+    with channel(size) as (leads, send, receive):
         if leads:
             print(statistics.median(_lead(send, receive, size, windows)), flush=True)
         else:
@@ -113,37 +113,39 @@ def _follow(send: Send, receive: Receive, size: int, windows: int) -> None:
 
 
 @contextmanager
-def _over_mpi(size: int) -> Iterator[Carrier]:
+def _over_mpi(size: int) -> Iterator[Channel]:
+    # Only the library that is measured is loaded.
     from mpi4py import MPI
 
-    comm, came = MPI.COMM_WORLD, bytearray(size)
+    comm, buffer = MPI.COMM_WORLD, bytearray(size)
     other = 1 - comm.rank
 
     def receive() -> bytearray:
-        comm.Recv([came, MPI.BYTE], other)
-        return came
+        comm.Recv([buffer, MPI.BYTE], other)
+        return buffer
 
     yield comm.rank == 0, lambda frame: comm.Send([frame, MPI.BYTE], other), receive
 
 
 @contextmanager
-def _over_zenoh(_: int) -> Iterator[Carrier]:
+def _over_zenoh(_: int) -> Iterator[Channel]:
+    # Only the library that is measured is loaded.
     import zenoh
 
     from quintet.interfaces.lines.zenoh import configuration
 
     endpoint, me = sys.argv[4:]
-    other = "back" if me == "there" else "there"
-    with zenoh.open(configuration(endpoint, me == "back", None)) as session:
-        inbox = session.declare_subscriber(f"bare/{me}", zenoh.handlers.FifoChannel(4))
-        outbox: Any = session.declare_publisher(  # its stub says that the status is a truth
-            f"bare/{other}", congestion_control=zenoh.CongestionControl.BLOCK
+    other = "follower" if me == "leader" else "leader"
+    with zenoh.open(configuration(endpoint, me == "follower", None)) as session:
+        inbox = session.declare_subscriber(f"round_trip/{me}", zenoh.handlers.FifoChannel(4))
+        outbox: Any = session.declare_publisher(  # typed as a plain bool in zenoh's stub
+            f"round_trip/{other}", congestion_control=zenoh.CongestionControl.BLOCK
         )
         limit = time.monotonic() + PATIENCE
         while not outbox.matching_status.matching and time.monotonic() < limit:
             time.sleep(0.01)
-        yield me == "there", outbox.put, lambda: inbox.recv().payload.to_bytes()
-        time.sleep(LEAVING)
+        yield me == "leader", outbox.put, lambda: inbox.recv().payload.to_bytes()
+        time.sleep(LINGER)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""``quintet bench KIND``: how many items a component steps per second, case by case.
+"""``quintet bench KIND``: throughput of a component in items stepped per second.
 
 Rates are per second of processor time, summed over all threads, so that they are those of one
-thread; beside them stands the rate by the clock on the wall.
+thread; the rate per second of wall time stands beside them.
 """
 
 import argparse
@@ -15,7 +15,7 @@ from typing import Any
 from rich.table import Table
 
 from quintet.coupler.launch.processes import start, tail
-from quintet.coupler.report.show import on_screen
+from quintet.coupler.report.show import console
 from quintet.interfaces.errors import QuintetError, SceneError
 from quintet.interfaces.manifest import BenchCase, find, known_kinds
 from quintet.interfaces.params import unknown
@@ -25,7 +25,7 @@ Found = dict[str, Any]
 
 def run_kind(given: argparse.Namespace) -> int:
     """Measure the cases of a kind; print them, and write them as JSON where asked."""
-    cases = chosen(given.name, given.case)
+    cases = select_cases(given.name, given.case)
     threads = given.threads or usual_threads()
     if wrong := [count for count in threads if count < 1]:
         raise SceneError(f"--threads must be a whole number from 1; found {wrong[0]}.")
@@ -33,15 +33,15 @@ def run_kind(given: argparse.Namespace) -> int:
     for number, case in cases:
         for count in threads:
             print(f"{case.name}, threads: {count} ... ", end="", flush=True)
-            found.append(apart(given.name, number, count))
+            found.append(run_case(given.name, number, count))
             print(f"{found[-1]['rate']:.3g} {found[-1]['unit']} a thread", flush=True)
-    on_screen().print(table(found))
+    console().print(table(found))
     if given.json:
         given.json.write_text(json.dumps(found, indent=2))
     return 0
 
 
-def chosen(kind: str, name: str) -> list[tuple[int, BenchCase]]:
+def select_cases(kind: str, name: str) -> list[tuple[int, BenchCase]]:
     """Find the cases of a kind, or the one that is named."""
     try:
         cases = find(kind).cases()
@@ -62,8 +62,8 @@ def usual_threads() -> Sequence[int]:
     return (1, 2) if len(os.sched_getaffinity(0)) > 1 else (1,)
 
 
-def apart(kind: str, number: int, threads: int) -> Found:
-    """Measure a case in a process of its own, so that memory and compilation are its own too."""
+def run_case(kind: str, number: int, threads: int) -> Found:
+    """Measure a case in a child process, with memory and compiled kernels of its own."""
     with tempfile.TemporaryDirectory() as folder:
         log, file = Path(folder) / "log", Path(folder) / "found.json"
         line = ["-m", "quintet.coupler.bench.worker", kind, str(number), str(threads), str(file)]
@@ -73,8 +73,8 @@ def apart(kind: str, number: int, threads: int) -> Found:
         finally:
             process.kill()
         if status:
-            said = "\n".join(f"    {one}" for one in tail(log))
-            raise QuintetError(f"bench {kind}: it ended with status {status}:\n{said}")
+            lines = "\n".join(f"    {one}" for one in tail(log))
+            raise QuintetError(f"bench {kind}: it ended with status {status}:\n{lines}")
         return dict(json.loads(file.read_text()))
 
 

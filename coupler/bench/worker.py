@@ -1,4 +1,4 @@
-"""One benchmark case, in a process of its own.
+"""Worker process of a benchmark: measures one case.
 
 ``python -m quintet.coupler.bench.worker KIND NUMBER THREADS FILE`` writes its result into FILE.
 The component is made twice. The first compiles all kernels and is dropped; what the process's
@@ -21,7 +21,7 @@ from quintet.interfaces.serving.process import build
 
 
 def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]:
-    """Time one case; return what ``quintet bench --json`` says of it."""
+    """Time one case; return its entry of ``quintet bench --json``."""
     order = {"params": case.params, "threads": threads}
     component = begin(manifest, order, case)
     advance(component, case.warm, case)
@@ -29,7 +29,7 @@ def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]
     before = resident()
     component = begin(manifest, order, case)
     advance(component, case.warm, case)
-    grown = resident() - before
+    growth = resident() - before
     items = component.items()
     spent, began = time.process_time(), time.perf_counter()
     advance(component, case.steps, case)
@@ -44,13 +44,13 @@ def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]
         "unit": case.unit,
         "cpu_seconds": cpu,
         "wall_seconds": wall,
-        "bytes_per_item": grown / items,
+        "bytes_per_item": growth / items,
         "options": {"steps": case.steps, "warm": case.warm, "params": case.params},
     }
 
 
 def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase) -> Component:
-    """Make the component, joined to what the case says."""
+    """Make the component with the ports and fields of the case."""
     component = build(manifest, order)
     component.bind(case.static)
     component.take(case.fields)
@@ -58,7 +58,7 @@ def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase) -> Compone
 
 
 def advance(component: Component, steps: int, case: BenchCase) -> None:
-    """Step so many times, each as far as the state allows, and exchange at every step."""
+    """Advance by many stable steps, taking and giving fields at each."""
     for _ in range(steps):
         component.take(case.fields)
         component.step(component.stable_dt())
@@ -66,7 +66,7 @@ def advance(component: Component, steps: int, case: BenchCase) -> None:
 
 
 def resident() -> int:
-    """Resident memory of this process, what was freed given back [bytes]."""
+    """Resident memory of this process after freed memory was returned [bytes]."""
     gc.collect()
     ctypes.CDLL(None).malloc_trim(0)
     pages = int(Path("/proc/self/statm").read_text().split()[1])

@@ -1,4 +1,4 @@
-"""Writing a resolved scene as TOML; the standard library only reads it."""
+"""TOML writer; the standard library only reads TOML."""
 
 import json
 import re
@@ -8,21 +8,21 @@ BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def dumps(table: dict[str, Any]) -> str:
-    """Write tables, lists, numbers, texts and truths; the reader gets back what went in."""
+    """Write a table as TOML; reading it gives an equal table."""
     return "\n".join(_table(table, ())) + "\n"
 
 
 def _table(table: dict[str, Any], path: tuple[str, ...]) -> list[str]:
     plain = {k: v for k, v in table.items() if not _nested(v)}
     lines = [f"[{'.'.join(map(_key, path))}]"] if path and (plain or not table) else []
-    lines += [f"{_key(key)} = {text_of(value)}" for key, value in plain.items()]
+    lines += [f"{_key(key)} = {value_text(value)}" for key, value in plain.items()]
     for key, value in table.items():
         if isinstance(value, dict):
             lines += ["", *_table(value, (*path, key))]
         elif _nested(value):
             for one in value:
                 head = f"[[{'.'.join(map(_key, (*path, key)))}]]"
-                lines += ["", head, *(f"{_key(k)} = {text_of(v)}" for k, v in one.items())]
+                lines += ["", head, *(f"{_key(k)} = {value_text(v)}" for k, v in one.items())]
     return lines
 
 
@@ -36,14 +36,16 @@ def _key(key: str) -> str:
     return key if BARE.fullmatch(key) else json.dumps(key)
 
 
-def text_of(value: Any) -> str:
-    """Write one value."""
+def value_text(value: Any) -> str:
+    """Write one value as TOML."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()  # numpy's numbers and arrays
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):
         return repr(value)
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_key(k)} = {text_of(v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{_key(k)} = {value_text(v)}" for k, v in value.items()) + "}"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(text_of(one) for one in value) + "]"
+        return "[" + ", ".join(value_text(one) for one in value) + "]"
     return json.dumps(str(value), ensure_ascii=False)

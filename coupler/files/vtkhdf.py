@@ -1,4 +1,4 @@
-"""Pictures of one component over time: a temporal PolyData file that ParaView opens.
+"""VTKHDF files: views of a component over time, as temporal PolyData for ParaView.
 
 The layout is VTKHDF 2.0. What does not change from step to step is stored once and pointed
 to by every step, so that an append extends only the points, their fields and the times.
@@ -44,7 +44,7 @@ class VtkHdf:
         self._is_cloud = True  # no cells: every point is drawn
 
     def append(self, time: float, view: Mapping[str, Array]) -> None:
-        """Add what a component looks like at a time.
+        """Append the view of a component at a time.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class VtkHdf:
         self._rows += count
 
     def close(self) -> None:
-        """End the file; a second call does nothing."""
+        """Close the file; a second call does nothing."""
         self._file.close()
 
     def _begin(self, arrays: dict[str, Array], cells: Array | None) -> None:
@@ -159,7 +159,7 @@ class VtkHdf:
         dataset[entry] = value
 
     def _reserve_vertices(self, count: int) -> None:
-        """Let vertex i be point i; every step uses the front of one list."""
+        """Extend the vertices: vertex i is point i, in one list shared by all steps."""
         group = self._root["Vertices"]
         have = len(group["Connectivity"])
         if count > have:
@@ -168,8 +168,8 @@ class VtkHdf:
             _extend(group["Offsets"], want + 1, have + 1)
 
 
-def go_on(path: Path, time: float) -> VtkHdf:
-    """Go on with a file after its steps up to a time [s]; later ones are forgotten."""
+def resume(path: Path, time: float) -> VtkHdf:
+    """Continue a file after its steps up to a time [s]; later steps are dropped."""
     before = path.replace(path.with_suffix(".before"))
     made = VtkHdf(path)
     for k, when in enumerate(times(before)):
@@ -216,13 +216,13 @@ def _extend(dataset: h5py.Dataset, values: Array, start: int) -> None:
 
 
 def _flat(cells: Array) -> Topology:
-    """Drop the -1 that end triangles; where each cell begins, and the end of the last."""
+    """Flatten cells to connectivity and offsets, without the -1 that end triangles."""
     used = cells >= 0
     return cells[used], np.concatenate([[0], np.cumsum(used.sum(axis=1))])
 
 
 def _padded(connectivity: Array, offsets: Array) -> Array:
-    """Undo `_flat`."""
+    """Inverse of `_flat`: cells padded with -1."""
     sizes = np.diff(offsets)
     used = np.arange(sizes.max(initial=3)) < sizes[:, None]
     cells = np.full(used.shape, -1, np.int64)
@@ -235,11 +235,11 @@ def _open(path: Path | str) -> h5py.File:
         file = h5py.File(path, "r", locking=False)
     except OSError as error:
         raise SceneError(
-            f"picture file {path}: it must be a VTKHDF file; {error}. Run the scene again."
+            f"view file {path}: it must be a VTKHDF file; {error}. Run the scene again."
         ) from error
     if "VTKHDF/Steps" not in file:
         file.close()
-        raise SceneError(f"picture file {path}: it has no steps of VTKHDF. Run the scene again.")
+        raise SceneError(f"view file {path}: it has no steps of VTKHDF. Run the scene again.")
     return file
 
 
@@ -250,12 +250,12 @@ def times(path: Path | str) -> Array:
 
 
 def read_step(path: Path | str, k: int) -> tuple[float, dict[str, Array]]:
-    """Read back step `k` of a file: its time [s], and its view as it was appended, in float32."""
+    """Read step `k` of a file: its time [s], and its view in float32."""
     with _open(path) as file:
         root: Any = file["VTKHDF"]
         count = int(root["Steps"].attrs["NSteps"])
         if not 0 <= k < count:
-            raise SceneError(f"picture file {path}: it has {count} steps; there is no step {k}.")
+            raise SceneError(f"view file {path}: it has {count} steps; there is no step {k}.")
         start = int(root["Steps/PointOffsets"][k])
         end = start + int(root["NumberOfPoints"][root["Steps/PartOffsets"][k]])
         view = {"points": root["Points"][start:end]}

@@ -1,1 +1,1 @@
-"""Starting and watching the processes of a run; an MPI job."""
+"""Launching a run: component processes and MPI jobs, started, watched and ended."""

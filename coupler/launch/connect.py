@@ -1,4 +1,4 @@
-"""From a scene to lines: components in this process, over zenoh, or over MPI."""
+"""Connecting the components of a scene: in memory, over zenoh or over MPI."""
 
 import contextlib
 import secrets
@@ -11,12 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from quintet.coupler.coupling.participant import ComponentFailed, Part
+from quintet.coupler.launch.mpi_job import write_processes
 from quintet.coupler.launch.processes import GRACE, Watch, start
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import LineError, QuintetError
 from quintet.interfaces.lines.message import Message
 from quintet.interfaces.lines.transport import FramedLine
 from quintet.interfaces.serving.malloc import keep_freed_memory
+from quintet.interfaces.serving.process import build, shared_files
+from quintet.interfaces.serving.serve import Server, answer
 
 if TYPE_CHECKING:
     from quintet.interfaces.lines.zenoh import ZenohLine
@@ -31,7 +34,7 @@ class Connection(Protocol):
     parts: dict[str, Part]
 
     def close(self, well: bool) -> None:
-        """Part from them: told to finish if all is well, else ended at once."""
+        """Close all connections; components finish in order if all is well, else they are ended."""
 
 
 def connect(scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> Connection:
@@ -45,7 +48,7 @@ def connect(scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> Conn
 
 
 def settings(scene: Scene, name: str) -> dict[str, Any]:
-    """What a component is told when it may go."""
+    """Header of the order that gives a component its parameters."""
     one = scene.components[name]
     return {"order": "go", "params": one.params, "threads": one.threads}
 
@@ -54,9 +57,8 @@ class InMemory:
     """All components in the coupler's own process."""
 
     def __init__(self, scene: Scene) -> None:
+        # Only the transport that a run uses is loaded.
         from quintet.interfaces.lines.memory import MemoryLine
-        from quintet.interfaces.serving.process import build
-        from quintet.interfaces.serving.serve import Server, answer
 
         self.parts: dict[str, Part] = {}
         run = secrets.token_hex(4)
@@ -79,20 +81,21 @@ class OverZenoh:
     """One process per component, started here or joined by hand."""
 
     def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
-        from quintet.interfaces.lines.zenoh import Hub, ZenohLine
+        # Only the transport that a run uses is loaded: zenoh starts threads.
+        from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.parts: dict[str, Part] = {}
         self.watches: dict[str, Watch] = {}
-        self.hub = Hub(endpoint, True, "coupler", scene.security)
+        self.session = Session(endpoint, True, "coupler", scene.security)
         run = secrets.token_hex(4)
-        lines = {name: ZenohLine(self.hub, run, name) for name in scene.components}
+        lines = {name: ZenohLine(self.session, run, name) for name in scene.components}
         try:
             for name in scene.components:
                 if name not in scene.elsewhere:
                     self._start(scene, name, endpoint, folder)
             for name, line in lines.items():
-                self._greet(scene, name, line, interrupted)
+                self._await_hello(scene, name, line, interrupted)
         except BaseException:
             self.close(False)
             raise
@@ -114,11 +117,11 @@ class OverZenoh:
         process = start(arguments, log, one.threads, scene.import_folders)
         self.watches[name] = Watch(name, process.pid, process)
 
-    def _greet(
+    def _await_hello(
         self, scene: Scene, name: str, line: "ZenohLine", interrupted: Callable[[], bool]
     ) -> None:
         watch = self.watches.get(name)
-        # Until it has said hello a component imports and connects, however little it computes.
+        # Before its first message a component imports and connects, and may compute little.
         line.watch = lambda: (
             "the run was interrupted"
             if interrupted()
@@ -130,27 +133,26 @@ class OverZenoh:
             hello = line.receive(seconds)
         except LineError as error:
             raise ComponentFailed(name, 0, f"did not join: {error}") from error
-        welcome(scene, name, line, hello, watch, self.parts)
+        accept(scene, name, line, hello, watch, self.parts)
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
-        part_from(self.parts, list(self.watches.values()), well)
-        self.hub.close()
+        end_all(self.parts, list(self.watches.values()), well)
+        self.session.close()
 
 
 class OverMpi:
     """One rank per component; this process is rank 0."""
 
     def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
-        from quintet.coupler.launch.mpi_job import announce
+        # Only the transport that a run uses is loaded: mpi4py starts MPI.
         from quintet.interfaces.lines import mpi
-        from quintet.interfaces.serving.process import shared_files
 
         mpi.self_check(1 + len(scene.components))
         run = secrets.token_hex(4)
         self.parts: dict[str, Part] = {}
         self.watches: dict[str, Watch] = {}
-        announce(folder, None, shared_files())
+        write_processes(folder, None, shared_files())
         for rank, name in enumerate(scene.components, start=1):
             line = mpi.MpiLine(run, "coupler", name, rank)
             line.watch = lambda: "the run was interrupted" if interrupted() else ""
@@ -162,10 +164,10 @@ class OverMpi:
             watch = Watch(name, int(hello.header["pid"])) if here else None
             if watch:
                 self.watches[name] = watch
-            welcome(scene, name, line, hello, watch, self.parts)
+            accept(scene, name, line, hello, watch, self.parts)
         watches = self.watches.values()
         shared = [path for watch in watches for path in watch.shared]
-        announce(folder, [watch.pid for watch in watches], [*shared_files(), *shared])
+        write_processes(folder, [watch.pid for watch in watches], [*shared_files(), *shared])
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
@@ -177,7 +179,7 @@ class OverMpi:
             watch.end(0.0)
 
 
-def welcome(
+def accept(
     scene: Scene,
     name: str,
     line: FramedLine,
@@ -185,7 +187,7 @@ def welcome(
     watch: Watch | None,
     parts: dict[str, Part],
 ) -> None:
-    """Check who said hello, watch it from now on, and tell it its parameters."""
+    """Accept a component: check its kind, watch its process, send its parameters."""
     expected = scene.components[name].manifest.kind
     if hello.order != "hello" or hello.header.get("kind") != expected:
         raise ComponentFailed(
@@ -200,15 +202,15 @@ def welcome(
 
 
 def finish(parts: dict[str, Part]) -> None:
-    """Tell every component to finish, and hear that it does."""
+    """Order every component to finish, and await its answer."""
     for part in parts.values():
         part.tell("finish")
     for part in parts.values():
         part.timing.memory = int(part.hear().header["memory"])
 
 
-def part_from(parts: dict[str, Part], watches: list[Watch], well: bool) -> None:
-    """End all processes: in order, or at once."""
+def end_all(parts: dict[str, Part], watches: list[Watch], well: bool) -> None:
+    """End all component processes: in order, or at once."""
     if well:
         finish(parts)
     else:
@@ -221,7 +223,7 @@ def part_from(parts: dict[str, Part], watches: list[Watch], well: bool) -> None:
 
 
 def free_port() -> int:
-    """Return a port of the loopback that nobody listens on."""
+    """Return a free port of the loopback."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

@@ -1,4 +1,4 @@
-"""Starting component processes, watching them while an answer is awaited, and ending them."""
+"""Component processes: starting them, watching them while an answer is awaited, ending them."""
 
 import contextlib
 import os
@@ -12,43 +12,43 @@ from pathlib import Path
 
 from quintet.interfaces.lines.process_status import processor_time, running, state
 
-QUIET_FACTOR, QUIET_EXTRA = 3.0, 5.0  # silent for 3 usual windows and 5 s: not working any more
-BUSY = 0.02  # share of a core below which a process is taken to be doing nothing
-LOOK = 0.5  # s between two looks at a process's times
+QUIET_FACTOR, QUIET_EXTRA = 3.0, 5.0  # inactive for 3 usual windows and 5 s: hanging
+BUSY = 0.02  # share of a core below which a process counts as inactive
+INTERVAL = 0.5  # s between two readings of a process's times
 STATES = {"R": "running", "S": "sleeping", "D": "waiting for a disk", "T": "stopped"}
-GRACE = 2.0  # s for a process to leave by itself
+GRACE = 2.0  # s for a process to end by itself
 
 
 @dataclass(slots=True)
 class Watch:
-    """Tells why a process of this host cannot answer: it ended, or it does nothing."""
+    """Watches a process of this host: whether it ended, or uses no processor time."""
 
     name: str
     pid: int
     process: subprocess.Popen[bytes] | None = None  # when it is our own child
     usual: Callable[[], float] = lambda: 0.0  # s, its usual time for an answer
     shared: list[str] = field(default_factory=list)  # files in shared memory that it maps
-    _looked: float = 0.0
+    _read_at: float = 0.0
     _spent: float = 0.0
     _active: float = 0.0
 
     def reset(self) -> None:
-        """Begin to wait for an answer: what it did before does not count."""
-        self._looked = 0.0
+        """Restart the measurement of inactivity, when an answer is first awaited."""
+        self._read_at = 0.0
 
     def __call__(self) -> str:
-        """Return the reason, or "" while there is hope."""
+        """Return why no answer can be expected; "" while the process is active."""
         if not self.alive():
             return self.ending()
         now = time.monotonic()
-        if not self._looked:
-            self._active, self._looked, self._spent = now, now, processor_time(self.pid)
-        if now - self._looked < LOOK:
+        if not self._read_at:
+            self._active, self._read_at, self._spent = now, now, processor_time(self.pid)
+        if now - self._read_at < INTERVAL:
             return ""
         spent = processor_time(self.pid)
-        if spent - self._spent > BUSY * (now - self._looked):
+        if spent - self._spent > BUSY * (now - self._read_at):
             self._active = now
-        self._looked, self._spent = now, spent
+        self._read_at, self._spent = now, spent
         quiet = now - self._active
         if quiet > QUIET_FACTOR * self.usual() + QUIET_EXTRA:
             return (
@@ -62,7 +62,7 @@ class Watch:
         return self.process.poll() is None if self.process else running(self.pid)
 
     def ending(self) -> str:
-        """Say how it ended."""
+        """Describe how the process ended."""
         code = self.process.returncode if self.process else None
         if code is None:
             return f"process {self.pid} is gone: it ended or was killed"
@@ -71,7 +71,7 @@ class Watch:
         return f"process {self.pid} ended by itself with status {code}, before it was told to"
 
     def end(self, grace: float) -> None:
-        """Wait for it to leave; then make it, and remove what it would leave behind."""
+        """Wait for the process to end, then kill it; remove its files in shared memory."""
         limit = time.monotonic() + grace
         while self.alive() and time.monotonic() < limit:
             time.sleep(0.01)
@@ -88,7 +88,7 @@ class Watch:
 def start(
     arguments: list[str], log: Path, threads: int, folders: list[str]
 ) -> subprocess.Popen[bytes]:
-    """Start a Python program that prints into a log, apart from our terminal's signals."""
+    """Start a Python program in a session of its own, its output in a log."""
     with open(log, "ab") as file:
         return subprocess.Popen(
             [sys.executable, *arguments],
@@ -101,7 +101,7 @@ def start(
 
 
 def environment(threads: int, folders: list[str]) -> dict[str, str]:
-    """Environment of a component: its thread pool, its import path, no spinning threads."""
+    """Environment of a component: size of its thread pools, import path, passive waiting."""
     known = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     path = os.pathsep.join(dict.fromkeys([*folders, *filter(None, known)]))
     sizes = dict.fromkeys(("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), threads)

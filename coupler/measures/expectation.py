@@ -1,4 +1,4 @@
-"""What a scene must reproduce: one number each, from the recording, with its source.
+"""Expectations: numbers that a scene must reproduce, from its recording, each with a source.
 
 The computed curve is ``scale * (recorded + offset)`` of one item of a recorded field. It is
 measured, and the same measure is taken of the reference: a number, or a curve in a file.
@@ -8,12 +8,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
-from pydantic import Field as Limits
+import pydantic
 
-from quintet.coupler.files.recording import Recording
 from quintet.coupler.measures import time_series
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
@@ -21,9 +20,12 @@ from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters, unknown
 
+if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for it
+    from quintet.coupler.files.recording import Recording
+
 Measure = Literal["rms", "relative_rms", "crossing", "at", "max", "min", "mean", "period", "decay"]
 DISTANCES = ("rms", "relative_rms")  # to a curve
-Index = Annotated[int, Limits(ge=0)]
+Index = Annotated[int, pydantic.Field(ge=0)]
 ROUNDING = 1e-9  # of a time: what a run's last window may lack
 
 
@@ -93,7 +95,7 @@ class Expectation:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How a run compares with an expectation; ``value`` is None where it has none."""
+    """Comparison of a run with an expectation; ``value`` is None where the run has none."""
 
     name: str
     value: float | None
@@ -107,7 +109,7 @@ class Outcome:
 def check(
     expectation: Expectation, gives: Mapping[str, tuple[Port, ...]], folder: Path
 ) -> list[str]:
-    """Find every mistake that can be found before a run.
+    """Check an expectation against the ports and reference data of a scene.
 
     `gives` has the ports that each component gives, by its name; `folder` is the scene's, where
     the reference curves are. Returns one sentence for each mistake; none when all is well.
@@ -141,8 +143,8 @@ def _check_field(expectation: Expectation, fields: Mapping[str, Field]) -> list[
     return []
 
 
-def curve(expectation: Expectation, recording: Recording) -> Curve:
-    """Return the computed curve, offset and scaled; the rate of an impulse at mid-window."""
+def curve(expectation: Expectation, recording: "Recording") -> Curve:
+    """Return the computed curve, offset and scaled; an impulse as its mean rate at mid-window."""
     ports = recording.ports(expectation.component)
     fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
     if mistakes := _check_field(expectation, fields):
@@ -174,7 +176,7 @@ def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
 
 
 def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
-    """Take the measure of a curve, all but the distances."""
+    """Evaluate a measure of one curve; distances need two."""
     if expectation.measure == "at":
         return float(np.interp(expectation.begin, curve.times, curve.values))
     part = time_series.between(curve, expectation.begin, end)
@@ -195,7 +197,7 @@ def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
 
 
 def reference_value(expectation: Expectation, folder: Path) -> float:
-    """Return what is expected: a number, or the same measure of the curve; 0 for a distance."""
+    """Return the reference: a number, or the measure of its curve; 0 for a distance."""
     reference = reference_curve(expectation, folder)
     if reference is None:
         return float(expectation.value or 0.0)
@@ -216,8 +218,8 @@ def reference_value(expectation: Expectation, folder: Path) -> float:
     return value
 
 
-def evaluate(expectation: Expectation, recording: Recording, folder: Path) -> Outcome:
-    """Compare a run with an expectation; one that ended too early does not meet it."""
+def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> Outcome:
+    """Compare a run with an expectation; a run that ended too early does not meet it."""
     reference = reference_value(expectation, folder)
     value = _value(expectation, recording, folder)
     return Outcome(
@@ -231,7 +233,7 @@ def evaluate(expectation: Expectation, recording: Recording, folder: Path) -> Ou
     )
 
 
-def _value(expectation: Expectation, recording: Recording, folder: Path) -> float:
+def _value(expectation: Expectation, recording: "Recording", folder: Path) -> float:
     if len(recording.times(expectation.component)) < 2:  # no window was finished
         return math.nan
     computed = curve(expectation, recording)

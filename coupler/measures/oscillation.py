@@ -1,4 +1,4 @@
-"""Period and decay of an oscillation, by the damped harmonic that fits a curve best.
+"""Period and decay rate of an oscillation, from a least-squares fit of a damped harmonic.
 
 y = c + e^{-γt}(a cos ωt + b sin ωt) in least squares: over a grid of ω without decay first, then
 by Gauss-Newton steps in ω and γ, with the other three solved for in each (Golub & Pereyra, SIAM
@@ -13,15 +13,15 @@ import numpy as np
 from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Array
 
-PARTS = 8  # of a cycle over the whole curve: steps of the grid
+GRID = 8  # values of ω on the grid for each cycle over the whole curve
 SHORT = 0.9  # of a cycle that the curve must hold
 FEWEST = 4  # values in the shortest cycle looked for
-STEPS = 100
+ITERATIONS = 100
 TOLERANCE = 1e-10
 
 
 class Harmonic(NamedTuple):
-    """The fit; nan where none was found."""
+    """A damped harmonic; nan where no fit was found."""
 
     period: float  # s
     decay: float  # 1/s, γ: of the amplitude
@@ -31,40 +31,43 @@ NONE = Harmonic(math.nan, math.nan)
 
 
 def fit(curve: Curve) -> Harmonic:
-    """Fit a curve that holds a cycle, or many."""
+    """Fit a damped harmonic to a curve of at least one cycle."""
     times, values = curve.times - curve.times[0], curve.values
     span = float(times[-1])
     if len(times) < 2 * FEWEST or not np.ptp(values) > 0.0:
         return NONE
-    cycles = np.arange(PARTS, PARTS * (len(times) // FEWEST) + 1) / PARTS
-    turns = 2.0 * math.pi * cycles / span
-    turn, decay = float(min(turns, key=lambda one: _misfit(times, values, one, 0.0))), 0.0
-    for _ in range(STEPS):
-        change = _newton(times, values, turn, decay)
-        turn, decay = turn + change[0], decay + change[1]
-        if not (turn > SHORT * turns[0] and abs(decay) < turn):  # also true of nan
+    cycles = np.arange(GRID, GRID * (len(times) // FEWEST) + 1) / GRID
+    omegas = 2.0 * math.pi * cycles / span
+    omega = float(min(omegas, key=lambda one: _misfit(times, values, one, 0.0)))
+    decay = 0.0
+    for _ in range(ITERATIONS):
+        change = _newton(times, values, omega, decay)
+        omega, decay = omega + change[0], decay + change[1]
+        if not (omega > SHORT * omegas[0] and abs(decay) < omega):  # also true of nan
             return NONE
-        if max(map(abs, change)) < TOLERANCE * turn:
-            return Harmonic(2.0 * math.pi / turn, decay)
+        if max(map(abs, change)) < TOLERANCE * omega:
+            return Harmonic(2.0 * math.pi / omega, decay)
     return NONE
 
 
-def _columns(times: Array, turn: float, decay: float) -> Array:
-    """What c, a and b are the factors of; (m, 3)."""
-    fading = np.exp(-decay * times)
+def _columns(times: Array, omega: float, decay: float) -> Array:
+    """Basis functions (m, 3) of which c, a and b are the coefficients."""
+    envelope = np.exp(-decay * times)
     ones = np.ones_like(times)
-    return np.stack([ones, fading * np.cos(turn * times), fading * np.sin(turn * times)], axis=1)
+    return np.stack(
+        [ones, envelope * np.cos(omega * times), envelope * np.sin(omega * times)], axis=1
+    )
 
 
-def _misfit(times: Array, values: Array, turn: float, decay: float) -> float:
-    columns = _columns(times, turn, decay)
-    off = values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0]
-    return float(off @ off)
+def _misfit(times: Array, values: Array, omega: float, decay: float) -> float:
+    columns = _columns(times, omega, decay)
+    residual = values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0]
+    return float(residual @ residual)
 
 
-def _newton(times: Array, values: Array, turn: float, decay: float) -> tuple[float, float]:
+def _newton(times: Array, values: Array, omega: float, decay: float) -> tuple[float, float]:
     """Change of ω and γ by one Gauss-Newton step."""
-    columns = _columns(times, turn, decay)
+    columns = _columns(times, omega, decay)
     factors = np.linalg.lstsq(columns, values, rcond=None)[0]
     _, cosine, sine = columns.T
     _, a, b = factors

@@ -1,4 +1,4 @@
-"""Values over time: read from a file, cut, and measured."""
+"""Time series: reading them from a file, cutting and measuring them."""
 
 import math
 from pathlib import Path
@@ -11,20 +11,20 @@ from quintet.interfaces.errors import SceneError
 
 
 class Curve(NamedTuple):
-    """Values over time."""
+    """A time series."""
 
     times: Array  # (m,) s
     values: Array  # (m,)
 
 
 def read(path: Path, where: str, second: float = 1.0) -> Curve:
-    """Read a curve: two columns, one header line, comments begin with #.
+    """Read a time series from CSV: two columns, one header line, comments begin with #.
 
     Parameters
     ----------
     path : Path
     where : str
-        What the messages begin with.
+        Beginning of the error messages.
     second : float, s
         One unit of the file's times.
     """
@@ -69,7 +69,7 @@ def _numbers(texts: list[str]) -> tuple[float, float] | None:
 
 
 def between(curve: Curve, begin: float, end: float) -> Curve:
-    """Cut a curve to a window, ends interpolated; what reaches beyond the curve is left out."""
+    """Cut a curve to a time interval, its ends interpolated, as far as the curve reaches."""
     times, values = curve
     begin, end = max(begin, times[0]), min(end, times[-1])
     inside = (times > begin) & (times < end)
@@ -84,7 +84,7 @@ def mean(curve: Curve) -> float:
 
 
 def crossing(curve: Curve, level: float) -> float:
-    """First time at which a level is passed, or nan."""
+    """First time at which a level is crossed; nan if never."""
     times, above = curve.times, curve.values - level
     passed = np.flatnonzero(above[:-1] * above[1:] <= 0.0)
     if not len(passed):
@@ -103,6 +103,6 @@ def distance(curve: Curve, target: Curve, relative: bool) -> float:
     """
     if not len(target.times):
         return math.nan
-    off = np.interp(target.times, *curve) - target.values
-    size = float(np.sqrt(np.mean(off**2)))
+    error = np.interp(target.times, *curve) - target.values
+    size = float(np.sqrt(np.mean(error**2)))
     return size / float(np.sqrt(np.mean(target.values**2))) if relative else size

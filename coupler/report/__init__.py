@@ -1,1 +1,1 @@
-"""What is shown of a run: summary, pictures, differences, work against precision."""
+"""Reports of runs: summary, pictures, differences, work-precision diagrams."""

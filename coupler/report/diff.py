@@ -1,4 +1,4 @@
-"""Where two recordings part: the first window, and the first number in it, bit for bit."""
+"""The first difference between two recordings: window, component, field and item, bit for bit."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Value = float | str
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The first thing that two recordings do not share.
+    """The first difference between two recordings.
 
     ``kind`` says what: the names of components or fields, a port, something static, the
     number of items, the number of windows, the time of a window, or a value.
@@ -107,7 +107,7 @@ def _statics(name: str, one: Fields, other: Fields) -> Iterator[Difference]:
 
 
 def _values(one: Recording, other: Recording) -> Iterator[Difference]:
-    """Yield the first different value, from blocks of rows of all components in step."""
+    """Yield the first different value, comparing blocks of rows of all components."""
     rows = {name: min(len(one.times(name)), len(other.times(name))) for name in one.names}
     for start in range(0, max(rows.values(), default=0), BATCH):
         found = []
@@ -136,7 +136,7 @@ def _fields(one: Recording, other: Recording, name: str, part: slice) -> Iterato
 
 
 def _first(a: Array, b: Array) -> tuple[int, ...] | None:
-    """Place of the first number whose bits differ."""
+    """Index of the first number whose bits differ; None if there is none."""
     whole = np.dtype(f"u{a.dtype.itemsize}")
     unequal = np.ascontiguousarray(a).view(whole) != np.ascontiguousarray(b).view(whole)
     if not unequal.any():
@@ -146,7 +146,7 @@ def _first(a: Array, b: Array) -> tuple[int, ...] | None:
 
 
 def sentence(difference: Difference | None) -> str:
-    """Say in one sentence where two recordings part."""
+    """Describe a difference in one sentence."""
     if difference is None:
         return "The recordings are the same, bit for bit."
     d = difference
@@ -162,5 +162,5 @@ def sentence(difference: Difference | None) -> str:
 
 
 def _exact(value: Value) -> str:
-    """Shortest decimal digits that give the number back, and its bits."""
+    """A number in its shortest exact decimal form, and in hexadecimal."""
     return value if isinstance(value, str) else f"{value!r} ({value.hex()})"

@@ -1,6 +1,6 @@
-"""Pictures of a run: what it looked like, and how its curves meet the references.
+"""Pictures of a run: side views of particles and bodies, time series against references.
 
-Drawing is imported where it is first used, so that a run without pictures imports none.
+Matplotlib is loaded by the functions that draw: a run without pictures does not need it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,14 +26,14 @@ IN_UNIT = ("rms", "at", "max", "min", "mean")  # measures that have the unit of 
 PANEL_WIDTH = 5.2  # inches
 COLUMNS = 2
 DOTS = 150  # per inch
-SAMPLE = 24  # points by whose nearest neighbours the spacing is guessed
+SAMPLE = 24  # points from whose nearest neighbours the spacing is estimated
 LIGHT = np.array([-0.4, -0.8, 0.6])  # towards the light; the eye looks along +y
-SOLID = np.array([0.80, 0.66, 0.48])  # colour of what has faces
+SOLID = np.array([0.80, 0.66, 0.48])  # colour of faces
 
 
 @dataclass(frozen=True, slots=True)
-class Shot:
-    """All that is seen at one time."""
+class SideView:
+    """Particles and faces in a side view at one time."""
 
     time: float  # s
     points: Array  # (n, 3) m, particles, the farthest first
@@ -42,7 +42,7 @@ class Shot:
     shades: Array  # (faces, 3) colours
 
 
-def snapshots(run: Path, out: Path, times: Sequence[float]) -> Path:
+def side_views(run: Path, out: Path, times: Sequence[float]) -> Path:
     """Draw the side view, x to the right and z up, one panel for each time.
 
     Parameters
@@ -50,7 +50,7 @@ def snapshots(run: Path, out: Path, times: Sequence[float]) -> Path:
     run : Path
         Folder of a run; every ``.vtkhdf`` file in it is drawn.
     out : Path
-        The picture; its ending says of what kind.
+        The picture; its ending chooses the format.
     times : sequence of float, s
         The nearest step of each file is taken.
 
@@ -63,16 +63,16 @@ def snapshots(run: Path, out: Path, times: Sequence[float]) -> Path:
     files = [path for path in files if len(vtkhdf.times(path))]
     if not files or not len(times):
         raise SceneError(f"run {run}: a picture needs a .vtkhdf file with steps, and a time.")
-    shots = [_shot(files, time) for time in times]
-    low, high = _bounds(shots)
-    figure, panels = panels_of(len(shots), (high - low)[1] / (high - low)[0])
+    views = [_side_view(files, time) for time in times]
+    low, high = _bounds(views)
+    figure, panels = panels_of(len(views), (high - low)[1] / (high - low)[0])
     drawn = None
-    top = max((float(shot.speed.max(initial=0.0)) for shot in shots), default=0.0) or 1.0
-    for panel, shot in zip(panels, shots, strict=True):
+    top = max((float(view.speed.max(initial=0.0)) for view in views), default=0.0) or 1.0
+    for panel, view in zip(panels, views, strict=True):
         panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-        panel.set_title(f"t = {shot.time:.4g} s", fontsize=10)
+        panel.set_title(f"t = {view.time:.4g} s", fontsize=10)
         panel.set(xlabel="x [m]", ylabel="z [m]")
-        drawn = _draw(panel, shot, top) or drawn
+        drawn = _draw(panel, view, top) or drawn
     if drawn is not None:
         figure.colorbar(drawn, ax=panels, label="speed [m/s]", shrink=0.8, aspect=30, pad=0.02)
     return save(figure, out)
@@ -95,7 +95,7 @@ def comparison(
         Matched by name.
     recording : Recording
     out : Path
-        The picture; its ending says of what kind.
+        The picture; its ending chooses the format.
 
     Returns
     -------
@@ -145,7 +145,8 @@ def _title(one: Expectation, outcome: Outcome | None) -> str:
 
 
 def panels_of(count: int, height: float) -> tuple[Any, list[Any]]:
-    """Make a figure of panels; `height` is that of one, as part of its width."""
+    """Make a figure of panels; `height` is that of one panel over its width."""
+    # A run without pictures does not load matplotlib.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -161,32 +162,32 @@ def panels_of(count: int, height: float) -> tuple[Any, list[Any]]:
 
 
 def save(figure: Any, out: Path) -> Path:
-    """Write a figure; the ending of the name says of what kind."""
+    """Write a figure in the format of the file's ending."""
     Path(out).parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=DOTS)
     return Path(out)
 
 
-def _shot(files: Sequence[Path], time: float) -> Shot:
+def _side_view(files: Sequence[Path], time: float) -> SideView:
     points, speeds, faces, depths, shades = [], [], [], [], []
     found = time
     for path in files:
         step = int(np.argmin(np.abs(vtkhdf.times(path) - time)))
-        found, view = vtkhdf.read_step(path, step)
-        if "cells" in view:
-            for corners in _corners(view):
+        found, fields = vtkhdf.read_step(path, step)
+        if "cells" in fields:
+            for corners in _corners(fields):
                 faces.append(corners[:, [0, 2]])
                 depths.append(corners[:, 1].mean())
                 shades.append(_shade(corners))
         else:
-            points.append(view["points"])
-            speeds.append(_speed(view))
+            points.append(fields["points"])
+            speeds.append(_speed(fields))
     cloud = np.concatenate([np.zeros((0, 3)), *points])
     speed = np.concatenate([np.zeros(0), *speeds])
     far = np.argsort(-cloud[:, 1], kind="stable")
     order = np.argsort(-np.array(depths), kind="stable")
     ordered = [faces[i] for i in order]
-    return Shot(found, cloud[far], speed[far], ordered, np.array(shades).reshape(-1, 3)[order])
+    return SideView(found, cloud[far], speed[far], ordered, np.array(shades).reshape(-1, 3)[order])
 
 
 def _corners(view: Mapping[str, Array]) -> list[Array]:
@@ -201,15 +202,15 @@ def _speed(view: Mapping[str, Array]) -> Array:
 
 
 def _shade(corners: Array) -> Array:
-    """Colour of a face, brighter where it is turned to the light."""
+    """Colour of a face under diffuse light."""
     normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    facing = abs(float(normal @ LIGHT)) / max(float(np.linalg.norm(normal)), 1e-300)
-    return SOLID * (0.55 + 0.45 * min(facing / float(np.linalg.norm(LIGHT)), 1.0))
+    cosine = abs(float(normal @ LIGHT)) / max(float(np.linalg.norm(normal)), 1e-300)
+    return SOLID * (0.55 + 0.45 * min(cosine / float(np.linalg.norm(LIGHT)), 1.0))
 
 
-def _bounds(shots: Sequence[Shot]) -> tuple[Array, Array]:
-    """Corners (2,) m of what all panels show: all that is seen, and a margin."""
-    seen = [shot.points[:, [0, 2]] for shot in shots] + [f for shot in shots for f in shot.faces]
+def _bounds(views: Sequence[SideView]) -> tuple[Array, Array]:
+    """Bounds (2,) m common to all panels: of all points and faces, with a margin."""
+    seen = [view.points[:, [0, 2]] for view in views] + [f for view in views for f in view.faces]
     every = np.concatenate(seen)
     every = every[np.isfinite(every).all(axis=1)]
     if not len(every):
@@ -220,7 +221,7 @@ def _bounds(shots: Sequence[Shot]) -> tuple[Array, Array]:
 
 
 def _spacing(points: Array) -> float:
-    """Typical distance [m] of nearest particles, from a few of them; 0 if it is unknown."""
+    """Median distance [m] of nearest neighbours, of a sample of particles; 0 if unknown."""
     if len(points) < 2:
         return 0.0
     nearest = []
@@ -231,20 +232,21 @@ def _spacing(points: Array) -> float:
     return spacing if np.isfinite(spacing) else 0.0
 
 
-def _draw(panel: Any, shot: Shot, top: float) -> Any:
+def _draw(panel: Any, view: SideView, top: float) -> Any:
+    # A run without pictures does not load matplotlib.
     from matplotlib.collections import PolyCollection
 
     drawn = None
-    if len(shot.points):
+    if len(view.points):
         width = panel.get_xlim()[1] - panel.get_xlim()[0]
-        across = 72.0 * (PANEL_WIDTH - 1.0) * _spacing(shot.points) / width  # typographic points
-        x, z = shot.points[:, 0], shot.points[:, 2]
+        across = 72.0 * (PANEL_WIDTH - 1.0) * _spacing(view.points) / width  # typographic points
+        x, z = view.points[:, 0], view.points[:, 2]
         drawn = panel.scatter(
-            x, z, max(1.3 * across, 0.8) ** 2, shot.speed, cmap="viridis", vmin=0.0, vmax=top,
+            x, z, max(1.3 * across, 0.8) ** 2, view.speed, cmap="viridis", vmin=0.0, vmax=top,
             linewidths=0, rasterized=True,
         )  # fmt: skip
-    # Bodies last, although fluid may be before them: what is hidden tells nothing.
-    faces = PolyCollection(shot.faces, facecolors=shot.shades, edgecolors="black", linewidths=0.3)
+    # Bodies are drawn last, although fluid may be in front: they would be hidden by it.
+    faces = PolyCollection(view.faces, facecolors=view.shades, edgecolors="black", linewidths=0.3)
     faces.set_zorder(3)
     panel.add_collection(faces, autolim=False)
     return drawn

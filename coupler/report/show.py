@@ -1,4 +1,4 @@
-"""What happened in a run, told from its results.json alone."""
+"""The summary of a run, printed from its results.json."""
 
 import json
 import sys
@@ -35,7 +35,7 @@ def results(folder: Path) -> dict[str, Any]:
 
 
 def show(folder: Path, as_json: bool = False) -> None:
-    """Print what happened: status, expectations, ledger, timing and fault.
+    """Print the summary of a run: status, expectations, ledger, timing and fault.
 
     Parameters
     ----------
@@ -48,22 +48,25 @@ def show(folder: Path, as_json: bool = False) -> None:
     if as_json:
         print(json.dumps(found, indent=2))
         return
-    console = on_screen()
-    frame = box.SIMPLE_HEAD if sys.stdout.isatty() else None
-    console.print(_headline(found))
+    print_results(found, console(), box.SIMPLE_HEAD if sys.stdout.isatty() else None)
+
+
+def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | None = None) -> None:
+    """Print results on a console, their tables in a frame or plain."""
+    screen.print(_headline(found))
     for table in (_expectations(found), _ledger(found), _timing(found)):
         if table is not None:
             table.box = frame
-            console.print(table)
+            screen.print(table)
     for line in (_balance(found), _shares(found)):
         if line:
-            console.print(line)
+            screen.print(line)
     if fault := found.get("fault"):
-        console.print(_fault(fault))
+        screen.print(_fault(fault))
 
 
-def on_screen() -> Console:
-    """Where tables are printed; as wide as they like where there is no terminal."""
+def console() -> Console:
+    """The console that tables are printed on; of fixed width where there is no terminal."""
     width = None if sys.stdout.isatty() else PLAIN_WIDTH
     return Console(width=width, highlight=False, markup=False)
 
@@ -152,7 +155,7 @@ def _timing(found: Mapping[str, Any]) -> Table | None:
 
 
 def _rate(one: Mapping[str, Any]) -> float | None:
-    """Items stepped per second of computing."""
+    """Items stepped per second of computing time."""
     compute = one.get("compute")
     return one.get("steps", 0) * one.get("items", 0) / compute if compute else None
 
@@ -169,11 +172,11 @@ def _shares(found: Mapping[str, Any]) -> str:
 def _fault(fault: Mapping[str, Any]) -> Text:
     text = Text("Fault\n", style="bold red")
     for key, value in fault.items():
-        said = value if isinstance(value, list) else str(value).splitlines()
-        if len(said) > 1:
-            text.append(f"  {key}:\n" + "".join(f"    {line}\n" for line in said), style="")
-        elif said:
-            text.append(f"  {key}: {said[0]}\n", style="")
+        lines = value if isinstance(value, list) else str(value).splitlines()
+        if len(lines) > 1:
+            text.append(f"  {key}:\n" + "".join(f"    {line}\n" for line in lines), style="")
+        elif lines:
+            text.append(f"  {key}: {lines[0]}\n", style="")
     return text
 
 

@@ -1,4 +1,4 @@
-"""Error against run time, as a table and as a work-precision picture."""
+"""Work-precision diagram: error against run time, as a table and as a picture."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,33 +12,35 @@ Row = dict[str, Any]
 
 
 def table(rows: Sequence[Row]) -> Table:
-    """One line for each rung, one column for each expectation's error."""
+    """One line for each refinement, one column for each expectation's error."""
     made = Table(box=None, pad_edge=False)
     units = {name: unit for row in rows for name, unit in row["units"].items()}
     heads = ["CPU [s]", "wall [s]", "coupling", "memory [MB]", "items", "size"]
-    for head in ("", "rung"):
+    for head in ("", "refinement"):
         made.add_column(head)
     for head in [*(f"{name} [{unit}]" for name, unit in units.items()), *heads]:
         made.add_column(head, justify="right", overflow="fold")
     for row in rows:
-        said = row["status"] if row["status"] != "done" else "met" if row["met"] else "not met"
-        errors = [number(row["errors"].get(name)) for name in units]
+        state = row["status"] if row["status"] != "done" else "met" if row["met"] else "not met"
+        errors = [three_digits(row["errors"].get(name)) for name in units]
         memory = row["memory"] / 1e6 if row["memory"] else None
         share = "-" if row["overhead"] is None else f"{100.0 * row['overhead']:.1f} %"
-        numbers = [number(row["cpu"]), number(row["wall"]), share, number(memory)]
-        made.add_row(said, row["label"], *errors, *numbers, str(row["items"]), number(row["size"]))
+        numbers = [three_digits(row["cpu"]), three_digits(row["wall"]), share, three_digits(memory)]
+        made.add_row(
+            state, row["label"], *errors, *numbers, str(row["items"]), three_digits(row["size"])
+        )
     return made
 
 
-def number(value: float | None) -> str:
-    """Three digits, or a dash."""
+def three_digits(value: float | None) -> str:
+    """Format with three digits; a dash for None."""
     return "-" if value is None else f"{value:.3g}"
 
 
 def draw(rows: Sequence[Row], out: Path) -> Path | None:
     """Draw error over processor time, both on a logarithmic scale, a panel for each expectation.
 
-    Returns `out`, or None where no rung has an error to be drawn.
+    Returns `out`, or None where no refinement has an error to be drawn.
     """
     done = [row for row in rows if row["status"] == "done" and row["cpu"] > 0.0]
     names = list(dict.fromkeys(n for row in done for n, e in row["errors"].items() if e))

@@ -1,4 +1,4 @@
-"""What is left of a run: ``results.json``, pictures, and the status it ends with."""
+"""Results of a run: ``results.json``, pictures and the exit status."""
 
 import json
 import os
@@ -13,6 +13,7 @@ from typing import Any
 from quintet.coupler.coupling.participant import ComponentFailed, Part
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
+from quintet.coupler.report.pictures import comparison, side_views
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
@@ -22,7 +23,7 @@ PACKAGES = ("quintet", "numpy", "numba", "mpi4py", "eclipse-zenoh", "h5py", "msg
 
 
 def outcomes(scene: Scene, folder: Path) -> list[Outcome]:
-    """Compare a run with what its scene expects."""
+    """Evaluate the expectations of a scene."""
     path = folder / "recording.h5"
     if not scene.expect or not path.exists():
         return []
@@ -31,7 +32,7 @@ def outcomes(scene: Scene, folder: Path) -> list[Outcome]:
 
 
 def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
-    """Compare; what a run turns out not to have, an item or a time, is not met."""
+    """Evaluate one expectation; it is not met where the run lacks its item or time."""
     try:
         return evaluate(one, recording, folder)
     except SceneError as error:
@@ -40,21 +41,17 @@ def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
 
 
 def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
-    """Draw the pictures that the scene asks for; import nothing where it asks for none."""
+    """Draw the pictures of a scene, and its time series against references."""
     times = scene.file.output.pictures
     if times and list(folder.glob("*.vtkhdf")):
-        from quintet.coupler.report.pictures import snapshots
-
-        snapshots(folder, folder / "scene.png", times)
+        side_views(folder, folder / "scene.png", times)
     if any(one.csv for one in scene.expect) and found:
-        from quintet.coupler.report.pictures import comparison
-
         with Recording(folder / "recording.h5") as recording:
             comparison(scene.folder, scene.expect, found, recording, folder / "comparison.png")
 
 
 def timing(parts: dict[str, Part], wall: float, mapping: float) -> dict[str, Any]:
-    """Wall time, and where it went; memory of all processes together at their peaks [bytes]."""
+    """Wall time and its parts [s], and the sum of the peak memories of all processes [bytes]."""
     components = {}
     exchange = compile_time = 0.0
     for name, part in parts.items():
@@ -80,7 +77,7 @@ def timing(parts: dict[str, Part], wall: float, mapping: float) -> dict[str, Any
 
 
 def machine() -> dict[str, Any]:
-    """On what it ran, and with which versions."""
+    """Describe the machine and the versions of the packages."""
     versions = {"python": platform.python_version()}
     for package in PACKAGES:
         try:
@@ -101,7 +98,7 @@ def cpu() -> str:
 
 
 def fault(error: ComponentFailed, folder: Path, lines: list[str]) -> dict[str, Any]:
-    """Who failed, when, why, and what it said last."""
+    """Describe a failure: component, window, cause, traceback, end of its log."""
     return {
         "component": error.component,
         "window": error.window,
@@ -113,7 +110,7 @@ def fault(error: ComponentFailed, folder: Path, lines: list[str]) -> dict[str, A
 
 
 def write(folder: Path, content: dict[str, Any]) -> None:
-    """Write ``results.json`` in one piece: there is never half of one."""
+    """Write ``results.json`` atomically."""
     path = folder / "results.json"
     part = path.with_suffix(".part")
     part.write_text(json.dumps(content, indent=2, default=float))
@@ -121,7 +118,7 @@ def write(folder: Path, content: dict[str, Any]) -> None:
 
 
 def expectations(found: list[Outcome]) -> list[dict[str, Any]]:
-    """As ``results.json`` says it."""
+    """Outcomes as they stand in ``results.json``."""
     return [asdict(one) for one in found]
 
 
@@ -132,5 +129,5 @@ class Clock:
         self._began = time.perf_counter()
 
     def __call__(self) -> float:
-        """Return the seconds gone by."""
+        """Return the elapsed time [s]."""
         return time.perf_counter() - self._began

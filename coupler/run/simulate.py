@@ -1,4 +1,4 @@
-"""One run from a checked scene to its results, whatever happens on the way."""
+"""One run, from a checked scene to its results, failures included."""
 
 import os
 import shlex
@@ -17,19 +17,28 @@ from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import Progress, run
-from quintet.coupler.run.output import Stop, Writer
+from quintet.coupler.run.output import OutputWriter
+from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 
-OURS = ("results.json", "recording.h5", "ledger.csv", "scene.toml", "scene.png", "comparison.png")
+RUN_FILES = (
+    "results.json",
+    "recording.h5",
+    "ledger.csv",
+    "scene.toml",
+    "scene.png",
+    "comparison.png",
+)
 
 
 def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
-    """Run a scene into a folder, ready for it or with a snapshot; return the exit status."""
-    clock, stop = results.Clock(), Stop()
+    """Run a scene in a prepared folder, or from a snapshot in it; return the exit status."""
+    clock, stop = results.Clock(), StopRequest()
     exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
     size = snapshots.ledger_size(snapshot) if snapshot else 0
     ledger = Ledger(exchange, folder / "ledger.csv", size)
-    writer = Writer(scene, folder, stop, snapshots.window_of(snapshot) if snapshot else None)
+    writer = OutputWriter(scene, folder, stop, snapshots.window_of(snapshot) if snapshot else None)
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
     coupling = Coupling({}, exchange, ledger, 0.0, scene.iteration())
@@ -45,7 +54,7 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
             connection = None
     except KeyboardInterrupt:
         outcome |= {"status": "interrupted", "windows": writer.done, "time": writer.time}
-    except Exception as error:  # whatever it is, the run leaves a report
+    except Exception as error:  # any failure is reported in the results
         outcome |= failed(error, scene, folder, writer)
     finally:
         if connection:
@@ -58,10 +67,10 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
 
 
 def make_folder(scene: Scene, folder: Path) -> None:
-    """Make an empty place for a run; only what an earlier run left there is removed."""
+    """Prepare the folder of a run; only files of an earlier run are removed."""
     (folder / "log").mkdir(parents=True, exist_ok=True)
     for path in [
-        *(folder / name for name in OURS),
+        *(folder / name for name in RUN_FILES),
         *folder.glob("*.vtkhdf"),
         *folder.glob("log/*"),
         *snapshots.snapshots(folder),
@@ -71,13 +80,13 @@ def make_folder(scene: Scene, folder: Path) -> None:
 
 
 def progress_of(progress: Progress) -> dict[str, Any]:
-    """Whether a run came to its end."""
+    """Status of a run, complete or interrupted."""
     status = "done" if progress.done == progress.windows else "interrupted"
     return {"status": status, "windows": progress.done, "time": progress.time}
 
 
-def failed(error: Exception, scene: Scene, folder: Path, writer: Writer) -> dict[str, Any]:
-    """Report a failure: who, in which window, why, and the last lines of its log."""
+def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -> dict[str, Any]:
+    """Report a failure: component, window, cause, and the last lines of its log."""
     if not isinstance(error, ComponentFailed):
         error = ComponentFailed("coupler", writer.done, str(error), traceback.format_exc())
     lines = tail(folder / "log" / f"{error.component}.log")
@@ -98,7 +107,7 @@ def conclude(
     coupling: Coupling,
     wall: float,
 ) -> int:
-    """Compare with what was expected, write the results, draw, and choose the exit status."""
+    """Evaluate the expectations, write the results, draw; return the exit status."""
     found = results.outcomes(scene, folder) if outcome["status"] != "failed" else []
     content = {
         "scene": scene.file.name,
@@ -110,7 +119,7 @@ def conclude(
         "repetitions": coupling.repetitions,
         "timing": results.timing(coupling.parts, wall, coupling.mapping),
         "machine": results.machine(),
-        "command": shlex.join(["quintet", *sys.argv[1:]]),
+        "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))

@@ -1,15 +1,17 @@
-"""What is put on top of a scene file: a preset, single settings, other components."""
+"""Overrides of a scene file: presets, single settings, replaced components."""
 
 import tomllib
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from quintet.coupler.files.toml_writer import value_text
 from quintet.interfaces.manifest import known_kinds
 from quintet.interfaces.params import unknown
 
 
 def put_preset(table: dict[str, Any], preset: str) -> list[str]:
-    """Set what a preset of the scene says; return the mistakes."""
+    """Apply a preset of the scene; return the mistakes."""
     presets = table.get("presets", {})
     if not isinstance(presets, dict) or not isinstance(presets.get(preset, {}), dict):
         return [f"presets.{preset} must be a table of paths and values. Write [presets.{preset}]."]
@@ -19,7 +21,7 @@ def put_preset(table: dict[str, Any], preset: str) -> list[str]:
 
 
 def put_set(table: dict[str, Any], setting: str) -> list[str]:
-    """Set ``PATH=VALUE``, the value in TOML; return the mistakes."""
+    """Apply ``PATH=VALUE``, the value in TOML; return the mistakes."""
     path, equals, text = setting.partition("=")
     if not equals:
         return [f"--set needs PATH=VALUE; found {setting!r}. Give it as in --set window=1e-3."]
@@ -53,6 +55,25 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
 def _may_be_made(heads: list[str]) -> bool:
     """Whether a scene may lack the table: its own, or inside a component's, which checks it."""
     return heads in (["output"], ["iteration"]) or (heads[0] == "components" and len(heads) > 2)
+
+
+def assignments(settings: Mapping[str, Any]) -> list[str]:
+    """Write settings by dotted path as ``PATH=VALUE``."""
+    return [f"{path}={value_text(value)}" for path, value in settings.items()]
+
+
+def run_arguments(
+    scene: str,
+    preset: str = "",
+    settings: Iterable[str] = (),
+    swaps: Iterable[str] = (),
+    transport: str = "",
+) -> list[str]:
+    """Write a scene and its overrides as arguments of ``quintet run``."""
+    line = [scene, *(["--preset", preset] if preset else [])]
+    line += ["--transport", transport] if transport else []
+    line += [word for swap in swaps for word in ("--swap", swap)]
+    return [*line, *(word for setting in settings for word in ("--set", setting))]
 
 
 def put_swap(table: dict[str, Any], swap: str) -> list[str]:

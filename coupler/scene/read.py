@@ -112,15 +112,17 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
                 " Shorten it."
             )
         mistakes += _reachable(file)
-    ladders = [_tables(table, key, mistakes) for key in variants.TABLES]
+    series = [_tables(table, key, mistakes) for key in variants.TABLES]
     scope, check = None, None
     if file is not None and not mistakes:
         gives = {name: one.gives for name, one in components.items()}
         scope = Scope(file.end, gives, len(links), [one.name for one in expect])
         check = partial(_check, path, preset=preset)
-    trial = variants.trial_of(table, check)
-    study, stability, wrong_driven = variants.read_driven(ladders[0], ladders[1], trial, scope)
-    mistakes += wrong_driven
+    make_variant = variants.variant_maker(table, check)
+    study, stability, wrong_variants = variants.read_variants(
+        series[0], series[1], make_variant, scope
+    )
+    mistakes += wrong_variants
     if mistakes or file is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])
     resolved = {k: v for k, v in table.items() if k not in ("presets", *variants.TABLES)}
@@ -139,7 +141,7 @@ def _also_tables(mistake: str) -> str:
 
 
 def _reachable(file: SceneFile) -> list[str]:
-    """Check where the coupler is to listen, and the files that keep strangers out."""
+    """Check the endpoint of the coupler and its certificate files."""
     if len(file.tls) not in (0, 3):
         return [
             "scene.tls must be three files: authority, certificate, key; found "

@@ -8,7 +8,7 @@ from quintet.coupler.coupling.exchange import Link
 from quintet.coupler.coupling.schedule import Iteration
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.stability_table import Limit
-from quintet.coupler.scene.study_table import Rung
+from quintet.coupler.scene.study_table import Refinement
 from quintet.interfaces.component import Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
@@ -88,7 +88,7 @@ class Scene:
     resolved: dict[str, Any]  # the scene as it runs, for scene.toml
     transport: Transport = "zenoh"
     asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
-    study: list[Rung] = field(default_factory=list)
+    study: list[Refinement] = field(default_factory=list)
     stability: list[Limit] = field(default_factory=list)
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand
 

@@ -1,36 +1,36 @@
-"""``[[stability]]``: a parameter driven until the scene breaks, and what breaking means.
+"""``[[stability]]``: a parameter varied to its stability limit, and the invariants that define it.
 
     [[stability]]
     parameter = "components.spring.step"
-    from = 0.01                # holds
-    to = 1.0                   # breaks
+    from = 0.01                # stable
+    to = 1.0                   # unstable
     log = true
     predicted = 0.2
     source = "explicit: 2/ω"
     energy = { factor = 2.0 }
 
 `from` need not be the smaller one. Several paths are scaled together: each is its value in the
-scene times the parameter, which is then a factor. A run that fails is always a broken one.
+scene times the parameter, which is then a factor. A run that fails is always unstable.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
-from pydantic import Field as Named
+import pydantic
 
 from quintet.coupler.measures.expectation import Index
-from quintet.coupler.scene.study_table import Table, Trial, folder_name, value_at
+from quintet.coupler.scene.study_table import MakeVariant, Table, folder_name, value_at
 from quintet.interfaces.component import Port
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters, read, unknown
 
 SAMPLES = 200  # rows of the ledger in a short run
-FEWEST_WINDOWS = 20  # in a run whose window is driven: windows are whole, so the last is rounded
+FEWEST_WINDOWS = 20  # in a run whose window is varied: windows are whole, so the last is rounded
 
 
 @parameters
 class Energy:
-    """How far the total energy may grow above that of the start."""
+    """Largest growth of the total energy since the start."""
 
     factor: Positive | None = None  # times the start's
     amount: Positive | None = None  # J
@@ -44,7 +44,7 @@ class Energy:
 
 @parameters
 class Bounds:
-    """Where a recorded field must stay, all of its items, at the end of every window."""
+    """Bounds of a recorded field: of all its items, at the end of every window."""
 
     component: str
     field: str  # "port.field"
@@ -63,19 +63,19 @@ class Against:
 
 @parameters
 class LimitTable:
-    """One limit as it stands in the file."""
+    """One stability limit as given in the scene file."""
 
     name: str = ""
     parameter: str | tuple[str, ...]
-    from_: Annotated[Number, Named(alias="from")]
+    from_: Annotated[Number, pydantic.Field(alias="from")]
     to: Number
     log: bool = False  # whether the middle is the geometric one
-    accuracy: Annotated[float, Named(gt=0.0, le=0.5)] = 0.05  # relative width of what is left
+    accuracy: Annotated[float, pydantic.Field(gt=0.0, le=0.5)] = 0.05  # relative final range
     predicted: Number | tuple[Number, ...] | None = None  # one for each value of `against`
     source: str = ""  # of the prediction
     end: Positive | None = None  # s, of the short runs; the scene's if not given
     transport: Literal["memory", "zenoh", "mpi"] = "memory"
-    settings: dict[str, Any] = Named(default_factory=dict)  # of the short runs, by dotted path
+    settings: dict[str, Any] = pydantic.Field(default_factory=dict)  # of the short runs, by path
     against: Against | None = None
     energy: Energy | None = None
     momentum: NotNegative | None = None  # largest residual of any link
@@ -110,7 +110,7 @@ class LimitTable:
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What of the scene a limit may speak of."""
+    """Parts of the scene that a stability limit may refer to."""
 
     end: float  # s
     gives: Mapping[str, tuple[Port, ...]]  # ports that each component gives
@@ -120,12 +120,12 @@ class Scope:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """One limit, checked."""
+    """One stability limit, checked."""
 
     table: LimitTable
     name: str
     end: float  # s, of its runs
-    scaled: dict[str, float] = field(default_factory=dict)  # what several paths are in the scene
+    scaled: dict[str, float] = field(default_factory=dict)  # paths scaled together, their values
 
     @property
     def folder(self) -> str:
@@ -133,32 +133,32 @@ class Limit:
         return folder_name(self.name)
 
     def settings(self, value: float, other: float | None) -> dict[str, Any]:
-        """What a run is given: little to write, the short run's own, and the parameters."""
+        """Settings of a run: reduced output, those of the short runs, and the parameters."""
         one = self.table
         totals = self.end / SAMPLES if one.energy or one.momentum is not None else 0.0
-        quiet = {"output.pictures": [], "output.interval": 0.0, "output.totals": totals}
-        quiet["output.record"] = bool(one.bounds or one.expectation)
-        driven = {path: value * base for path, base in self.scaled.items()}
+        output = {"output.pictures": [], "output.interval": 0.0, "output.totals": totals}
+        output["output.record"] = bool(one.bounds or one.expectation)
+        varied = {path: value * base for path, base in self.scaled.items()}
         if isinstance(one.parameter, str):
-            driven = {one.parameter: value}
+            varied = {one.parameter: value}
         if one.against and other is not None:
-            driven[one.against.parameter] = other
-        return {**quiet, "end": self.end, **one.settings, **driven}
+            varied[one.against.parameter] = other
+        return {**output, "end": self.end, **one.settings, **varied}
 
     def others(self) -> tuple[float | None, ...]:
         """Values of the second parameter, or one None."""
         return self.table.against.values if self.table.against else (None,)
 
     def predicted(self, number: int) -> float | None:
-        """What is predicted for one of them."""
-        said = self.table.predicted
-        return said[number] if isinstance(said, tuple) else said
+        """Prediction for one value of the second parameter."""
+        predicted = self.table.predicted
+        return predicted[number] if isinstance(predicted, tuple) else predicted
 
 
 def read_limits(
-    given: list[Table], trial: Trial, scope: Scope | None
+    given: list[Table], make_variant: MakeVariant, scope: Scope | None
 ) -> tuple[list[Limit], list[str]]:
-    """Check the limits of a scene; without a scope, which a wrong scene lacks, only their form."""
+    """Check the limits of a scene; without a scope only their form."""
     found, mistakes, names = [], [], set()
     for number, table in enumerate(given):
         where = f"stability.{table.get('name', number)}"
@@ -171,20 +171,22 @@ def read_limits(
         if name in names:
             mistakes.append(f"{where}: two limits have the name {name}. Give each its own.")
         names.add(name)
-        limit, wrong = _limit(one, name, scope, trial)
-        wrong += _speaks_of(one, scope) or _runs(limit, trial)
+        limit, wrong = _limit(one, name, scope, make_variant)
+        wrong += _check_references(one, scope) or _check_ends(limit, make_variant)
         mistakes += [f"{where}: {mistake}" for mistake in dict.fromkeys(wrong)]
         found.append(limit)
     return found, mistakes
 
 
-def _limit(one: LimitTable, name: str, scope: Scope, trial: Trial) -> tuple[Limit, list[str]]:
+def _limit(
+    one: LimitTable, name: str, scope: Scope, make_variant: MakeVariant
+) -> tuple[Limit, list[str]]:
     if isinstance(one.parameter, str):
         return Limit(one, name, one.end or scope.end), []
-    under, mistakes = trial(one.settings)
+    variant, mistakes = make_variant(one.settings)
     scaled = {}
     for path in one.parameter:
-        value, wrong = value_at(under, path)
+        value, wrong = value_at(variant, path)
         if not wrong and (isinstance(value, bool) or not isinstance(value, (int, float))):
             wrong = f"{path} must be a number to be scaled; found {value!r}. Name another."
         mistakes += [wrong] if wrong else []
@@ -192,12 +194,12 @@ def _limit(one: LimitTable, name: str, scope: Scope, trial: Trial) -> tuple[Limi
     return Limit(one, name, one.end or scope.end, scaled), mistakes
 
 
-def _runs(limit: Limit, trial: Trial) -> list[str]:
-    """Say what is wrong with the scene at the ends of the range."""
+def _check_ends(limit: Limit, make_variant: MakeVariant) -> list[str]:
+    """Check the scene at both ends of the range."""
     one, mistakes = limit.table, []
     for other in limit.others():
         for value in (one.from_, one.to):
-            mistakes += trial(limit.settings(value, other))[1]
+            mistakes += make_variant(limit.settings(value, other))[1]
     if one.parameter == "window" and limit.end < FEWEST_WINDOWS * max(one.from_, one.to):
         mistakes.append(
             f"end must be {FEWEST_WINDOWS} windows or more, as windows are whole; found "
@@ -206,8 +208,8 @@ def _runs(limit: Limit, trial: Trial) -> list[str]:
     return mistakes
 
 
-def _speaks_of(one: LimitTable, scope: Scope) -> list[str]:
-    """Check that what an invariant speaks of is there."""
+def _check_references(one: LimitTable, scope: Scope) -> list[str]:
+    """Check that the links, expectations and fields that an invariant names exist."""
     mistakes = []
     if one.momentum is not None and not scope.links:
         mistakes.append("momentum is that of links; the scene has none. Remove it.")

@@ -1,11 +1,11 @@
-"""``[[study]]``: the rungs of a scene's ladder, from coarse and cheap to fine and dear.
+"""``[[study]]``: the refinements of a convergence study, from coarse to fine.
 
     [[study]]
     label = "coarse"
     settings = { "components.water.spacing" = 0.03, "window" = 6e-4 }
     size = "components.water.spacing"
 
-A rung that names a `size` takes part in the observed order of the error against it.
+A refinement that names a `size` takes part in the observed order of the error against it.
 """
 
 import re
@@ -17,21 +17,21 @@ from typing import Any
 from quintet.interfaces.params import parameters, read, unknown
 
 Table = dict[str, Any]
-Trial = Callable[[Table], tuple[Table, list[str]]]  # settings -> the scene under them, mistakes
+MakeVariant = Callable[[Table], tuple[Table, list[str]]]  # settings -> scene with them, mistakes
 
 
 @parameters
-class RungTable:
-    """One rung as it stands in the file."""
+class RefinementTable:
+    """One refinement as given in the scene file."""
 
     label: str
     settings: dict[str, Any]  # by dotted path, on top of the scene
-    size: str = ""  # path of what the order is measured against
+    size: str = ""  # path of the size against which the order is observed
 
 
 @dataclass(frozen=True, slots=True)
-class Rung:
-    """One rung, checked."""
+class Refinement:
+    """One refinement, checked."""
 
     label: str
     settings: dict[str, Any]
@@ -44,40 +44,43 @@ class Rung:
 
 
 def folder_name(text: str) -> str:
-    """Text as the name of a folder."""
+    """Turn a text into the name of a folder."""
     return re.sub(r"[^A-Za-z0-9_.+-]+", "_", text).strip("._") or "_"
 
 
-def read_rungs(given: list[Table], trial: Trial) -> tuple[list[Rung], list[str]]:
-    """Check the ladder of a scene; return its rungs, and every mistake."""
+def read_refinements(
+    given: list[Table], make_variant: MakeVariant
+) -> tuple[list[Refinement], list[str]]:
+    """Check the refinements of a scene; return them, and every mistake."""
     found, mistakes, sizes = [], [], set()
     for number, table in enumerate(given):
         where = f"study.{table.get('label', number)}"
-        one, wrong = read(RungTable, table, where)
+        one, wrong = read(RefinementTable, table, where)
         mistakes += wrong
         if one is None:
             continue
-        under, wrong = trial(one.settings)
+        variant, wrong = make_variant(one.settings)
         mistakes += [f"{where}: {mistake}" for mistake in wrong]
         if one.size and not wrong:
-            size, wrong = _size(where, one.size, under)
+            size, wrong = _size(where, one.size, variant)
             mistakes += wrong
             sizes.add(one.size)
-            found.append(Rung(one.label, one.settings, size))
+            found.append(Refinement(one.label, one.settings, size))
         else:
-            found.append(Rung(one.label, one.settings))
+            found.append(Refinement(one.label, one.settings))
     return found, [*mistakes, *_clashes(found, sizes)]
 
 
-def _clashes(found: list[Rung], sizes: set[str]) -> list[str]:
+def _clashes(found: list[Refinement], sizes: set[str]) -> list[str]:
     mistakes = [
-        f"study: {count} rungs have the label {label}. Give each its own, in letters and digits."
-        for label, count in Counter(rung.folder for rung in found).items()
+        f"study: {count} refinements have the label {label}. Give each its own, in letters "
+        "and digits."
+        for label, count in Counter(one.folder for one in found).items()
         if count > 1
     ]
     if len(sizes) > 1:
         mistakes.append(
-            "study: one size must serve all rungs that name one; found "
+            "study: one size must serve all refinements that name one; found "
             f"{', '.join(sorted(sizes))}. Name the same, or none."
         )
     return mistakes
@@ -89,14 +92,13 @@ def _size(where: str, path: str, table: Table) -> tuple[float | None, list[str]]
         return None, [f"{where}.size {wrong}"]
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
         return None, [
-            f"{where}.size {path} must be a positive number; found {value!r}. Name what "
-            "the rungs refine."
+            f"{where}.size {path} must be a positive number; found {value!r}. Name what is refined."
         ]
     return (1.0 / value if isinstance(value, int) else value), []
 
 
 def value_at(table: Table, path: str) -> tuple[Any, str]:
-    """Find the value at a dotted path of a scene's tables, or say that there is none."""
+    """Find the value at a dotted path of a scene's tables; return it, or why there is none."""
     at: Any = table
     for part in path.split("."):
         if isinstance(at, list) and part.isdigit() and int(part) < len(at):
@@ -105,6 +107,6 @@ def value_at(table: Table, path: str) -> tuple[Any, str]:
             at = at[part]
         else:
             known = at if isinstance(at, dict) else map(str, range(len(at or ())))
-            said = unknown(path, part, known if isinstance(at, (dict, list)) else ())
-            return None, said.replace("is not known", "has no value in the scene", 1)
+            reason = unknown(path, part, known if isinstance(at, (dict, list)) else ())
+            return None, reason.replace("is not known", "has no value in the scene", 1)
     return at, ""

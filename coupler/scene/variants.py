@@ -1,29 +1,29 @@
-"""A scene under other settings than its own: its ladder and its limits, checked with the scene."""
+"""Variants of a scene: its refinements and stability limits, checked with the scene."""
 
 from collections.abc import Callable
 from copy import deepcopy
 
 from quintet.coupler.scene.overrides import put
 from quintet.coupler.scene.stability_table import Limit, Scope, read_limits
-from quintet.coupler.scene.study_table import Rung, Table, Trial, read_rungs
+from quintet.coupler.scene.study_table import MakeVariant, Refinement, Table, read_refinements
 from quintet.interfaces.errors import SceneError
 
 TABLES = ("study", "stability")
 
 
-def read_driven(
-    study: list[Table], stability: list[Table], trial: Trial, scope: Scope | None
-) -> tuple[list[Rung], list[Limit], list[str]]:
-    """Read both; there is no scope where the scene itself is wrong."""
-    rungs, wrong = read_rungs(study, trial)
-    limits, also_wrong = read_limits(stability, trial, scope)
-    return rungs, limits, wrong + also_wrong
+def read_variants(
+    study: list[Table], stability: list[Table], make_variant: MakeVariant, scope: Scope | None
+) -> tuple[list[Refinement], list[Limit], list[str]]:
+    """Check refinements and stability limits; a scene with mistakes has no scope."""
+    refinements, wrong = read_refinements(study, make_variant)
+    limits, also_wrong = read_limits(stability, make_variant, scope)
+    return refinements, limits, wrong + also_wrong
 
 
-def trial_of(table: Table, check: Callable[[Table], object] | None) -> Trial:
-    """Make what puts settings on a scene and checks what comes of it, or their paths alone."""
+def variant_maker(table: Table, check: Callable[[Table], object] | None) -> MakeVariant:
+    """Return a function that applies settings to a scene and checks it, or their paths alone."""
 
-    def under(settings: Table) -> tuple[Table, list[str]]:
+    def make_variant(settings: Table) -> tuple[Table, list[str]]:
         plain = deepcopy({key: value for key, value in table.items() if key not in TABLES})
         mistakes = [m for path, value in settings.items() for m in put(plain, path, value)]
         if check is None or mistakes:
@@ -31,8 +31,8 @@ def trial_of(table: Table, check: Callable[[Table], object] | None) -> Trial:
         try:
             check(plain)
         except SceneError as error:
-            # Told beside the rung or the limit, a mistake needs no file name of its own.
+            # The refinement or limit is named before the mistake: no file name is needed.
             mistakes = [mistake.partition(": ")[2] for mistake in error.mistakes]
         return plain, mistakes
 
-    return under
+    return make_variant

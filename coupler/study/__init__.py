@@ -1,1 +1,1 @@
-"""Runs of many: convergence studies and stability limits."""
+"""Series of runs: convergence studies and stability limits."""

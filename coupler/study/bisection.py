@@ -1,4 +1,4 @@
-"""Bisection of a range with one end where something holds and another where it does not."""
+"""Bisection of a range between a value that satisfies a predicate and one that does not."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -9,19 +9,19 @@ def middle(one: float, other: float, log: bool) -> float:
     return math.sqrt(one * other) if log else 0.5 * (one + other)
 
 
-def narrow(
+def bisect(
     known: Iterable[float], holds: Callable[[float], bool], log: bool, accuracy: float
 ) -> tuple[float, float] | None:
-    """Narrow the range between the last value that holds and the first that does not.
+    """Bisect the range between the last value that holds and the first that does not.
 
     Parameters
     ----------
     known : iterable of float
-        Values looked at before, from the end that should hold on; both ends are among them.
+        Values evaluated before, from the end that should hold; both ends are among them.
     holds : callable
-        Looks at a value; of a known one it must be cheap.
+        The predicate; for known values it must be cheap.
     accuracy : float
-        Width of what is left, relative to its middle.
+        Width of the final range, relative to its middle.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Runs of one scene with settings on top, each in a process of its own.
+"""Runs of one scene with overrides, each in a child process.
 
-What one run does, be it to die or to hang, leaves the others alone; and its memory, threads
-and compiled kernels are its own, so that run times can be compared.
+A run that crashes or hangs does not affect the others; and its memory, threads and compiled
+kernels are its own, so that run times can be compared.
 """
 
 import argparse
@@ -15,36 +15,36 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.files.toml_writer import text_of
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.report.show import NAME, results
-from quintet.coupler.run.output import Stop
+from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.overrides import assignments, run_arguments
 from quintet.interfaces.serving.process import STARTER
 
-GRACE = 10.0  # s for a run to end in order once it was asked to
+GRACE = 10.0  # s for a run to end after SIGTERM
 FOREVER = float("inf")
 LOG = "run.log"  # in the folder of the run: what it printed
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
-    """How the scene is asked for, as on the command line."""
+class ChildRun:
+    """A scene and its overrides, as on the command line, to be run in child processes."""
 
     scene: str
     preset: str
     settings: list[str]
     swaps: list[str]
     transport: str
-    stop: Stop
+    stop: StopRequest
 
     @classmethod
-    def of(cls, given: argparse.Namespace, stop: Stop, transport: str = "") -> "Trial":
-        """Take over what the command line says; a transport that it names goes first."""
+    def of(cls, given: argparse.Namespace, stop: StopRequest, transport: str = "") -> "ChildRun":
+        """Take scene and overrides from the command line; its transport takes precedence."""
         asked = (given.scene, given.preset, given.settings, given.swap)
         return cls(*asked, given.transport or transport, stop)
 
     def run(self, settings: dict[str, Any], folder: Path, seconds: float = FOREVER) -> Any:
-        """Run with these settings; return the results, with status stalled if it took longer."""
+        """Run with these settings; return the results, of status stalled if it timed out."""
         folder.mkdir(parents=True, exist_ok=True)
         (folder / NAME).unlink(missing_ok=True)
         with open(folder / LOG, "wb") as log:
@@ -62,20 +62,16 @@ class Trial:
             with contextlib.suppress(ProcessLookupError):
                 process.kill()
             process.wait()
-        return _left(folder, process.returncode, stalled)
+        return _results(folder, process.returncode, stalled)
 
     def _command(self, settings: dict[str, Any], folder: Path) -> list[str]:
-        line = [sys.executable, "-m", "quintet.coupler.cli", "run", self.scene]
-        line += ["--preset", self.preset] if self.preset else []
-        line += ["--transport", self.transport] if self.transport else []
-        for swap in self.swaps:
-            line += ["--swap", swap]
-        for one in [*self.settings, *(f"{k}={text_of(v)}" for k, v in settings.items())]:
-            line += ["--set", one]
-        return [*line, "--out", str(folder)]
+        overrides = [*self.settings, *assignments(settings)]
+        asked = run_arguments(self.scene, self.preset, overrides, self.swaps, self.transport)
+        python = [sys.executable, "-m", "quintet.coupler.cli"]
+        return [*python, "run", *asked, "--out", str(folder)]
 
     def _await(self, process: "subprocess.Popen[bytes]", seconds: float) -> bool:
-        """Wait for its end; tell whether it was ended because it took too long."""
+        """Wait for the process to end; return whether it timed out."""
         limit, asked, stalled = time.monotonic() + seconds, FOREVER, False
         while process.poll() is None:
             now = time.monotonic()
@@ -90,8 +86,8 @@ class Trial:
         return stalled
 
 
-def _left(folder: Path, status: int, stalled: bool) -> Any:
-    """Read what a run left; one that left nothing failed."""
+def _results(folder: Path, status: int, stalled: bool) -> Any:
+    """Read the results of a run; without any it failed."""
     if (folder / NAME).is_file():
         found = results(folder)
     else:

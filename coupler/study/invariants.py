@@ -1,4 +1,4 @@
-"""What must hold in a run, and the first that did not: stable, degraded or unstable."""
+"""Invariants of a run: its verdict is stable, degraded or unstable."""
 
 import csv
 import math
@@ -13,14 +13,14 @@ from quintet.coupler.files.recording import NAME, Recording
 from quintet.coupler.scene.stability_table import Bounds, Energy, LimitTable
 from quintet.interfaces.errors import SceneError
 
-ROWS = 256  # of a recording, looked at together
+ROWS = 256  # of a recording, read at once
 State = Literal["stable", "degraded", "unstable"]
 Breach = tuple[float, str, str]  # s, invariant, how
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """How a run went; of a broken one the first invariant that was violated, how and when."""
+    """Verdict on a run, with the first violated invariant, how and when it was violated."""
 
     state: State
     broke: str = ""
@@ -32,7 +32,7 @@ def judge(limit: LimitTable, found: dict[str, Any], folder: Path) -> Verdict:
     """Judge a run by its results, its ledger and its recording."""
     breaches = list(_breaches(limit, found, folder))
     if breaches:
-        # What failed at the end of a window was seen to break within it.
+        # A failure is known at the end of a window; a violated invariant within it came first.
         time, broke, how = min(breaches, key=lambda one: (one[0], one[1] == "failed"))
         return Verdict("unstable", broke, how, time)
     for one in found.get("expect", []):
@@ -55,7 +55,7 @@ def _breaches(limit: LimitTable, found: dict[str, Any], folder: Path) -> Iterato
         if limit.energy:
             if found["status"] == "done" and not any(energies(rows).values()):
                 raise SceneError(
-                    "stability: energy must be told by a component that has any; all say 0 J at "
+                    "stability: energy must be given by the totals of a component; all are 0 J at "
                     "all times. Give it totals(), or use bounds instead."
                 )
             yield from _energy(limit.energy, rows)

@@ -1,6 +1,6 @@
-"""``quintet stability SCENE``: where the scene breaks, and how, against what is predicted.
+"""``quintet stability SCENE``: stability limits found by bisection, against predictions.
 
-For each limit the two ends of its range are run, then the middle of what is left, again and again.
+For each limit the two ends of its range are run, then the middle of what is left, repeatedly.
 Where only expectations fail a scene is degraded, not unstable; that limit is looked for too.
 """
 
@@ -12,58 +12,58 @@ from typing import Any
 
 from rich.table import Table
 
-from quintet.coupler.report.show import on_screen
-from quintet.coupler.report.work_precision import number
+from quintet.coupler.report.show import console
+from quintet.coupler.report.work_precision import three_digits
 from quintet.coupler.run import results
-from quintet.coupler.run.output import Stop
+from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import folder_name
-from quintet.coupler.study.bisection import middle, narrow
-from quintet.coupler.study.child_run import FOREVER, Trial
+from quintet.coupler.study.bisection import bisect, middle
+from quintet.coupler.study.child_run import FOREVER, ChildRun
 from quintet.coupler.study.invariants import Verdict, judge
 from quintet.interfaces.errors import SceneError
 
 NAME = "stability.json"
-SLOWEST = 20.0  # times the first run of a limit, and MARGIN: what takes longer has stalled
+SLOWEST = 20.0  # times the first run of a limit, and MARGIN: a run that takes longer has stalled
 MARGIN = 60.0  # s
 Found = dict[str, Any]
 
 
 class Interrupted(Exception):
-    """The user asked for an end."""
+    """The search was interrupted by a signal."""
 
 
 @dataclass(slots=True)
 class Search:
-    """All runs for one limit, by the value of its parameter."""
+    """Search for one stability limit: runs and verdicts by the value of its parameter."""
 
     limit: Limit
     other: float | None  # value of the second parameter
-    trial: Trial
+    child: ChildRun
     folder: Path
     verdicts: dict[float, Verdict] = field(default_factory=dict)
-    patience: float = FOREVER  # s
+    time_limit: float = FOREVER  # s, of a run
 
     def __call__(self, value: float) -> Verdict:
-        """Run with a value, once, and judge."""
+        """Run with a value, once; return the verdict."""
         if value not in self.verdicts:
             folder = self.folder / f"{value:.6g}"
-            found = self.trial.run(self.limit.settings(value, self.other), folder, self.patience)
-            if found["status"] == "interrupted" or self.trial.stop():
+            found = self.child.run(self.limit.settings(value, self.other), folder, self.time_limit)
+            if found["status"] == "interrupted" or self.child.stop():
                 raise Interrupted
-            if self.patience == FOREVER:
-                self.patience = MARGIN + SLOWEST * found.get("timing", {}).get("wall", 0.0)
+            if self.time_limit == FOREVER:
+                self.time_limit = MARGIN + SLOWEST * found.get("timing", {}).get("wall", 0.0)
             verdict = self.verdicts[value] = judge(self.limit.table, found, folder)
-            said = f" ({verdict.broke}: {verdict.how})" if verdict.broke else ""
-            print(f"{self.limit.name} = {value:.6g}: {verdict.state}{said}", flush=True)
+            reason = f" ({verdict.broke}: {verdict.how})" if verdict.broke else ""
+            print(f"{self.limit.name} = {value:.6g}: {verdict.state}{reason}", flush=True)
         return self.verdicts[value]
 
-    def edge(self, *held: str) -> tuple[float, float] | None:
-        """Bisect between states that count as held and the others."""
+    def boundary(self, *accepted: str) -> tuple[float, float] | None:
+        """Bisect between the accepted states and the others."""
         one = self.limit.table
         known = sorted(self.verdicts, reverse=one.from_ > one.to)
-        return narrow(known, lambda v: self(v).state in held, one.log, one.accuracy)
+        return bisect(known, lambda v: self(v).state in accepted, one.log, one.accuracy)
 
 
 def run_stability(given: argparse.Namespace) -> int:
@@ -74,52 +74,55 @@ def run_stability(given: argparse.Namespace) -> int:
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
         )
     folder = (given.out or Path("runs") / f"{scene.file.name}-stability").resolve()
-    stop, limits, interrupted = Stop(), [], False
+    stop, limits, interrupted = StopRequest(), [], False
     with stop.listening():
         for limit in scene.stability:
             for number, other in enumerate(limit.others()):
                 if not interrupted:
                     place = folder / limit.folder
                     place = place if other is None else place / folder_name(f"{other:.6g}")
-                    trial = Trial.of(given, stop, limit.table.transport)
-                    search = Search(limit, other, trial, place)
-                    interrupted = not look(search)
-                    limits.append(tell(search, limit.predicted(number)))
+                    child = ChildRun.of(given, stop, limit.table.transport)
+                    search = Search(limit, other, child, place)
+                    interrupted = not find_limit(search)
+                    limits.append(summary(search, limit.predicted(number)))
     found = {"scene": scene.file.name, "limits": limits, "machine": results.machine()}
     folder.mkdir(parents=True, exist_ok=True)
     for path in (folder / NAME, given.json):
         if path:
             path.write_text(json.dumps(found, indent=2))
-    on_screen().print(table(limits))
+    console().print(table(limits))
     if interrupted:
         return results.INTERRUPTED
     return results.DONE if all(one["found"] is not None for one in limits) else results.UNMET
 
 
-def look(search: Search) -> bool:
-    """Run what a limit needs; tell whether it came to its end."""
+def find_limit(search: Search) -> bool:
+    """Search for one limit; return whether the search was completed."""
     try:
         for value in (search.limit.table.from_, search.limit.table.to):
             search(value)
-        search.edge("stable", "degraded")
+        search.boundary("stable", "degraded")
         if any(verdict.state == "degraded" for verdict in search.verdicts.values()):
-            search.edge("stable")
+            search.boundary("stable")
     except Interrupted:
         return False
     return True
 
 
-def tell(search: Search, predicted: float | None) -> Found:
-    """What is known of a limit from the runs that were made."""
+def summary(search: Search, predicted: float | None) -> Found:
+    """Summarize a limit from the runs that were made."""
     limit, one = search.limit, search.limit.table
-    edges = {"unstable": _edge(search, "stable", "degraded"), "degraded": _edge(search, "stable")}
+    edges = {
+        "unstable": _known_boundary(search, "stable", "degraded"),
+        "degraded": _known_boundary(search, "stable"),
+    }
     state = next((state for state, edge in edges.items() if edge), None)
     edge = edges[state] if state else None
     found = middle(*edge, one.log) if edge else None
     verdict = search.verdicts.get(edge[1] if edge else one.from_, Verdict("stable"))
     degraded = edges["degraded"] if state == "unstable" else None
     was_degraded = degraded is not None and search.verdicts[degraded[1]].state == "degraded"
-    runs = [{"value": value, **asdict(said)} for value, said in sorted(search.verdicts.items())]
+    runs = [{"value": value, **asdict(one)} for value, one in sorted(search.verdicts.items())]
     return {
         "name": limit.name,
         "parameter": one.parameter if isinstance(one.parameter, str) else list(one.parameter),
@@ -139,11 +142,11 @@ def tell(search: Search, predicted: float | None) -> Found:
     }
 
 
-def _edge(search: Search, *held: str) -> tuple[float, float] | None:
-    """Return the last value that holds and the first that does not, of those that were run."""
+def _known_boundary(search: Search, *accepted: str) -> tuple[float, float] | None:
+    """Return the last accepted value and the first that is not, of those that were run."""
     one = search.limit.table
     known = sorted(search.verdicts, reverse=one.from_ > one.to)
-    return narrow(known, lambda v: search.verdicts[v].state in held, one.log, float("inf"))
+    return bisect(known, lambda v: search.verdicts[v].state in accepted, one.log, float("inf"))
 
 
 def table(limits: list[Found]) -> Table:
@@ -153,8 +156,8 @@ def table(limits: list[Found]) -> Table:
         right = head in ("predicted", "found", "ratio", "degraded")
         made.add_column(head, justify="right" if right else "left", overflow="fold")
     for one in limits:
-        against = ", ".join(f"{k} = {number(v)}" for k, v in (one["against"] or {}).items())
-        numbers = [number(one[key]) for key in ("predicted", "found", "ratio", "degraded")]
+        against = ", ".join(f"{k} = {three_digits(v)}" for k, v in (one["against"] or {}).items())
+        numbers = [three_digits(one[key]) for key in ("predicted", "found", "ratio", "degraded")]
         made.add_row(one["name"], against, *numbers, one["state"] or "-", _how(one))
     return made
 

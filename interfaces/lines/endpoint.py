@@ -1,4 +1,4 @@
-"""Where a coupler listens, and what keeps strangers out; checked before anything starts."""
+"""The endpoint at which a coupler listens: on the loopback, or with mutual TLS."""
 
 import re
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 @dataclass(frozen=True, slots=True)
 class Security:
-    """Files for mutual TLS: the authority that both sides trust, and one's own pair."""
+    """Files for mutual TLS: the certificate authority of both sides, a certificate and its key."""
 
     authority: str
     certificate: str
@@ -19,7 +19,7 @@ class Security:
 
 
 def check_endpoint(endpoint: str, security: Security | None) -> None:
-    """Refuse an endpoint that others on the network could reach without mutual TLS."""
+    """Refuse an endpoint that is reachable over a network without mutual TLS."""
     match = ENDPOINT.fullmatch(endpoint)
     if match is None:
         raise LineError(

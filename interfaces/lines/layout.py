@@ -1,7 +1,7 @@
-"""Where the arrays of a message lie: their names, types and shapes, to bytes and back.
+"""Layout of the arrays in a message: names, types, shapes and offsets, packed and unpacked.
 
 A run sends the same arrays window after window. So their table is packed by itself, and both
-sides work it out, and check it, once.
+sides derive the layout from it, and check it, once.
 """
 
 import functools
@@ -20,12 +20,12 @@ Shapes = Mapping[str, Shape]
 ALIGN = 16
 DIMENSIONS = 4
 DTYPES = {name: np.dtype(name) for name in ("<f8", "<f4", "<i8", "<i4", "|i1", "|u1", "|b1")}
-REMEMBERED = 64  # tables
+CACHED = 64  # layouts
 MOST = 1000  # arrays in a message
 
 
 class Place(NamedTuple):
-    """One array: what it is, and where it lies from the first array's first byte on."""
+    """One array of a message: name, type, shape, and its bytes counted from the first array."""
 
     key: str
     dtype: np.dtype[Any]
@@ -45,13 +45,13 @@ class Layout(NamedTuple):
 
 
 def aligned(offset: int) -> int:
-    """Round up to where an array may begin."""
+    """Round an offset up to the alignment of arrays."""
     return -(-offset // ALIGN) * ALIGN
 
 
-@functools.lru_cache(REMEMBERED)
+@functools.lru_cache(CACHED)
 def lay_out(table: tuple[tuple[str, str, Shape], ...]) -> Layout:
-    """Place arrays of these names, types and shapes one after the other."""
+    """Lay out arrays of these names, types and shapes one after the other."""
     for key, name, _ in table:
         if name not in DTYPES:
             raise MessageError(
@@ -61,9 +61,9 @@ def lay_out(table: tuple[tuple[str, str, Shape], ...]) -> Layout:
     return _place(table, msgpack.packb(table))
 
 
-@functools.lru_cache(REMEMBERED)
+@functools.lru_cache(CACHED)
 def read_layout(packed: bytes) -> Layout:
-    """Read a table that came; nothing of it is trusted."""
+    """Decode the table of a received message; all of it is checked."""
     try:
         table = msgpack.unpackb(packed, raw=False)
     except (ValueError, msgpack.exceptions.UnpackException) as error:

@@ -1,4 +1,4 @@
-"""A line without a wire: the component lives in the coupler's own process."""
+"""Lines within one process: the component runs in that of the coupler."""
 
 from collections import deque
 from collections.abc import Callable
@@ -9,14 +9,14 @@ from quintet.interfaces.lines.transport import FramedLine
 
 
 class MemoryLine(FramedLine):
-    """The coupler's end; a message sent is handled at once, its answer waits to be received.
+    """The coupler's end; a message is handled when it is sent, its answer queued.
 
     Messages are packed and checked as on any other line: a scene that runs here runs there.
     """
 
     def __init__(self, run: str, name: str) -> None:
         super().__init__(run, name)
-        self.handle: Callable[[Message], object] = lambda message: None  # carries out an order
+        self.handle: Callable[[Message], object] = lambda message: None  # executes an order
         self.far = _FarEnd(run, name)
 
     def _put(self, frame: bytearray) -> None:

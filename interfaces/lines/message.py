@@ -1,4 +1,4 @@
-"""One message: a small header and some arrays, to bytes and back.
+"""Messages: a header and arrays, encoded to bytes and decoded.
 
 A frame is a 16-byte prefix, a msgpack header with the table of the arrays packed by itself, and
 each array's bytes, aligned. Nothing is pickled. Every size, type and shape is checked before a
@@ -23,19 +23,19 @@ Frame = Any  # bytes, a bytearray or an array of bytes: whatever has a buffer
 MAGIC = b"qnt2"
 PREFIX = struct.Struct("<4sIQ")  # magic, bytes of the header, bytes of the frame
 HEADER_LIMIT = 1 << 20  # bytes
-BARE = ("failed", "abort")  # orders that replace an expected message and bring no arrays
+WITHOUT_ARRAYS = ("failed", "abort")  # orders that may replace an expected message
 
 
 @dataclass(slots=True)
 class Message:
-    """What was said: ``header["order"]`` names it; fields are read-only views."""
+    """A message: ``header["order"]`` names it; fields are read-only views."""
 
     header: dict[str, Any]
     fields: dict[str, Array] = field(default_factory=dict)
 
     @property
     def order(self) -> str:
-        """The verb of the message."""
+        """Name of the order or answer."""
         return str(self.header.get("order", ""))
 
 
@@ -62,7 +62,7 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
     if not isinstance(packed, bytes):
         raise MessageError(f"a message must list its arrays; found {type(packed).__name__}.")
     layout = read_layout(packed)
-    if expected is not None and header.get("order") not in BARE:
+    if expected is not None and header.get("order") not in WITHOUT_ARRAYS:
         _compare(layout.shapes, expected)
     if first + layout.size != len(frame):
         _refuse_size(layout, len(frame) - first)
@@ -77,7 +77,7 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
 
 
 def _header(frame: Frame) -> tuple[dict[str, Any], int]:
-    """Read the header; return where the first array begins too."""
+    """Decode the header; return it with the offset of the first array."""
     if len(frame) < PREFIX.size:
         raise MessageError(f"a message has at least {PREFIX.size} bytes; found {len(frame)}.")
     magic, size, total = PREFIX.unpack_from(frame)
@@ -88,8 +88,8 @@ def _header(frame: Frame) -> tuple[dict[str, Any], int]:
     if size > min(HEADER_LIMIT, total - PREFIX.size):
         raise MessageError(f"a header of {size} bytes does not fit a message of {total} bytes.")
     try:
-        told = memoryview(frame)[PREFIX.size : PREFIX.size + size]
-        header = msgpack.unpackb(told, raw=False)
+        text = memoryview(frame)[PREFIX.size : PREFIX.size + size]
+        header = msgpack.unpackb(text, raw=False)
     except (ValueError, msgpack.exceptions.UnpackException) as error:
         raise MessageError(f"the header is not valid msgpack: {error}") from error
     if not isinstance(header, dict):
@@ -123,7 +123,7 @@ def _shape(shape: tuple[int, ...] | None) -> str:
 
 
 def require_finite(fields: Fields, where: str) -> None:
-    """Refuse a field with a number that is not finite; name the first."""
+    """Refuse fields with numbers that are not finite; name the first such item."""
     for key, array in fields.items():
         if not finite(array):
             rows = np.atleast_1d(array)

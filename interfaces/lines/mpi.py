@@ -1,4 +1,4 @@
-"""Lines over MPI: one program per component, started together, never waiting in a library."""
+"""Lines over MPI: one rank per component, polled without blocking calls."""
 
 import functools
 import os
@@ -16,13 +16,13 @@ from quintet.interfaces.lines.transport import FramedLine, wait
 
 TAG = 17
 KEPT = 4  # frames kept for the next messages
-UNSEEN = 3  # references to a frame in `_buffer` when no message's fields look into it
+UNREFERENCED = 3  # references to a frame in `_buffer` when no field of a message is a view of it
 SENDING = 600.0  # s that a large message may take until the receiver has asked for it
 
 
 @functools.cache
 def world() -> Any:
-    """Return a communicator of our own, so that a solver's MPI cannot mix with ours."""
+    """Return a duplicate of COMM_WORLD, apart from communicators of the solvers."""
     return MPI.COMM_WORLD.Dup()
 
 
@@ -52,19 +52,19 @@ class MpiLine(FramedLine):
         return frame
 
     def _buffer(self, size: int) -> Array:
-        """Return a frame that nobody looks at any more, or a new one.
+        """Return a frame that is not referenced any more, or a new one.
 
-        Fresh memory costs more than the message: the system clears every page of it.
+        New memory costs more than the message: the system clears every page.
         """
         for frame in self._frames:
-            if len(frame) == size and sys.getrefcount(frame) == UNSEEN:
+            if len(frame) == size and sys.getrefcount(frame) == UNREFERENCED:
                 return frame
         frame = np.empty(size, np.uint8)
         self._frames = [*self._frames[1 - KEPT :], frame]
         return frame
 
     def _broken(self) -> str:
-        # MPI itself never tells of a dead rank; on the same host the system does.
+        # MPI does not report a dead rank; on the same host the system does.
         return f"{self.other} is gone" if self.pid and not running(self.pid) else ""
 
     def close(self) -> None:
@@ -72,7 +72,7 @@ class MpiLine(FramedLine):
 
 
 def self_check(expected: int) -> None:
-    """Refuse to run when the launcher and the MPI library do not belong together."""
+    """Check that the launcher belongs to the MPI library."""
     size = MPI.COMM_WORLD.size
     if size != expected:
         raise LineError(

@@ -1,18 +1,18 @@
-"""Whether a process of this host runs, and how much it has computed; from the system's tables."""
+"""Status of a process of this host and its processor time, from /proc."""
 
 import os
 from pathlib import Path
 
-TICK = 1.0 / os.sysconf("SC_CLK_TCK")  # s of processor time that the system counts in
+TICK = 1.0 / os.sysconf("SC_CLK_TCK")  # s, unit of processor time in /proc
 
 
 def running(pid: int) -> bool:
-    """Whether a process of this host runs; one that ended but was not awaited does not."""
+    """Whether a process of this host runs; a zombie does not."""
     return state(pid) not in ("", "Z", "X")
 
 
 def state(pid: int) -> str:
-    """One letter of the system: R runs, S sleeps, T is stopped, Z ended; "" is not there."""
+    """State of a process: R runs, S sleeps, T is stopped, Z is a zombie; "" if there is none."""
     return _stat(pid)[0]
 
 

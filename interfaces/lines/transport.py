@@ -1,7 +1,7 @@
-"""A line joins one component to the coupler; every wait on it has a deadline.
+"""Lines between a component and the coupler, with a deadline on every wait.
 
-``Line`` is what the coupler and the serving loop see. ``FramedLine`` adds to a carrier of
-bytes what must hold on any: sequence numbers, the run's name, and a watch on the other side.
+``Line`` is the interface for the coupler and the serving loop. ``FramedLine`` adds to any
+transport of bytes sequence numbers, the name of the run, and a watch on the other side.
 """
 
 import os
@@ -16,9 +16,9 @@ from quintet.interfaces.lines.message import Frame, Message, Shapes, decode, enc
 
 T = TypeVar("T")
 
-SPIN = 3e-4  # s of asking without sleep: longer than a round trip, shorter than any step
-NAP = 2e-5  # s, the first sleep
-LONGEST_NAP = 1e-3  # s
+SPIN = 3e-4  # s of polling without sleep: longer than a round trip, shorter than any step
+SLEEP = 2e-5  # s, the first sleep
+LONGEST_SLEEP = 1e-3  # s
 SETTLING = 0.05  # s from a connection's end until the system knows how the process ended
 
 
@@ -26,23 +26,23 @@ class Line(Protocol):
     """One end of a connection between a component and the coupler."""
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
-        """Hand over a message; returns when its arrays may be changed again."""
+        """Send a message; its arrays may be changed after the call."""
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
-        """Wait for the next message, at most so long."""
+        """Receive the next message within a number of seconds."""
 
     def close(self) -> None:
-        """Let go; safe to call twice."""
+        """Close the line; a second call does nothing."""
 
 
 def wait(poll: Callable[[], T | None], seconds: float, broken: Callable[[], str]) -> T:
-    """Ask until something comes: first without sleep, then with naps that grow.
+    """Poll until there is a result: first without sleep, then with growing sleeps.
 
     Never blocks in a library: with more processes than cores a blocking wait of MPI spins and
     takes the core that a solver needs, and one of zenoh knows no deadline.
     """
     start = time.perf_counter()
-    nap = NAP
+    pause = SLEEP
     while True:
         found = poll()
         if found is not None:
@@ -59,15 +59,15 @@ def wait(poll: Callable[[], T | None], seconds: float, broken: Callable[[], str]
             raise LineError(reason)
         if waited > seconds:
             raise LineError(f"nothing arrived within {seconds:.1f} s")
-        time.sleep(nap)
-        nap = min(1.3 * nap, LONGEST_NAP)
+        time.sleep(pause)
+        pause = min(1.3 * pause, LONGEST_SLEEP)
 
 
 class FramedLine(ABC):
-    """A line over a carrier of bytes: numbered messages of one run, in order, none missing."""
+    """A line over a transport of bytes: numbered messages of one run, in order and complete."""
 
     def __init__(self, run: str, name: str) -> None:
-        self.run = run  # "" until the coupler has told it
+        self.run = run  # "" until the first message of the coupler
         self.name = name  # who sends
         self.watch: Callable[[], str] = lambda: ""  # why an answer will not come, if known
         self._sent = 0
@@ -97,23 +97,23 @@ class FramedLine(ABC):
         return message
 
     def _reason(self) -> str:
-        gone = self._broken()
-        if gone:
+        broken = self._broken()
+        if broken:
             time.sleep(SETTLING)
-        return self.watch() or gone
+        return self.watch() or broken
 
     @abstractmethod
     def _put(self, frame: bytearray) -> None:
-        """Send a frame; the buffer is free again on return."""
+        """Send a frame; its buffer may be reused after the call."""
 
     @abstractmethod
     def _poll(self) -> Frame | None:
-        """Return the next frame if it has come."""
+        """Return the next frame if it has arrived."""
 
     @abstractmethod
     def _broken(self) -> str:
-        """Say why the other side cannot answer any more, or ""."""
+        """Return why the other side cannot answer any more, or ""."""
 
     @abstractmethod
     def close(self) -> None:
-        """Let go of the carrier."""
+        """Close the transport."""

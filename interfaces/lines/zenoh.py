@@ -1,8 +1,8 @@
-"""Lines over zenoh: peers at an explicit endpoint, nothing dropped, death noticed at once.
+"""Lines over zenoh: peers at an explicit endpoint, reliable, with liveliness of both sides.
 
-Every setting here answers a measured trap: the default congestion control drops data, the
-default wait before a blocked connection is closed loses what was in flight, discovery by
-multicast joins strangers, and a publisher sends into the void until it is matched.
+The defaults of zenoh lose messages or reach too far: its congestion control drops data, its wait
+before a blocked connection is closed loses messages in flight, multicast scouting connects to any
+peer of the network, and a publisher's messages are lost until a subscriber is matched.
 """
 
 import contextlib
@@ -17,9 +17,9 @@ from quintet.interfaces.lines.endpoint import Security, check_endpoint
 from quintet.interfaces.lines.message import Frame
 from quintet.interfaces.lines.transport import FramedLine, wait
 
-CAPACITY = 1024  # messages a receiver may leave lying; lock-step needs two or three
+CAPACITY = 1024  # messages that a receiver may leave unread; lock-step needs two or three
 BLOCKED = 600_000_000  # us that a full connection may block before it is given up
-LEASE = 60_000  # ms without a sign of life; shorter ones break while a solver holds the machine
+LEASE = 60_000  # ms without a keep-alive; shorter ones expire while a solver uses all cores
 
 
 def configuration(endpoint: str, listens: bool, security: Security | None) -> zenoh.Config:
@@ -53,58 +53,60 @@ def configuration(endpoint: str, listens: bool, security: Security | None) -> ze
     return config
 
 
-class Hub:
-    """One session, and who is alive on it; holds the lines that run through it."""
+class Session:
+    """A zenoh session and the liveliness of its peers; lines share it."""
 
     def __init__(self, endpoint: str, listens: bool, me: str, security: Security | None) -> None:
         self.me = me
         try:
-            self.session = zenoh.open(configuration(endpoint, listens, security))
+            self.zenoh = zenoh.open(configuration(endpoint, listens, security))
         except zenoh.ZError as error:
             raise LineError(f"endpoint {endpoint}: {me} cannot reach it: {error}") from error
-        self._token = self.session.liveliness().declare_token(f"quintet/alive/{me}")
-        self._signs = self.session.liveliness().declare_subscriber(
+        self._token = self.zenoh.liveliness().declare_token(f"quintet/alive/{me}")
+        self._liveliness = self.zenoh.liveliness().declare_subscriber(
             "quintet/alive/*", handlers.FifoChannel(CAPACITY), history=True
         )
         self.alive: set[str] = set()
-        self.gone: set[str] = set()
+        self.ended: set[str] = set()
 
-    def look(self) -> None:
-        """Take note of who came and who went."""
-        while (sign := self._signs.try_recv()) is not None:
-            name = str(sign.key_expr).rsplit("/", 1)[-1]
-            if sign.kind == zenoh.SampleKind.DELETE:
-                self.gone.add(name)
+    def update(self) -> None:
+        """Update which peers are alive and which have ended."""
+        while (sample := self._liveliness.try_recv()) is not None:
+            name = str(sample.key_expr).rsplit("/", 1)[-1]
+            if sample.kind == zenoh.SampleKind.DELETE:
+                self.ended.add(name)
             else:
                 self.alive.add(name)
 
     def close(self) -> None:
-        """End the session; what was sent has been delivered or the run is over."""
+        """Close the session; all messages were delivered, or the run is over."""
         with contextlib.suppress(zenoh.ZError):
-            self.session.close()
+            self.zenoh.close()
 
 
 class ZenohLine(FramedLine):
     """A line between `me` and `other` over a session."""
 
-    def __init__(self, hub: Hub, run: str, other: str, closes_hub: bool = False) -> None:
-        super().__init__(run, hub.me)
-        self.hub = hub
+    def __init__(
+        self, session: Session, run: str, other: str, closes_session: bool = False
+    ) -> None:
+        super().__init__(run, session.me)
+        self.session = session
         self.other = other
-        self._closes_hub = closes_hub
-        self._inbox = hub.session.declare_subscriber(
-            f"quintet/{other}/to/{hub.me}", handlers.FifoChannel(CAPACITY)
+        self._closes_session = closes_session
+        self._inbox = session.zenoh.declare_subscriber(
+            f"quintet/{other}/to/{session.me}", handlers.FifoChannel(CAPACITY)
         )
-        self._outbox = hub.session.declare_publisher(
-            f"quintet/{hub.me}/to/{other}",
+        self._outbox = session.zenoh.declare_publisher(
+            f"quintet/{session.me}/to/{other}",
             congestion_control=zenoh.CongestionControl.BLOCK,
             reliability=zenoh.Reliability.RELIABLE,
             priority=zenoh.Priority.DATA,
         )
 
     def wait_for_partner(self, seconds: float) -> None:
-        """Wait until the other side's subscription is known; earlier messages would vanish."""
-        outbox: Any = self._outbox  # its stub says that the status is a truth; it has one
+        """Wait for the other side's subscription; earlier messages would be lost."""
+        outbox: Any = self._outbox  # typed as a plain bool in zenoh's stub
         wait(lambda: outbox.matching_status.matching or None, seconds, self._reason)
 
     def _put(self, frame: bytearray) -> None:
@@ -121,18 +123,18 @@ class ZenohLine(FramedLine):
         return None if sample is None else sample.payload.to_bytes()
 
     def _broken(self) -> str:
-        self.hub.look()
-        return f"{self.other} is gone" if self.other in self.hub.gone else ""
+        self.session.update()
+        return f"{self.other} is gone" if self.other in self.session.ended else ""
 
     def close(self) -> None:
         """See `Line.close`."""
-        if self._closes_hub:
-            self.hub.close()
+        if self._closes_session:
+            self.session.close()
 
 
 def connect(endpoint: str, name: str, security: Security | None = None) -> ZenohLine:
     """Open a component's line to the coupler."""
-    hub = Hub(endpoint, False, name, security)
-    line = ZenohLine(hub, "", "coupler", closes_hub=True)
+    session = Session(endpoint, False, name, security)
+    line = ZenohLine(session, "", "coupler", closes_session=True)
     line.wait_for_partner(30.0)
     return line

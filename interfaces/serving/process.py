@@ -100,6 +100,7 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
 
 def over_zenoh(given: argparse.Namespace) -> Line:
     """Connect over zenoh; only a process that does so imports it."""
+    # What a run does not use is not loaded: zenoh starts threads.
     from quintet.interfaces.lines.zenoh import connect
 
     return connect(given.at, given.name, Security(*given.tls) if given.tls else None)
@@ -107,6 +108,7 @@ def over_zenoh(given: argparse.Namespace) -> Line:
 
 def over_mpi(name: str) -> Line:
     """Connect over MPI to rank 0, which couples."""
+    # What a run does not use is not loaded: mpi4py starts MPI.
     from quintet.interfaces.lines.mpi import MpiLine
 
     return MpiLine("", name, "coupler", 0, os.getppid() if launched_here() else 0)

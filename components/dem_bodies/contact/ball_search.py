@@ -23,7 +23,8 @@ from quintet.components.dem_bodies.state import (
     Whole,
     blocks_of,
 )
-from quintet.components.shared.rotations import PURE, dot, sub
+from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.rotations import dot, sub
 
 ROW, LAYER = 1 << BITS, 1 << 2 * BITS
 # First of the cells that a range of later rows may be in, and how many follow.
@@ -47,7 +48,7 @@ class Sorted(NamedTuple):
     width: float  # m, of a cell
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def list_partners(
     model: Model, motion: Numbers, cells: Whole, skin: float, begin: Whole, partner: Short
 ) -> int:
@@ -79,7 +80,7 @@ def list_partners(
     return found
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def kinds_of_pairs(model: Model, row: Short, partner: Short) -> Whole:
     """Number of the kind of each pair, by the kinds of its balls, or of a ball and a plane."""
     rows, kinds = model.kind.shape[0], max(model.kind.max() + 1, model.material_pairs.shape[0])
@@ -94,7 +95,7 @@ def kinds_of_pairs(model: Model, row: Short, partner: Short) -> Whole:
     return numbers
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def constants_of_pairs(model: Model, row: Short, partner: Short, some: Whole) -> Numbers:
     """Constants of some of the pairs: a plane is a ball without end."""
     rows = model.kind.shape[0]

@@ -39,7 +39,8 @@ from quintet.components.dem_bodies.state import (
     Short,
     State,
 )
-from quintet.components.shared.rotations import INNER, Vector, axpy, cross, dot, scaled, sub
+from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.rotations import Vector, axpy, cross, dot, scaled, sub
 
 BATCH = 48  # pairs that are computed at once; all their numbers fit in the nearest cache
 # A batch has columns, one for each number of the pairs: r_ij, which becomes the normal; velocities

@@ -10,7 +10,7 @@ from numba import njit
 
 from quintet.components.dem_bodies.contact.geometry import row_vector
 from quintet.components.dem_bodies.state import Numbers, Whole
-from quintet.components.shared.rotations import INNER, PURE
+from quintet.components.shared.numba_options import EXACT, INNER
 
 BITS = 21  # of a cell's number along each axis
 MIDDLE = 1 << (BITS - 1)
@@ -22,7 +22,7 @@ def cell_of(x: float, width: float) -> int:
     return int(min(max(math.floor(x / width), 2.0 - MIDDLE), MIDDLE - 2.0)) + MIDDLE
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def number_cells(position: Numbers, bodies: Whole, width: float) -> Whole:
     """Return the cells of some bodies, each as one number."""
     cells = np.empty(bodies.shape[0], np.int64)

@@ -5,8 +5,8 @@ import math
 from numba import njit
 
 from quintet.components.dem_bodies.state import Numbers
+from quintet.components.shared.numba_options import INNER
 from quintet.components.shared.rotations import (
-    INNER,
     Matrix,
     Quaternion,
     Vector,

@@ -32,7 +32,8 @@ from quintet.components.dem_bodies.state import (
     State,
     Whole,
 )
-from quintet.components.shared.rotations import INNER, Vector, cross, dot, sub
+from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.rotations import Vector, cross, dot, sub
 
 
 @njit(**INNER)

@@ -35,7 +35,8 @@ from quintet.components.dem_bodies.state import (
     Numbers,
     State,
 )
-from quintet.components.shared.rotations import INNER, Vector, axpy, dot, scaled, sub
+from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.rotations import Vector, axpy, dot, scaled, sub
 
 
 @njit(**INNER)

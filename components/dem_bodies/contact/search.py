@@ -36,7 +36,8 @@ from quintet.components.dem_bodies.state import (
     body_pairs,
     sort_rows,
 )
-from quintet.components.shared.rotations import INNER, PURE, dot, sub
+from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.shared.rotations import dot, sub
 
 
 @njit(**INNER)
@@ -140,7 +141,7 @@ def list_balls(
     return count
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def list_keys(
     model: Model, state: State, cells: Whole, order: Whole, ball_cells: Whole, width: float,
     skin: float, keys: Whole,
@@ -166,7 +167,7 @@ def list_keys(
     return count
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def transfer_history(old: BodyPairs, new: BodyPairs) -> None:
     """Write the ends of the new pairs, and take over the history of those that were listed."""
     a, mask = 0, (1 << FIRST) - 1
@@ -227,7 +228,7 @@ def list_pairs(
     return balls, contacts
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def set_listed_centres(model: Model, state: State) -> None:
     """Write down where spheres are."""
     for i in range(model.bounding_radius.shape[0]):

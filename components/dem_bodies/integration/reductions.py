@@ -22,7 +22,7 @@ from quintet.components.dem_bodies.state import (
     Numbers,
     State,
 )
-from quintet.components.shared.rotations import INNER
+from quintet.components.shared.numba_options import INNER
 
 
 @njit(**INNER)

@@ -12,12 +12,12 @@ from quintet.components.dem_bodies.state import (
     Short,
     Whole,
 )
-from quintet.components.shared.rotations import PURE
+from quintet.components.shared.numba_options import EXACT
 
 SHARE = 0.75  # of the limits: the sums leave out how neighbours move
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def count_contacts(
     history: Numbers, ends: Whole, begin: Whole, row: Whole, edge: Whole, count: Whole
 ) -> None:
@@ -35,7 +35,7 @@ def count_contacts(
                 count[j] += 1
 
 
-@njit(**PURE)
+@njit(**EXACT)
 def count_ball_contacts(row: Short, partner: Short, history: Numbers, count: Whole) -> int:
     """Add the contacts of balls to `count` (n,); return the largest of any row."""
     for k in range(row.shape[0]):

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.dem_bodies.shapes.mesh_files import Shape, inside, nearest, read
+from quintet.components.shared.lattice import lattice_points
 from quintet.interfaces.component import Array
 
 MOST = 2000  # spheres of one body
@@ -66,7 +67,7 @@ def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate
         np.linspace(a + radius, b - radius, n) if n > 1 else np.array([0.5 * (a + b)])
         for a, b, n in zip(low, high, counts, strict=True)
     ]
-    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    places = lattice_points(axes, x_fastest=False)
     centres = covering(places, shape, radius, spacing)
     require_few(file, dim, radius, len(centres))
     if not len(centres):

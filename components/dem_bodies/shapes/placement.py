@@ -8,6 +8,7 @@ import numpy as np
 
 from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
+from quintet.components.shared.lattice import lattice_points
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
@@ -30,8 +31,8 @@ def copies(body: "Body") -> "Iterator[Body]":
         yield body
         return
     lattice = body.copies
-    numbers = np.stack(np.meshgrid(*map(np.arange, lattice.number), indexing="ij"), axis=-1)
-    places = np.array(body.position) + numbers.reshape(-1, 3) * np.array(lattice.spacing)  # m
+    numbers = lattice_points([np.arange(n) for n in lattice.number], x_fastest=False)
+    places = np.array(body.position) + numbers * np.array(lattice.spacing)  # (n, 3) m
     random = np.random.default_rng(lattice.seed)
     places += lattice.scatter * random.uniform(-1.0, 1.0, places.shape)
     for x, y, z in places.tolist():

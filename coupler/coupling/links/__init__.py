@@ -15,6 +15,7 @@ Maker = Callable[[int, dict[str, Any], Mapping[str, Ports]], Link]
 
 
 def _fsi(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
+    # Only kinds that a scene names are loaded.
     from quintet.coupler.coupling.links.fsi import join
 
     name, pair = _between(number, given, ports, "contact")
@@ -28,12 +29,14 @@ def _fsi(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link
 
 
 def _glue(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
+    # Only kinds that a scene names are loaded.
     from quintet.coupler.coupling.links.glue import join
 
     return join(*_between(number, given, ports), ports)
 
 
 def _direct(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
+    # Only kinds that a scene names are loaded.
     from quintet.coupler.coupling.links.direct import join
 
     _only(number, given, ("kind", "name", "pairs"))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from quintet.components.shared.cells import Grid, corners, grid_around, sorted_into
+from quintet.components.shared.search.cells import Grid, corners, grid_around, sorted_into
 
 BOX = np.array([[0.0, 0.0, 0.0], [0.9, 0.5, 0.2]])
 

@@ -83,9 +83,9 @@ def test_body_water_and_what_lies_across_press_the_whole_face() -> None:
     pressed(film.row, foot, state.fluid, state.place, one.near.arrays, one.fluid, wet)
     rows = np.flatnonzero(state.sample >= 0)
     left = rows[place[rows, 0] < 0.06]
-    apart = np.linalg.norm(foot[:, None] - place[left, :3], axis=2) / one.fluid.smoothing
+    apart = np.linalg.norm(foot[:, None] - place[left, :3], axis=2) / one.fluid.smoothing.length
     shape = np.maximum(2.0 - apart, 0.0) ** 3 - 4.0 * np.maximum(1.0 - apart, 0.0) ** 3
-    across = one.fluid.height * shape.sum(axis=1) * SPACING**3
+    across = one.fluid.smoothing.height * shape.sum(axis=1) * SPACING**3
     np.testing.assert_allclose(film.own + wet + across, 1.0, atol=0.01)
 
 

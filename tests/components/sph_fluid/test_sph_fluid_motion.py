@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from quintet.components.shared.team import Team
+from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import SphFluidParams, component
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Fields
@@ -270,7 +270,7 @@ def test_bits_do_not_depend_on_the_number_of_threads(pool: Make, precision: str)
 def test_lists_are_renewed_before_a_pair_is_missed(pool: Make) -> None:
     fluid = pool()
     stir(fluid)
-    reach = component.SUPPORT * fluid.fluid.smoothing
+    reach = component.SUPPORT * fluid.fluid.smoothing.length
     for _ in range(30):
         fluid.step(fluid.stable_dt())
         old = fluid.state.place.copy()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from quintet.components.shared.cubic_spline import SUPPORT
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
 from quintet.components.sph_fluid.build import state
 from quintet.components.sph_fluid.component import SphFluid

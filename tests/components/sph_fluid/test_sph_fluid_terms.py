@@ -59,7 +59,7 @@ def test_laminar_viscosity_has_the_value_asked_for():
 
 def test_viscous_step_limit_is_stated():
     thick = drop(laminar=10.0)
-    assert thick.stable_dt() == pytest.approx(0.125 * thick.fluid.smoothing**2 / 10.0)
+    assert thick.stable_dt() == pytest.approx(0.125 * thick.fluid.smoothing.length**2 / 10.0)
 
 
 def test_viscosity_and_diffusion_keep_momentum():

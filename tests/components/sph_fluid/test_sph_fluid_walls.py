@@ -6,6 +6,7 @@ import pytest
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.particle_count import particles
 
 TANK = {"walls": ((0.0, 0.0, 0.0), (1.0, 0.5, 0.5)), "fluid": (((0.0, 0.0, 0.0), (0.5, 0.5, 0.3)),)}
 
@@ -20,7 +21,7 @@ def test_wall_particles_stand_off_as_asked(standoff):
     wall = build.wall_points(one)
     assert wall.min(axis=0) == pytest.approx([-0.1 * standoff] * 3)
     assert wall[:, 0].max() == pytest.approx(1.0 + 0.1 * standoff)
-    assert build.particles(one) == len(wall) + 5 * 5 * 3
+    assert particles(one) == len(wall) + 5 * 5 * 3
 
 
 def test_samples_are_wanted_at_the_inset():

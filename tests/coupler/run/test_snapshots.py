@@ -16,7 +16,7 @@ from quintet.coupler.run import snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
 
-SMALL_DAM = Path(__file__).parents[1] / "scenarios/small_dam.toml"
+SMALL_DAM = Path(__file__).parents[2] / "scenarios/small_dam.toml"
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 
 

@@ -6,7 +6,7 @@ from threading import Barrier, get_ident
 import numpy as np
 import pytest
 
-from quintet.components.shared.team import Team
+from quintet.components.shared.threads import Team
 
 
 @pytest.mark.parametrize("size", [1, 2, 3])

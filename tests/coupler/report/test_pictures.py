@@ -10,7 +10,7 @@ import pytest
 from quintet.coupler.files.recording import Recorder, Recording
 from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.measures.expectation import Expectation, evaluate
-from quintet.coupler.report.pictures import comparison, snapshots
+from quintet.coupler.report.pictures import comparison, side_views
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import MOTION
 
@@ -48,7 +48,7 @@ def test_a_run_without_pictures_imports_no_drawing():
 def test_snapshots_show_particles_and_bodies_in_each_panel(tmp_path):
     _cloud(tmp_path / "water.vtkhdf", 500)
     _box(tmp_path / "cube.vtkhdf")
-    out = snapshots(tmp_path, tmp_path / "pictures" / "all.png", [0.0, 0.11, 5.0])
+    out = side_views(tmp_path, tmp_path / "pictures" / "all.png", [0.0, 0.11, 5.0])
     image = _image(out)
     red, green, blue = np.moveaxis(image, 2, 0)
     solid = (red < 0.85) & (red - green > 0.06) & (red - blue > 0.1)
@@ -64,19 +64,19 @@ def test_snapshots_need_neither_particles_nor_bodies(tmp_path, only):
         _box(tmp_path / "a.vtkhdf")
     else:
         _cloud(tmp_path / "a.vtkhdf", 40 if only == "cloud" else 1, speed=0.0)
-    assert snapshots(tmp_path, tmp_path / "a.png", [0.1]).stat().st_size > 1000
+    assert side_views(tmp_path, tmp_path / "a.png", [0.1]).stat().st_size > 1000
 
 
 def test_snapshots_of_many_particles_are_quick(tmp_path):
     _cloud(tmp_path / "water.vtkhdf", 200_000)
     begin = time.perf_counter()
-    snapshots(tmp_path, tmp_path / "a.png", [0.2])
+    side_views(tmp_path, tmp_path / "a.png", [0.2])
     assert time.perf_counter() - begin < 8.0
 
 
 def test_a_picture_of_nothing_is_refused(tmp_path):
     with pytest.raises(SceneError, match=r"needs a \.vtkhdf file with steps"):
-        snapshots(tmp_path, tmp_path / "a.png", [0.0])
+        side_views(tmp_path, tmp_path / "a.png", [0.0])
 
 
 def test_comparison_draws_a_panel_for_each_reference_curve(tmp_path):

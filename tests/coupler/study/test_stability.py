@@ -6,7 +6,7 @@ import pytest
 from spring_scene import command, found_by, write
 
 from quintet.coupler.scene.stability_table import LimitTable
-from quintet.coupler.study.bisection import narrow
+from quintet.coupler.study.bisection import bisect
 from quintet.coupler.study.invariants import judge
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
@@ -120,7 +120,7 @@ def test_the_first_invariant_that_broke_is_told(tmp_path):
 
 
 def test_energies_that_nobody_tells_cannot_be_judged(tmp_path):
-    with pytest.raises(SceneError, match=r"all say 0 J at all times. Give it totals\(\), or use"):
+    with pytest.raises(SceneError, match=r"all are 0 J at all times. Give it totals\(\), or use"):
         verdict(tmp_path, "0,a,,0,0,0\n1,a,,0,0,0\n", "done", energy={"factor": 2.0})
 
 
@@ -136,10 +136,10 @@ def test_bisection_brackets_what_it_looks_for(log, ends):
     def holds(value):
         return value < 7.3 if ends[0] < ends[1] else value > 7.3
 
-    good, bad = narrow(ends, holds, log, 0.01)
+    good, bad = bisect(ends, holds, log, 0.01)
     assert holds(good) and not holds(bad) and abs(bad - good) <= 0.01 * 7.4
-    assert narrow((1.0, 2.0), lambda _: True, log, 0.01) is None
-    assert narrow((1.0, 2.0), lambda _: False, log, 0.01) is None
+    assert bisect((1.0, 2.0), lambda _: True, log, 0.01) is None
+    assert bisect((1.0, 2.0), lambda _: False, log, 0.01) is None
 
 
 RANGE = "from = 0.1\nto = 0.3\n"

@@ -12,7 +12,7 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.cubic_spline import ONE, TWO, ZERO
+from quintet.components.shared.smoothing.cubic_spline import ONE, TWO, ZERO
 
 
 def normalisation(dimensions: int, smoothing: float) -> float:

@@ -30,7 +30,7 @@ while True:
 @pytest.fixture
 def watched(monkeypatch):
     monkeypatch.setattr(processes, "QUIET_EXTRA", 0.6)
-    monkeypatch.setattr(processes, "LOOK", 0.2)
+    monkeypatch.setattr(processes, "INTERVAL", 0.2)
     started = []
 
     def start(code):
@@ -44,7 +44,7 @@ def watched(monkeypatch):
         process.wait()
 
 
-def look(watch, seconds):
+def reason_within(watch, seconds):
     """What the watch says within a time."""
     limit = time.monotonic() + seconds
     while time.monotonic() < limit:
@@ -57,7 +57,7 @@ def look(watch, seconds):
 def test_a_process_that_does_nothing_is_noticed(watched):
     watch = watched(SLEEPS)
     began = time.monotonic()
-    reason = look(watch, 3.0)
+    reason = reason_within(watch, 3.0)
     assert 0.6 <= time.monotonic() - began < 1.5
     assert reason.startswith("stopped responding: no answer and no processor time for")
     assert f"process {watch.pid} is sleeping" in reason
@@ -66,25 +66,25 @@ def test_a_process_that_does_nothing_is_noticed(watched):
 def test_a_stopped_process_is_called_so(watched):
     watch = watched(WORKS)
     os.kill(watch.pid, signal.SIGSTOP)
-    assert f"(process {watch.pid} is stopped)" in look(watch, 3.0)
+    assert f"(process {watch.pid} is stopped)" in reason_within(watch, 3.0)
 
 
 @pytest.mark.parametrize("code", [WORKS, TOUCHES], ids=["all the time", "a tenth of the time"])
 def test_a_process_that_works_is_left_alone(watched, code):
-    assert look(watched(code), 2.0) == ""
+    assert reason_within(watched(code), 2.0) == ""
 
 
 def test_a_process_may_be_as_silent_as_it_usually_is(watched):
     watch = watched(SLEEPS)
     watch.usual = lambda: 1.0
-    assert look(watch, 2.0) == ""
+    assert reason_within(watch, 2.0) == ""
 
 
 def test_a_new_wait_begins_anew(watched):
     watch = watched(SLEEPS)
     for _ in range(4):
         watch.reset()
-        assert look(watch, 0.4) == ""
+        assert reason_within(watch, 0.4) == ""
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def test_a_new_wait_begins_anew(watched):
     ],
 )
 def test_how_a_process_ended_is_said(watched, code, words):
-    assert words in look(watched(code), 5.0)
+    assert words in reason_within(watched(code), 5.0)
 
 
 def test_a_process_that_is_not_our_child_is_gone_when_it_is():

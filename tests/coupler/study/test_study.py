@@ -1,4 +1,4 @@
-"""A study observes the order of an integrator, and recommends the cheapest rung that will do."""
+"""A study observes the order of an integrator, and recommends the cheapest refinement."""
 
 import json
 import signal
@@ -12,7 +12,7 @@ from started import write_scene
 
 from quintet.coupler.measures.convergence import least_squares, richardson
 
-RUNG = """
+REFINEMENT = """
 [[study]]
 label = "{0}"
 settings = {{ "components.spring.step" = {0} }}
@@ -26,12 +26,12 @@ settings = {}
 STEPS = (0.02, 0.01, 0.005)
 
 
-def ladder(*steps):
-    return "".join(RUNG.format(step) for step in steps)
+def refinements(*steps):
+    return "".join(REFINEMENT.format(step) for step in steps)
 
 
 def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
-    status, found = found_by("study", write(tmp_path, ladder(*STEPS)))
+    status, found = found_by("study", write(tmp_path, refinements(*STEPS)))
     assert status == 0
     # Leap-frog turns by 2 asin(ω dt / 2) a step: its phase is wrong by ω³ dt² / 24 per second.
     for row, step in zip(found["rows"], STEPS, strict=True):
@@ -52,7 +52,7 @@ def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
 
 
 def test_a_study_leaves_its_runs_a_table_and_a_picture(tmp_path):
-    assert found_by("study", write(tmp_path, ladder(0.02, 0.01)))[0] == 1
+    assert found_by("study", write(tmp_path, refinements(0.02, 0.01)))[0] == 1
     left = tmp_path / "all"
     assert (left / "study.png").read_bytes().startswith(b"\x89PNG")
     assert (left / "study.json").read_text() == (tmp_path / "found.json").read_text()
@@ -63,15 +63,15 @@ def test_a_study_leaves_its_runs_a_table_and_a_picture(tmp_path):
         assert "study" not in (left / name / "scene.toml").read_text()
 
 
-def test_the_cheapest_of_several_good_rungs_is_recommended(tmp_path):
-    rungs = ladder(1e-3, 0.005) + PLAIN
-    status, found = found_by("study", write(tmp_path, rungs, within=0.1), "--set", "end=1.0")
+def test_the_cheapest_of_several_good_refinements_is_recommended(tmp_path):
+    several = refinements(1e-3, 0.005) + PLAIN
+    status, found = found_by("study", write(tmp_path, several, within=0.1), "--set", "end=1.0")
     assert status == 0 and all(row["met"] for row in found["rows"])
     assert found["rows"][0]["cpu"] > found["recommended"]["cpu"]
     assert found["recommended"]["cpu"] == min(row["cpu"] for row in found["rows"])
 
 
-def test_a_rung_that_fails_is_told_and_the_others_count(tmp_path, capsys):
+def test_a_refinement_that_fails_is_told_and_the_others_count(tmp_path, capsys):
     path = write_scene(tmp_path, end=0.01)
     path.write_text(
         path.read_text()
@@ -114,30 +114,31 @@ WRONG = {
     ),
     "size that is no number": (
         'label = "a"\nsettings = {}\nsize = "name"',
-        "study.a.size name must be a positive number; found 'spring'. Name what the rungs refine.",
+        "study.a.size name must be a positive number; found 'spring'. Name what is "
+        "refined.",
     ),
     "two of a label": (
         'label = "a"\nsettings = {}\n[[study]]\nlabel = "a"\nsettings = {}',
-        "study: 2 rungs have the label a. Give each its own, in letters and digits.",
+        "study: 2 refinements have the label a. Give each its own, in letters and digits.",
     ),
     "two sizes": (
         'label = "a"\nsettings = {}\nsize = "end"\n'
         '[[study]]\nlabel = "b"\nsettings = {}\nsize = "components.spring.step"',
-        "study: one size must serve all rungs that name one; found components.spring.step, end. "
-        "Name the same, or none.",
+        "study: one size must serve all refinements that name one; found "
+        "components.spring.step, end. Name the same, or none.",
     ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_a_wrong_ladder_is_refused_with_the_scene(tmp_path, capsys, case):
+def test_a_wrong_refinement_is_refused_with_the_scene(tmp_path, capsys, case):
     text, sentence = WRONG[case]
     path = write(tmp_path, f"[[study]]\n{text}\n")
     assert command("check", path) == 2
     assert f"quintet: scene.toml: {sentence}\n" in capsys.readouterr().err
 
 
-def test_all_mistakes_of_scene_and_ladder_are_told_at_once(tmp_path, capsys):
+def test_all_mistakes_of_scene_and_refinements_are_told_at_once(tmp_path, capsys):
     path = write(tmp_path, '[[study]]\nlabel = "a"\nsettings = { "wndow" = 1.0 }\nsice = "x"\n')
     path.write_text(path.read_text().replace("end = 1.0", "end = -1.0"))
     assert command("study", path, "--out", tmp_path / "all") == 2
@@ -147,14 +148,14 @@ def test_all_mistakes_of_scene_and_ladder_are_told_at_once(tmp_path, capsys):
     assert not (tmp_path / "all").exists()
 
 
-def test_a_scene_without_a_ladder_says_so(tmp_path, capsys):
+def test_a_scene_without_refinements_says_so(tmp_path, capsys):
     assert command("study", write(tmp_path)) == 2
-    assert "there is no ladder. Add a [[study]] for every rung." in capsys.readouterr().err
+    assert "there is no [[study]]. Add one for every refinement." in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_study_keeps_and_tells_the_rungs_that_ran(tmp_path, number):
-    path = write(tmp_path, ladder(0.005) + RUNG.format(1e-6) + ladder(0.02))
+def test_an_interrupted_study_keeps_and_tells_the_refinements_that_ran(tmp_path, number):
+    path = write(tmp_path, refinements(0.005) + REFINEMENT.format(1e-6) + refinements(0.02))
     line = [sys.executable, "-m", "quintet.coupler.cli", "study", str(path)]
     line += ["--out", str(tmp_path / "all"), "--json", str(tmp_path / "found.json")]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -172,9 +173,9 @@ def test_an_interrupted_study_keeps_and_tells_the_rungs_that_ran(tmp_path, numbe
 
 
 def test_a_study_keeps_what_was_done_of_the_same_scene_alone(tmp_path, capsys):
-    path = write(tmp_path, ladder(0.02, 0.01))
+    path = write(tmp_path, refinements(0.02, 0.01))
     _, before = found_by("study", path)
-    write(tmp_path, ladder(*STEPS))
+    write(tmp_path, refinements(*STEPS))
     capsys.readouterr()
     status, found = found_by("study", path, "--keep")
     said = capsys.readouterr().out
@@ -185,7 +186,7 @@ def test_a_study_keeps_what_was_done_of_the_same_scene_alone(tmp_path, capsys):
     found_by("study", path, "--keep")
     said = capsys.readouterr().out
     assert [f"{step}: kept" in said for step in STEPS] == [True, False, True]
-    write(tmp_path, ladder(*STEPS), within=1e-3)
+    write(tmp_path, refinements(*STEPS), within=1e-3)
     found_by("study", path, "--keep")
     assert "kept" not in capsys.readouterr().out
 

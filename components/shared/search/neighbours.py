@@ -1,19 +1,21 @@
 """Verlet lists: for each point, those nearer than a reach, kept until points have moved.
 
 Points come in two groups, each sorted by cell, so that the cells of a row along the grid's x are
-one contiguous range. The first group (fluid) looks for both, the second (walls) for the first
-only: each from where it is, or from other places that stand for it. Each share of the rows has
-its part of the memory, where its lists are written one after another. Where they do not fit, all
-is searched again with twice as much.
+one contiguous range. The first group (what moves by itself) looks for both, the second (walls) for
+the first only: each from where it is, or from query points that stand for it. A solver without
+walls has one group. Each share of the rows has its part of the memory, where its lists are written
+one after another. Where they do not fit, all is searched again with twice as much.
 """
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from quintet.components.shared.cells import (
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.search.cells import (
     REACH,
     Grid,
     Points,
@@ -22,16 +24,23 @@ from quintet.components.shared.cells import (
     number_cells,
     sorted_into,
 )
-from quintet.components.shared.team import Team
+from quintet.components.shared.threads import Team
 
 FEWEST = 100  # neighbours that a row has room for; memory that none is written to costs nothing
 MOST = 4000  # neighbours, beyond which memory is given back
 
-FAST = {"fastmath": True, "error_model": "numpy", "cache": True, "nogil": True}
+
+class Lists(NamedTuple):
+    """Neighbour lists as kernels take them."""
+
+    begin: Whole  # (n,)
+    middle: Whole  # (n,)
+    end: Whole  # (n,)
+    neighbour: NDArray[np.int32]
 
 
 @dataclass(slots=True)
-class Neighbours:
+class NeighbourLists:
     """Lists of indices: begin[i]:middle[i] in the first group, middle[i]:end[i] in the second.
 
     A point of the first group is its own neighbour: at no distance, it feels no force.
@@ -43,18 +52,18 @@ class Neighbours:
     end: Whole = field(default_factory=lambda: np.zeros(0, np.int64))  # (n,)
 
     @property
-    def arrays(self) -> tuple[Whole, Whole, Whole, NDArray[np.int32]]:
+    def arrays(self) -> Lists:
         """What kernels take."""
-        return self.begin, self.middle, self.end, self.list
+        return Lists(self.begin, self.middle, self.end, self.list)
 
 
 @njit(**FAST)
 def search(
-    first: int, last: int, split: int, seekers: Points, points: Points, cell: Whole,
+    first: int, last: int, split: int, query_points: Points, points: Points, cell: Whole,
     start_one: Whole, start_two: Whole, grid: Grid, reach2: float, per_row: int, begin_of: Whole,
     middle_of: Whole, end_of: Whole, found: NDArray[np.int32],
 ) -> bool:  # fmt: skip
-    """List the neighbours of seekers [first, last); return whether they had room.
+    """List the neighbours of query_points [first, last); return whether they had room.
 
     In `found` they have room for `per_row` each, taken together.
     """
@@ -65,7 +74,7 @@ def search(
         begin_of[i] = k
         middle_of[i] = k
         if c < nx * ny * nz:
-            x, y, z = seekers[i, 0], seekers[i, 1], seekers[i, 2]
+            x, y, z = query_points[i, 0], query_points[i, 1], query_points[i, 2]
             cx, cy, cz = c % nx, (c // nx) % ny, c // (nx * ny)
             low, high = max(cx - REACH, 0), min(cx + REACH, nx - 1)
             for group in range(2 if i < split else 1):
@@ -93,25 +102,38 @@ def neighbours_within(
     points: Points,
     split: int,
     team: Team,
-    seekers: Points | None = None,
+    query_points: Points | None = None,
     room: NDArray[np.int32] | None = None,
-) -> Neighbours:
-    """List what is nearer than `reach` [m] among points (n, 3) m, the first `split` of them fluid.
+) -> NeighbourLists:
+    """List what is nearer than a reach.
 
-    Both groups must come in the order that `sorted_into` gives for this reach. Where given, the
-    `seekers` (any, 3) m look for fluid in place of the second group. The lists are written into
-    `room`, that of lists no longer wanted, if it is large enough: fresh memory costs as much as
-    half of the search.
+    Parameters
+    ----------
+    reach : float, m
+    points : (n, 3) float array, m
+        Both groups, each in the order that `sorted_into` gives for this reach.
+    split : int
+        How many of them are the first group; n if there is but one.
+    team : Team
+    query_points : (any, 3) float array, m
+        Places that look for the first group in place of the second group's.
+    room : (any,) int32 array
+        Memory of lists no longer wanted: fresh one costs as much as half of the search.
+
+    Returns
+    -------
+    NeighbourLists
+        A list for each point of the first group, then for each of the second or query point.
     """
     grid = grid_around(points[:split], reach)
     cell_one, start_one, _ = sorted_into(points[:split], grid)
     cell_two, start_two, _ = sorted_into(points[split:], grid)
-    if seekers is not None:
-        cell_two = np.empty(len(seekers), np.int64)
-        number_cells(seekers, grid, cell_two)
+    if query_points is not None:
+        cell_two = np.empty(len(query_points), np.int64)
+        number_cells(query_points, grid, cell_two)
     cell = np.concatenate([cell_one, cell_two])
     rows = len(cell)
-    start = points if seekers is None else np.concatenate([points[:split], seekers])
+    start = points if query_points is None else np.concatenate([points[:split], query_points])
     cells = (cell, start_one, start_two, grid)
     where = (split, start, np.ascontiguousarray(points.T), *cells, reach * reach)
     begin, middle, end = (np.empty(rows, np.int64) for _ in range(3))
@@ -120,5 +142,5 @@ def neighbours_within(
     while True:
         per_row = len(room) // rows
         if all(team.run(search, rows, *where, per_row, begin, middle, end, room)):
-            return Neighbours(room, begin, middle, end)
+            return NeighbourLists(room, begin, middle, end)
         room = np.empty(rows * max(FEWEST, 2 * per_row), np.int32)

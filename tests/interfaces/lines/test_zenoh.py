@@ -40,18 +40,18 @@ def free_port():
 
 @pytest.fixture
 def hubs():
-    from quintet.interfaces.lines.zenoh import Hub
+    from quintet.interfaces.lines.zenoh import Session
 
     opened = []
 
     def open_two(endpoint, security=None):
-        opened.append(Hub(endpoint, True, "coupler", security))
-        opened.append(Hub(endpoint, False, "water", security))
+        opened.append(Session(endpoint, True, "coupler", security))
+        opened.append(Session(endpoint, False, "water", security))
         return opened
 
     yield open_two
-    for hub in opened:
-        hub.close()
+    for session in opened:
+        session.close()
 
 
 def lines(hubs, endpoint, security=None):
@@ -84,7 +84,7 @@ def test_a_partner_that_leaves_is_noticed_at_once(hubs):
     one, two = lines(hubs, f"tcp/127.0.0.1:{free_port()}")
     two.send({"order": "last words"}, {})
     time.sleep(0.1)
-    two.hub.close()
+    two.session.close()
     began = time.perf_counter()
     assert one.receive(10.0).order == "last words"
     with pytest.raises(LineError, match="water is gone"):
@@ -94,12 +94,12 @@ def test_a_partner_that_leaves_is_noticed_at_once(hubs):
 
 @pytest.mark.slow
 def test_nothing_is_lost_while_a_receiver_pauses():
-    from quintet.interfaces.lines.zenoh import Hub, ZenohLine
+    from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
     count = 10_000
     endpoint = f"tcp/127.0.0.1:{free_port()}"
-    hub = Hub(endpoint, True, "coupler", None)
-    line = ZenohLine(hub, "r1", "sender")
+    session = Session(endpoint, True, "coupler", None)
+    line = ZenohLine(session, "r1", "sender")
     arguments = [sys.executable, "-c", SENDER, endpoint, str(count)]
     with subprocess.Popen(arguments) as sender:
         line.wait_for_partner(20.0)
@@ -110,7 +110,7 @@ def test_nothing_is_lost_while_a_receiver_pauses():
         assert line.receive(20.0).order == "end"
         line.send({"order": "well done"}, {})
         assert sender.wait(20) == 0
-    hub.close()
+    session.close()
 
 
 ALLOWED = ["tcp/127.0.0.1:7447", "tcp/localhost:1", "tcp/[::1]:7447"]
@@ -168,11 +168,11 @@ def test_strangers_are_refused(certificates, who):
 
     import zenoh
 
-    from quintet.interfaces.lines.zenoh import Hub, configuration
+    from quintet.interfaces.lines.zenoh import Session, configuration
 
     ours, foreign = certificates
     port = free_port()
-    hub = Hub(f"tls/localhost:{port}", True, "coupler", ours)
+    session = Session(f"tls/localhost:{port}", True, "coupler", ours)
     endpoint = f"tcp/localhost:{port}" if who == "plain tcp" else f"tls/localhost:{port}"
     shown = {"no certificate": ours, "a foreign certificate": foreign, "plain tcp": None}[who]
     config = configuration(endpoint, False, shown)
@@ -185,9 +185,9 @@ def test_strangers_are_refused(certificates, who):
         config.insert_json5("transport/link/tls", json.dumps(tls))
     with pytest.raises(zenoh.ZError):
         zenoh.open(config)
-    hub.look()
-    assert hub.alive <= {"coupler"}
-    hub.close()
+    session.update()
+    assert session.alive <= {"coupler"}
+    session.close()
 
 
 def test_nobody_there_is_said(monkeypatch):

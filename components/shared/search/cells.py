@@ -1,7 +1,12 @@
 """Sorting points into cubic cells, so that near points are near in memory.
 
-Cells are numbered along the shortest extent first and along the longest last: the layers that a
-search looks through are then as small as can be, and stay in the processor's cache.
+A `Grid` holds particles that stay together. Its cells are numbered along the shortest extent first
+and along the longest last: the layers that a search looks through are then as small as can be, and
+stay in the processor's cache.
+
+Cell keys hold bodies that may be anywhere, however far apart: a cell has the same key wherever the
+others are, keys of cells next to one another along x are consecutive, and a sorted array of them is
+searched by bisection (`row_of_keys`).
 """
 
 import math
@@ -11,10 +16,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.interfaces.errors import StepError
 
 REACH = 2  # cells that the search looks in each direction: cells are half as wide as it reaches
 MOST = 50_000_000  # cells
+BITS = 21  # of a key, for the cell's number along each axis
+MIDDLE = 1 << (BITS - 1)
+ROW, LAYER = 1 << BITS, 1 << 2 * BITS  # difference of keys from one row, or layer, to the next
 
 Points = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -65,7 +74,7 @@ def grid_around(points: Points, reach: float) -> Grid:
     return Grid(x, y, z, 1.0 / width, nx, ny, nz, *axes)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**EXACT)
 def number_cells(points: Points, grid: Grid, cell: Whole) -> None:
     """Write the cell of each point (n, 3 or more); one past the last cell for points outside."""
     outside = grid.nx * grid.ny * grid.nz
@@ -78,7 +87,7 @@ def number_cells(points: Points, grid: Grid, cell: Whole) -> None:
         cell[i] = int(x) + grid.nx * (int(y) + grid.ny * int(z)) if inside else outside
 
 
-@njit(cache=True, nogil=True)
+@njit(**EXACT)
 def sort_cells(cell: Whole, start: Whole, order: Whole) -> None:
     """Write the stable order that sorts points by cell, and where each cell starts in it."""
     start[:] = 0
@@ -103,3 +112,33 @@ def sorted_into(points: Points, grid: Grid) -> tuple[Whole, Whole, Whole]:
     number_cells(points, grid, cell)
     sort_cells(cell, start, order)
     return cell, start, order
+
+
+@njit(**INNER)
+def number_along(x: float, width: float) -> int:
+    """Number of the cell along one axis; what is very far shares the last one."""
+    return int(min(max(math.floor(x / width), 2.0 - MIDDLE), MIDDLE - 2.0)) + MIDDLE
+
+
+@njit(**INNER)
+def key_of(x: float, y: float, z: float, width: float) -> int:
+    """Key of the cell of a width [m] that a point [m] is in."""
+    layer, row = number_along(z, width) << 2 * BITS, number_along(y, width) << BITS
+    return int(layer + row + number_along(x, width))
+
+
+@njit(**EXACT)
+def keys_of(points: Points, rows: Whole, width: float) -> Whole:
+    """Keys (k,) of the cells of some rows (k,) of points (n, 3 or more) m."""
+    keys = np.empty(rows.shape[0], np.int64)
+    for k in range(rows.shape[0]):
+        i = rows[k]
+        keys[k] = key_of(points[i, 0], points[i, 1], points[i, 2], width)
+    return keys
+
+
+@njit(**INNER)
+def row_of_keys(keys: Whole, first: int, last: int) -> tuple[int, int]:
+    """Range of what is in cells `first` to `last`, both included, among sorted keys (n,)."""
+    begin = np.searchsorted(keys, first)
+    return int(begin), int(np.searchsorted(keys, last, side="right"))

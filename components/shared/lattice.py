@@ -1,0 +1,39 @@
+"""Points on rectangular lattices: boxes filled with particles, samples or copies."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from quintet.interfaces.component import Array
+
+
+def cell_centres(low: float, high: float, count: int, before: int = 0, after: int = 0) -> Array:
+    """Centres (n,) m of `count` equal cells from `low` to `high` [m], and of more beyond the ends.
+
+    Parameters
+    ----------
+    low, high : float, m
+        Ends of an edge.
+    count : int
+        Cells between them.
+    before, after : int
+        Cells of the same length below `low` and above `high`.
+    """
+    return low + (np.arange(-before, count + after) + 0.5) * (high - low) / count
+
+
+def spread_evenly(low: float, high: float, count: int) -> Array:
+    """Places (count,) m from `low` to `high` [m], both included; a single one in the middle."""
+    return np.linspace(low, high, count) if count > 1 else np.array([0.5 * (low + high)])
+
+
+def lattice_points(axes: Sequence[Array], x_fastest: bool = True) -> Array:
+    """All points (n, 3) m of a lattice, from its places (nx,), (ny,), (nz,) m along the axes.
+
+    Rows go along x first and along z last, or the other way round.
+    """
+    if x_fastest:
+        z, y, x = np.meshgrid(*axes[::-1], indexing="ij")
+    else:
+        x, y, z = np.meshgrid(*axes, indexing="ij")
+    return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)

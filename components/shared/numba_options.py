@@ -1,0 +1,12 @@
+"""Options under which kernels are compiled, one set for each need.
+
+All are cached on disk and release Python's lock; division by zero gives ∞, as numpy has it.
+"""
+
+# As written: for loops that must notice numbers that are not finite, or whose sums must keep
+# their order.
+EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
+# Sums may be reordered into vectors, and every number is taken to be finite.
+FAST = EXACT | {"fastmath": True}
+# Of functions that only other kernels call: without the code for calls from Python and C.
+INNER = EXACT | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}

@@ -1,0 +1,1 @@
+"""Smoothing kernels of particle methods, and the choice between them."""

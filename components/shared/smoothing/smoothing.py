@@ -1,0 +1,97 @@
+"""A smoothing kernel of one length h: W and its gradient, whichever kernel was chosen.
+
+All kernels here reach as far as 2h. Laws of pairs take a `Smoothing` and know no other parameters
+of a solver; where h differs from particle to particle, `with_length` gives the one of each pair.
+"""
+
+import math
+from typing import Literal, NamedTuple
+
+from numba import njit
+
+from quintet.components.shared.smoothing import cubic_spline, wendland
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+
+TINY = 1e-12  # h²
+KERNELS = ("cubic", "wendland")
+
+Kernel = Literal["cubic", "wendland"]
+
+
+class Smoothing(NamedTuple):
+    """The numbers of one kernel at one smoothing length."""
+
+    length: float  # m, h
+    tiny: float  # m2, added to r² so that a particle does not divide by its distance from itself
+    wendland: bool | None  # True, or None if the kernel is the cubic spline
+    height: float  # 1/m3, scale of W; in two dimensions 1/m2
+    slope: float  # 1/m4, scale of dW/dr; of Wendland's 1/m5, of (dW/dr)/r
+
+    @property
+    def support(self) -> float:
+        """Radius [m] beyond which W is 0."""
+        return SUPPORT * self.length
+
+
+def smoothing(kernel: Kernel, dimensions: int, length: float) -> Smoothing:
+    """Choose a kernel.
+
+    Parameters
+    ----------
+    kernel : "cubic" or "wendland"
+        Monaghan's cubic spline (1992), or Wendland's of class C2 (1995).
+    dimensions : int
+        2 or 3.
+    length : float, m
+        The smoothing length h; W reaches as far as 2h.
+
+    Returns
+    -------
+    Smoothing
+        With ∫W dV = 1.
+    """
+    smooth = kernel == "wendland"
+    alpha = (wendland if smooth else cubic_spline).normalisation(dimensions, length)
+    return Smoothing(
+        length=length,
+        tiny=TINY * length * length,
+        wendland=True if smooth else None,
+        height=alpha / 16.0 if smooth else 0.25 * alpha,
+        slope=-0.625 * alpha / length**2 if smooth else -0.75 * alpha / length,
+    )
+
+
+@njit(inline="always")
+def kernel(r2, smoothing):  # type: ignore[no-untyped-def]
+    """W [1/m3] from r² [m2]; of the same root as the gradient, so that one serves both."""
+    q = math.sqrt(r2 + smoothing.tiny) / smoothing.length
+    if smoothing.wendland is not None:
+        return smoothing.height * wendland.shape(q)
+    return smoothing.height * cubic_spline.shape(q)
+
+
+@njit(inline="always")
+def gradient(r2, per_r, smoothing):  # type: ignore[no-untyped-def]
+    """(dW/dr)/r [1/m5], so that ∇_iW_ij = gradient · r_ij; finite where particles coincide.
+
+    From r² [m2] and 1/r [1/m], of which Wendland's kernel needs none.
+    """
+    q = math.sqrt(r2 + smoothing.tiny) / smoothing.length
+    if smoothing.wendland is not None:
+        return smoothing.slope * wendland.slope(q)
+    return smoothing.slope * cubic_spline.slope(q) * per_r
+
+
+@njit(inline="always")
+def with_length(smoothing, length, dimensions):  # type: ignore[no-untyped-def]
+    """Return the same kernel at another smoothing length [m]."""
+    ratio = smoothing.length / length
+    scale = ratio * ratio * ratio if dimensions == 3 else ratio * ratio
+    steeper = scale * ratio if smoothing.wendland is None else scale * ratio * ratio
+    return Smoothing(
+        length,
+        smoothing.tiny / (ratio * ratio),
+        smoothing.wendland,
+        smoothing.height * scale,
+        smoothing.slope * steeper,
+    )
