@@ -18,7 +18,6 @@ BAD = 2  # exit status of bad input: nothing was started
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run one command and exit with its status."""
     given = parser().parse_args(arguments)
-    given.words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         status = given.does(given)
     except SceneError as error:
@@ -124,9 +123,9 @@ def list_scenes(given: argparse.Namespace) -> int:
 def check(given: argparse.Namespace) -> int:
     """Print the plan of a scene."""
     # Start-up: only this command needs it.
-    from quintet.coupler.scene.listing import show_plan
+    from quintet.coupler.scene.listing import console, print_plan
 
-    show_plan(_load(given))
+    print_plan(_load(given), console())
     return 0
 
 
@@ -138,33 +137,27 @@ def run(given: argparse.Namespace) -> int:
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
     # Start-up: only this command needs it.
-    from quintet.coupler.run.simulate import make_folder, simulate
+    from quintet.coupler.report import show as report
+    from quintet.coupler.run.run_scene import run_scene
 
-    if not given.inside_mpi and snapshot is None:
-        make_folder(scene, folder)
-    if scene.transport == "mpi" and not given.inside_mpi:
-        # Start-up: only this way of running needs it.
-        from quintet.coupler.launch.mpi_job import run_under_mpi
-
-        return run_under_mpi(given.words, scene, folder)
     if given.inside_mpi:
-        # Start-up: only this way of running needs it.
-        from quintet.coupler.launch.mpi_job import begin_rank
+        return _run_rank(scene, folder, snapshot)
+    status = run_scene(scene, folder, snapshot)
+    if (folder / report.NAME).is_file():
+        report.show(folder)
+        print(f"left in {os.path.relpath(folder)}", flush=True)
+    return status
 
-        begin_rank(folder)
-    threads = max(one.threads for one in scene.components.values())
-    os.environ.setdefault("NUMBA_NUM_THREADS", str(threads))
-    # Start-up: only this command needs it.
-    from quintet.coupler.report.show import show as tell
 
+def _run_rank(scene: "Scene", folder: Path, snapshot: Path | None) -> int:
+    """Run as the coupler's rank of an MPI job."""
+    # Start-up: only this way of running needs it.
+    from quintet.coupler.launch.mpi_job import begin_rank, end_rank
+    from quintet.coupler.run.simulate import simulate
+
+    begin_rank(folder)
     status = simulate(scene, folder, snapshot)
-    tell(folder)
-    print(f"left in {os.path.relpath(folder)}", flush=True)
-    if given.inside_mpi:
-        # Start-up: only this way of running needs it.
-        from quintet.coupler.launch.mpi_job import end_rank
-
-        end_rank(folder, status)
+    end_rank(folder, status)
     return status
 
 
@@ -172,8 +165,11 @@ def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
     """Read the scene of a new run; return it with the folder of the run."""
     if given.scene is None:
         raise SceneError("run needs a scene, or --resume DIR. Give one.")
+    # Start-up: only this command needs it.
+    from quintet.coupler.run.run_scene import run_folder
+
     scene = _load(given)
-    return scene, (given.out or Path("runs") / scene.file.name).resolve(), None
+    return scene, run_folder(scene, given.out), None
 
 
 def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
@@ -210,9 +206,9 @@ def join(given: argparse.Namespace) -> int:
 def show(given: argparse.Namespace) -> int:
     """Print the summary of a run."""
     # Start-up: only this command needs it.
-    from quintet.coupler.report.show import show as tell
+    from quintet.coupler.report.show import show as print_run
 
-    tell(given.folder, given.json)
+    print_run(given.folder, given.json)
     return 0
 
 

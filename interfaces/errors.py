@@ -3,6 +3,8 @@
 Each message says where, the rule, the value found, and what to do.
 """
 
+from pathlib import Path
+
 
 class QuintetError(Exception):
     """Anything wrong that quintet noticed itself."""
@@ -34,6 +36,14 @@ class MessageError(QuintetError):
 
 class LineError(QuintetError):
     """A connection broke, lost a message, or stayed silent past its deadline."""
+
+
+class RunError(QuintetError):
+    """A run that failed on the way; carries the folder with its results and logs."""
+
+    def __init__(self, cause: str, folder: Path) -> None:
+        super().__init__(cause)
+        self.folder = folder
 
 
 class LinkError(QuintetError):

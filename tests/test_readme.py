@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
 
@@ -15,6 +17,13 @@ def test_the_tutorial_is_the_component_beside_its_scene():
     assert (ROOT / "scenarios/two_springs/springs.py").read_text() in blocks("python")
 
 
+def test_the_python_example_runs(tmp_path, monkeypatch, capsys):
+    (example,) = (block for block in blocks("python") if block.startswith("import quintet\n"))
+    monkeypatch.chdir(tmp_path)
+    exec(example)
+    assert capsys.readouterr().out.endswith("done (251, 1, 3) m 0.5\n")
+
+
 def test_the_picture_and_the_files_it_links_are_there():
     for link in re.findall(r"\]\(([^)#]+)\)", README):
         assert (ROOT / link).exists(), link
@@ -23,3 +32,10 @@ def test_the_picture_and_the_files_it_links_are_there():
 def test_the_scenes_it_runs_exist():
     named = set(re.findall(r"quintet (?:run|check|join) (\w+)", README))
     assert named and all((ROOT / "scenarios" / name / "scene.toml").exists() for name in named)
+
+
+@pytest.mark.parametrize("name", ["CONTRIBUTING.md", "CHANGELOG.md"])
+def test_what_texts_for_developers_link_is_there(name):
+    text = ROOT / ".github" / name
+    for link in re.findall(r"\]\(([^)#]+)\)", text.read_text()):
+        assert link.startswith("https://") or (text.parent / link).exists(), link

@@ -1,7 +1,7 @@
 """Round trip of bytes over zenoh or MPI alone, as a reference for the exchange.
 
 Two processes fill an array, send its bytes, read what came, and send it back: no header, no
-numbers of messages, no check, no deadline but that of whoever started them.
+numbers of messages, no check, no deadline but that of the process that started them.
 """
 
 import statistics

@@ -38,6 +38,8 @@ def _key(key: str) -> str:
 
 def value_text(value: Any) -> str:
     """Write one value as TOML."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()  # numpy's numbers and arrays
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):

@@ -21,6 +21,7 @@ from types import FrameType
 from typing import IO
 
 from quintet.coupler.launch.processes import environment, tail
+from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
@@ -148,12 +149,8 @@ def _forward_signals(job_file: Path, process: "subprocess.Popen[bytes]") -> Iter
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
 
-    old = {one: signal.signal(one, forward) for one in (signal.SIGINT, signal.SIGTERM)}
-    try:
+    with handled_by(forward):
         yield signals
-    finally:
-        for one, handler in old.items():
-            signal.signal(one, handler)
 
 
 def _read(job_file: Path) -> dict[str, object]:
@@ -180,7 +177,7 @@ def write_processes(folder: Path, pids: list[int] | None, shared: list[str]) -> 
 def end_rank(folder: Path, status: int) -> None:
     """End the coupler's rank: in order when all is well, else with an abort of the job."""
     found = _read(folder / "log" / JOB_FILE)
-    _unlink(found)  # all ranks have it open by now; who started the job may be gone
+    _unlink(found)  # all ranks have it open by now; the process that started the job may have ended
     _write(folder, {**found, "status": status})
     sys.stdout.flush()
     sys.stderr.flush()

@@ -245,7 +245,7 @@ def _draw(panel: Any, view: SideView, top: float) -> Any:
             x, z, max(1.3 * across, 0.8) ** 2, view.speed, cmap="viridis", vmin=0.0, vmax=top,
             linewidths=0, rasterized=True,
         )  # fmt: skip
-    # Bodies last, although fluid may be before them: what is hidden tells nothing.
+    # Bodies are drawn last, although fluid may be in front: they would be hidden by it.
     faces = PolyCollection(view.faces, facecolors=view.shades, edgecolors="black", linewidths=0.3)
     faces.set_zorder(3)
     panel.add_collection(faces, autolim=False)

@@ -48,8 +48,11 @@ def show(folder: Path, as_json: bool = False) -> None:
     if as_json:
         print(json.dumps(found, indent=2))
         return
-    screen = console()
-    frame = box.SIMPLE_HEAD if sys.stdout.isatty() else None
+    print_results(found, console(), box.SIMPLE_HEAD if sys.stdout.isatty() else None)
+
+
+def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | None = None) -> None:
+    """Print results on a console, their tables in a frame or plain."""
     screen.print(_headline(found))
     for table in (_expectations(found), _ledger(found), _timing(found)):
         if table is not None:

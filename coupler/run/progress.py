@@ -1,8 +1,10 @@
 """The progress of a run on the screen."""
 
+import importlib.util
 import sys
 import time
 
+from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 LINE_INTERVAL = 5.0  # s between two lines of progress where there is no terminal
@@ -14,7 +16,7 @@ class ProgressReport:
     def __init__(self, windows: int, end: float, first: int = 0) -> None:
         self.windows, self.end, self.first = windows, end, first
         self._began = self._shown = time.monotonic()
-        self._bar = self._make_bar() if sys.stdout.isatty() else None
+        self._bar = self._make_bar() if shows_bar() else None
         if self._bar:
             self._bar.start()
             self._task = self._bar.add_task("", total=windows, speed="", residual="")
@@ -49,3 +51,9 @@ class ProgressReport:
         """Remove the bar from the terminal."""
         if self._bar:
             self._bar.stop()
+
+
+def shows_bar() -> bool:
+    """Whether a bar can be drawn: in a terminal, or in a notebook that has widgets."""
+    notebook = Console().is_jupyter and importlib.util.find_spec("ipywidgets") is not None
+    return sys.stdout.isatty() or notebook

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from types import FrameType
 
+from quintet.coupler.launch.signal_handler import handled_by
 from quintet.interfaces.lines.process_status import running
 from quintet.interfaces.serving.process import STARTER
 
@@ -33,9 +34,5 @@ class StopRequest:
             self.asked = True
             print(f"\n{signal.Signals(number).name}: ending after this window", file=sys.stderr)
 
-        old = {one: signal.signal(one, ask) for one in (signal.SIGINT, signal.SIGTERM)}
-        try:
+        with handled_by(ask):
             yield
-        finally:
-            for one, handler in old.items():
-                signal.signal(one, handler)

@@ -19,6 +19,7 @@ from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import Progress, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 
 RUN_FILES = (
@@ -118,7 +119,7 @@ def conclude(
         "repetitions": coupling.repetitions,
         "timing": results.timing(coupling.parts, wall, coupling.mapping),
         "machine": results.machine(),
-        "command": shlex.join(["quintet", *sys.argv[1:]]),
+        "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))

@@ -1,7 +1,9 @@
 """The list of scenes, and the plan of one scene."""
 
+import io
 import json
 import math
+from dataclasses import dataclass
 from typing import Any
 
 from rich.console import Console
@@ -10,6 +12,13 @@ from rich.table import Table
 from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Port
+
+WIDTH = 110  # characters, of a plan as text
+
+
+def console() -> Console:
+    """The console that plans and lists are printed on."""
+    return Console(highlight=False, markup=False)
 
 
 def list_all(as_json: bool) -> None:
@@ -24,7 +33,7 @@ def list_all(as_json: bool) -> None:
     for row in rows:
         presets = ", ".join(f"{k} ({v:g})" if v else k for k, v in row["presets"].items())
         table.add_row(row["scene"], row["title"], ", ".join(row["components"]), presets)
-    Console(highlight=False, markup=False).print(table)
+    console().print(table)
 
 
 def _row(name: str, table: dict[str, Any]) -> dict[str, Any]:
@@ -36,9 +45,23 @@ def _row(name: str, table: dict[str, Any]) -> dict[str, Any]:
     return {"scene": name, "title": table.get("title", ""), "components": kinds, "presets": presets}
 
 
-def show_plan(scene: Scene) -> None:
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A checked scene, and what running it will need."""
+
+    scene: Scene
+
+    def __str__(self) -> str:
+        screen = Console(file=io.StringIO(), width=WIDTH, highlight=False, markup=False)
+        print_plan(self.scene, screen)
+        return screen.file.getvalue()  # type: ignore[attr-defined]
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def print_plan(scene: Scene, console: Console) -> None:
     """Print processes, ports, windows, message sizes, memory and expected time."""
-    console = Console(highlight=False, markup=False)
     file = scene.file
     console.print(f"{file.name}: {file.title}", style="bold")
     windows = "auto" if file.window == "auto" else f"{round(file.end / file.window)}"

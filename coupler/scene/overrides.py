@@ -1,9 +1,11 @@
 """Overrides of a scene file: presets, single settings, replaced components."""
 
 import tomllib
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from quintet.coupler.files.toml_writer import value_text
 from quintet.interfaces.manifest import known_kinds
 from quintet.interfaces.params import unknown
 
@@ -53,6 +55,25 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
 def _may_be_made(heads: list[str]) -> bool:
     """Whether a scene may lack the table: its own, or inside a component's, which checks it."""
     return heads in (["output"], ["iteration"]) or (heads[0] == "components" and len(heads) > 2)
+
+
+def assignments(settings: Mapping[str, Any]) -> list[str]:
+    """Write settings by dotted path as ``PATH=VALUE``."""
+    return [f"{path}={value_text(value)}" for path, value in settings.items()]
+
+
+def run_arguments(
+    scene: str,
+    preset: str = "",
+    settings: Iterable[str] = (),
+    swaps: Iterable[str] = (),
+    transport: str = "",
+) -> list[str]:
+    """Write a scene and its overrides as arguments of ``quintet run``."""
+    line = [scene, *(["--preset", preset] if preset else [])]
+    line += ["--transport", transport] if transport else []
+    line += [word for swap in swaps for word in ("--swap", swap)]
+    return [*line, *(word for setting in settings for word in ("--set", setting))]
 
 
 def put_swap(table: dict[str, Any], swap: str) -> list[str]:

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.files.toml_writer import value_text
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.report.show import NAME, results
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.overrides import assignments, run_arguments
 from quintet.interfaces.serving.process import STARTER
 
 GRACE = 10.0  # s for a run to end after SIGTERM
@@ -65,14 +65,10 @@ class ChildRun:
         return _results(folder, process.returncode, stalled)
 
     def _command(self, settings: dict[str, Any], folder: Path) -> list[str]:
-        line = [sys.executable, "-m", "quintet.coupler.cli", "run", self.scene]
-        line += ["--preset", self.preset] if self.preset else []
-        line += ["--transport", self.transport] if self.transport else []
-        for swap in self.swaps:
-            line += ["--swap", swap]
-        for one in [*self.settings, *(f"{k}={value_text(v)}" for k, v in settings.items())]:
-            line += ["--set", one]
-        return [*line, "--out", str(folder)]
+        overrides = [*self.settings, *assignments(settings)]
+        asked = run_arguments(self.scene, self.preset, overrides, self.swaps, self.transport)
+        python = [sys.executable, "-m", "quintet.coupler.cli"]
+        return [*python, "run", *asked, "--out", str(folder)]
 
     def _await(self, process: "subprocess.Popen[bytes]", seconds: float) -> bool:
         """Wait for the process to end; return whether it timed out."""

@@ -55,7 +55,7 @@ def _breaches(limit: LimitTable, found: dict[str, Any], folder: Path) -> Iterato
         if limit.energy:
             if found["status"] == "done" and not any(energies(rows).values()):
                 raise SceneError(
-                    "stability: energy must be told by a component that has any; all say 0 J at "
+                    "stability: energy must be given by the totals of a component; all are 0 J at "
                     "all times. Give it totals(), or use bounds instead."
                 )
             yield from _energy(limit.energy, rows)

@@ -9,12 +9,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.files.toml_writer import value_text
 from quintet.coupler.measures.convergence import least_squares, richardson
 from quintet.coupler.report import show
 from quintet.coupler.report.work_precision import draw, table
 from quintet.coupler.run import results
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.overrides import assignments
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.child_run import ChildRun
@@ -58,8 +58,8 @@ def earlier_results(given: argparse.Namespace, refinement: Refinement, folder: P
     if not (folder / show.NAME).is_file():
         return None
     found = show.results(folder)
-    added = [f"{k}={value_text(v)}" for k, v in refinement.settings.items()]
-    asked = (given.scene, given.preset, [*given.settings, *added], given.swap, given.transport)
+    settings = [*given.settings, *assignments(refinement.settings)]
+    asked = (given.scene, given.preset, settings, given.swap, given.transport)
     same = parse(folder / "scene.toml") == load(*asked).resolved
     done = same and found.get("status") == "done" and found.get("machine") == results.machine()
     return found if done else None

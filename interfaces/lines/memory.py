@@ -16,7 +16,7 @@ class MemoryLine(FramedLine):
 
     def __init__(self, run: str, name: str) -> None:
         super().__init__(run, name)
-        self.handle: Callable[[Message], object] = lambda message: None  # carries out an order
+        self.handle: Callable[[Message], object] = lambda message: None  # executes an order
         self.far = _FarEnd(run, name)
 
     def _put(self, frame: bytearray) -> None:

@@ -67,7 +67,7 @@ class FramedLine(ABC):
     """A line over a transport of bytes: numbered messages of one run, in order and complete."""
 
     def __init__(self, run: str, name: str) -> None:
-        self.run = run  # "" until the coupler has told it
+        self.run = run  # "" until the first message of the coupler
         self.name = name  # who sends
         self.watch: Callable[[], str] = lambda: ""  # why an answer will not come, if known
         self._sent = 0

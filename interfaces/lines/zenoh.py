@@ -67,14 +67,14 @@ class Session:
             "quintet/alive/*", handlers.FifoChannel(CAPACITY), history=True
         )
         self.alive: set[str] = set()
-        self.gone: set[str] = set()
+        self.ended: set[str] = set()
 
     def update(self) -> None:
-        """Update which peers are alive and which have gone."""
+        """Update which peers are alive and which have ended."""
         while (sample := self._liveliness.try_recv()) is not None:
             name = str(sample.key_expr).rsplit("/", 1)[-1]
             if sample.kind == zenoh.SampleKind.DELETE:
-                self.gone.add(name)
+                self.ended.add(name)
             else:
                 self.alive.add(name)
 
@@ -124,7 +124,7 @@ class ZenohLine(FramedLine):
 
     def _broken(self) -> str:
         self.session.update()
-        return f"{self.other} is gone" if self.other in self.session.gone else ""
+        return f"{self.other} is gone" if self.other in self.session.ended else ""
 
     def close(self) -> None:
         """See `Line.close`."""

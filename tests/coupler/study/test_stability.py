@@ -120,7 +120,7 @@ def test_the_first_invariant_that_broke_is_told(tmp_path):
 
 
 def test_energies_that_nobody_tells_cannot_be_judged(tmp_path):
-    with pytest.raises(SceneError, match=r"all say 0 J at all times. Give it totals\(\), or use"):
+    with pytest.raises(SceneError, match=r"all are 0 J at all times. Give it totals\(\), or use"):
         verdict(tmp_path, "0,a,,0,0,0\n1,a,,0,0,0\n", "done", energy={"factor": 2.0})
 
 

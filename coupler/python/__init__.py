@@ -1,0 +1,176 @@
+"""quintet: independent solvers, one interface, one coupler.
+
+    import quintet
+
+    run = quintet.run("dam_break_cubes", preset="quick", settings={"end": 0.2}, out="runs/cubes")
+    run.ok                                      # done, and all expectations met
+    run.expectations["top_x"]["value"]
+    position = run.fields["cubes.motion.position"]
+    position.values, position.times, position.unit      # (rows, items, 3), (rows,) s, "m"
+
+The functions are those of the command line. Mistakes in a scene are raised as `SceneError` of
+`quintet.interfaces.errors`, failures of a run as `RunError`.
+"""
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from quintet.coupler.report.run import Run
+    from quintet.coupler.scene.listing import Plan
+    from quintet.coupler.scene.scene import Scene
+
+__version__ = "0.1.0"
+__all__ = ["__version__", "check", "load", "resume", "run"]
+
+Overrides = Mapping[str, Any] | None  # dotted path -> value
+
+
+def run(
+    scene: str | PathLike[str],
+    *,
+    preset: str = "",
+    settings: Overrides = None,
+    swap: Mapping[str, str] | None = None,
+    transport: str = "",
+    out: str | PathLike[str] | None = None,
+) -> "Run":
+    """Run a scene to its end and compare it with its expectations.
+
+    Parameters
+    ----------
+    scene : str or path
+        A name from ``quintet list``, or a TOML file.
+    preset : str
+        A preset of the scene.
+    settings : mapping of dotted paths to values
+        Set on top of the preset, in SI units, as ``{"components.water.spacing": 0.02}``.
+    swap : mapping of components to kinds
+        Components to be replaced, as ``{"water": "replay@runs/earlier"}``.
+    transport : {"memory", "zenoh", "mpi"}
+        That of the scene if not given.
+    out : path
+        Folder of the run; ``runs/NAME`` if not given.
+
+    Returns
+    -------
+    Run
+        Results, ledger and recorded fields. An interrupted run is returned too.
+
+    Raises
+    ------
+    SceneError
+        The scene has mistakes, all of which are listed; nothing was started.
+    RunError
+        A component or a line failed.
+    """
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.run.run_scene import run_folder, run_scene
+
+    made = _scene(scene, preset, settings, swap, transport)
+    folder = run_folder(made, Path(out) if out else None)
+    return _finished(folder, run_scene(made, folder))
+
+
+def resume(folder: str | PathLike[str], *, transport: str = "") -> "Run":
+    """Continue an interrupted or failed run from its last snapshot, to the same bits.
+
+    Parameters
+    ----------
+    folder : path
+        Of the run.
+    transport : {"memory", "zenoh", "mpi"}
+        That of the run if not given.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    SceneError
+        The run has no snapshot.
+    RunError
+        A component or a line failed.
+    """
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.run.run_scene import run_scene
+    from quintet.coupler.run.snapshots import latest, scene_of
+
+    place = Path(folder).resolve()
+    snapshot = latest(place)
+    return _finished(place, run_scene(scene_of(snapshot, transport), place, snapshot))
+
+
+def check(
+    scene: str | PathLike[str],
+    *,
+    preset: str = "",
+    settings: Overrides = None,
+    swap: Mapping[str, str] | None = None,
+    transport: str = "",
+) -> "Plan":
+    """Read and check a scene without starting anything; the parameters are those of `run`.
+
+    Returns
+    -------
+    Plan
+        Processes, ports, windows, memory and expected time; its `scene` is the checked scene.
+
+    Raises
+    ------
+    SceneError
+        The scene has mistakes, all of which are listed.
+    """
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.scene.listing import Plan
+
+    return Plan(_scene(scene, preset, settings, swap, transport))
+
+
+def load(folder: str | PathLike[str]) -> "Run":
+    """Open an earlier run.
+
+    Parameters
+    ----------
+    folder : path
+        Of the run.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    SceneError
+        There are no results in the folder.
+    """
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.report.run import Run
+
+    return Run(Path(folder))
+
+
+def _scene(
+    scene: str | PathLike[str],
+    preset: str,
+    settings: Overrides,
+    swap: Mapping[str, str] | None,
+    transport: str,
+) -> "Scene":
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.scene.overrides import assignments
+    from quintet.coupler.scene.read import load as read
+
+    swaps = [f"{name}={kind}" for name, kind in (swap or {}).items()]
+    return read(str(scene), preset, assignments(settings or {}), swaps, transport)
+
+
+def _finished(folder: Path, status: int) -> "Run":
+    """Open a run that just ended; raise `RunError` if it failed."""
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.report.run import finished
+
+    return finished(folder, status)
