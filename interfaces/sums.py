@@ -39,6 +39,20 @@ def product(first: Array, second: Array) -> float:
     return sum(float(a[part] @ b[part]) for part in _blocks(len(a), 1))
 
 
+def dot(first: Array, second: Array) -> float:
+    """Inner product of two fields of one shape, by pairwise summation in a fixed order.
+
+    For what decides an exchange: no library of linear algebra has a part in it, so that the bits
+    depend neither on its build nor on its threads.
+    """
+    return float(np.add.reduce(np.multiply(first, second).reshape(-1)))
+
+
+def norm(array: Array) -> float:
+    """Euclidean norm of all numbers of a field, summed in the same fixed order."""
+    return math.sqrt(dot(array, array))
+
+
 def moment(position: Array, force: Array) -> Array:
     """Sum of position x force over the items, both (n, 3)."""
     outer = np.zeros((3, 3))

@@ -212,6 +212,19 @@ CASES = {
         scale={"carried.velocity": 1.0},
         smooth=False,  # a velocity that jumps is a force without end
     ),
+    "membrane": Case(
+        "toy_tubes:Membrane",
+        {"count": 2, "height": 0.0},
+        rest={"pressure.force": TWO},
+        scale={"pressure.force": 0.1},
+    ),
+    "channel": Case(
+        "toy_tubes:Channel",
+        {"count": 2},
+        rest={"wall.velocity": TWO},
+        scale={"wall.velocity": 1.0},
+        smooth=False,  # as of the burden
+    ),
     "balls": Case(
         "toy_bodies:Balls",
         {"velocities": [[0.0, 0.0, 0.0]] * 2, "spins": [[0.0, 0.0, 0.0]] * 2},

@@ -1,0 +1,69 @@
+"""The keys of ``[iteration]``: how windows are repeated until what crosses the links agrees."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import field
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from quintet.interfaces.component import Port
+from quintet.interfaces.params import Count, Fraction, Positive, parameters, unknown
+
+Windows = Annotated[int, Field(ge=0)]
+
+
+@parameters
+class IterationSettings:
+    """``[iteration]``: how windows are repeated.
+
+    Parameters
+    ----------
+    acceleration : {"constant", "aitken", "iqn-ils"}
+        How the next guess is made: relaxed by a constant factor, by Aitken's (small interfaces,
+        little added mass), or by interface quasi-Newton (strong coupling).
+    tolerance : float, 1
+        A field has converged when its residual, what was found less what was guessed, is below
+        this share of its norm.
+    absolute : table of float, in the field's unit (an impulse's: of its rate)
+        By ``"component.port.field"`` of the side that takes it: the root mean square of the
+        residual below which it counts as converged, however small its values are.
+    limit : int
+        Repetitions of one window at most.
+    relaxation : float, 1
+        Share of the residual that is added to the guess: always (constant), in the first
+        repetition of a window at most (aitken), while there are no columns (iqn-ils).
+    reuse : int
+        Former windows whose columns are used again (iqn-ils).
+    filter : float, 1
+        A column of which newer ones leave less than this share is dropped (iqn-ils).
+    at_limit : {"stop", "continue"}
+        What happens when `limit` is met: the run ends, or goes on with what was found.
+
+    References
+    ----------
+    Küttler and Wall (2008), Comput. Mech. 43, 61; Degroote, Bathe and Vierendeels (2009),
+    Comput. Struct. 87, 793; Mehl et al. (2016), Comput. Math. Appl. 71, 869.
+    """
+
+    acceleration: Literal["constant", "aitken", "iqn-ils"] = "aitken"
+    tolerance: Positive = 1e-6
+    absolute: Mapping[str, Positive] = field(default_factory=dict)
+    limit: Count = 50
+    relaxation: Positive = 0.5
+    reuse: Windows = 10
+    filter: Fraction = 1e-2
+    at_limit: Literal["stop", "continue"] = "stop"
+
+
+def unknown_fields(
+    settings: IterationSettings, takes: Mapping[str, Iterable[Port]], where: str = "iteration"
+) -> list[str]:
+    """Say which keys of `absolute` no component takes; `takes` gives the ports of each."""
+    known = [
+        f"{name}.{port.name}.{one.name}"
+        for name, ports in takes.items()
+        for port in ports
+        for one in port.fields
+    ]
+    wrong = [key for key in settings.absolute if key not in known]
+    return [unknown(f"{where}.absolute: field {key}", key, known) for key in wrong]
