@@ -6,32 +6,32 @@
     p       = (c₀²ρ₀/γ)[(ρ/ρ₀)^γ - 1], γ = 7                             Tait
     dr_i/dt = u_i + ε Σ_j (m_j/ρ̄_ij)(u_j - u_i) W_ij                     XSPH
 
-Walls and moving surface samples are particles that obey the continuity equation (from
-fluid neighbours alone) and Tait's, but move as they are told; their density never falls below
-ρ₀, so that they never pull. With `boundary` "mdbc" their density is the fluid's, mirrored
-(`mdbc.py`); with "potential" they have no pressure, and a contact potential stands for it
-(`contact.py`), as it may for single links of a fluid with mirrored walls (`surface.py`).
+Walls and moving surface samples are particles that obey the continuity equation (from fluid
+neighbours alone) and Tait's, but move as they are told; their density never falls below ρ₀, so that
+they never pull. With `boundary.method` "mdbc" their density is the fluid's, mirrored (`mdbc.py`);
+with "potential" they have no pressure, and a contact potential stands for it (`contact.py`), as it
+may for single links of a fluid with mirrored walls (`surface.py`).
 
-`laminar` viscosity is a Laplacian (Lo & Shao 2002), close beside walls, or with `friction`
-"stress" acts along the line between particles (Monaghan & Gingold 1983), without which a free
-surface is not free of stress (Colagrossi et al. 2011); in shear on a lattice it is 6 % low. At
-mirrored walls the fluid comes to rest: friction sees its velocity there mirrored too.
+Kinematic viscosity acts as a Laplacian (Lo & Shao 2002), close beside walls, or with
+`viscosity.form` "stress" along the line between particles (Monaghan & Gingold 1983), without which
+a free surface is not free of stress (Colagrossi et al. 2011); in shear on a lattice it is 6 % low.
+At mirrored walls the fluid comes to rest: viscosity sees its velocity there mirrored too.
 `wall_velocity` moves a face in its own plane. Along axes on which the tank is open below nothing
 bears the fluid: it starts without weight.
 
-Pressure below zero is cut unless `tension` is on, which thin fast layers need to hold together;
-`diffusion` levels the density between particles (Fourtakas et al. 2019), `kernel` "wendland"
-keeps still water calm, `gaps` puts films into gaps narrower than 1.25 spacings, which press what
-particles leave of their faces (`gap.py`), a `damper` takes the ringing out of strikes
-(`damper.py`). Of what is off, nothing is compiled.
+Pressure below zero is cut unless `negative_pressure` is on, which thin fast layers need to hold
+together; `density_diffusion` levels the density between particles (Fourtakas et al. 2019), `kernel`
+"wendland" keeps still water calm, `lubrication_films` puts films into gaps narrower than 1.25
+spacings, which press what particles leave of their faces (`gap.py`), an `acoustic_damper` takes the
+ringing out of strikes (`damper.py`). Of what is off, nothing is compiled.
 
-Samples have the mass of fluid that their volume would hold, so that a body displaces its own
-volume whether or not the spacing divides it.
+Samples have the mass of fluid that their volume would hold, so that a body displaces its own volume
+whether or not the spacing divides it.
 
-In time, a particle's momentum changes in a step by exactly dt times the force of that step,
-uⁿ⁺¹ = uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past
-the step's end, extrapolated from the last two: with one pass over pairs a step, sound waves
-are then damped, not amplified (`laws.AHEAD`).
+In time, a particle's momentum changes in a step by exactly dt times the force of that step, uⁿ⁺¹ =
+uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past the step's
+end, extrapolated from the last two: with one pass over pairs a step, sound waves are then damped,
+not amplified (`laws.AHEAD`).
 
 With `integration` "symplectic" there are two passes a step, of second order; rest stays stable up
 to a `courant` of 1.6 instead of 0.4 (`symplectic.py`).
@@ -46,12 +46,12 @@ removed, and `totals` shows its mass missing. Without walls none is.
 the motion of a standing wave at the start. `staggered` rows of the lattice that fluid begins with
 are moved against each other along x, so that they do not strike a face as one (`build.py`).
 
-A face of the tank named in `symmetry` has no walls and is a plane of symmetry: what is near it acts
-from behind it too, mirrored, so that half of a symmetric flow moves as the whole does. Nothing
-rubs there, nothing passes, and the plane takes the momentum across it (`symmetry.py`). Surfaces
-stay before it, gravity lies in it, and films in narrow gaps do not know it.
+A face of the tank named in `boundary.symmetry` has no walls and is a plane of symmetry: what is
+near it acts from behind it too, mirrored, so that half of a symmetric flow moves as the whole does.
+Nothing rubs there, nothing passes, and the plane takes the momentum across it (`symmetry.py`).
+Surfaces stay before it, gravity lies in it, and films in narrow gaps do not know it.
 
-Gauges (`pressure_gauges`, `level_gauges`, `front`, `motion_gauge`) give what a scene compares
+Gauges (`pressure_gauges`, `level_gauges`, `front_gauge`, `motion_gauge`) give what a scene compares
 with a reference, each in a port of its own; see `gauges.py` for what they read.
 
 Papers: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; Monaghan, J. Comput. Phys. 82
@@ -78,7 +78,7 @@ def _ports(params: SphFluidParams) -> Ports:
 
 def _plan(params: SphFluidParams) -> Plan:
     # One part in ten: how much velocities add to the speed of sound.
-    dt = params.courant * params.length / (1.1 * params.sound_speed)
+    dt = params.courant * params.smoothing_length / (1.1 * params.sound_speed)
     twice = params.integration == "symplectic"  # two passes over longer lists
     listed = (58.0 if twice else 45.0) * params.smoothing**3  # neighbours, with their margin
     rate = 2e6 * 150 / listed * (0.5 if twice else 1.0) * (0.8 if params.mirrored else 1.0)

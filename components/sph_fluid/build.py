@@ -5,9 +5,10 @@ import math
 import numpy as np
 
 from quintet.components.shared.lattice import cell_centres, lattice_points
+from quintet.components.sph_fluid.geometry import Box, levels, tank
 from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.obstacles import obstacle_points
-from quintet.components.sph_fluid.params import Box, SphFluidParams
+from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.particle_count import cells, layers_beyond
 from quintet.components.sph_fluid.state import Array, State
 
@@ -28,7 +29,7 @@ def state(params: SphFluidParams) -> State:
     if params.wave is not None:
         moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
         made.motion[: len(moves), :3] = moves
-    if params.damper > 0.0:
+    if params.acoustic_damper > 0.0:
         made.squeeze = np.zeros(len(made.before))
     made.acceleration = math.hypot(*params.gravity)
     return made
@@ -51,10 +52,10 @@ def _offsets(points: Array, box: Box, params: SphFluidParams) -> Array:
     low, high, counts = np.array(box[0]), np.array(box[1]), cells(box, params)
     row = np.floor((points - low) / (high - low) * counts)
     offset = np.mod(0.5 + row @ OFFSETS, 1.0) - 0.5
-    for end, side in enumerate(("x-", "x+") if params.walls else ()):
-        if side not in params.open:
-            assert params.walls is not None
-            clear = np.abs(points[:, 0] - params.walls[end][0]) / (FADING * params.spacing)
+    for end, side in enumerate(("x-", "x+") if params.boundary.walls else ()):
+        if side not in params.boundary.open_faces:
+            assert params.boundary.walls is not None
+            clear = np.abs(points[:, 0] - params.boundary.walls[end][0]) / (FADING * params.spacing)
             offset *= np.minimum(clear, 1.0)
     return np.asarray(offset * (high[0] - low[0]) / counts[0])
 
@@ -65,19 +66,20 @@ def wall_points(params: SphFluidParams) -> Array:
     Half a spacing out, the lattice of a fluid that touches a wall goes on into it; but moving
     fluid keeps off dynamic particles by more than that, the more so where the wall was dry.
     """
-    if params.tank is None:
+    outside = tank(params)
+    if outside is None:
         return np.zeros((0, 3))
-    points = _lattice(params.tank, cells(params.tank, params), layers_beyond(params))
-    low, high = np.array(params.tank)
+    points = _lattice(outside, cells(outside, params), layers_beyond(params))
+    low, high = np.array(outside)
     return points[((points < low) | (points > high)).any(axis=1)]
 
 
 def wall_velocity(wall: Array, params: SphFluidParams) -> Array:
     """Velocity (n, 3) m/s of wall particles (n, 3) m, which stay where they are."""
     found = np.zeros_like(wall)
-    for face, velocity in params.wall_velocity.items():
-        assert params.walls is not None
-        (low, high), axis = params.walls, "xyz".index(face[0])
+    for face, velocity in params.boundary.wall_velocity.items():
+        assert params.boundary.walls is not None
+        (low, high), axis = params.boundary.walls, "xyz".index(face[0])
         beyond = wall[:, axis] > high[axis] if face[1] == "+" else wall[:, axis] < low[axis]
         found[beyond] = velocity
     return found
@@ -90,8 +92,8 @@ def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int
 
 def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
     """Density (n,) kg/m3 at points (n, 3) m below the surface over a box of fluid at rest."""
-    pull = math.hypot(*params.weight)
-    depth = _surface(box, params) + points @ np.array(params.weight) / (pull or 1.0)
+    pull = math.hypot(*params.hydrostatic_gravity)
+    depth = _surface(box, params) + points @ np.array(params.hydrostatic_gravity) / (pull or 1.0)
     pressure = params.density * pull * np.maximum(depth, 0.0)
     stiffness = params.sound_speed**2 * params.density / TAIT  # Pa
     return params.density * (1.0 + pressure / stiffness) ** (1.0 / TAIT)
@@ -99,13 +101,13 @@ def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
 
 def _surface(box: Box, params: SphFluidParams) -> float:
     """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
-    own, little = params.levels(box)[1], 1e-6 * params.spacing
+    own, little = levels(box, params.hydrostatic_gravity)[1], 1e-6 * params.spacing
     found = own
-    for other in params.fluid if any(params.weight) else ():
+    for other in params.fluid if any(params.hydrostatic_gravity) else ():
         ends = zip(*box, *other, strict=True)
         shared = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
         beside = min(shared) > -little and sum(one > little for one in shared) > 1
-        lowest, highest = params.levels(other)
+        lowest, highest = levels(other, params.hydrostatic_gravity)
         if beside and abs(lowest - own) < little < highest - own:
             found = max(found, _surface(other, params))
     return found
@@ -114,11 +116,11 @@ def _surface(box: Box, params: SphFluidParams) -> float:
 def wall_density(wall: Array, params: SphFluidParams) -> Array:
     """Density (n,) kg/m3 of wall particles (n, 3) m: that of the fluid they touch, or ρ₀."""
     density = np.full(len(wall), params.density)
-    if params.boundary == "potential":
+    if params.boundary.method == "potential":
         return density
     for box in params.fluid:
         low, high = np.array(box)
-        near = (params.standoff + 0.51) * params.spacing
+        near = (params.boundary.wall_offset + 0.51) * params.spacing
         rows = np.flatnonzero(((wall > low - near) & (wall < high + near)).all(axis=1))
         density[rows] = np.maximum(density[rows], hydrostatic(wall[rows], box, params))
     return density

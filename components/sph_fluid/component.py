@@ -36,7 +36,7 @@ class SphFluid(Component):
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
         self.held: Whole = self.rows  # (k,) samples that a contact potential holds
         self.steepest = math.inf  # s, step that it allows
-        self.terms = terms(params, params.boundary == "potential")
+        self.terms = terms(params, params.boundary.method == "potential")
         if self.terms.hold is not None:
             self.steepest = self.terms.hold.walls(self.state)
         self.listed: Whole = self.rows  # (samples,) and where in the neighbour lists
@@ -49,7 +49,7 @@ class SphFluid(Component):
 
             self.state.mirror = mirrors(params)
         self.images = None
-        if params.symmetry:
+        if params.boundary.symmetry:
             from quintet.components.sph_fluid.symmetry import Images
 
             self.images = Images(params)
@@ -59,7 +59,7 @@ class SphFluid(Component):
         return {
             "surface.spacing": np.array([self.params.spacing]),
             "surface.depth": np.array([SUPPORT * self.fluid.smoothing.length]),
-            "surface.inset": np.array([self.params.inset * self.params.spacing]),
+            "surface.inset": np.array([self.params.boundary.sample_depth * self.params.spacing]),
         }
 
     def bind(self, static: Fields) -> None:
@@ -69,12 +69,12 @@ class SphFluid(Component):
                 raise PortError("surface: samples need three dimensions; this fluid has two.")
             count = len(static["surface.volume"])
             self.state.add_samples(count, self.params.density, self.params.mirrored)
-            if self.params.boundary == "dbc":
+            if self.params.boundary.method == "dbc":
                 press(self.fluid, self.state.place, self.state.motion)
             self.rows = self.state.sample_rows()
             self.placed = False
             self.body, self.volume = static["surface.body"], static["surface.volume"]
-            self.state.film = np.zeros((count if self.params.gaps else 0, 3))
+            self.state.film = np.zeros((count if self.params.boundary.lubrication_films else 0, 3))
             self.held = chosen(static, self.params)
             if len(self.held):
                 self.terms = terms(self.params, True)
@@ -85,7 +85,9 @@ class SphFluid(Component):
         sound = h / (self.params.sound_speed + h * state.approach)
         pull = math.sqrt(h / state.acceleration) if state.acceleration > 0.0 else math.inf
         # Where friction is a stress, what comes nearer feels three times what passes by.
-        stiff = self.params.laminar * (3.0 if self.params.friction == "stress" else 1.0)
+        stiff = self.params.viscosity.kinematic * (
+            3.0 if self.params.viscosity.form == "stress" else 1.0
+        )
         viscous = 0.125 * h * h / stiff if stiff > 0.0 else math.inf
         return min(self.terms.courant * sound, self.params.courant * pull, viscous, self.steepest)
 
@@ -139,7 +141,7 @@ class SphFluid(Component):
     @property
     def _advancing(self) -> int:
         """Rows whose density has a rate: all where walls are dynamic, or the fluid's."""
-        return self.state.particles if self.params.boundary == "dbc" else self.state.fluid
+        return self.state.particles if self.params.boundary.method == "dbc" else self.state.fluid
 
     def _list(self) -> None:
         state, points = self.state, self.state.reference[: self.state.particles]

@@ -34,6 +34,7 @@ from quintet.components.shared.smoothing import cubic_spline, wendland
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.geometry import depth, levels, slab_thickness
 from quintet.components.sph_fluid.laws import Contact, Fluid, Guard, constants, guard
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
@@ -46,7 +47,7 @@ def contact(params: SphFluidParams) -> Contact:
     width = constants(params).smoothing.height * shape(
         1.0 / params.smoothing, params
     )  # 1/m3, W(Δp)
-    power = params.potential_exponent - 1
+    power = params.boundary.potential_exponent - 1
     strength = (power + 1) / (width * params.spacing**params.dimensions)
     once, twice, four = (float(power >> bit & 1) for bit in range(3))
     return Contact(strength, 1.0 / width, once, twice, four)
@@ -73,8 +74,8 @@ class Hold:
 
     def _place(self, state: State, rows: Whole, body: Array | None = None) -> None:
         """Write K Δpᵈ/ρ₀² in place of p/ρ²."""
-        if self.params.potential_stiffness is not None:
-            held_by = np.full(len(rows), self.params.potential_stiffness)
+        if self.params.boundary.potential_stiffness is not None:
+            held_by = np.full(len(rows), self.params.boundary.potential_stiffness)
         else:
             held_by = self.share * pressure(state.place[rows, :3], self.params, body)
         state.motion[rows, 3] = held_by / self.params.density**2
@@ -84,7 +85,7 @@ class Hold:
 
         Rows of samples (k,); walls are held where the boundary is a potential.
         """
-        if self.params.boundary == "potential":
+        if self.params.boundary.method == "potential":
             samples = np.arange(state.fluid, state.particles)
         stiffest = self.params.density**2 * float(state.motion[samples, 3].max(initial=0.0))
         return self.step / math.sqrt(stiffest) if stiffest > 0.0 else math.inf
@@ -96,14 +97,15 @@ def pressure(points: Array, params: SphFluidParams, body: Array | None = None) -
     It stands as high as the highest fluid does at the start. On bodies that it does not reach it is
     the mean of all the fluid's.
     """
-    size = math.hypot(*params.weight)
-    top = max(params.levels(box)[1] for box in params.fluid)  # m, against the weight
-    found = np.maximum(params.density * (size * top + points @ np.array(params.weight)), 0.0)
+    gravity = params.hydrostatic_gravity
+    size = math.hypot(*gravity)
+    top = max(levels(box, gravity)[1] for box in params.fluid)  # m, against gravity
+    found = np.maximum(params.density * (size * top + points @ np.array(gravity)), 0.0)
     if body is None:
         return np.asarray(found)
     number = body.astype(np.int64)
     dry = np.bincount(number, found) == 0.0
-    mean = 0.5 * params.density * size * params.depth
+    mean = 0.5 * params.density * size * depth(params)
     return np.where(dry[number], mean, found)
 
 
@@ -140,7 +142,7 @@ def push_of_wall(apart: float, params: SphFluidParams, exponent: int | None = No
     x, y, z = (axis.ravel() for axis in np.meshgrid(*axes))
     r = np.sqrt(x * x + y * y + z * z)
     r, z = r[r > 0.0], z[r > 0.0]
-    h, n = params.smoothing, exponent or params.potential_exponent
+    h, n = params.smoothing, exponent or params.boundary.potential_exponent
     width = shape(1.0 / h, params)  # W(Δp) over its scale
     ratio = np.array([shape(one, params) for one in r / h]) / width
     fall = np.array([slope(one, params) for one in r / h]) / h / width
@@ -165,11 +167,15 @@ def energy(state: State, near: Lists, touch: Contact, params: SphFluidParams, te
     turn, fluid = guard(params), constants(params)
     held_by = state.motion[:, 3] * (1.0 if touch.some is None else touch.some)
     assert turn is not None
-    numbers = (touch.inverse, params.potential_exponent, params.spacing**-params.dimensions)
+    numbers = (
+        touch.inverse,
+        params.boundary.potential_exponent,
+        params.spacing**-params.dimensions,
+    )
     found = np.zeros(state.fluid)
     arrays = (state.place, held_by, near, *numbers, turn, fluid, found)
     team.run(store, state.fluid, *arrays)
-    return float(found.sum()) * fluid.mass**2 * params.thickness
+    return float(found.sum()) * fluid.mass**2 * slab_thickness(params)
 
 
 @njit(**FAST)

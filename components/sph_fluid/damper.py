@@ -41,8 +41,8 @@ def limit(damper: float) -> float:
 
 def damp(state: State, params: SphFluidParams, team: Team) -> None:
     """Write p/ρ² with the damper's part: of the fluid, and of dynamic walls."""
-    rows = state.particles if params.boundary == "dbc" else state.fluid
-    strength = params.damper * params.sound_speed * params.length
+    rows = state.particles if params.boundary.method == "dbc" else state.fluid
+    strength = params.acoustic_damper * params.sound_speed * params.smoothing_length
     team.run(add, rows, strength, state.squeeze, constants(params), state.place, state.motion)
 
 

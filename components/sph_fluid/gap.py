@@ -102,7 +102,7 @@ def push(
     below, beyond = (np.einsum("nd,nd->n", one, away) for one in (off, back))
     foot = place[film.row, :3] + 0.5 * below[:, None] * away
     gap = np.einsum("nd,nd->n", foot - place[film.across, :3], away) - 0.5 * beyond
-    width = np.maximum(gap, params.roughness)
+    width = np.maximum(gap, params.boundary.roughness)
     weight = density * np.array(params.gravity)
     outside = state.motion[state.fluid + film.row, 3] * place[film.row, 3] ** 2
     outside = np.where(outside > 0.0, outside + (foot - place[film.row, :3]) @ weight, 0.0)

@@ -5,7 +5,7 @@ from quintet.interfaces.component import Field, Port
 
 PRESSURE = Port("pressure_gauge", (Field("pressure", (), "Pa"),))
 LEVEL = Port("level_gauge", (Field("height", (), "m"),))
-FRONT = Port("front", (Field("position", (), "m"),))
+FRONT = Port("front_gauge", (Field("position", (), "m"),))
 MOTION = Port(
     "motion_gauge",
     (
@@ -20,9 +20,9 @@ MOTION = Port(
 def gauge_ports(params: SphFluidParams) -> tuple[Port, ...]:
     """Ports of the gauges that are switched on."""
     switched = (
-        (PRESSURE, bool(params.pressure_gauges)),
-        (LEVEL, bool(params.level_gauges)),
-        (FRONT, params.front is not None),
-        (MOTION, params.motion_gauge),
+        (PRESSURE, bool(params.gauges.pressure_gauges)),
+        (LEVEL, bool(params.gauges.level_gauges)),
+        (FRONT, params.gauges.front_gauge is not None),
+        (MOTION, params.gauges.motion_gauge),
     )
     return tuple(port for port, on in switched if on)

@@ -22,6 +22,7 @@ from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.sph_fluid.gauge_kernels import add_around, fill_columns, furthest
+from quintet.components.sph_fluid.geometry import slab_thickness
 from quintet.components.sph_fluid.laws import Fluid
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
@@ -38,20 +39,20 @@ class Gauges:
 
     def __init__(self, params: SphFluidParams, fluid: Fluid) -> None:
         self.params, self.fluid = params, fluid
-        self.points = np.array(params.pressure_gauges).reshape(-1, 3)  # (m, 3) m
-        self.spots = np.array(params.level_gauges).reshape(-1, 2)  # (m, 2) m
+        self.points = np.array(params.gauges.pressure_gauges).reshape(-1, 3)  # (m, 3) m
+        self.spots = np.array(params.gauges.level_gauges).reshape(-1, 2)  # (m, 2) m
         if params.dimensions == 2:
             self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
                 corner[1] for corner in params.fluid[0]
             )
         # (k m, 3 or 2) m: these, and from where images see what these see in them.
         self.seen, self.above = self.points, self.spots
-        if params.symmetry:
+        if params.boundary.symmetry:
             from quintet.components.sph_fluid.symmetry import Images
 
             images = Images(params)
             self.seen, self.above = images.reflect(self.points), images.reflect(self.spots)
-        boxes = [params.walls] if params.walls else params.fluid
+        boxes = [params.boundary.walls] if params.boundary.walls else params.fluid
         self.floor = min(box[0][2] for box in boxes)  # m
         self.lone = fluid.mass / fluid.density * float(kernel(0.0, fluid.smoothing))  # 1, V W(0)
 
@@ -62,9 +63,9 @@ class Gauges:
             found["pressure_gauge.pressure"] = self._pressure(state)
         if len(self.spots):
             found["level_gauge.height"] = self._height(state)
-        if self.params.front is not None:
-            found["front.position"] = self._front(state, near)
-        if self.params.motion_gauge:
+        if self.params.gauges.front_gauge is not None:
+            found["front_gauge.position"] = self._front(state, near)
+        if self.params.gauges.motion_gauge:
             found |= self._motion(state)
         return found
 
@@ -74,7 +75,7 @@ class Gauges:
         place, motion = state.place[: state.particles], state.motion[: state.particles]
         add_around(self.seen, state.fluid, place, motion, self.fluid, weight, sums)
         share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T
-        room = 0.0 if self.params.boundary == "dbc" else FULL * (1.0 - walls)
+        room = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
         filled = np.maximum(share, room)
         pressure = np.divide(load, filled, out=np.zeros(len(load)), where=share > 0.0)
         return np.maximum(pressure, self.fluid.lowest)
@@ -99,7 +100,7 @@ class Gauges:
         return float(bottom + (k + part) * rise)
 
     def _front(self, state: State, near: Lists) -> Array:
-        axis = "xyz".index(str(self.params.front))
+        axis = "xyz".index(str(self.params.gauges.front_gauge))
         along = state.place[: state.fluid, axis]
         found = -math.inf
         if len(state.reference):
@@ -111,7 +112,7 @@ class Gauges:
     def _motion(self, state: State) -> Fields:
         points, velocity = state.place[: state.fluid, :3], state.motion[: state.fluid, :3]
         squares = np.einsum("nd,nd->n", velocity, velocity)
-        one = self.fluid.mass * self.params.thickness  # kg
+        one = self.fluid.mass * slab_thickness(self.params)  # kg
         centre, mass = points.mean(axis=0), one * len(points)
         return {
             "motion_gauge.speed": np.sqrt(squares.max(keepdims=True)),

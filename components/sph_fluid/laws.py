@@ -50,11 +50,11 @@ class Diffusion(NamedTuple):
 
 def diffusion(params: SphFluidParams) -> Diffusion | None:
     """Numbers of the diffusion of density; None where it is off."""
-    if params.diffusion == 0.0:
+    if params.density_diffusion == 0.0:
         return None
     sound = params.sound_speed
-    x, y, z = (params.density * pull / sound**2 for pull in params.weight)
-    return Diffusion(4.0 * params.diffusion * params.length * sound, x, y, z)
+    x, y, z = (params.density * pull / sound**2 for pull in params.hydrostatic_gravity)
+    return Diffusion(4.0 * params.density_diffusion * params.smoothing_length * sound, x, y, z)
 
 
 class Friction(NamedTuple):
@@ -74,7 +74,7 @@ class Guard(NamedTuple):
 
 def guard(params: SphFluidParams) -> Guard | None:
     """Numbers of the repulsion of walls; None for dynamic ones, which repel by themselves."""
-    if params.boundary == "dbc":
+    if params.boundary.method == "dbc":
         return None
     mass = params.density * params.spacing**params.dimensions
     stiffness = GUARD * (params.sound_speed / params.spacing) ** 2 / mass
@@ -95,16 +95,16 @@ class Contact(NamedTuple):
 
 def constants(params: SphFluidParams) -> Fluid:
     """Numbers of the laws from the parameters."""
-    h, dimensions = params.length, params.dimensions
+    h, dimensions = params.smoothing_length, params.dimensions
     return Fluid(
         mass=params.density * params.spacing**dimensions,
         smoothing=smoothing(params.kernel, dimensions, h),
         soft=0.01 * h * h,
         density=params.density,
         stiffness=params.sound_speed**2 * params.density / TAIT,
-        lowest=-math.inf if params.tension else 0.0,
-        drag=2.0 * params.viscosity * params.sound_speed * h,
-        grip=params.grip,
+        lowest=-math.inf if params.negative_pressure else 0.0,
+        drag=2.0 * params.viscosity.artificial * params.sound_speed * h,
+        grip=params.boundary.wall_viscosity_factor,
         base=0.0,
     )
 

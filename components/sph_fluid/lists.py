@@ -15,7 +15,7 @@ STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is l
 
 def skin(params: SphFluidParams) -> VerletSkin:
     """How far pairs act, and how much further the lists reach."""
-    return VerletSkin(SUPPORT * params.length, SKIN[params.integration])
+    return VerletSkin(SUPPORT * params.smoothing_length, SKIN[params.integration])
 
 
 def are_old(state: State, rows: Whole, params: SphFluidParams, dt: float) -> bool:
@@ -46,7 +46,7 @@ def query_points(state: State, rows: Whole, params: SphFluidParams) -> tuple[Arr
     if params.mirrored:
         here = np.concatenate([state.reference[len(points) :], points[rows]])
         return here, len(points) + np.arange(len(rows))
-    if params.boundary == "potential":
+    if params.boundary.method == "potential":
         return points[rows], state.fluid + np.arange(len(rows))
     return None, rows
 
@@ -54,8 +54,8 @@ def query_points(state: State, rows: Whole, params: SphFluidParams) -> tuple[Arr
 def inside(points: Array, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which points (n, 3 or more) m are in the tank or not far outside of it."""
     found = np.ones(len(points), bool)
-    if params.walls is not None:
-        low, high = np.array(params.walls)
+    if params.boundary.walls is not None:
+        low, high = np.array(params.boundary.walls)
         stray = STRAY * float((high - low).max())
         for axis in range(3):
             one = points[:, axis]

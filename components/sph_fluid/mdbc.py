@@ -20,9 +20,10 @@ from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.build import wall_points
+from quintet.components.sph_fluid.geometry import FACES, closed_faces
 from quintet.components.sph_fluid.laws import Fluid, constants, pressure_term
 from quintet.components.sph_fluid.obstacles import obstacle_mirrors
-from quintet.components.sph_fluid.params import FACES, SphFluidParams
+from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 
 THIN = 0.02  # h², variance of places along a direction below which no gradient is fitted
@@ -33,12 +34,13 @@ WALL, HELD = -1, -2  # in place of a row: the lists have none, or a contact pote
 def mirrors(params: SphFluidParams) -> Array:
     """Mirror points (n, 3) m of all wall particles, through the nearest point of their wall."""
     points = wall_points(params)
-    if params.walls is None:
+    if params.boundary.walls is None:
         return obstacle_mirrors(params)
-    low, high = (np.array(corner) for corner in params.walls)
+    closed = closed_faces(params)
+    low, high = (np.array(corner) for corner in params.boundary.walls)
     for axis in range(3):
-        low[axis] = low[axis] if FACES[2 * axis] in params.shut else -np.inf
-        high[axis] = high[axis] if FACES[2 * axis + 1] in params.shut else np.inf
+        low[axis] = low[axis] if FACES[2 * axis] in closed else -np.inf
+        high[axis] = high[axis] if FACES[2 * axis + 1] in closed else np.inf
     images = 2.0 * np.clip(points, low, high) - points
     return np.concatenate([images, obstacle_mirrors(params)])
 
@@ -56,7 +58,7 @@ def press_walls(
     own[rows - state.fluid] = listed
     own[rows[held] - state.fluid] = HELD
     arrays = (own, state.mirror, state.place, state.motion, near)
-    weight = params.density * math.hypot(*params.weight) / params.sound_speed**2
+    weight = params.density * math.hypot(*params.hydrostatic_gravity) / params.sound_speed**2
     team.run(extrapolate, len(own), state.fluid, *arrays, weight, constants(params))
 
 

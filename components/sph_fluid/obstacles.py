@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.lattice import lattice_points
-from quintet.components.sph_fluid.params import Box, SphFluidParams
+from quintet.components.sph_fluid.geometry import Box
+from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array
 
 FELT = 2.0  # smoothing lengths, the radius of the kernel
@@ -22,14 +23,14 @@ def obstacle_points(params: SphFluidParams) -> Array:
     A face that lies on a wall of the tank never meets water: there the particles go on to half a
     spacing from the wall, so that no gap is left in the corner.
     """
-    parts = [_points(box, params)[0] for box in params.obstacles]
+    parts = [_points(box, params)[0] for box in params.boundary.obstacles]
     return np.concatenate([np.zeros((0, 3)), *parts])
 
 
 def obstacle_mirrors(params: SphFluidParams) -> Array:
     """Images (n, 3) m of the particles of all obstacles, mirrored in the nearest wet face."""
     parts = [np.zeros((0, 3))]
-    for box in params.obstacles:
+    for box in params.boundary.obstacles:
         points, depth = _points(box, params)
         # On edges and corners, in all the faces that are equally near.
         nearest = depth <= depth.min(axis=(0, 2))[:, np.newaxis] + ROUNDING * params.spacing
@@ -41,8 +42,10 @@ def obstacle_mirrors(params: SphFluidParams) -> Array:
 def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     """Particles (n, 3) m of one obstacle, and how deep below each wet face [m]; (2, n, 3)."""
     wet = _wet(box, params)  # (2, 3)
-    plane = ~wet & np.array([[f"{axis}{end}" in params.symmetry for axis in "xyz"] for end in "-+"])
-    gap = np.where(plane, 0.0, np.where(wet, params.standoff, 0.5)) * params.spacing
+    plane = ~wet & np.array(
+        [[f"{axis}{end}" in params.boundary.symmetry for axis in "xyz"] for end in "-+"]
+    )
+    gap = np.where(plane, 0.0, np.where(wet, params.boundary.wall_offset, 0.5)) * params.spacing
     low, high = np.array(box[0]) + gap[0], np.array(box[1]) - gap[1]
     half = 0.5 * plane  # (2, 3) of a step, from the plane to the first particle
     steps = np.round((high - low) / params.spacing - half.sum(axis=0))
@@ -54,16 +57,18 @@ def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     points = lattice_points(axes)
     below = [points - np.array(box[0]), np.array(box[1]) - points]
     depth = np.where(wet[:, np.newaxis], below, np.inf)
-    felt = depth.min(axis=(0, 2)) < FELT * params.length
+    felt = depth.min(axis=(0, 2)) < FELT * params.smoothing_length
     return points[felt], depth[:, felt]
 
 
 def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
-    if params.walls is None:
+    if params.boundary.walls is None:
         return np.ones((2, 3), bool)
     room = ROUNDING * params.spacing
-    lower = np.array(box[0]) > np.array(params.walls[0]) + room
-    upper = np.array(box[1]) < np.array(params.walls[1]) - room
-    shut = np.array([[f"{axis}{end}" not in params.open for axis in "xyz"] for end in "-+"])
+    lower = np.array(box[0]) > np.array(params.boundary.walls[0]) + room
+    upper = np.array(box[1]) < np.array(params.boundary.walls[1]) - room
+    shut = np.array(
+        [[f"{axis}{end}" not in params.boundary.open_faces for axis in "xyz"] for end in "-+"]
+    )
     return np.stack([lower, upper]) | ~shut

@@ -2,8 +2,9 @@
 
 import math
 
+from quintet.components.sph_fluid.geometry import FACES, Box, closed_faces, tank, wall_layers
 from quintet.components.sph_fluid.obstacles import obstacle_points
-from quintet.components.sph_fluid.params import FACES, Box, SphFluidParams
+from quintet.components.sph_fluid.params import SphFluidParams
 
 
 def cells(box: Box, params: SphFluidParams) -> tuple[int, int, int]:
@@ -17,14 +18,16 @@ def particles(params: SphFluidParams) -> int:
     """Fluid and wall particles, counted without making any but those of obstacles."""
     fluid = sum(math.prod(cells(box, params)) for box in params.fluid)
     fluid += len(obstacle_points(params))
-    if params.tank is None:
+    box = tank(params)
+    if box is None:
         return fluid
-    inside = cells(params.tank, params)
+    inside = cells(box, params)
     outside = [n + sum(shut) for n, shut in zip(inside, layers_beyond(params), strict=True)]
     return fluid + math.prod(outside) - math.prod(inside)
 
 
 def layers_beyond(params: SphFluidParams) -> list[tuple[int, int]]:
     """Layers of wall particles beyond the lower and the upper face, along each axis."""
-    beyond = {face: params.layers if face in params.shut else 0 for face in FACES}
+    closed, layers = closed_faces(params), wall_layers(params)
+    beyond = {face: layers if face in closed else 0 for face in FACES}
     return [(beyond[f"{x}-"], beyond[f"{x}+"]) for x in "xyz"]

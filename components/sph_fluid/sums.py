@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from quintet.components.sph_fluid.geometry import slab_thickness
 from quintet.components.sph_fluid.laws import TAIT, Fluid
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
@@ -16,7 +17,7 @@ FEW = 1e-3  # of the fluid: so many particles may be denser for no such reason
 
 def totals(state: State, params: SphFluidParams, fluid: Fluid) -> Totals:
     """Mass, momentum and energies of the fluid that is left."""
-    mass, rows = fluid.mass * params.thickness, slice(state.fluid)
+    mass, rows = fluid.mass * slab_thickness(params), slice(state.fluid)
     points, velocity = state.place[rows, :3], state.motion[rows, :3]
     return Totals(
         mass=mass * len(points),
@@ -31,7 +32,7 @@ def totals(state: State, params: SphFluidParams, fluid: Fluid) -> Totals:
 def _elastic(density: Array, params: SphFluidParams, fluid: Fluid) -> Array:
     """∫ p/ρ² dρ from ρ₀ [J/kg]."""
     ratio = density / fluid.density
-    if not params.tension:
+    if not params.negative_pressure:
         ratio = np.maximum(ratio, 1.0)
     power = TAIT - 1
     return np.asarray(

@@ -17,14 +17,14 @@ def surface(params: SphFluidParams) -> Port:
     Dynamic boundary particles know no other contact; films know no potential.
     """
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
-    fixed = params.boundary == "dbc" or params.gaps
+    fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films
     return port if fixed else replace(port, static=(*port.static, CONTACT))
 
 
 def chosen(static: Fields, params: SphFluidParams) -> Whole:
     """Samples (k,) that the contact potential holds."""
     count = len(static["surface.volume"])
-    if params.boundary == "potential":
+    if params.boundary.method == "potential":
         return np.arange(count)
     contact = static.get("surface.contact", np.zeros(count))
     if len(contact) != count:

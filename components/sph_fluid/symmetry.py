@@ -18,10 +18,10 @@ class Images:
     """The images of one fluid's rows, from one list of neighbours to the next."""
 
     def __init__(self, params: SphFluidParams) -> None:
-        assert params.walls is not None
-        walls = params.walls
+        assert params.boundary.walls is not None
+        walls = params.boundary.walls
         self.images = SymmetryImages(
-            [Plane.of_face(face, walls) for face in sorted(set(params.symmetry))]
+            [Plane.of_face(face, walls) for face in sorted(set(params.boundary.symmetry))]
         )
         self.reflect = self.images.all_images
 

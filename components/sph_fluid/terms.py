@@ -54,10 +54,10 @@ def terms(params: SphFluidParams, held: bool) -> Terms:
         touch, strength = contact(params), Hold(params)
     laws = (constants(params), diffusion(params), guard(params), touch)
     courant = params.courant
-    if params.damper > 0.0:
+    if params.acoustic_damper > 0.0:
         from quintet.components.sph_fluid.damper import limit
 
-        courant = min(courant, limit(params.damper))
+        courant = min(courant, limit(params.acoustic_damper))
     if params.precision == "float32":
         from quintet.components.sph_fluid.single import rounded_law
 
@@ -77,25 +77,25 @@ def friction(
     params: SphFluidParams, state: State, near: Lists, fluid: Fluid, team: Team
 ) -> Friction | None:
     """Viscosity of the fluid itself, and the velocities that it sees in mirrored walls."""
-    if params.laminar == 0.0:
+    if params.viscosity.kinematic == 0.0:
         return None
     seen = state.motion
-    if params.mirrored and params.grip > 0.0:
+    if params.mirrored and params.boundary.wall_viscosity_factor > 0.0:
         from quintet.components.sph_fluid.mdbc import reflect
 
         seen = seen.copy()
         arrays = (state.mirror, state.place, state.motion, near, fluid)
         team.run(reflect, len(state.mirror), state.fluid, *arrays, seen)
-    if params.friction == "stress":
-        return Friction(True, 4.0 * (params.dimensions + 2) * params.laminar, seen)
-    return Friction(None, 4.0 * params.laminar, seen)
+    if params.viscosity.form == "stress":
+        return Friction(True, 4.0 * (params.dimensions + 2) * params.viscosity.kinematic, seen)
+    return Friction(None, 4.0 * params.viscosity.kinematic, seen)
 
 
 def damped(
     state: State, near: Lists, params: SphFluidParams, team: Team, mirror: Callable[[], None]
 ) -> Array | None:
     """Let the damper press, if there is one; return where its next part is to be written."""
-    if params.damper == 0.0:
+    if params.acoustic_damper == 0.0:
         return None
     from quintet.components.sph_fluid.damper import damp, damp_walls
 

@@ -108,7 +108,12 @@ CASES = {
     ),
     "sph_fluid, mirrored": Case(
         "sph_fluid",
-        {**DROP, "boundary": "mdbc", "diffusion": 0.1, "tension": True, "gaps": True},
+        {
+            **DROP,
+            "boundary": {"method": "mdbc", "lubrication_films": True},
+            "density_diffusion": 0.1,
+            "negative_pressure": True,
+        },
         static={
             "surface.normal": np.tile([0.0, 0.0, 1.0], (2, 1)),
             "surface.volume": np.full(2, 1.25e-4),

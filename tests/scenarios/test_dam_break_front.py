@@ -26,7 +26,7 @@ def test_front_is_that_of_the_experiment(found: dict, name: str) -> None:
 def test_front_goes_on_and_is_never_faster_than_ritters(found: dict) -> None:
     with Recording(found["folder"]) as recording:
         times = recording.times("water")
-        front = recording.history("water", "front.position", 0)
+        front = recording.history("water", "front_gauge.position", 0)
     assert front[0] == pytest.approx(1.0)
     assert front[-1] > 4.0
     speed = np.diff(front) / np.diff(times)

@@ -12,7 +12,9 @@ WIDE = ("gap_1.25", "gap_1.5", "gap_2", "gap_3", "gap_4")
 
 def test_films_mend_narrow_gaps_and_leave_those_that_particles_fill(run_scene: Run) -> None:
     found, alone = (
-        run_scene("gap", "--preset", "quick", "--set", f"components.water.gaps={on}")["by_name"]
+        run_scene(
+            "gap", "--preset", "quick", "--set", f"components.water.boundary.lubrication_films={on}"
+        )["by_name"]
         for on in ("true", "false")
     )
     assert len(found) == 10

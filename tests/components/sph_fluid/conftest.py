@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Fields
 
@@ -22,7 +22,7 @@ def drop() -> Callable[..., SphFluid]:
     def make(**given: Any) -> SphFluid:
         edge = 6 * SPACING
         settings = {"spacing": SPACING, "sound_speed": 20.0, "fluid": ((NOTHING, (edge,) * 3),)}
-        return SphFluid(SphFluidParams(**(settings | given)))
+        return SphFluid(fluid_params(**(settings | given)))
 
     return make
 
@@ -36,9 +36,9 @@ def pool() -> Callable[..., SphFluid]:
             "spacing": SPACING,
             "sound_speed": 20.0 * math.sqrt(9.81 * 0.1),
             "fluid": ((NOTHING, (0.16, 0.16, 0.1)),),
-            "walls": (NOTHING, (0.16, 0.16, 0.16)),
+            "boundary.walls": (NOTHING, (0.16, 0.16, 0.16)),
         }
-        return SphFluid(SphFluidParams(**(settings | given)))
+        return SphFluid(fluid_params(**(settings | given)))
 
     return make
 

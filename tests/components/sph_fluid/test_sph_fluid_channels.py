@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import nested
 
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.geometry import depth
 from quintet.interfaces.params import read
 
 LENGTH, SPEED, SPACING = 6.0, 0.2, 0.05
@@ -21,19 +23,19 @@ TABLE: dict[str, Any] = {
     "dimensions": 2,
     "sound_speed": 40.0 * SPEED,
     "fluid": [[[0.0, 0.0, 0.0], [LENGTH, 1.0, 1.0]]],
-    "walls": [[-1.0, 0.0, 0.0], [LENGTH + 1.0, 1.0, 1.0]],
-    "open": ["x-", "x+"],
+    "boundary.walls": [[-1.0, 0.0, 0.0], [LENGTH + 1.0, 1.0, 1.0]],
+    "boundary.open_faces": ["x-", "x+"],
     "gravity": [0.0, 0.0, 0.0],
-    "boundary": "mdbc",
-    "tension": True,
-    "diffusion": 0.1,
-    "viscosity": 0.0,
-    "laminar": 1.0,
+    "boundary.method": "mdbc",
+    "negative_pressure": True,
+    "density_diffusion": 0.1,
+    "viscosity.artificial": 0.0,
+    "viscosity.kinematic": 1.0,
 }
 
 
 def channel(**given: Any) -> SphFluid:
-    params, mistakes = read(SphFluidParams, TABLE | given, "water")
+    params, mistakes = read(SphFluidParams, nested(TABLE | given), "water")
     assert not mistakes
     return SphFluid(params)
 
@@ -55,7 +57,7 @@ def couette(z: np.ndarray, t: float) -> np.ndarray:
     ("given", "exact"),
     [
         ({"gravity": [8.0 * SPEED, 0.0, 0.0]}, poiseuille),
-        ({"wall_velocity": {"z+": [SPEED, 0.0, 0.0]}}, couette),
+        ({"boundary.wall_velocity": {"z+": [SPEED, 0.0, 0.0]}}, couette),
     ],
 )
 def test_flow_starts_as_the_series_says(given: dict[str, Any], exact: Any) -> None:
@@ -75,10 +77,10 @@ def test_flow_starts_as_the_series_says(given: dict[str, Any], exact: Any) -> No
 def test_fluid_that_nothing_bears_has_no_weight() -> None:
     """It falls along an open axis, and starts without a pressure that would burst it."""
     fluid = channel(gravity=[1.6, 0.0, -1.6], sound_speed=40.0)
-    assert fluid.params.weight == (0.0, 0.0, -1.6)
-    assert fluid.params.depth == 1.0
-    pressure, depth = fluid.view()["pressure"], 1.0 - fluid.view()["points"][:, 2]
-    assert pressure == pytest.approx(1600.0 * depth, rel=1e-3)
+    assert fluid.params.hydrostatic_gravity == (0.0, 0.0, -1.6)
+    assert depth(fluid.params) == 1.0
+    pressure, below = fluid.view()["pressure"], 1.0 - fluid.view()["points"][:, 2]
+    assert pressure == pytest.approx(1600.0 * below, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -86,6 +88,8 @@ def test_fluid_that_nothing_bears_has_no_weight() -> None:
     [("x+", [0.0, 0.0, 1.0]), ("z+", [0.0, 0.0, 1.0]), ("y-", [1.0, 0.0, 0.0])],
 )
 def test_a_wall_moves_only_in_its_own_plane(face: str, velocity: list[float]) -> None:
-    found, mistakes = read(SphFluidParams, TABLE | {"wall_velocity": {face: velocity}}, "water")
+    found, mistakes = read(
+        SphFluidParams, nested(TABLE | {"boundary.wall_velocity": {face: velocity}}), "water"
+    )
     assert found is None
     assert f"wall_velocity.{face} must lie in a face that the tank has, z-, z+" in mistakes[0]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params, nested
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.contact import (
@@ -45,7 +46,7 @@ def run(fluid: SphFluid, time: float) -> None:
 def params(**given: Any) -> SphFluidParams:
     box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
     settings = {"spacing": SPACING, "sound_speed": 20.0 * math.sqrt(9.81 * EDGE), "fluid": (box,)}
-    return SphFluidParams(**({"boundary": "potential"} | settings | given))
+    return fluid_params(**({"boundary.method": "potential"} | settings | given))
 
 
 # σ/(K Δp³) between two facing cubic lattices, summed independently of this code.
@@ -62,7 +63,7 @@ def params(**given: Any) -> SphFluidParams:
 def test_pressure_between_lattices_is_the_tabled_one(
     smoothing: float, exponent: int, pressures: tuple[float, ...]
 ) -> None:
-    one = params(smoothing=smoothing, potential_exponent=exponent)
+    one = params(smoothing=smoothing, boundary__potential_exponent=exponent)
     found = [held(apart, one) for apart in (0.5, 1.0, 1.5, 2.0, 2.5)]
     assert found == pytest.approx(pressures, rel=0.05)  # its digits
 
@@ -73,8 +74,8 @@ def test_pressure_between_lattices_is_the_tabled_one(
 def test_force_on_a_plate_is_that_of_the_lattices(
     drop: Make, plate: Join, kernel: str, exponent: int
 ) -> None:
-    given = {"kernel": kernel, "potential_exponent": exponent, "gravity": (0.0, 0.0, 0.0)}
-    fluid = drop(boundary="potential", potential_stiffness=3e3, **given)
+    given = {"kernel": kernel, "boundary.potential_exponent": exponent, "gravity": (0.0, 0.0, 0.0)}
+    fluid = drop(boundary__method="potential", boundary__potential_stiffness=3e3, **given)
     fluid.state.place[:216, :3] += SPACING * np.array([0.5, 0.5, -0.5])  # above samples, from z = 0
     fluid.take(plate(fluid, height=-1.3 * SPACING, speed=0.0))
     fluid.step(1e-9)
@@ -85,8 +86,12 @@ def test_force_on_a_plate_is_that_of_the_lattices(
 
 
 def test_contact_gives_and_takes_the_same_impulse(drop: Make, plate: Join, struck: Strike) -> None:
-    given = {"gravity": (0.0, 0.0, 0.0), "laminar": 1e-3, "potential_stiffness": 3e3}
-    fluid = drop(boundary="potential", **given)
+    given = {
+        "gravity": (0.0, 0.0, 0.0),
+        "viscosity.kinematic": 1e-3,
+        "boundary.potential_stiffness": 3e3,
+    }
+    fluid = drop(boundary__method="potential", **given)
     impulse, gained = struck(fluid, plate(fluid))
     assert np.abs(impulse[:, 2]).sum() > 0.0
     assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())
@@ -94,8 +99,12 @@ def test_contact_gives_and_takes_the_same_impulse(drop: Make, plate: Join, struc
 
 @pytest.mark.parametrize("exponent", [1, 4])
 def test_energy_is_the_work_of_the_plate(drop: Make, plate: Join, exponent: int) -> None:
-    given = {"potential_exponent": exponent, "potential_stiffness": 2e3, "viscosity": 0.0}
-    fluid = drop(boundary="potential", gravity=(0.0, 0.0, 0.0), courant=0.02, **given)
+    given = {
+        "boundary.potential_exponent": exponent,
+        "boundary.potential_stiffness": 2e3,
+        "viscosity.artificial": 0.0,
+    }
+    fluid = drop(boundary__method="potential", gravity=(0.0, 0.0, 0.0), courant=0.02, **given)
     fields = {name: np.array(array) for name, array in plate(fluid, height=-SPACING).items()}
     work, energies = 0.0, []
     for _ in range(400):
@@ -116,12 +125,17 @@ def test_water_settles_at_one_spacing_where_its_weight_is_held(exponent: int) ->
     given = {
         "dimensions": 2,
         "fluid": (((0.0, 0.0, 0.0), (width, SPACING, depth)),),
-        "walls": ((0.0, 0.0, 0.0), (width, SPACING, 2.0 * depth)),
+        "boundary.walls": ((0.0, 0.0, 0.0), (width, SPACING, 2.0 * depth)),
         "sound_speed": 20.0 * math.sqrt(9.81 * depth),
-        "potential_exponent": exponent,
+        "boundary.potential_exponent": exponent,
     }
     held_by = float(stiffness(np.array([1000.0 * 9.81 * depth]), params(**given))[0])
-    how = {"potential_stiffness": held_by, "grip": 0.0, "viscosity": 1.0, "tension": True}
+    how = {
+        "boundary.potential_stiffness": held_by,
+        "boundary.wall_viscosity_factor": 0.0,
+        "viscosity.artificial": 1.0,
+        "negative_pressure": True,
+    }
     fluid = SphFluid(params(**given, **how))
     run(fluid, 0.8)
     lowest = np.sort(fluid.view()["points"][:, 2])[:40]
@@ -129,7 +143,7 @@ def test_water_settles_at_one_spacing_where_its_weight_is_held(exponent: int) ->
 
 
 def test_walls_and_bodies_hold_the_pressure_of_water_at_rest(pool: Make, plate: Join) -> None:
-    fluid = pool(boundary="potential")
+    fluid = pool(boundary__method="potential")
     walls = fluid.state.place[fluid.state.fluid :]
     fluid.take(plate(fluid, height=0.03, speed=0.0))
     depth = 0.1 - np.concatenate([walls[:, 2], np.full(49, 0.03)])
@@ -142,7 +156,7 @@ def test_walls_and_bodies_hold_the_pressure_of_water_at_rest(pool: Make, plate: 
 
 
 def test_bodies_that_are_dry_hold_the_mean_pressure(pool: Make, plate: Join) -> None:
-    fluid = pool(boundary="potential")
+    fluid = pool(boundary__method="potential")
     fluid.take(plate(fluid, height=0.13))
     expected = stiffness(np.array([490.5]), fluid.params)[0] / 1e6
     assert fluid.state.motion[fluid.rows, 3] == pytest.approx(np.full(49, expected))
@@ -153,7 +167,7 @@ def wander(step: float) -> float:
 
     In spacings, from a start 1e-3 off.
     """
-    law = params(gravity=(0.0, 0.0, 0.0), viscosity=0.0, potential_exponent=4)
+    law = params(gravity=(0.0, 0.0, 0.0), viscosity__artificial=0.0, boundary__potential_exponent=4)
     bears = 3e3  # Pa
     line = np.linspace(0.3, 2.0, 171)
     push = np.array([push_of_wall(one, law) for one in line])
@@ -190,21 +204,25 @@ def test_step_limit_is_a_tenth_of_where_rest_becomes_unstable() -> None:
 
 def test_a_stiffness_without_the_potential_is_a_mistake() -> None:
     given = {"spacing": 0.1, "sound_speed": 60.0, "fluid": [[[0, 0, 0], [1, 1, 1]]]}
-    found = read(SphFluidParams, given | {"potential_stiffness": 1e3}, "water")[1]
-    sentence = r"potential_stiffness belongs to boundary potential, or .* found dbc. Remove it, or"
+    found = read(SphFluidParams, nested(given | {"boundary.potential_stiffness": 1e3}), "water")[1]
+    sentence = (
+        r"potential_stiffness belongs to boundary.method potential, or .* found dbc. Remove it, or"
+    )
     assert re.search(sentence, "\n".join(found))
 
 
 def test_films_leave_a_link_no_choice() -> None:
     box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
     for gaps in (False, True):
-        port = SphFluid(params(boundary="mdbc", gaps=gaps, fluid=(box,))).takes[0]
+        port = SphFluid(
+            params(boundary__method="mdbc", boundary__lubrication_films=gaps, fluid=(box,))
+        ).takes[0]
         assert (CONTACT in port.static) is not gaps
 
 
 def test_the_contact_of_some_samples_alone_is_refused() -> None:
     box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
-    one = SphFluid(params(boundary="mdbc", fluid=(box,)))
+    one = SphFluid(params(boundary__method="mdbc", fluid=(box,)))
     static = {"volume": np.full(2, SPACING**3), "body": np.zeros(2), "contact": np.ones(1)}
     sentence = "contact must be said of all 2 samples or of none; found 1. Let every link"
     with pytest.raises(PortError, match=sentence):

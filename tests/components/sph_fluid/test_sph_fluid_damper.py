@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.damper import STEEPEST, limit
 from quintet.interfaces.component import Fields
@@ -16,15 +16,26 @@ from quintet.interfaces.errors import StepError
 Make = Callable[..., SphFluid]
 LENGTH, SOUND = 0.48, 20.0  # m, m/s
 K = math.pi / LENGTH  # 1/m, of the longest wave between the ends
-CALM = {"gravity": (0.0, 0.0, 0.0), "tension": True, "viscosity": 0.0, "kernel": "wendland"}
+CALM = {
+    "gravity": (0.0, 0.0, 0.0),
+    "negative_pressure": True,
+    "viscosity.artificial": 0.0,
+    "kernel": "wendland",
+}
 
 
 def tube(spacing: float = 0.02, **given: Any) -> SphFluid:
     """Make a closed slab of fluid between two planes of symmetry, floor and lid."""
     box = ((0.0, 0.0, 0.0), (LENGTH, 0.1, LENGTH))
-    shut = {"fluid": (box,), "walls": box, "open": (), "symmetry": ("x-", "x+"), "dimensions": 2}
+    shut = {
+        "fluid": (box,),
+        "boundary.walls": box,
+        "boundary.open_faces": (),
+        "boundary.symmetry": ("x-", "x+"),
+        "dimensions": 2,
+    }
     settings = {"spacing": spacing, "sound_speed": SOUND, "integration": "symplectic"}
-    fluid = SphFluid(SphFluidParams(**(settings | shut | {"boundary": "mdbc"} | CALM | given)))
+    fluid = SphFluid(fluid_params(**(settings | shut | {"boundary.method": "mdbc"} | CALM | given)))
     fluid.state.place[:, 3] += 1.0  # kg/m3: walls do not pull, so that none must
     return fluid
 
@@ -49,7 +60,9 @@ def test_sound_fades_as_bulk_viscosity_lets_it(
     spacing: float, error: float, diffusion: float
 ) -> None:
     """Beside floor and lid, which stand still, pairs see less of ∇·u: the more, the coarser."""
-    plain, damped = (fading(tube(spacing, diffusion=diffusion, damper=z)) for z in (0.0, 0.5))
+    plain, damped = (
+        fading(tube(spacing, density_diffusion=diffusion, acoustic_damper=z)) for z in (0.0, 0.5)
+    )
     expected = 0.5 * 0.5 * 1.5 * spacing * SOUND * K**2
     assert damped - plain == pytest.approx(expected, rel=error)
 
@@ -63,7 +76,7 @@ def squeezed(fluid: SphFluid) -> np.ndarray:
 
 
 def test_damper_leaves_shear_alone() -> None:
-    fluid = tube(damper=1.0)
+    fluid = tube(acoustic_damper=1.0)
     place, motion = fluid.state.place, fluid.state.motion
     inside = (np.abs(place[: fluid.state.fluid, [0, 2]] - 0.24) < 0.12).all(axis=1)
     motion[:, 0] = np.sin(20.0 * place[:, 2])
@@ -71,7 +84,7 @@ def test_damper_leaves_shear_alone() -> None:
 
 
 def test_damper_knows_the_flow_without_what_diffuses() -> None:
-    fluid = tube(damper=1.0, diffusion=0.1)
+    fluid = tube(acoustic_damper=1.0, density_diffusion=0.1)
     fluid.state.place[:, 3] += np.random.default_rng(1).normal(0.0, 1.0, len(fluid.state.place))
     assert not squeezed(fluid).any()
     assert np.abs(fluid.rate[: fluid.state.fluid, 3]).min() > 0.0
@@ -85,7 +98,7 @@ def test_step_limit_is_where_the_steepest_sound_grows(
     steepest = 1.127  # of this lattice and kernel, h = 1.5 spacings
     assert steepest < STEEPEST
     exact = math.sqrt(size**2 + (2.0 / steepest) ** 2) - size
-    fluid = tube(damper=size, courant=4.0)
+    fluid = tube(acoustic_damper=size, courant=4.0)
     assert fluid.stable_dt() == pytest.approx(limit(size) * 0.03 / SOUND, rel=1e-3)
     assert limit(size) < exact
     noise = np.random.default_rng(1).normal(0.0, 1e-6, (fluid.state.fluid, 2))
@@ -104,7 +117,11 @@ def test_step_limit_is_where_the_steepest_sound_grows(
 def test_surface_takes_what_the_fluid_gives(
     drop: Make, plate: Any, struck: Any, boundary: str
 ) -> None:
-    given = CALM | {"damper": 1.0, "boundary": boundary, "integration": "symplectic"}
+    given = CALM | {
+        "acoustic_damper": 1.0,
+        "boundary.method": boundary,
+        "integration": "symplectic",
+    }
     fluid = drop(**given)
     fields: Fields = plate(fluid)
     mirror = fields["surface.position"] + [0.0, 0.0, 0.02]

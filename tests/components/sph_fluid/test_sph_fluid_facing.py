@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.facing import directions
 from quintet.components.sph_fluid.gap import pressed
@@ -33,14 +33,14 @@ def pair(width: float, **given: object) -> SphFluid:
         "spacing": SPACING,
         "sound_speed": 11.0,
         "fluid": boxes(width),
-        "walls": ((0.0, 0.0, 0.0), (LONG, WIDE, 0.15)),
-        "boundary": "mdbc",
-        "diffusion": 0.1,
-        "tension": True,
+        "boundary.walls": ((0.0, 0.0, 0.0), (LONG, WIDE, 0.15)),
+        "boundary.method": "mdbc",
+        "density_diffusion": 0.1,
+        "negative_pressure": True,
         "courant": 0.3,
-        "gaps": True,
+        "boundary.lubrication_films": True,
     }
-    fluid = SphFluid(SphFluidParams(**(settings | given)))
+    fluid = SphFluid(fluid_params(**(settings | given)))
     arm, normal, volume = fill(BOX, SIZE, SPACING, 3.0 * SPACING)
     image, count = mirrors(BOX, SIZE, arm, normal), len(arm)
     static = {"normal": np.tile(normal, (2, 1)), "volume": np.tile(volume, 2)}

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
 from quintet.components.sph_fluid import gap
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.params import SphFluidParams
 
 DEPTH, WIDTH, EDGE, SPACING = 0.2, 0.4, 0.1, 0.025
 LOW, HIGH = 0.5 * (WIDTH - EDGE), 0.5 * (WIDTH + EDGE)
@@ -30,10 +30,16 @@ def cube():
 
 
 def standing(gaps, heights=(0.5 * EDGE,), fluid=AROUND):
-    params = SphFluidParams(
-        spacing=SPACING, sound_speed=20.0 * math.sqrt(9.81 * DEPTH), fluid=fluid, boundary="mdbc",
-        diffusion=0.1, tension=True, walls=((0.0,) * 3, (WIDTH, WIDTH, 0.35)), gaps=gaps,
-    )  # fmt: skip
+    params = fluid_params(
+        spacing=SPACING,
+        sound_speed=20.0 * math.sqrt(9.81 * DEPTH),
+        fluid=fluid,
+        boundary__method="mdbc",
+        density_diffusion=0.1,
+        negative_pressure=True,
+        boundary__walls=((0.0,) * 3, (WIDTH, WIDTH, 0.35)),
+        boundary__lubrication_films=gaps,
+    )
     one = SphFluid(params)
     arm, image = cube()
     centres = [np.array([0.5 * WIDTH, 0.5 * WIDTH, height]) for height in heights]

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params, nested
 
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
@@ -17,11 +18,11 @@ BOX = ((0.0, 0.0, 0.0), (0.2, 0.2, 0.16))  # m
 
 def fluid_with(**given):
     settings = {"spacing": SPACING, "sound_speed": 30.0, "fluid": (BOX,)}
-    return SphFluid(SphFluidParams(**(settings | given)))
+    return SphFluid(fluid_params(**(settings | given)))
 
 
 def walled(**given):
-    return fluid_with(walls=BOX, boundary="mdbc", **given)
+    return fluid_with(boundary__walls=BOX, boundary__method="mdbc", **given)
 
 
 @pytest.mark.parametrize(
@@ -30,7 +31,7 @@ def walled(**given):
     ids=["on the lattice", "beside it", "on a wall", "in a corner"],
 )
 def test_pressure_of_still_water_is_read_exactly(point):
-    fluid = walled(pressure_gauges=(point,))
+    fluid = walled(gauges__pressure_gauges=(point,))
     rows, shake = slice(fluid.state.fluid), np.random.default_rng(2).uniform(-0.2, 0.2, (2000, 3))
     place, motion = fluid.state.place, fluid.state.motion
     place[rows, :3] += SPACING * shake[: fluid.state.fluid]
@@ -40,7 +41,7 @@ def test_pressure_of_still_water_is_read_exactly(point):
 
 
 def test_hydrostatic_pressure_is_read_on_the_floor_at_the_start():
-    fluid = walled(pressure_gauges=((0.1, 0.1, 0.0), (0.0, 0.0, 0.0), (0.1, 0.1, 0.08)))
+    fluid = walled(gauges__pressure_gauges=((0.1, 0.1, 0.0), (0.0, 0.0, 0.0), (0.1, 0.1, 0.08)))
     found = fluid.give()["pressure_gauge.pressure"]
     assert found == pytest.approx([9810.0 * 0.16, 9810.0 * 0.16, 9810.0 * 0.08], rel=1e-9)
 
@@ -49,7 +50,9 @@ def test_hydrostatic_pressure_is_read_on_the_floor_at_the_start():
 def test_a_gauge_on_a_face_that_is_half_wet_reads_its_share(top, share):
     # The fluid ends at the gauge, or goes on beyond it.
     water = ((0.0, 0.0, 0.0), (0.2, 0.2, top))
-    fluid = walled(fluid=(water,), pressure_gauges=((0.0, 0.1, 0.08),), gravity=(0.0, 0.0, 0.0))
+    fluid = walled(
+        fluid=(water,), gauges__pressure_gauges=((0.0, 0.1, 0.08),), gravity=(0.0, 0.0, 0.0)
+    )
     rows = slice(fluid.state.fluid)
     fluid.state.motion[rows, 3] = 5000.0 / fluid.state.place[rows, 3] ** 2
     found = fluid.give()["pressure_gauge.pressure"]
@@ -58,7 +61,7 @@ def test_a_gauge_on_a_face_that_is_half_wet_reads_its_share(top, share):
 
 def test_a_dry_gauge_reads_zero_and_one_that_a_drop_strikes_its_share():
     spot = (0.5, 0.1, 0.1)
-    fluid = fluid_with(boundary="mdbc", pressure_gauges=(spot, (0.5, 0.1, 0.5)))
+    fluid = fluid_with(boundary__method="mdbc", gauges__pressure_gauges=(spot, (0.5, 0.1, 0.5)))
     fluid.state.place[0, :3] = spot
     fluid.state.motion[0, 3] = 70.0 / fluid.state.place[0, 3] ** 2
     share = SPACING**3 / (math.pi * (1.5 * SPACING) ** 3) * 1000.0 / fluid.state.place[0, 3]
@@ -69,7 +72,7 @@ def test_a_dry_gauge_reads_zero_and_one_that_a_drop_strikes_its_share():
 def test_pressure_is_not_read_below_where_it_is_cut():
     # Carried on to above the surface, that of still water is below zero.
     for tension in (False, True):
-        fluid = fluid_with(tension=tension, pressure_gauges=((0.1, 0.1, 0.18),))
+        fluid = fluid_with(negative_pressure=tension, gauges__pressure_gauges=((0.1, 0.1, 0.18),))
         found = fluid.give()["pressure_gauge.pressure"][0]
         assert -196.3 < found < -50.0 if tension else found == 0.0
 
@@ -78,7 +81,11 @@ def test_pressure_is_not_read_below_where_it_is_cut():
 def test_level_of_still_water_is_within_a_tenth_of_a_spacing_unless_it_is_shallow(height, within):
     water = (BOX[0], (0.2, 0.2, height))
     spots = ((0.1, 0.1), (0.107, 0.093), (0.0, 0.1), (0.01, 0.19), (0.0, 0.0), (5.0, 0.1))
-    given = {"fluid": (water,), "walls": (BOX[0], (0.2, 0.2, 0.3)), "level_gauges": spots}
+    given = {
+        "fluid": (water,),
+        "boundary.walls": (BOX[0], (0.2, 0.2, 0.3)),
+        "gauges.level_gauges": spots,
+    }
     found = fluid_with(**given).give()["level_gauge.height"]
     assert found[:5] == pytest.approx(np.full(5, height), abs=within * SPACING)
     assert found[5] == 0.0  # dry: the floor
@@ -87,7 +94,7 @@ def test_level_of_still_water_is_within_a_tenth_of_a_spacing_unless_it_is_shallo
 def test_level_is_the_highest_and_passes_over_drops():
     boxes = (BOX, ((0.0, 0.0, 0.4), (0.2, 0.2, 0.5)))
     spots = ((0.1, 0.1), (0.17, 0.1))
-    fluid = fluid_with(fluid=boxes, level_gauges=spots)
+    fluid = fluid_with(fluid=boxes, gauges__level_gauges=spots)
     fluid.state.place[0, :3] = [0.1, 0.1, 0.8]
     assert fluid.give()["level_gauge.height"] == pytest.approx([0.5, 0.5], abs=0.1 * SPACING)
     high = fluid.state.place[:, 2] > 0.35
@@ -96,7 +103,7 @@ def test_level_is_the_highest_and_passes_over_drops():
 
 
 def test_level_follows_a_slope():
-    fluid = fluid_with(level_gauges=((0.1, 0.1), (0.06, 0.1), (0.14, 0.1)))
+    fluid = fluid_with(gauges__level_gauges=((0.1, 0.1), (0.06, 0.1), (0.14, 0.1)))
     fluid.state.place[:, 2] += 0.1 * (fluid.state.place[:, 0] - 0.1)
     exact = [0.16, 0.156, 0.164]
     assert fluid.give()["level_gauge.height"] == pytest.approx(exact, abs=0.1 * SPACING)
@@ -104,23 +111,23 @@ def test_level_follows_a_slope():
 
 @pytest.mark.parametrize(("axis", "end"), [("x", 0.2), ("y", 0.2), ("z", 0.16)])
 def test_front_of_a_box_is_its_face(axis, end):
-    fluid = fluid_with(front=axis, gravity=(0.0, 0.0, 0.0))
-    assert fluid.give()["front.position"] == pytest.approx([end])
+    fluid = fluid_with(gauges__front_gauge=axis, gravity=(0.0, 0.0, 0.0))
+    assert fluid.give()["front_gauge.position"] == pytest.approx([end])
     fluid.step(1e-6)
-    assert fluid.give()["front.position"] == pytest.approx([end], abs=1e-6)
+    assert fluid.give()["front_gauge.position"] == pytest.approx([end], abs=1e-6)
 
 
 @pytest.mark.parametrize(("drops", "front"), [(0, 0.2), (1, 0.2), (3, 0.2), (200, 0.3)])
 def test_front_leaves_out_spray_but_not_bulk(drops, front):
-    fluid = fluid_with(front="x", gravity=(0.0, 0.0, 0.0))
+    fluid = fluid_with(gauges__front_gauge="x", gravity=(0.0, 0.0, 0.0))
     ahead = fluid.state.place[: fluid.state.fluid, 0].argsort(kind="stable")[::-1][:drops]
     fluid.state.place[ahead, 0] += 0.1
     fluid.step(1e-9)
-    assert fluid.give()["front.position"] == pytest.approx([front], abs=1e-6)
+    assert fluid.give()["front_gauge.position"] == pytest.approx([front], abs=1e-6)
 
 
 def test_motion_gauge_agrees_with_the_totals():
-    fluid = fluid_with(motion_gauge=True)
+    fluid = fluid_with(gauges__motion_gauge=True)
     for _ in range(5):
         fluid.step(fluid.stable_dt())
     found, totals = fluid.give(), fluid.totals()
@@ -133,7 +140,11 @@ def test_motion_gauge_agrees_with_the_totals():
 
 
 def test_gauges_do_not_depend_on_what_was_before_a_repeated_window():
-    fluid = fluid_with(front="x", level_gauges=((0.1, 0.1),), pressure_gauges=((0.1, 0.1, 0.1),))
+    fluid = fluid_with(
+        gauges__front_gauge="x",
+        gauges__level_gauges=((0.1, 0.1),),
+        gauges__pressure_gauges=((0.1, 0.1, 0.1),),
+    )
     kept, first = fluid.save(), fluid.give()
     for _ in range(3):
         fluid.step(fluid.stable_dt())
@@ -146,12 +157,12 @@ def test_only_gauges_that_are_on_have_a_port():
     base = {"spacing": SPACING, "sound_speed": 30.0, "fluid": (BOX,)}
     for given, name in (
         ({}, None),
-        ({"pressure_gauges": ((0.0, 0.0, 0.0),)}, "pressure_gauge"),
-        ({"level_gauges": ((0.0, 0.0),)}, "level_gauge"),
-        ({"front": "x"}, "front"),
-        ({"motion_gauge": True}, "motion_gauge"),
+        ({"gauges.pressure_gauges": ((0.0, 0.0, 0.0),)}, "pressure_gauge"),
+        ({"gauges.level_gauges": ((0.0, 0.0),)}, "level_gauge"),
+        ({"gauges.front_gauge": "x"}, "front_gauge"),
+        ({"gauges.motion_gauge": True}, "motion_gauge"),
     ):
-        params = SphFluidParams(**base, **given)
+        params = fluid_params(**base, **given)
         names = [port.name for port in MANIFEST.ports(params)[1]]
         assert names == (["surface_load", name] if name else ["surface_load"])
 
@@ -174,19 +185,29 @@ def test_gauges_that_are_off_are_not_imported():
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"front": "w"}, "water.front should be 'x', 'y' or 'z'; found 'w'"),
-        ({"pressure_gauges": [[0.0, 1.0]]}, "water.pressure_gauges.0.2 is needed"),
-        ({"level_gauges": [[0.0, "high"]]}, "water.level_gauges.0.1 should be a valid number"),
-        ({"level_gauge": [[0.0, 0.0]]}, "Did you mean level_gauges?"),
+        (
+            {"gauges.front_gauge": "w"},
+            "water.gauges.front_gauge should be 'x', 'y' or 'z'; found 'w'",
+        ),
+        ({"gauges.pressure_gauges": [[0.0, 1.0]]}, "water.gauges.pressure_gauges.0.2 is needed"),
+        (
+            {"gauges.level_gauges": [[0.0, "high"]]},
+            "water.gauges.level_gauges.0.1 should be a valid number",
+        ),
+        ({"gauges.level_gauge": [[0.0, 0.0]]}, "Did you mean level_gauges?"),
     ],
 )
 def test_a_wrong_gauge_is_refused_with_a_sentence(given, sentence):
     base = {"spacing": SPACING, "sound_speed": 30.0, "fluid": [list(map(list, BOX))]}
-    found, mistakes = read(SphFluidParams, base | given, "water")
+    found, mistakes = read(SphFluidParams, nested(base | given), "water")
     assert found is None and sentence in "\n".join(mistakes), mistakes
 
 
 def test_gauges_read_nothing_that_is_not_finite():
-    fluid = fluid_with(pressure_gauges=((0.1, 0.1, 0.1),), front="x", motion_gauge=True)
+    fluid = fluid_with(
+        gauges__pressure_gauges=((0.1, 0.1, 0.1),),
+        gauges__front_gauge="x",
+        gauges__motion_gauge=True,
+    )
     given = fluid.give()
     assert all(math.isfinite(value) for array in given.values() for value in array.ravel())

@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid import SphFluidParams, laws
+from quintet.components.sph_fluid import laws
 from quintet.components.sph_fluid.kernels import interact, press
 from quintet.components.sph_fluid.laws import Fluid, constants
 from quintet.components.sph_fluid.shepard import shepard
@@ -31,8 +32,13 @@ def near(points: np.ndarray, spacing: float) -> NeighbourLists:
 
 def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: Any) -> Fluid:
     box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
-    settings = {"spacing": spacing, "smoothing": smoothing, "sound_speed": 40.0, "viscosity": 0.0}
-    return constants(SphFluidParams(fluid=(box,), dimensions=dimensions, **settings, **given))
+    settings = {
+        "spacing": spacing,
+        "smoothing": smoothing,
+        "sound_speed": 40.0,
+        "viscosity.artificial": 0.0,
+    }
+    return constants(fluid_params(fluid=(box,), dimensions=dimensions, **settings, **given))
 
 
 def rates(
@@ -88,7 +94,7 @@ def test_viscosity_acts_on_approach_only() -> None:
 
 def test_pressure_is_cut_unless_tension_is_allowed() -> None:
     assert laws.tait.py_func(990.0, law(0.1)) == 0.0
-    assert laws.tait.py_func(990.0, law(0.1, tension=True)) < 0.0
+    assert laws.tait.py_func(990.0, law(0.1, negative_pressure=True)) < 0.0
     slope = (laws.tait.py_func(1000.001, law(0.1)) - 0.0) / 0.001
     assert slope == pytest.approx(40.0**2, rel=1e-4)
 

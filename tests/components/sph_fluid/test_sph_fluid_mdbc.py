@@ -5,17 +5,20 @@ import sys
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.params import SphFluidParams
 
-TANK = {"walls": ((0.0, 0.0, 0.0), (0.8, 0.4, 0.8)), "fluid": (((0.0, 0.0, 0.0), (0.8, 0.4, 0.4)),)}
+TANK = {
+    "boundary.walls": ((0.0, 0.0, 0.0), (0.8, 0.4, 0.8)),
+    "fluid": (((0.0, 0.0, 0.0), (0.8, 0.4, 0.4)),),
+}
 
 
 def params(**given):
     settings = {"spacing": 0.05, "sound_speed": 20.0 * math.sqrt(9.81 * 0.4), **TANK}
-    return SphFluidParams(**(settings | {"boundary": "mdbc"} | given))
+    return fluid_params(**(settings | {"boundary.method": "mdbc"} | given))
 
 
 def walls(fluid):
@@ -59,7 +62,15 @@ def test_dry_walls_press_nothing():
 
 def still(boundary, steps, **given):
     """Largest error of pressure over ρgH, and speed over √(gH), of water at rest."""
-    fluid = SphFluid(params(boundary=boundary, dimensions=2, diffusion=0.1, tension=True, **given))
+    fluid = SphFluid(
+        params(
+            boundary__method=boundary,
+            dimensions=2,
+            density_diffusion=0.1,
+            negative_pressure=True,
+            **given,
+        )
+    )
     for _ in range(steps):
         fluid.step(fluid.stable_dt())
     state, rows = fluid.state, slice(fluid.state.fluid)
@@ -78,8 +89,8 @@ def test_still_water_stays_hydrostatic_with_mirrored_walls_alone():
 
 def test_water_thrown_at_a_wall_stays_inside():
     high = ((0.0, 0.0, 0.0), (0.8, 0.4, 6.0))
-    terms = {"dimensions": 2, "diffusion": 0.1, "tension": True, "courant": 0.3}
-    fluid = SphFluid(params(walls=high, sound_speed=60.0, **terms))
+    terms = {"dimensions": 2, "density_diffusion": 0.1, "negative_pressure": True, "courant": 0.3}
+    fluid = SphFluid(params(boundary__walls=high, sound_speed=60.0, **terms))
     rows = slice(fluid.state.fluid)
     fluid.state.motion[rows, 0] = 5.0
     for _ in range(800):
@@ -93,7 +104,7 @@ def test_water_thrown_at_a_wall_stays_inside():
 def test_obstacles_are_mirrored_in_their_wet_faces():
     box = ((0.3, 0.0, 0.0), (0.5, 0.4, 0.2))
     fluid = (((0.0, 0.0, 0.0), (0.3, 0.4, 0.4)),)
-    one = params(obstacles=(box,), fluid=fluid)
+    one = params(boundary__obstacles=(box,), fluid=fluid)
     count = len(build.wall_points(one))
     particle, mirror = walls(SphFluid(one))
     place, mirror = particle[count:, :3], mirror[count:]
@@ -122,8 +133,11 @@ def test_only_a_scene_that_asks_imports_them():
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"standoff": 1.5}, "half a spacing behind the face; found standoff 1.5"),
-        ({"boundary": "dbc", "gaps": True}, "gaps needs boundary mdbc"),
+        ({"boundary.wall_offset": 1.5}, "half a spacing behind the face; found wall_offset 1.5"),
+        (
+            {"boundary.method": "dbc", "boundary.lubrication_films": True},
+            "lubrication_films needs boundary.method mdbc",
+        ),
         ({"dimensions": 2, "gravity": (0.0, 1.0, -9.81)}, "gravity has no y"),
         (
             {"dimensions": 2, "fluid": (((0.0, 0.0, 0.0), (0.8, 0.3, 0.4)),)},

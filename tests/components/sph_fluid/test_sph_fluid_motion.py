@@ -5,9 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid import SphFluidParams, component
+from quintet.components.sph_fluid import component
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import OrderError, QuintetError, StepError
@@ -41,7 +42,7 @@ def run(fluid: SphFluid, time: float) -> None:
 
 
 def test_free_fall_is_a_parabola(drop: Make) -> None:
-    fluid = drop(tension=False)
+    fluid = drop(negative_pressure=False)
     state = {name: np.array(array) for name, array in fluid.save().items()}
     state["place"][:, 3] = 1000.0  # no pressure
     state["motion"][:, 3] = 0.0
@@ -179,7 +180,7 @@ def test_two_half_windows_come_to_the_same_as_one(pool: Make) -> None:
 
 
 def test_options_change_the_motion_but_not_the_rest(pool: Make) -> None:
-    for given in ({"xsph": 0.5}, {"shepard_every": 20}, {"tension": True}):
+    for given in ({"xsph": 0.5}, {"shepard_every": 20}, {"negative_pressure": True}):
         fluid = pool(**given)
         run(fluid, 0.2)
         assert fluid.totals().kinetic < 1e-3 * fluid.totals().mass * 9.81 * 0.1
@@ -188,8 +189,12 @@ def test_options_change_the_motion_but_not_the_rest(pool: Make) -> None:
 def test_particles_that_leave_are_counted_and_missed() -> None:
     boxes = (((0.0, 0.0, 0.0), (0.1, 0.1, 0.1)), ((0.3, 0.0, 0.0), (0.4, 0.1, 0.1)))
     walls = ((0.0, 0.0, 0.0), (0.1, 0.1, 0.2))
-    params = SphFluidParams(
-        spacing=0.02, sound_speed=20.0, fluid=boxes, walls=walls, open=("x+", "z+")
+    params = fluid_params(
+        spacing=0.02,
+        sound_speed=20.0,
+        fluid=boxes,
+        boundary__walls=walls,
+        boundary__open_faces=("x+", "z+"),
     )
     fluid = SphFluid(params)
     fluid.step(fluid.stable_dt())
@@ -213,7 +218,7 @@ def test_too_fast_a_particle_is_an_error_that_names_it(drop: Make) -> None:
 def test_what_strikes_faster_than_half_of_sound_is_an_error(
     drop: Make, plate: Join, boundary: str, speed: float, fails: bool
 ) -> None:
-    fluid = drop(boundary=boundary, gravity=(0.0, 0.0, 0.0), sound_speed=18.0)
+    fluid = drop(boundary__method=boundary, gravity=(0.0, 0.0, 0.0), sound_speed=18.0)
     fields = {name: np.array(array) for name, array in plate(fluid, speed=speed).items()}
     fields["surface.mirror"] = fields["surface.position"] + [0.0, 0.0, 0.02]
 

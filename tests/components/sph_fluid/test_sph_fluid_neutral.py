@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.kernels import press
 from quintet.coupler.coupling.body_samples import BOX, SPHERE, fill, mirrors
@@ -30,12 +30,12 @@ def sunk(shape: int, cells: int = 5, **given: object) -> SphFluid:
         "spacing": SPACING,
         "sound_speed": 16.4,
         "fluid": AROUND,
-        "walls": ((0.0, 0.0, 0.0), (SIDE, SIDE, SIDE + 0.09)),
-        "boundary": "mdbc",
-        "diffusion": 0.1,
-        "tension": True,
+        "boundary.walls": ((0.0, 0.0, 0.0), (SIDE, SIDE, SIDE + 0.09)),
+        "boundary.method": "mdbc",
+        "density_diffusion": 0.1,
+        "negative_pressure": True,
     }
-    fluid = SphFluid(SphFluidParams(**(settings | given)))
+    fluid = SphFluid(fluid_params(**(settings | given)))
     stated, size = fluid.describe(), np.full(3, EDGE)
     depth = float(stated["surface.depth"][0])
     arm, normal, volume = fill(shape, size, EDGE / cells, depth)
@@ -90,17 +90,31 @@ def test_the_potential_pushes_a_box_up_by_the_weight_of_its_water(
 ) -> None:
     side, top = edge + 6, below + edge + above
     tank = ((0.0, 0.0, 0.0), (side * spacing, side * spacing, (top + 3) * spacing))
-    given = {"fluid": around(edge, side, below, above, spacing), "walls": tank, "grip": 0.0}
+    given = {
+        "fluid": around(edge, side, below, above, spacing),
+        "boundary.walls": tank,
+        "boundary.wall_viscosity_factor": 0.0,
+    }
     sound = 10.2 * math.sqrt(9.81 * top * spacing)
-    how = {"kernel": "wendland", "integration": "symplectic", "courant": 1.0, "viscosity": 0.3}
+    how = {
+        "kernel": "wendland",
+        "integration": "symplectic",
+        "courant": 1.0,
+        "viscosity.artificial": 0.3,
+    }
     fluid = SphFluid(
-        SphFluidParams(
-            spacing=spacing, sound_speed=sound, boundary="potential", diffusion=0.1, tension=True,
-            **given, **how,
+        fluid_params(
+            spacing=spacing,
+            sound_speed=sound,
+            boundary__method="potential",
+            density_diffusion=0.1,
+            negative_pressure=True,
+            **given,
+            **how,
         )
-    )  # fmt: skip
+    )
     size = np.full(3, edge * spacing)
-    arm, normal, volume = fill(BOX, size, spacing, 2.0 * fluid.params.length)
+    arm, normal, volume = fill(BOX, size, spacing, 2.0 * fluid.params.smoothing_length)
     body = np.zeros(len(arm))
     fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body})
     middle = spacing * np.array([0.5 * side, 0.5 * side, below + 0.5 * edge])

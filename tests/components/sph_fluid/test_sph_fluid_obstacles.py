@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params, nested
 
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
@@ -17,13 +18,13 @@ BOX = ((0.9, 0.1, 0.0), (1.2, 0.3, 0.4))  # stands on the floor
 
 
 def params(**given):
-    settings = {"spacing": SPACING, "sound_speed": 40.0, "fluid": (WATER,), "walls": TANK}
-    return SphFluidParams(**(settings | {"obstacles": (BOX,)} | given))
+    settings = {"spacing": SPACING, "sound_speed": 40.0, "fluid": (WATER,), "boundary.walls": TANK}
+    return fluid_params(**(settings | {"boundary.obstacles": (BOX,)} | given))
 
 
 @pytest.mark.parametrize("standoff", [0.5, 1.0, 1.5])
 def test_outermost_particles_lie_the_standoff_inside_wet_faces(standoff):
-    points = obstacle_points(params(standoff=standoff))
+    points = obstacle_points(params(boundary__wall_offset=standoff))
     inside = standoff * SPACING
     assert points.min(axis=0) == pytest.approx([0.9 + inside, 0.1 + inside, 0.5 * SPACING])
     assert points.max(axis=0) == pytest.approx([1.2 - inside, 0.3 - inside, 0.4 - inside])
@@ -33,16 +34,22 @@ def test_outermost_particles_lie_the_standoff_inside_wet_faces(standoff):
 
 def test_a_box_against_a_wall_is_dry_there_unless_the_face_is_open():
     corner = ((1.2, 0.0, 0.0), (1.5, 0.4, 0.3))
-    shut = obstacle_points(params(obstacles=(corner,)))
+    shut = obstacle_points(params(boundary__obstacles=(corner,)))
     assert shut.max(axis=0)[0] == pytest.approx(1.5 - 0.5 * SPACING)
     assert shut.min(axis=0)[1] == pytest.approx(0.5 * SPACING)
-    outlet = obstacle_points(params(obstacles=(corner,), open=("z+", "x+"), standoff=1.0))
+    outlet = obstacle_points(
+        params(
+            boundary__obstacles=(corner,),
+            boundary__open_faces=("z+", "x+"),
+            boundary__wall_offset=1.0,
+        )
+    )
     assert outlet.max(axis=0)[0] == pytest.approx(1.5 - SPACING)
 
 
 def test_what_water_cannot_feel_is_left_out():
     big = ((0.7, 0.1, 0.2), (1.4, 0.9, 0.9))
-    points = obstacle_points(params(walls=None, obstacles=(big,)))
+    points = obstacle_points(params(boundary__walls=None, boundary__obstacles=(big,)))
     middle = np.array([1.05, 0.5, 0.55])
     assert np.abs(points - middle).max(axis=1).min() > 0.1
     assert len(points) < 14 * 16 * 14
@@ -53,14 +60,19 @@ def test_plan_counts_the_particles_of_obstacles():
     one = params()
     assert MANIFEST.plan is not None
     assert MANIFEST.plan(one).items == len(state(one).place)
-    assert len(state(one).place) == len(state(params(obstacles=())).place) + len(
+    assert len(state(one).place) == len(state(params(boundary__obstacles=())).place) + len(
         obstacle_points(one)
     )
 
 
 def test_water_does_not_enter_an_obstacle():
     near = ((0.7, 0.0, 0.0), (0.9, 0.4, 0.6))  # a dam across the whole tank
-    given = {"obstacles": (near,), "grip": 0.0, "standoff": 1.0, "viscosity": 0.1}
+    given = {
+        "boundary.obstacles": (near,),
+        "boundary.wall_viscosity_factor": 0.0,
+        "boundary.wall_offset": 1.0,
+        "viscosity.artificial": 0.1,
+    }
     fluid = SphFluid(params(**given))
     time = 0.0
     while time < 0.5:
@@ -82,5 +94,5 @@ def test_water_does_not_enter_an_obstacle():
 )
 def test_a_wrong_obstacle_is_refused_with_a_sentence(box, sentence):
     base = {"spacing": SPACING, "sound_speed": 40.0, "fluid": [WATER]}
-    found, mistakes = read(SphFluidParams, base | {"obstacles": [box]}, "water")
+    found, mistakes = read(SphFluidParams, nested(base | {"boundary.obstacles": [box]}), "water")
     assert found is None and sentence in "\n".join(mistakes), mistakes

@@ -1,11 +1,13 @@
 """What a scene may not say, and what is known of it before it starts."""
 
+import dataclasses
 import math
 import re
 from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params, nested
 
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
 from quintet.components.sph_fluid.build import state
@@ -15,17 +17,17 @@ GOOD: dict[str, Any] = {
     "spacing": 0.1,
     "sound_speed": 60.0,
     "fluid": [[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]],
-    "walls": [[0.0, 0.0, 0.0], [2.0, 1.0, 2.0]],
+    "boundary.walls": [[0.0, 0.0, 0.0], [2.0, 1.0, 2.0]],
 }
 
 
 def mistakes(**changes: Any) -> str:
-    return "\n".join(read(SphFluidParams, GOOD | changes, "water")[1])
+    return "\n".join(read(SphFluidParams, nested(GOOD | changes), "water")[1])
 
 
 def test_good_parameters_have_no_mistakes() -> None:
     assert mistakes() == ""
-    assert mistakes(walls=None, gravity=[0.0, 0.0, 0.0], sound_speed=1.0) == ""
+    assert mistakes(boundary__walls=None, gravity=[0.0, 0.0, 0.0], sound_speed=1.0) == ""
 
 
 @pytest.mark.parametrize(
@@ -46,25 +48,31 @@ def test_good_parameters_have_no_mistakes() -> None:
             {"fluid": [[[0.0, 0.0, 0.0], [2.5, 1.0, 1.0]]]},
             r"fluid\[0\] must be inside the walls along x, 0.0 to 2.0 m; found 0.0 to 2.5 m. Move",
         ),
-        ({"walls": [[0.0, 0.0, 0.0], [0.0, 1.0, 1.0]]}, r"walls must go from .* widen it"),
+        ({"boundary.walls": [[0.0, 0.0, 0.0], [0.0, 1.0, 1.0]]}, r"walls must go from .* widen it"),
         (
             {"sound_speed": 20.0},
             r"sound_speed must be at least 10 sqrt\(g depth\) = 31.32 m/s .* found 20.0. Raise it",
         ),
         ({"smoothing": 4.0}, r"smoothing must be from 1 to 3 spacings; found 4.0. Use 1.2 to 2"),
-        ({"open": ["up"]}, r"water.open.* found 'up'"),
+        ({"boundary.open_faces": ["up"]}, r"water.boundary.open_faces.* found 'up'"),
         ({"xsph": 1.5}, r"water.xsph should be less than or equal to 1; found 1.5"),
         ({"shepard_every": -1}, r"water.shepard_every should be greater than or equal to 0"),
         ({"courant": 0.0}, r"water.courant should be greater than 0"),
-        ({"viscosity": -0.1}, r"water.viscosity should be greater than or equal to 0"),
+        (
+            {"viscosity.artificial": -0.1},
+            r"water.viscosity.artificial should be greater than or equal to 0",
+        ),
         ({"density": 0.0}, r"water.density should be greater than 0"),
         ({"gravity": [0.0, 0.0, "down"]}, r"water.gravity.2 .* found 'down'"),
-        ({"tension": "no"}, r"water.tension .* found 'no'"),
+        ({"negative_pressure": "no"}, r"water.negative_pressure .* found 'no'"),
         (
-            {"damper": 0.5},
-            r"damper needs integration symplectic.* found damper 0.5 and integration extrap.* Set",
+            {"acoustic_damper": 0.5},
+            r"acoustic_damper needs integration symplectic.* 0.5 and integration extrapol.* Set",
         ),
-        ({"damper": -0.5}, r"water.damper should be greater than or equal to 0; found -0.5"),
+        (
+            {"acoustic_damper": -0.5},
+            r"water.acoustic_damper should be greater than or equal to 0; found -0.5",
+        ),
         ({"kernel": "quintic"}, r"water.kernel .* found 'quintic'"),
     ],
 )
@@ -78,7 +86,7 @@ def test_fluid_may_reach_out_of_an_open_face() -> None:
 
 
 def test_plan_counts_what_is_built() -> None:
-    params = read(SphFluidParams, GOOD | {"open": ["z+", "x-"]}, "water")[0]
+    params = read(SphFluidParams, nested(GOOD | {"boundary.open_faces": ["z+", "x-"]}), "water")[0]
     plan = MANIFEST.plan(params) if MANIFEST.plan else None
     assert plan is not None and plan.items == len(state(params).place)
     assert plan.dt == pytest.approx(0.2 * 0.15 / 66.0)
@@ -87,13 +95,13 @@ def test_plan_counts_what_is_built() -> None:
 def test_benchmark_tank_has_142421_particles() -> None:
     tank = ((0.005, 0.005, 0.005), (1.595, 0.595, 0.605))
     water = ((0.005, 0.005, 0.005), (0.605, 0.595, 0.305))
-    params = SphFluidParams(spacing=0.01, sound_speed=40.0, fluid=(water,), walls=tank)
+    params = fluid_params(spacing=0.01, sound_speed=40.0, fluid=(water,), boundary__walls=tank)
     assert MANIFEST.plan is not None
     assert MANIFEST.plan(params).items == 142421
 
 
 def test_wall_goes_on_with_the_lattice_of_the_fluid() -> None:
-    params = read(SphFluidParams, GOOD, "water")[0]
+    params = read(SphFluidParams, nested(GOOD), "water")[0]
     made = state(params)
     wall = made.place[made.fluid :, :3]
     assert wall.min(axis=0) == pytest.approx([-0.05, -0.05, -0.05])
@@ -102,7 +110,7 @@ def test_wall_goes_on_with_the_lattice_of_the_fluid() -> None:
 
 
 def test_pressure_at_the_start_is_hydrostatic() -> None:
-    params = read(SphFluidParams, GOOD, "water")[0]
+    params = read(SphFluidParams, nested(GOOD), "water")[0]
     made = state(params)
     z, density = made.place[: made.fluid, 2], made.place[: made.fluid, 3]
     stiffness = 60.0**2 * 1000.0 / 7.0
@@ -112,10 +120,10 @@ def test_pressure_at_the_start_is_hydrostatic() -> None:
 
 def test_ports_are_the_shared_ones() -> None:
     for boundary, fields in (("dbc", 2), ("mdbc", 3)):
-        takes, gives = MANIFEST.ports(SphFluidParams(**tuples(), boundary=boundary))
+        takes, gives = MANIFEST.ports(fluid_params(**tuples(), boundary__method=boundary))
         assert [port.name for port in (*takes, *gives)] == ["surface", "surface_load"]
         assert len(takes[0].fields) == fields
-    assert math.isfinite(MANIFEST.load()(SphFluidParams(**tuples())).stable_dt())
+    assert math.isfinite(MANIFEST.load()(fluid_params(**tuples())).stable_dt())
 
 
 def tuples() -> dict[str, Any]:
@@ -125,9 +133,20 @@ def tuples() -> dict[str, Any]:
 def test_water_under_water_starts_under_the_pressure_of_both() -> None:
     boxes = (((0.0, 0.0, 0.0), (0.4, 0.4, 0.2)), ((0.0, 0.0, 0.2), (0.2, 0.4, 0.4)))
     beside = ((0.4, 0.0, 0.0), (0.6, 0.4, 0.2))  # nothing stands on it
-    one = SphFluidParams(spacing=0.05, sound_speed=20.0, fluid=(*boxes, beside))
+    one = fluid_params(spacing=0.05, sound_speed=20.0, fluid=(*boxes, beside))
     made = state(one)
     z, density = made.place[:, 2], made.place[:, 3]
     below = np.where(made.place[:, 0] < 0.4, 0.4, 0.2) - z
     pressure = 400.0 * 1000.0 / 7.0 * ((density / 1000.0) ** 7 - 1.0)
     np.testing.assert_allclose(pressure, 9810.0 * below, rtol=1e-6)
+
+
+def test_an_old_key_is_answered_with_the_new_one() -> None:
+    for old, new in SphFluidParams.RENAMED.items():
+        (sentence,) = read(SphFluidParams, nested(GOOD) | {old: 1}, "components.water")[1]
+        assert sentence == f"components.water.{old} is now {new}. Rename it."
+        *heads, last = new.split(".")
+        at = SphFluidParams
+        for head in heads:
+            at = type(getattr(at, head))
+        assert last in {field.name for field in dataclasses.fields(at)}

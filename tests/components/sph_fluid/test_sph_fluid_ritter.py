@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 
 LENGTH, DEPTH, SPACING, END = 3.5, 0.4, 0.025, 0.7
@@ -25,13 +25,20 @@ def test_layer_holds_together_with_tension_and_carries_ritters_momentum(
     tension: bool, coherent: bool
 ) -> None:
     fluid = SphFluid(
-        SphFluidParams(
-            spacing=SPACING, sound_speed=20.0 * WAVE, dimensions=2, boundary="mdbc", diffusion=0.1,
-            tension=tension, viscosity=0.1, grip=0.0, courant=0.3,
+        fluid_params(
+            spacing=SPACING,
+            sound_speed=20.0 * WAVE,
+            dimensions=2,
+            boundary__method="mdbc",
+            density_diffusion=0.1,
+            negative_pressure=tension,
+            viscosity__artificial=0.1,
+            boundary__wall_viscosity_factor=0.0,
+            courant=0.3,
             fluid=(((0.0, 0.0, 0.0), (LENGTH, 0.1, DEPTH)),),
-            walls=((0.0, 0.0, 0.0), (7.0, 0.1, 0.8)),
+            boundary__walls=((0.0, 0.0, 0.0), (7.0, 0.1, 0.8)),
         )
-    )  # fmt: skip
+    )
     time = 0.0
     while time < END:
         dt = min(fluid.stable_dt(), END - time + 1e-12)

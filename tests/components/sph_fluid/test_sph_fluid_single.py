@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Fields
 
@@ -24,14 +24,14 @@ def slab(precision: str, width: float) -> SphFluid:
     settings: dict[str, Any] = {
         "dimensions": 2,
         "fluid": (((0.0, 0.0, 0.0), (width, SPACING, DEPTH)),),
-        "walls": ((0.0, 0.0, 0.0), (2.0 * DEPTH, SPACING, 1.5 * DEPTH)),
-        "boundary": "mdbc",
-        "diffusion": 0.1,
-        "tension": True,
-        "grip": 0.0,
+        "boundary.walls": ((0.0, 0.0, 0.0), (2.0 * DEPTH, SPACING, 1.5 * DEPTH)),
+        "boundary.method": "mdbc",
+        "density_diffusion": 0.1,
+        "negative_pressure": True,
+        "boundary.wall_viscosity_factor": 0.0,
     }
     sound = 20.0 * math.sqrt(9.81 * DEPTH)
-    params = SphFluidParams(spacing=SPACING, sound_speed=sound, precision=precision, **settings)
+    params = fluid_params(spacing=SPACING, sound_speed=sound, precision=precision, **settings)
     return SphFluid(params)
 
 
@@ -80,7 +80,7 @@ def test_still_water_is_no_less_still() -> None:
 def test_samples_take_what_the_fluid_loses_to_rounding(
     drop: Make, plate: Join, struck: Strike, kernel: str, friction: str
 ) -> None:
-    given = {"kernel": kernel, "friction": friction, "laminar": 1e-3}
+    given = {"kernel": kernel, "viscosity.form": friction, "viscosity.kinematic": 1e-3}
     fluid = drop(gravity=(0.0, 0.0, 0.0), precision="float32", **given)
     impulse, gained = struck(fluid, plate(fluid))
     assert impulse.sum(axis=0) == pytest.approx(-gained, abs=20 * ROUNDED * np.abs(impulse).sum())

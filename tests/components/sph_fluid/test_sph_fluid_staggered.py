@@ -4,23 +4,27 @@ import math
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import SphFluidParams, build
+from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.component import SphFluid
 
 
 def test_staggered_rows_are_lattice_rows_that_end_at_walls_as_others_do() -> None:
     box = ((0.0, 0.0, 0.0), (0.6, 0.1, 0.1))
-    params = SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), staggered=True)
+    params = fluid_params(spacing=0.02, sound_speed=20.0, fluid=(box,), staggered=True)
     rows = build.fill_box(box, params).reshape(5, 5, 30, 3)
     first = rows[..., 0, 0].ravel()  # of each row; none has a wall
     assert np.diff(rows[..., 0], axis=2) == pytest.approx(0.02, abs=1e-12)
     gaps = np.diff(np.sort(first))
     assert gaps.min() > 1e-5 and gaps.max() < 0.005 and 0.0 < first.min() < first.max() < 0.02
-    walled = SphFluidParams(
-        spacing=0.02, sound_speed=20.0, fluid=(box,), staggered=True,
-        walls=((0.0, 0.0, 0.0), (2.0, 0.1, 0.2)),
-    )  # fmt: skip
+    walled = fluid_params(
+        spacing=0.02,
+        sound_speed=20.0,
+        fluid=(box,),
+        staggered=True,
+        boundary__walls=((0.0, 0.0, 0.0), (2.0, 0.1, 0.2)),
+    )
     rows = build.fill_box(box, walled).reshape(5, 5, 30, 3)
     assert np.ptp(rows[..., 0, 0]) < 0.06 * 0.02
     assert rows[..., -1, 0] == pytest.approx(first.reshape(5, 5) + 0.58, abs=1e-12)
@@ -30,14 +34,25 @@ def test_staggered_rows_are_lattice_rows_that_end_at_walls_as_others_do() -> Non
 def test_staggered_water_stays_still(smoothing: float) -> None:
     """As still as any is wanted to be: speeds within 1 % of √(gH), pressure within 2 % of ρgH."""
     fluid = SphFluid(
-        SphFluidParams(
-            spacing=0.02, sound_speed=20.0, dimensions=2, integration="symplectic",
-            boundary="mdbc", diffusion=0.1, tension=True, kernel="wendland", courant=1.0,
-            fluid=(((0.0, 0.0, 0.0), (0.8, 0.1, 0.3)),), walls=((0.0, 0.0, 0.0), (0.8, 0.1, 0.5)),
-            staggered=True, damper=0.5, smoothing=smoothing, motion_gauge=True,
-            pressure_gauges=((0.4, 0.05, 0.0), (0.4, 0.05, 0.15), (0.0, 0.05, 0.1)),
+        fluid_params(
+            spacing=0.02,
+            sound_speed=20.0,
+            dimensions=2,
+            integration="symplectic",
+            boundary__method="mdbc",
+            density_diffusion=0.1,
+            negative_pressure=True,
+            kernel="wendland",
+            courant=1.0,
+            fluid=(((0.0, 0.0, 0.0), (0.8, 0.1, 0.3)),),
+            boundary__walls=((0.0, 0.0, 0.0), (0.8, 0.1, 0.5)),
+            staggered=True,
+            acoustic_damper=0.5,
+            smoothing=smoothing,
+            gauges__motion_gauge=True,
+            gauges__pressure_gauges=((0.4, 0.05, 0.0), (0.4, 0.05, 0.15), (0.0, 0.05, 0.1)),
         )
-    )  # fmt: skip
+    )
     time, speeds, pressures = 0.0, [], []
     while time < 1.0:
         dt = fluid.stable_dt()

@@ -55,8 +55,9 @@ import sys, numpy as np
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid import kernels
-box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
-fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), boundary="mdbc"))
+from quintet.components.sph_fluid.params import Boundary
+box, mdbc = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12)), Boundary(method="mdbc")
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), boundary=mdbc))
 one = np.array([[0.06, 0.06, -0.01]])
 static = {"normal": one, "volume": np.full(1, 8e-6), "body": np.zeros(1), "contact": np.zeros(1)}
 fluid.bind({f"surface.{key}": array for key, array in static.items()})

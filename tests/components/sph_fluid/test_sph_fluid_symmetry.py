@@ -8,20 +8,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 from numpy.typing import NDArray
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.params import Box
+from quintet.components.sph_fluid.geometry import Box
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import StepError
 
 SPACING, DEPTH = 0.02, 0.2
 FULL = ((0.0, 0.0, 0.0), (0.2, 0.1, 2.0 * DEPTH))  # m
 THIN = ((0.0, 0.0, 0.0), (0.08, 0.1, DEPTH))  # m
-CALM = {"boundary": "mdbc", "diffusion": 0.1, "tension": True}
-EVERY = CALM | {"laminar": 1e-4, "xsph": 0.3, "shepard_every": 10}
+CALM = {"boundary.method": "mdbc", "density_diffusion": 0.1, "negative_pressure": True}
+EVERY = CALM | {"viscosity.kinematic": 1e-4, "xsph": 0.3, "shepard_every": 10}
 
 
 def params(**given: Any) -> SphFluidParams:
@@ -31,16 +32,17 @@ def params(**given: Any) -> SphFluidParams:
         "sound_speed": 20.0 * math.sqrt(9.81 * DEPTH),
         "dimensions": 2,
         "fluid": (((0.0, 0.0, 0.0), (0.1, 0.1, DEPTH)),),
-        "walls": ((0.0, 0.0, 0.0), (0.6, 0.1, 0.4)),
-        "symmetry": ("x-",),
+        "boundary.walls": ((0.0, 0.0, 0.0), (0.6, 0.1, 0.4)),
+        "boundary.symmetry": ("x-",),
     }
-    return SphFluidParams(**(settings | CALM | given))
+    return fluid_params(**(settings | CALM | given))
 
 
 def whole(half: SphFluidParams) -> SphFluidParams:
     """The same water and tank on both sides of all planes of symmetry through the origin."""
-    axes = ["xyz".index(face[0]) for face in half.symmetry]
-    assert half.walls is not None
+    edge = half.boundary
+    axes = ["xyz".index(face[0]) for face in edge.symmetry]
+    assert edge.walls is not None
 
     def both(box: Box) -> Box:
         low, high = box
@@ -48,9 +50,12 @@ def whole(half: SphFluidParams) -> SphFluidParams:
         return (x, y, z), high
 
     return replace(
-        half, fluid=tuple(map(both, half.fluid)), obstacles=tuple(map(both, half.obstacles)),
-        walls=both(half.walls), symmetry=(),
-    )  # fmt: skip
+        half,
+        fluid=tuple(map(both, half.fluid)),
+        boundary=replace(
+            edge, obstacles=tuple(map(both, edge.obstacles)), walls=both(edge.walls), symmetry=()
+        ),
+    )
 
 
 def side_by_side(one: SphFluid, other: SphFluid, end: float) -> float:
@@ -69,7 +74,13 @@ def side_by_side(one: SphFluid, other: SphFluid, end: float) -> float:
 
 @pytest.mark.parametrize(
     "given",
-    [{}, {"integration": "symplectic"}, {"boundary": "dbc"}, {"boundary": "potential"}, EVERY],
+    [
+        {},
+        {"integration": "symplectic"},
+        {"boundary.method": "dbc"},
+        {"boundary.method": "potential"},
+        EVERY,
+    ],
     ids=["mirrored", "symplectic", "dynamic", "potential", "every term"],
 )
 def test_half_a_column_falls_as_the_whole_does(given: dict[str, Any]) -> None:
@@ -83,7 +94,7 @@ def test_half_a_column_falls_as_the_whole_does(given: dict[str, Any]) -> None:
 
 def test_gauges_on_the_plane_read_what_they_do_in_the_whole() -> None:
     points, spots = ((0.0, 0.0, 0.05), (0.01, 0.0, 0.1)), ((0.0, 0.0), (0.01, 0.0), (0.09, 0.0))
-    half = params(pressure_gauges=points, level_gauges=spots)
+    half = params(gauges__pressure_gauges=points, gauges__level_gauges=spots)
     one, other = SphFluid(half), SphFluid(whole(half))
     side_by_side(one, other, 0.02)
     mine, theirs = one.give(), other.give()
@@ -96,10 +107,12 @@ def test_gauges_on_the_plane_read_what_they_do_in_the_whole() -> None:
 def test_water_presses_on_half_a_box_as_on_the_whole(dimensions: int) -> None:
     box = ((0.0, 0.0, 0.0), (0.06, 0.1, 0.06))
     half = params(
-        dimensions=dimensions, obstacles=(box,), fluid=(((0.0, 0.0, 0.06), (0.1, 0.1, 0.16)),),
-        walls=((0.0, 0.0, 0.0), (0.2, 0.1, 0.3)),
-        pressure_gauges=((0.0, 0.05, 0.06), (0.03, 0.05, 0.06), (0.06, 0.05, 0.03)),
-    )  # fmt: skip
+        dimensions=dimensions,
+        boundary__obstacles=(box,),
+        fluid=(((0.0, 0.0, 0.06), (0.1, 0.1, 0.16)),),
+        boundary__walls=((0.0, 0.0, 0.0), (0.2, 0.1, 0.3)),
+        gauges__pressure_gauges=((0.0, 0.05, 0.06), (0.03, 0.05, 0.06), (0.06, 0.05, 0.03)),
+    )
     one, other = SphFluid(half), SphFluid(whole(half))
     mine, theirs = (fluid.state.place[fluid.state.fluid :, :3] for fluid in (one, other))
     theirs = theirs[theirs[:, 0] > 0.0]
@@ -115,16 +128,18 @@ def test_water_presses_on_half_a_box_as_on_the_whole(dimensions: int) -> None:
 
 def test_a_quarter_falls_as_the_whole_does_in_three_dimensions() -> None:
     quarter = params(
-        dimensions=3, symmetry=("y-", "x-"), fluid=(((0.0, 0.0, 0.0), (0.08, 0.08, 0.12)),),
-        walls=((0.0, 0.0, 0.0), (0.16, 0.08, 0.2)),
-    )  # fmt: skip
+        dimensions=3,
+        boundary__symmetry=("y-", "x-"),
+        fluid=(((0.0, 0.0, 0.0), (0.08, 0.08, 0.12)),),
+        boundary__walls=((0.0, 0.0, 0.0), (0.16, 0.08, 0.2)),
+    )
     # The wall at y = 0.08 m is a wall of both.
     assert side_by_side(SphFluid(quarter), SphFluid(whole(quarter)), 0.03) < 1e-12
 
 
 def test_still_water_is_hydrostatic_beside_the_plane() -> None:
     sound = 20.0 * math.sqrt(9.81 * 2.0 * DEPTH)
-    fluid = SphFluid(params(walls=FULL, fluid=(FULL,), sound_speed=sound))
+    fluid = SphFluid(params(boundary__walls=FULL, fluid=(FULL,), sound_speed=sound))
     for _ in range(1500):
         fluid.step(fluid.stable_dt())
     rows = slice(fluid.state.fluid)
@@ -143,10 +158,15 @@ def test_a_flow_along_planes_stays_uniform(symmetry: tuple[str, ...]) -> None:
     box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
     fluid = SphFluid(
         params(
-            dimensions=3, symmetry=symmetry, open=("x-", "x+", "z-", "z+"), fluid=(box,), walls=box,
-            gravity=(0.0, 0.0, 0.0), laminar=1e-2,
+            dimensions=3,
+            boundary__symmetry=symmetry,
+            boundary__open_faces=("x-", "x+", "z-", "z+"),
+            fluid=(box,),
+            boundary__walls=box,
+            gravity=(0.0, 0.0, 0.0),
+            viscosity__kinematic=1e-2,
         )
-    )  # fmt: skip
+    )
     rows, stream = slice(fluid.state.fluid), np.array([0.5, 0.0, -0.3])
     fluid.state.motion[rows, :3] = stream
     for _ in range(20):
@@ -176,7 +196,7 @@ def seen(place: NDArray[Any], motion: NDArray[Any]) -> NDArray[Any]:
 
 
 def test_water_thrown_at_the_plane_stays_before_it() -> None:
-    fluid = SphFluid(params(sound_speed=60.0, viscosity=0.01))
+    fluid = SphFluid(params(sound_speed=60.0, viscosity__artificial=0.01))
     fluid.state.motion[: fluid.state.fluid, 0] = -5.0
     for _ in range(400):
         fluid.step(fluid.stable_dt())
@@ -189,11 +209,15 @@ def cut(half: bool) -> SphFluid:
     edge, low = 6 * SPACING, 0.0 if half else -3 * SPACING
     fluid = SphFluid(
         params(
-            dimensions=3, boundary="dbc", gravity=(0.0,) * 3, symmetry=("x-",) if half else (),
-            fluid=(((low, 0.0, 0.0), (3 * SPACING, edge, edge)),), open=("x+", "y-", "y+", "z+"),
-            walls=((0.0 if half else -0.2, 0.0, -0.2), (0.2, 0.2, 0.2)),
+            dimensions=3,
+            boundary__method="dbc",
+            gravity=(0.0,) * 3,
+            boundary__symmetry=("x-",) if half else (),
+            fluid=(((low, 0.0, 0.0), (3 * SPACING, edge, edge)),),
+            boundary__open_faces=("x+", "y-", "y+", "z+"),
+            boundary__walls=((0.0 if half else -0.2, 0.0, -0.2), (0.2, 0.2, 0.2)),
         )
-    )  # fmt: skip
+    )
     line = SPACING * (np.arange(8) - 3.5)
     x, y = np.meshgrid(line[line > 0.0] if half else line, line + 3 * SPACING)
     points = np.stack([x.ravel(), y.ravel(), np.full(x.size, -0.5 * SPACING)], axis=1)
@@ -264,23 +288,32 @@ def test_only_a_scene_that_asks_imports_them() -> None:
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"symmetry": ("z-",)}, "symmetry"),
-        ({"open": ("x-", "z+")}, r"x- must be a face of the tank; found walls .* and open .*x-"),
-        ({"walls": None}, r"x- must be a face of the tank; found walls None"),
-        ({"symmetry": ("y+",)}, r"y\+ must be x- or x\+ in two dimensions"),
-        ({"gravity": (0.5, 0.0, -9.8)}, r"x- must have gravity in its plane; found \(0.5, 0.0"),
-        ({"wall_velocity": {"x-": (0.0, 1.0, 0.0)}}, r"wall_velocity.x- must lie in a face that"),
-        ({"gaps": True}, r"gaps knows no planes of symmetry; found gaps and symmetry \('x-',\)"),
+        ({"boundary.symmetry": ("z-",)}, "symmetry"),
         (
-            {"symmetry": ("x-", "x+"), "fluid": (THIN,), "walls": THIN},
+            {"boundary.open_faces": ("x-", "z+")},
+            r"x- must be a face of the tank; found walls .* and open_faces .*x-",
+        ),
+        ({"boundary.walls": None}, r"x- must be a face of the tank; found walls None"),
+        ({"boundary.symmetry": ("y+",)}, r"y\+ must be x- or x\+ in two dimensions"),
+        ({"gravity": (0.5, 0.0, -9.8)}, r"x- must have gravity in its plane; found \(0.5, 0.0"),
+        (
+            {"boundary.wall_velocity": {"x-": (0.0, 1.0, 0.0)}},
+            r"wall_velocity.x- must lie in a face that",
+        ),
+        (
+            {"boundary.lubrication_films": True},
+            r"films knows no planes of symmetry; found films and symmetry \('x-',\)",
+        ),
+        (
+            {"boundary.symmetry": ("x-", "x+"), "fluid": (THIN,), "boundary.walls": THIN},
             r"x- must be 0.09 m or more, 3 smoothing lengths, .* found 0.08 m. Widen",
         ),
         (
-            {"obstacles": (((-0.1, 0.0, 0.3), (0.1, 0.1, 0.4)),)},
-            r"x-, x from 0 to 0.6 m, must not cut obstacles\[0\]; found .* Cut",
+            {"boundary.obstacles": (((-0.1, 0.0, 0.3), (0.1, 0.1, 0.4)),)},
+            r"x-, x from 0 to 0.6 m, must not cut boundary.obstacles\[0\]; found .* Cut",
         ),
     ],
-)  # fmt: skip
+)
 def test_mistakes_are_told(given: dict[str, Any], sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
         params(**given)

@@ -16,7 +16,7 @@ Join = Callable[..., Fields]
 Strike = Callable[..., tuple[Any, Any]]
 EDGE = 0.12  # m, of the drop
 TIME = 0.02  # s, in which sound crosses it three times
-FREE = {"gravity": (0.0, 0.0, 0.0), "tension": True}
+FREE = {"gravity": (0.0, 0.0, 0.0), "negative_pressure": True}
 
 
 def stretch(fluid: SphFluid) -> None:
@@ -52,7 +52,7 @@ def test_order_in_time(drop: Make, integration: str, order: int) -> None:
 def test_without_viscosity_energy_stays(drop: Make) -> None:
     lost = {}
     for integration in ("symplectic", "extrapolated"):
-        fluid = drop(integration=integration, viscosity=0.0, **FREE)
+        fluid = drop(integration=integration, viscosity__artificial=0.0, **FREE)
         stretch(fluid)
         before = energy(fluid)
         for _ in range(400):
@@ -63,7 +63,9 @@ def test_without_viscosity_energy_stays(drop: Make) -> None:
 
 
 def test_one_step_gives_and_takes_the_same_impulse(drop: Make, plate: Join, struck: Strike) -> None:
-    fluid = drop(integration="symplectic", gravity=(0.0, 0.0, 0.0), xsph=0.5, laminar=1e-3)
+    fluid = drop(
+        integration="symplectic", gravity=(0.0, 0.0, 0.0), xsph=0.5, viscosity__kinematic=1e-3
+    )
     impulse, gained = struck(fluid, plate(fluid))
     assert np.abs(impulse[:, 2]).sum() > 0.0
     assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())
@@ -83,7 +85,7 @@ def test_free_fall_is_a_parabola(drop: Make) -> None:
 def test_step_limit_is_where_rest_becomes_unstable(
     pool: Make, boundary: str, courant: float, calm: bool
 ) -> None:
-    fluid = pool(integration="symplectic", courant=courant, boundary=boundary)
+    fluid = pool(integration="symplectic", courant=courant, boundary__method=boundary)
     weight = fluid.totals().mass * 9.81 * 0.1
     try:
         left = 0.3
@@ -98,7 +100,12 @@ def test_step_limit_is_where_rest_becomes_unstable(
 
 @pytest.mark.parametrize("damper", [0.0, 0.5])
 def test_a_saved_state_goes_on_with_the_same_bits(pool: Make, damper: float) -> None:
-    given = {"integration": "symplectic", "boundary": "mdbc", "diffusion": 0.1, "damper": damper}
+    given = {
+        "integration": "symplectic",
+        "boundary.method": "mdbc",
+        "density_diffusion": 0.1,
+        "acoustic_damper": damper,
+    }
     one, other = pool(**given), pool(**given)
     for _ in range(20):
         one.step(one.stable_dt())

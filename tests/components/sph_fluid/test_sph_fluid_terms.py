@@ -4,16 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.params import SphFluidParams
 
 BOX = ((0.0, 0.0, 0.0), (0.6, 0.6, 0.6))
 
 
 def drop(**given):
-    settings = {"spacing": 0.05, "sound_speed": 60.0, "fluid": (BOX,), "viscosity": 0.0}
-    return SphFluid(SphFluidParams(**(settings | {"gravity": (0.0, 0.0, 0.0)} | given)))
+    settings = {"spacing": 0.05, "sound_speed": 60.0, "fluid": (BOX,), "viscosity.artificial": 0.0}
+    return SphFluid(fluid_params(**(settings | {"gravity": (0.0, 0.0, 0.0)} | given)))
 
 
 def rates(fluid):
@@ -24,7 +24,7 @@ def rates(fluid):
 
 
 def test_diffusion_makes_no_mass_and_levels_density():
-    fluid = drop(diffusion=0.1)
+    fluid = drop(density_diffusion=0.1)
     noise = np.random.default_rng(1).normal(0.0, 1.0, fluid.state.fluid)
     fluid.state.place[:, 3] += noise
     growth = rates(fluid)[:, 3]
@@ -35,17 +35,17 @@ def test_diffusion_makes_no_mass_and_levels_density():
 
 def test_diffusion_leaves_water_under_its_own_weight_alone():
     weighty = {"gravity": (0.0, 0.0, -9.81), "sound_speed": 48.6}
-    with_it = rates(drop(diffusion=0.1, **weighty))[:, 3]
+    with_it = rates(drop(density_diffusion=0.1, **weighty))[:, 3]
     assert np.abs(rates(drop(**weighty))[:, 3]).max() == 0.0
     # Fourtakas' term alone knows the weight: what is left is its expansion in p/B.
-    level = drop(diffusion=0.1, **weighty)
+    level = drop(density_diffusion=0.1, **weighty)
     level.state.place[:, 3] = 1000.0
     assert np.abs(with_it).max() < 0.05 * np.abs(rates(level)[:, 3]).max()
 
 
 def test_laminar_viscosity_has_the_value_asked_for():
     # u = sin kz decays with ν k².
-    fluid = drop(laminar=0.01, dimensions=2, spacing=0.02)
+    fluid = drop(viscosity__kinematic=0.01, dimensions=2, spacing=0.02)
     wave = 2.0 * math.pi / 0.6
     state = fluid.state
     state.motion[:, 0] = np.sin(wave * state.place[:, 2])
@@ -58,12 +58,12 @@ def test_laminar_viscosity_has_the_value_asked_for():
 
 
 def test_viscous_step_limit_is_stated():
-    thick = drop(laminar=10.0)
+    thick = drop(viscosity__kinematic=10.0)
     assert thick.stable_dt() == pytest.approx(0.125 * thick.fluid.smoothing.length**2 / 10.0)
 
 
 def test_viscosity_and_diffusion_keep_momentum():
-    fluid = drop(laminar=0.1, diffusion=0.1)
+    fluid = drop(viscosity__kinematic=0.1, density_diffusion=0.1)
     fluid.state.motion[:, :3] = np.random.default_rng(2).normal(0.0, 0.1, (fluid.state.fluid, 3))
     force = rates(fluid)[:, :3]
     assert np.abs(force.sum(axis=0)).max() < 1e-11 * np.abs(force).sum()

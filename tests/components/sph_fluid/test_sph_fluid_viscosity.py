@@ -54,7 +54,12 @@ def test_stress_leaves_rigid_rotation_alone_up_to_the_free_surface() -> None:
 def test_surface_takes_the_momentum_that_friction_takes(
     drop: Any, plate: Any, name: str, boundary: str
 ) -> None:
-    given = {"laminar": 0.01, "friction": name, "boundary": boundary, "viscosity": 0.0}
+    given = {
+        "viscosity.kinematic": 0.01,
+        "viscosity.form": name,
+        "boundary.method": boundary,
+        "viscosity.artificial": 0.0,
+    }
     fluid: SphFluid = drop(gravity=(0.0, 0.0, 0.0), **given)
     fields = plate(fluid, speed=0.0)
     sliding = np.tile([0.5, 0.0, 0.0], (len(fields["surface.position"]), 1))

@@ -2,22 +2,25 @@
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
 
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.particle_count import particles
 
-TANK = {"walls": ((0.0, 0.0, 0.0), (1.0, 0.5, 0.5)), "fluid": (((0.0, 0.0, 0.0), (0.5, 0.5, 0.3)),)}
+TANK = {
+    "boundary.walls": ((0.0, 0.0, 0.0), (1.0, 0.5, 0.5)),
+    "fluid": (((0.0, 0.0, 0.0), (0.5, 0.5, 0.3)),),
+}
 
 
 def params(**given):
-    return SphFluidParams(spacing=0.1, sound_speed=40.0, **TANK, **given)
+    return fluid_params(spacing=0.1, sound_speed=40.0, **TANK, **given)
 
 
 @pytest.mark.parametrize("standoff", [0.5, 1.5, 2.5])
 def test_wall_particles_stand_off_as_asked(standoff):
-    one = params(standoff=standoff)
+    one = params(boundary__wall_offset=standoff)
     wall = build.wall_points(one)
     assert wall.min(axis=0) == pytest.approx([-0.1 * standoff] * 3)
     assert wall[:, 0].max() == pytest.approx(1.0 + 0.1 * standoff)
@@ -25,13 +28,17 @@ def test_wall_particles_stand_off_as_asked(standoff):
 
 
 def test_samples_are_wanted_at_the_inset():
-    assert SphFluid(params(inset=1.5)).describe()["surface.inset"][0] == pytest.approx(0.15)
+    assert SphFluid(params(boundary__sample_depth=1.5)).describe()["surface.inset"][
+        0
+    ] == pytest.approx(0.15)
 
 
 @pytest.mark.parametrize(("grip", "drags"), [(0.0, False), (1.0, True)])
 def test_walls_drag_only_with_grip(grip, drags):
     # At rest density there is no pressure: what slows a fluid that slides on its wall is drag.
-    one = params(grip=grip, gravity=(0.0, 0.0, 0.0), viscosity=0.5)
+    one = params(
+        boundary__wall_viscosity_factor=grip, gravity=(0.0, 0.0, 0.0), viscosity__artificial=0.5
+    )
     fluid = SphFluid(one)
     rows = slice(fluid.state.fluid)
     fluid.state.motion[rows, 1] = 1.0

@@ -1,19 +1,21 @@
 """The standing wave that a fluid may start from, and the viscosity that fades it."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params, nested
 from test_sph_fluid_laws import lattice, law, rates
 
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.build import state
-from quintet.components.sph_fluid.wave import Wave
+from quintet.components.sph_fluid.standing_wave import StandingWave
 from quintet.interfaces.params import read
 
 BOX = ((0.2, 0.0, -0.1), (1.2, 0.1, 0.4))  # m
 G = (0.0, 0.0, -9.81)
-WAVE = Wave(amplitude=0.02, length=1.0)
+WAVE = StandingWave(amplitude=0.02, length=1.0)
 K = 2.0 * math.pi  # 1/m
 
 
@@ -44,7 +46,7 @@ def test_flow_passes_no_wall_and_rises_at_the_low_end():
 
 
 def test_fluid_starts_with_the_energy_of_the_wave():
-    params = SphFluidParams(spacing=0.0125, sound_speed=25.0, fluid=(BOX,), wave=WAVE)
+    params = fluid_params(spacing=0.0125, sound_speed=25.0, fluid=(BOX,), wave=asdict(WAVE))
     made = state(params)
     kinetic = 0.5 * 1000.0 * 0.0125**3 * (made.motion[:, :3] ** 2).sum()
     assert kinetic == pytest.approx(0.25 * 1000.0 * 9.81 * 0.02**2 * 0.1, rel=0.01)  # ρgA²/4
@@ -63,7 +65,7 @@ def test_fluid_starts_with_the_energy_of_the_wave():
 def test_a_wrong_wave_is_refused_with_a_sentence(given, sentence):
     base = {"spacing": 0.1, "sound_speed": 30.0, "fluid": [BOX]}
     wave = {"wave": {"amplitude": 0.02, "length": 1.0}}
-    found, mistakes = read(SphFluidParams, base | wave | given, "water")
+    found, mistakes = read(SphFluidParams, nested(base | wave | given), "water")
     assert found is None and sentence in "\n".join(mistakes), mistakes
 
 

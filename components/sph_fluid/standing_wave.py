@@ -22,7 +22,7 @@ ROUNDING = 1e-6  # of a length
 
 
 @parameters
-class Wave:
+class StandingWave:
     """A standing wave along x."""
 
     amplitude: Positive  # m, A
