@@ -1,7 +1,7 @@
 """Stand-ins: what takes a solver's place in a run.
 
 ``replay`` gives again what a recorded component gave; ``prescribed`` moves rigid bodies on a
-given path whatever pushes them, and can say what does; ``echo`` sends back what it was sent, to
+given path whatever the loads on them, and can give these; ``echo`` sends back what it was sent, to
 measure the exchange.
 """
 

@@ -1,7 +1,7 @@
 """Parameters of the stand-ins."""
 
 from pathlib import Path
-from typing import Literal
+from typing import ClassVar, Literal
 
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import SceneError
@@ -11,38 +11,71 @@ from quintet.interfaces.ports import LOAD, MOTION, from_json
 
 PASSED = Port("passed", (Field("value", (3,), "m"),))
 RETURNED = Port("returned", (Field("value", (3,), "m"),))
-# What pushes bodies that do not yield, as it came: the force of water on a fixed block.
-HELD = Port("held", LOAD.fields)
+# Loads on bodies that do not yield, as they came: the force of water on a fixed block.
+MEASURED_LOAD = Port("measured_load", LOAD.fields)
 
 
 @parameters
 class ReplayParams:
-    """Which recording, and which of its components."""
+    """Which recording, and which of its components.
 
-    recording: str  # a recording, or the folder of a run
+    Parameters
+    ----------
+    recording : str
+        A recording, or the folder of a run.
+    component : str
+        Name of the component in it.
+    """
+
+    recording: str
     component: str
 
 
 @parameters
 class PrescribedBody:
-    """One rigid body on its path: steady motion and spin from where it is at the start."""
+    """One rigid body on its path: steady motion and rotation, and a sine on top.
+
+    Parameters
+    ----------
+    shape : "box" or "sphere"
+    size : three float, m, > 0
+        Edges; of a sphere its diameter three times.
+    position : three float, m
+        Of the centre at the start.
+    velocity : three float, m/s, by default 0
+    angular_velocity : three float, rad/s, by default 0
+        About the centre, in world axes.
+    mass : float, kg, > 0, by default 1
+        Stated to the partner; it moves nothing here.
+    amplitude : three float, m, by default 0
+    frequency : float, 1/s, by default 0
+        Both of the sine.
+    """
 
     shape: Literal["box", "sphere"]
-    size: PositiveVector  # m, edges; of a sphere its diameter three times
-    position: Vector  # m, centre at the start
-    velocity: Vector = (0.0, 0.0, 0.0)  # m/s
-    angular_velocity: Vector = (0.0, 0.0, 0.0)  # rad/s, about the centre
-    mass: Positive = 1.0  # kg, stated to the partner; it moves nothing here
-    amplitude: Vector = (0.0, 0.0, 0.0)  # m, of a sine on top of the steady motion
-    frequency: Number = 0.0  # 1/s, of the sine
+    size: PositiveVector
+    position: Vector
+    velocity: Vector = (0.0, 0.0, 0.0)
+    angular_velocity: Vector = (0.0, 0.0, 0.0)
+    mass: Positive = 1.0
+    amplitude: Vector = (0.0, 0.0, 0.0)
+    frequency: Number = 0.0
 
 
 @parameters
 class PrescribedParams:
-    """Bodies that move as told."""
+    """Bodies on given paths.
 
+    Parameters
+    ----------
+    bodies : list of PrescribedBody, at least one
+    measure_loads : bool, by default false
+        Whether the loads on them are taken, and given again as port `measured_load`.
+    """
+
+    RENAMED: ClassVar = {"held": "measure_loads"}
     bodies: tuple[PrescribedBody, ...]
-    held: bool = False  # whether the loads on them are taken, and given as port `held`
+    measure_loads: bool = False
 
     def __post_init__(self) -> None:
         if not self.bodies:
@@ -51,16 +84,25 @@ class PrescribedParams:
 
 @parameters
 class EchoParams:
-    """How many items go to and fro."""
+    """How many items go to and fro; and, to try out failures, how it fails.
+
+    Parameters
+    ----------
+    items : int, ≥ 1, by default 100
+        Of three numbers each.
+    fails_at : int, by default -1
+        Step at which it fails; below 0 never.
+    fails_by : "raise", "exit", "nan", "kill" or "stop", by default "raise"
+    """
 
     items: Count = 100
-    fails_at: int = -1  # step at which it fails; below 0 never. For trying out failures
+    fails_at: int = -1
     fails_by: Literal["raise", "exit", "nan", "kill", "stop"] = "raise"
 
 
 def prescribed_ports(params: PrescribedParams) -> Ports:
     """It gives motion; if asked to it takes loads, and gives them again."""
-    return ((LOAD,), (MOTION, HELD)) if params.held else ((), (MOTION,))
+    return ((LOAD,), (MOTION, MEASURED_LOAD)) if params.measure_loads else ((), (MOTION,))
 
 
 def echo_ports(params: EchoParams) -> Ports:

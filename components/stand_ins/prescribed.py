@@ -7,25 +7,27 @@ import numpy as np
 from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
 from quintet.interfaces.component import Array, Component, Fields
 
-PUSHES = ("force", "torque")
+LOADS = ("force", "torque")
 SHAPES = {"sphere": 0.0, "box": 1.0}  # as ports.MOTION gives them
 
 
 class Prescribed(Component):
-    """Moves as told: x = x0 + v t + a sin(2 π f t), turning steadily about ω."""
+    """Bodies at x = x0 + v t + a sin(2 π f t) that rotate steadily by ω."""
 
     def __init__(self, params: PrescribedParams) -> None:
         self.takes, self.gives = prescribed_ports(params)
-        self.held = {f"held.{key}": np.zeros((len(params.bodies), 3)) for key in PUSHES}
+        self.loads = {f"measured_load.{key}": np.zeros((len(params.bodies), 3)) for key in LOADS}
         bodies = params.bodies
         self.shape = np.array([SHAPES[one.shape] for one in bodies])
         self.size = np.array([one.size for one in bodies])  # (n, 3) m
         self.mass = np.array([one.mass for one in bodies])  # (n,) kg
         self.origin = np.array([one.position for one in bodies])  # (n, 3) m
-        self.drift = np.array([one.velocity for one in bodies])  # (n, 3) m/s
-        self.spin = np.array([one.angular_velocity for one in bodies])  # (n, 3) rad/s
+        self.velocity = np.array([one.velocity for one in bodies])  # (n, 3) m/s
+        self.angular_velocity = np.array([one.angular_velocity for one in bodies])  # (n, 3) rad/s
         self.amplitude = np.array([one.amplitude for one in bodies])  # (n, 3) m
-        self.pulsation = 2.0 * math.pi * np.array([[one.frequency] for one in bodies])  # rad/s
+        self.angular_frequency = (
+            2.0 * math.pi * np.array([[one.frequency] for one in bodies])
+        )  # rad/s
         self.time = 0.0  # s
 
     def describe(self) -> Fields:
@@ -37,10 +39,10 @@ class Prescribed(Component):
         return math.inf
 
     def take(self, fields: Fields) -> None:
-        """Keep what pushes, to give it again; nothing moves it."""
-        for key in PUSHES:
+        """Keep the loads, to give them again; nothing moves by them."""
+        for key in LOADS:
             if f"load.{key}" in fields:
-                self.held[f"held.{key}"] = np.array(fields[f"load.{key}"])
+                self.loads[f"measured_load.{key}"] = np.array(fields[f"load.{key}"])
 
     def step(self, dt: float) -> None:
         """Let time pass."""
@@ -48,35 +50,35 @@ class Prescribed(Component):
 
     def give(self) -> Fields:
         """Return the pose and its rate at the present time."""
-        phase = self.pulsation * self.time
-        moved = self.drift * self.time + self.amplitude * np.sin(phase)
-        rate = self.drift + self.amplitude * self.pulsation * np.cos(phase)
-        held = {key: value.copy() for key, value in self.held.items()} if self.takes else {}
+        phase = self.angular_frequency * self.time
+        moved = self.velocity * self.time + self.amplitude * np.sin(phase)
+        rate = self.velocity + self.amplitude * self.angular_frequency * np.cos(phase)
+        loads = {key: value.copy() for key, value in self.loads.items()} if self.takes else {}
         return {
-            **held,
+            **loads,
             "motion.position": self.origin + moved,
             "motion.velocity": rate,
-            "motion.orientation": turned(self.spin, self.time),
-            "motion.angular_velocity": self.spin.copy(),
+            "motion.orientation": steady_rotation(self.angular_velocity, self.time),
+            "motion.angular_velocity": self.angular_velocity.copy(),
         }
 
     def save(self) -> Fields:
         """Copy out the time and the loads."""
-        return {"time": np.array([self.time])} | {k: v.copy() for k, v in self.held.items()}
+        return {"time": np.array([self.time])} | {k: v.copy() for k, v in self.loads.items()}
 
     def load(self, state: Fields) -> None:
         """Come back to a time."""
         self.time = float(state["time"][0])
-        self.held = {key: np.array(state[key]) for key in self.held}
+        self.loads = {key: np.array(state[key]) for key in self.loads}
 
     def items(self) -> int:
         """Count the bodies."""
         return len(self.mass)
 
 
-def turned(spin: Array, time: float) -> Array:
-    """Quaternions (n, 4) w, x, y, z after turning about spins (n, 3) rad/s for a time [s]."""
-    rate = np.linalg.norm(spin, axis=1, keepdims=True)
+def steady_rotation(angular_velocity: Array, time: float) -> Array:
+    """Quaternions (n, 4) w, x, y, z after rotation by ω (n, 3) rad/s for a time [s]."""
+    rate = np.linalg.norm(angular_velocity, axis=1, keepdims=True)
     half = 0.5 * rate * time
-    axis = spin / np.where(rate > 0.0, rate, 1.0)
+    axis = angular_velocity / np.where(rate > 0.0, rate, 1.0)
     return np.concatenate([np.cos(half), axis * np.sin(half)], axis=1)
