@@ -8,9 +8,10 @@
 
 Walls and moving surface samples are particles that obey the continuity equation (from fluid
 neighbours alone) and Tait's, but move as they are told; their density never falls below ρ₀, so that
-they never pull. With `boundary.method` "mdbc" their density is the fluid's, mirrored (`mdbc.py`);
-with "potential" they have no pressure, and a contact potential stands for it (`contact.py`), as it
-may for single links of a fluid with mirrored walls (`surface.py`).
+they never pull. With `boundary.method` "mdbc" their density is the fluid's, mirrored
+(`boundary/mirrored.py`); with "potential" they have no pressure, and a contact potential stands for
+it (`boundary/contact_potential.py`), as it may for single links of a fluid with mirrored walls
+(`ports.py`).
 
 Kinematic viscosity acts as a Laplacian (Lo & Shao 2002), close beside walls, or with
 `viscosity.form` "stress" along the line between particles (Monaghan & Gingold 1983), without which
@@ -22,8 +23,9 @@ bears the fluid: it starts without weight.
 Pressure below zero is cut unless `negative_pressure` is on, which thin fast layers need to hold
 together; `density_diffusion` levels the density between particles (Fourtakas et al. 2019), `kernel`
 "wendland" keeps still water calm, `lubrication_films` puts films into gaps narrower than 1.25
-spacings, which press what particles leave of their faces (`gap.py`), an `acoustic_damper` takes the
-ringing out of strikes (`damper.py`). Of what is off, nothing is compiled.
+spacings, which press what particles leave of their faces (`boundary/lubrication.py`), an
+`acoustic_damper` takes the ringing out of strikes (`pairs/acoustic_damper.py`). Of what is off,
+nothing is compiled.
 
 Samples have the mass of fluid that their volume would hold, so that a body displaces its own volume
 whether or not the spacing divides it.
@@ -31,10 +33,10 @@ whether or not the spacing divides it.
 In time, a particle's momentum changes in a step by exactly dt times the force of that step, uⁿ⁺¹ =
 uⁿ + dt aⁿ, so that no link loses any. The density advances with its rate at a time past the step's
 end, extrapolated from the last two: with one pass over pairs a step, sound waves are then damped,
-not amplified (`laws.AHEAD`).
+not amplified (`integration/extrapolated.py`).
 
 With `integration` "symplectic" there are two passes a step, of second order; rest stays stable up
-to a `courant` of 1.6 instead of 0.4 (`symplectic.py`).
+to a `courant` of 1.6 instead of 0.4 (`integration/position_verlet.py`).
 
 What strikes the fluid faster than half the speed of sound, so that its density rises by a quarter,
 is an error: a tenth is what a weakly compressible fluid bears (Monaghan 1994).
@@ -48,11 +50,12 @@ are moved against each other along x, so that they do not strike a face as one (
 
 A face of the tank named in `boundary.symmetry` has no walls and is a plane of symmetry: what is
 near it acts from behind it too, mirrored, so that half of a symmetric flow moves as the whole does.
-Nothing rubs there, nothing passes, and the plane takes the momentum across it (`symmetry.py`).
-Surfaces stay before it, gravity lies in it, and films in narrow gaps do not know it.
+Nothing rubs there, nothing passes, and the plane takes the momentum across it
+(`boundary/symmetry.py`). Surfaces stay before it, gravity lies in it, and films in narrow gaps do
+not know it.
 
 Gauges (`pressure_gauges`, `level_gauges`, `front_gauge`, `motion_gauge`) give what a scene compares
-with a reference, each in a port of its own; see `gauges.py` for what they read.
+with a reference, each in a port of its own; see `gauges/gauges.py` for what they read.
 
 Papers: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; Monaghan, J. Comput. Phys. 82
 (1989) 1 (XSPH) and 110 (1994) 399 (Tait); Monaghan & Kos, J. Waterway Port Coast. Ocean Eng. 125
@@ -62,18 +65,12 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 026705.
 """
 
-from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.particle_count import particles
-from quintet.components.sph_fluid.surface import surface
-from quintet.interfaces.manifest import Manifest, Plan, Ports
-from quintet.interfaces.ports import SURFACE_LOAD
+from quintet.components.sph_fluid.ports import ports
+from quintet.components.sph_fluid.setup.particle_count import particles
+from quintet.interfaces.manifest import Manifest, Plan
 
 __all__ = ["MANIFEST", "SphFluidParams"]
-
-
-def _ports(params: SphFluidParams) -> Ports:
-    return (surface(params),), (SURFACE_LOAD, *gauge_ports(params))
 
 
 def _plan(params: SphFluidParams) -> Plan:
@@ -90,7 +87,7 @@ MANIFEST = Manifest(
     title="Weakly compressible SPH fluid",
     params=SphFluidParams,
     component="quintet.components.sph_fluid.component:SphFluid",
-    ports=_ports,
+    ports=ports,
     plan=_plan,
     bench="quintet.components.sph_fluid.bench:cases",
 )

@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from quintet.components.shared.lattice import cell_centres, lattice_points
-from quintet.components.sph_fluid.geometry import Box, levels, tank
+from quintet.components.sph_fluid.boundary.obstacles import obstacle_points
 from quintet.components.sph_fluid.laws import TAIT
-from quintet.components.sph_fluid.obstacles import obstacle_points
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.particle_count import cells, layers_beyond
+from quintet.components.sph_fluid.setup.geometry import Box, levels, tank
+from quintet.components.sph_fluid.setup.particle_count import cells, layers_beyond
 from quintet.components.sph_fluid.state import Array, State
 
 OFFSETS = np.array([0.0, 0.5 * (math.sqrt(5.0) - 1.0), math.sqrt(2.0) - 1.0])  # 1, per row in y, z
@@ -23,15 +23,15 @@ def state(params: SphFluidParams) -> State:
     pairs = zip(boxes, params.fluid, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
     made = State.empty(sum(map(len, boxes)), len(wall))
-    made.place[:, :3] = np.concatenate([*boxes, wall])
-    made.place[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
-    made.motion[made.fluid :, :3] = wall_velocity(wall, params)
+    made.position_density[:, :3] = np.concatenate([*boxes, wall])
+    made.position_density[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
+    made.velocity_pressure[made.fluid :, :3] = wall_velocity(wall, params)
     if params.wave is not None:
         moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
-        made.motion[: len(moves), :3] = moves
+        made.velocity_pressure[: len(moves), :3] = moves
     if params.acoustic_damper > 0.0:
-        made.squeeze = np.zeros(len(made.before))
-    made.acceleration = math.hypot(*params.gravity)
+        made.minus_rho_div_u = np.zeros(made.particles)
+    made.largest_acceleration = math.hypot(*params.gravity)
     return made
 
 
@@ -61,7 +61,7 @@ def _offsets(points: Array, box: Box, params: SphFluidParams) -> Array:
 
 
 def wall_points(params: SphFluidParams) -> Array:
-    """Layers of particles, the first `standoff` spacings outside the tank's faces; (n, 3) m.
+    """Layers of particles, the first `wall_offset` spacings outside the tank's faces; (n, 3) m.
 
     Half a spacing out, the lattice of a fluid that touches a wall goes on into it; but moving
     fluid keeps off dynamic particles by more than that, the more so where the wall was dry.
@@ -92,9 +92,9 @@ def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int
 
 def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
     """Density (n,) kg/m3 at points (n, 3) m below the surface over a box of fluid at rest."""
-    pull = math.hypot(*params.hydrostatic_gravity)
-    depth = _surface(box, params) + points @ np.array(params.hydrostatic_gravity) / (pull or 1.0)
-    pressure = params.density * pull * np.maximum(depth, 0.0)
+    size = math.hypot(*params.hydrostatic_gravity)
+    depth = _surface(box, params) + points @ np.array(params.hydrostatic_gravity) / (size or 1.0)
+    pressure = params.density * size * np.maximum(depth, 0.0)
     stiffness = params.sound_speed**2 * params.density / TAIT  # Pa
     return params.density * (1.0 + pressure / stiffness) ** (1.0 / TAIT)
 

@@ -1,10 +1,12 @@
 """Loops over particles and their neighbours; each row is written by one call alone."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit, types
 from numba.extending import overload
+from numpy.typing import NDArray
 
 from quintet.components.shared.numba_options import EXACT, FAST
 from quintet.components.shared.packing import (
@@ -18,286 +20,298 @@ from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.cubic_spline import ONE
 from quintet.components.shared.smoothing.smoothing import gradient, kernel
 from quintet.components.sph_fluid.laws import (
-    Contact,
-    Diffusion,
-    Fluid,
-    Friction,
-    Guard,
-    bear,
+    Constants,
+    PairLaw,
+    add_pair_force,
+    contact_factor,
+    diffusive_flux,
     inverses,
     pressure_term,
-    push,
-    repel,
-    spread,
 )
 from quintet.components.sph_fluid.state import Array, Whole
+
+Numbers = NDArray[np.floating]
+
+
+class Particles(NamedTuple):
+    """All rows of a state, with their images, as pairs need them; in double or single precision."""
+
+    position: Numbers  # (n, 4) m, m, m, kg/m3: x, y, z, ρ
+    velocity: Numbers  # (n, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
+
+
+class Rates(NamedTuple):
+    """What a pass over pairs writes."""
+
+    rate: Array  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s): acceleration and dρ/dt
+    xsph_velocity: Array  # (fluid, 3) m/s, Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij; (0, 3) without XSPH
+    minus_rho_div_u: Array  # (n,) kg/(m3 s), dρ/dt without diffusion; (0,) without a damper
+
+
+class BoundaryRows(NamedTuple):
+    """What boundary rows have beside particles; arrays have no rows where a term is off."""
+
+    velocity: Numbers  # (n, 4) m/s, as kinematic viscosity sees it, and a column unused
+    volume: Numbers  # (n,) 1, over that of a particle of the fluid
+    mask: Numbers  # (n,) 1 where the contact potential acts, 0 elsewhere
 
 
 # Numbers from 0 on are in the order of their bits, and the compiler makes vectors of the greatest
 # of integers, but not of that of floats: with it the loop would be half as fast.
-def bits(number):  # type: ignore[no-untyped-def]
+def bits_of(number):  # type: ignore[no-untyped-def]
     """Bits of a number, as an integer as wide."""
 
 
-def number(bits):  # type: ignore[no-untyped-def]
+def number_of(bits):  # type: ignore[no-untyped-def]
     """Number that has these bits."""
 
 
-@overload(bits, inline="always")
-def _bits(number):  # type: ignore[no-untyped-def]
+@overload(bits_of, inline="always")
+def _bits_of(number):  # type: ignore[no-untyped-def]
     if number == types.float32:
         return lambda number: np.float32(number).view(np.int32)
     return lambda number: np.float64(number).view(np.int64)
 
 
-@overload(number, inline="always")
-def _number(bits):  # type: ignore[no-untyped-def]
+@overload(number_of, inline="always")
+def _number_of(bits):  # type: ignore[no-untyped-def]
     if bits == types.int32:
         return lambda bits: np.int32(bits).view(np.float32)
     return lambda bits: np.int64(bits).view(np.float64)
 
 
 @njit(**FAST)
-def interact(
-    first: int, last: int, split: int, place: Array, motion: Array, near: Lists,
-    fluid: Fluid, gravity: tuple[float, float, float], rate: Array, drift: Array | None,
-    diffusion: Diffusion | None, friction: Friction | None, guard: Guard | None,
-    contact: Contact | None, bulk: Array | None, squeeze: Array | None,
+def pair_rates(
+    first: int, last: int, split: int, particles: Particles, boundary: BoundaryRows, lists: Lists,
+    law: PairLaw, gravity: tuple[float, float, float], rates: Rates,
 ) -> tuple[float, float]:  # fmt: skip
-    """Write acceleration and dρ/dt of rows [first, last); return the greatest a² and |u·r|/r².
+    """Write accelerations and rates of density, summed over pairs.
 
-    With `drift`, write Σ_j (m_j/ρ̄_ij)(u_j - u_i)W_ij over the fluid too (Monaghan 1989); with
-    `diffusion`, let density spread in the fluid (Fourtakas et al. 2019); with `friction`, let the
-    fluid be viscous (Lo & Shao 2002, or Monaghan & Gingold 1983); with `guard`, let walls repel
-    what is about to pass between their particles; with `contact`, let the contact potential stand
-    for the walls' pressure; with `bulk`, let boundary particles weigh that many times as much as
-    those of the fluid; with `squeeze`, write dρ/dt without diffusion. What is None is left out.
+    Parameters
+    ----------
+    first, last : int
+        Rows to write: the fluid's, which are the first `split`, and those of a boundary whose
+        density obeys the equation of continuity.
+    particles, boundary, lists, law
+    gravity : three floats, m/s2
+    rates : Rates
+        Written.
+
+    Returns
+    -------
+    two floats, m2/s4 and 1/s
+        The greatest squared acceleration, and the greatest |u·r|/(r² + 0.01h²) of any pair.
     """
-    begin, middle, end, neighbour = near
-    nil = place.dtype.type(0)  # sums are as precise as what they are summed from
-    beside = empty_rows(longest_list(first, last, begin, end), 4, place.dtype)
-    moving, seen = np.empty_like(beside), np.empty_like(beside)
-    share, some = np.ones_like(beside[:, 0]), np.ones_like(beside[:, 0])
-    greatest, fastest = 0.0, bits(nil)
+    begin, middle, end, neighbour = lists
+    # Arrays are taken out of their tuples once: each time costs a count of references.
+    position, velocity = particles
+    boundary_velocity, volume, mask = boundary
+    rate, xsph_velocity, minus_rho_div_u = rates
+    constants = law.constants
+    zero = position.dtype.type(0)  # sums are as precise as what they are summed from
+    near_position = empty_rows(longest_list(first, last, begin, end), 4, position.dtype)
+    near_velocity = np.empty_like(near_position)
+    near_apparent = np.empty_like(near_position)
+    near_volume = np.ones_like(near_position[:, 0])
+    near_mask = np.ones_like(near_position[:, 0])
+    greatest, fastest = 0.0, bits_of(zero)
     for i in range(first, last):
-        here = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
-        going = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
-        out = out_of_reach(here[0], fluid.smoothing.length), here[1], here[2], here[3]
+        here = position[i, 0], position[i, 1], position[i, 2], position[i, 3]
+        going = velocity[i, 0], velocity[i, 1], velocity[i, 2], velocity[i, 3]
+        far = out_of_reach(here[0], constants.smoothing.length), here[1], here[2], here[3]
         if i < split:
-            count = pack_rows(begin[i], middle[i], neighbour, place, out, beside)
-            pack_rows(begin[i], middle[i], neighbour, motion, going, moving)
-            ax, ay, az, growth, flow, mx, my, mz, fastest = meet(
-                count, here, going, beside, moving, moving, share, ONE, fluid, drift, diffusion,
-                friction, None, None, None, None, fastest,
+            count = pack_rows(begin[i], middle[i], neighbour, position, far, near_position)
+            pack_rows(begin[i], middle[i], neighbour, velocity, going, near_velocity)
+            force, density_rate, compression, xsph, fastest = sum_pairs(
+                count, here, going, near_position, near_velocity, near_velocity, near_volume,
+                near_mask, law.fluid, constants, fastest,
             )  # fmt: skip
-            if drift is not None:
-                drift[i, 0] = 2.0 * fluid.mass * mx
-                drift[i, 1] = 2.0 * fluid.mass * my
-                drift[i, 2] = 2.0 * fluid.mass * mz
+            ax, ay, az = force
+            if law.fluid.xsph is not None:
+                for d in range(3):
+                    xsph_velocity[i, d] = 2.0 * constants.mass * xsph[d]
             if middle[i] < end[i]:
-                count = pack_rows(middle[i], end[i], neighbour, place, out, beside)
-                pack_rows(middle[i], end[i], neighbour, motion, going, moving)
-                if friction is not None:
-                    pack_rows(middle[i], end[i], neighbour, friction.seen, going, seen)
-                if bulk is not None:
-                    pack_values(middle[i], end[i], neighbour, bulk, share)
-                held = None
-                if contact is not None:
-                    held = pack_values(middle[i], end[i], neighbour, contact.some, some)
-                bx, by, bz, more, other, _, _, _, fastest = meet(
-                    count, here, going, beside, moving, seen, share, fluid.grip, fluid, None, None,
-                    friction, guard, contact, held, bulk, fastest,
+                count = pack_rows(middle[i], end[i], neighbour, position, far, near_position)
+                pack_rows(middle[i], end[i], neighbour, velocity, going, near_velocity)
+                if law.boundary.viscosity.on is not None:
+                    pack_rows(middle[i], end[i], neighbour, boundary_velocity, going, near_apparent)
+                if law.boundary.volume is not None:
+                    pack_values(middle[i], end[i], neighbour, volume, near_volume)
+                if law.boundary.contact.partial is not None:
+                    pack_values(middle[i], end[i], neighbour, mask, near_mask)
+                force, more, other, _, fastest = sum_pairs(
+                    count, here, going, near_position, near_velocity, near_apparent, near_volume,
+                    near_mask, law.boundary, constants, fastest,
                 )  # fmt: skip
-                ax, ay, az = ax + bx, ay + by, az + bz
-                growth, flow = growth + more, flow + other
-            fx = fluid.mass * ax + gravity[0]
-            fy = fluid.mass * ay + gravity[1]
-            fz = fluid.mass * az + gravity[2]
+                ax, ay, az = ax + force[0], ay + force[1], az + force[2]
+                density_rate, compression = density_rate + more, compression + other
+            fx = constants.mass * ax + gravity[0]
+            fy = constants.mass * ay + gravity[1]
+            fz = constants.mass * az + gravity[2]
             greatest = max(greatest, fx * fx + fy * fy + fz * fz)
             rate[i, 0] = fx
             rate[i, 1] = fy
             rate[i, 2] = fz
         else:
-            count = pack_rows(begin[i], end[i], neighbour, place, out, beside)
-            pack_rows(begin[i], end[i], neighbour, motion, going, moving)
-            growth = flow = close(count, here, going, beside, moving, fluid)
-        rate[i, 3] = fluid.mass * growth
-        if squeeze is not None:
-            squeeze[i] = fluid.mass * flow
-    return greatest, number(fastest)
+            count = pack_rows(begin[i], end[i], neighbour, position, far, near_position)
+            pack_rows(begin[i], end[i], neighbour, velocity, going, near_velocity)
+            density_rate = sum_continuity(
+                count, here, going, near_position, near_velocity, constants
+            )
+            compression = density_rate
+        rate[i, 3] = constants.mass * density_rate
+        if law.damper is not None:
+            minus_rho_div_u[i] = constants.mass * compression
+    return greatest, number_of(fastest)
 
 
 @njit(inline="always")
-def close(count, here, going, beside, moving, fluid):  # type: ignore[no-untyped-def]
+def sum_continuity(count, here, going, position, velocity, constants):  # type: ignore[no-untyped-def]
     """Σ u_ij·∇_iW_ij of a boundary particle over so many of the fluid around it."""
     x, y, z, _ = here
     u, v, w, _ = going
-    growth = beside.dtype.type(0)
+    found = position.dtype.type(0)
     for k in range(count):
-        dx, dy, dz = x - beside[k, 0], y - beside[k, 1], z - beside[k, 2]
-        dot = dx * (u - moving[k, 0]) + dy * (v - moving[k, 1]) + dz * (w - moving[k, 2])
+        dx, dy, dz = x - position[k, 0], y - position[k, 1], z - position[k, 2]
+        dot = dx * (u - velocity[k, 0]) + dy * (v - velocity[k, 1]) + dz * (w - velocity[k, 2])
         r2 = dx * dx + dy * dy + dz * dz
-        per_r = ONE / math.sqrt(r2 + fluid.smoothing.tiny)
-        growth += dot * gradient(r2, per_r, fluid.smoothing)
-    return growth
+        per_r = ONE / math.sqrt(r2 + constants.smoothing.tiny)
+        found += dot * gradient(r2, per_r, constants.smoothing)
+    return found
 
 
 @njit(inline="always")
-def meet(  # type: ignore[no-untyped-def]
-    count, here, going, beside, moving, seen, share, grip, fluid, drift, diffusion, friction, guard,
-    contact, held, bulk, fastest,
-):  # fmt: skip
-    """Sums over so many neighbours: force over m² (3), growth, flow, XSPH's (3), greatest bits.
+def sum_pairs(  # type: ignore[no-untyped-def]
+    count, here, going, position, velocity, apparent, volume, mask, terms, constants, fastest
+):
+    """Sums over so many neighbours of a fluid particle, all alike.
 
-    The flow is Σ u_ij·∇_iW_ij, the growth that and diffusion. Friction sees velocities `seen`;
-    `grip` is the share of viscosity that acts, `held` says which neighbours the contact potential
-    holds (None: all) and, with `bulk`, `share` how many times as much as a particle each weighs.
+    Parameters
+    ----------
+    count : int
+    here, going : four floats
+        The particle's rows of `Particles`.
+    position, velocity, apparent : (any, 4) float arrays
+        Of its neighbours, side by side; `apparent` velocities are those that viscosity sees.
+    volume, mask : (any,) float arrays
+        Of its neighbours, as of `BoundaryRows`.
+    terms : PairTerms
+    constants : Constants
+    fastest : int
+        Bits of the greatest |u·r|/(r² + 0.01h²) so far.
+
+    Returns
+    -------
+    force over m² (3), dρ/dt over m, the same without diffusion, XSPH's sum (3), `fastest`
     """
-    nil = beside.dtype.type(0)
+    zero = position.dtype.type(0)
     x, y, z, density = here
-    u, v, w, term = going
-    more = density + fluid.base + fluid.base
-    ax, ay, az, growth, flow = nil, nil, nil, nil, nil
-    mx, my, mz = nil, nil, nil
+    u, v, w, pressure = going
+    more = density + constants.base + constants.base
+    force = zero, zero, zero
+    density_rate, compression = zero, zero
+    mx, my, mz = zero, zero, zero
     for k in range(count):
-        dx, dy, dz = x - beside[k, 0], y - beside[k, 1], z - beside[k, 2]
-        du, dv, dw = u - moving[k, 0], v - moving[k, 1], w - moving[k, 2]
+        dx, dy, dz = x - position[k, 0], y - position[k, 1], z - position[k, 2]
+        du, dv, dw = u - velocity[k, 0], v - velocity[k, 1], w - velocity[k, 2]
         r2 = dx * dx + dy * dy + dz * dz
         dot = dx * du + dy * dv + dz * dw
-        both = more + beside[k, 3]
-        per_r, per_r2, per_both = inverses(r2, both, fluid)
-        closing = dot * per_r2
-        slope = gradient(r2, per_r, fluid.smoothing)
-        if bulk is not None:
-            slope *= share[k]
-        fastest = max(fastest, bits(abs(closing)))
-        growth += dot * slope
-        flow += dot * slope
-        terms = term + moving[k, 3]
-        if contact is not None:
-            terms = term + moving[k, 3] * bear(r2, k, held, contact, fluid)
-        force = slope * push(terms, grip * closing, per_both, fluid)
-        if guard is not None:
-            force -= repel(r2, guard)
-        ax -= force * dx
-        ay -= force * dy
-        az -= force * dz
-        if diffusion is not None:
-            flux = spread(beside[k, 3] - density, dx, dy, dz, diffusion)
-            growth -= flux * slope * (r2 * per_r2 * per_both)
-        if friction is not None:
-            ru, rv, rw = u - seen[k, 0], v - seen[k, 1], w - seen[k, 2]
-            if friction.stress is not None:
-                rub = dx * ru + dy * rv + dz * rw
-                rub *= friction.strength * grip * slope * per_r2 * per_both
-                ax += rub * dx
-                ay += rub * dy
-                az += rub * dz
-            else:
-                shear = friction.strength * grip * slope * (r2 * per_r2 * per_both)
-                ax += shear * ru
-                ay += shear * rv
-                az += shear * rw
-        if drift is not None:
-            weight = kernel(r2, fluid.smoothing) * per_both
+        density_sum = more + position[k, 3]
+        per_r, per_r2, per_density = inverses(r2, density_sum, constants)
+        approach = dot * per_r2
+        slope = gradient(r2, per_r, constants.smoothing)
+        if terms.volume is not None:
+            slope *= volume[k]
+        fastest = max(fastest, bits_of(abs(approach)))
+        density_rate += dot * slope
+        compression += dot * slope
+        other = velocity[k, 3]
+        if terms.contact.on is not None:
+            other *= contact_factor(r2, mask[k], terms.contact, constants.smoothing)
+        seen = apparent[k, 0], apparent[k, 1], apparent[k, 2]
+        force = add_pair_force(
+            force, (dx, dy, dz), (u, v, w), seen, r2, pressure + other, approach, slope,
+            per_r2, per_density, terms,
+        )  # fmt: skip
+        if terms.diffusion.on is not None:
+            difference = position[k, 3] - density
+            flux = diffusive_flux(difference, dx, dy, dz, terms.diffusion)
+            density_rate -= flux * slope * (r2 * per_r2 * per_density)
+        if terms.xsph is not None:
+            weight = kernel(r2, constants.smoothing) * per_density
             mx -= weight * du
             my -= weight * dv
             mz -= weight * dw
-    return ax, ay, az, growth, flow, mx, my, mz, fastest
+    return force, density_rate, compression, (mx, my, mz), fastest
 
 
 @njit(**FAST)
-def push_samples(
-    first: int, last: int, row: Whole, listed: Whole, place: Array, motion: Array, near: Lists,
-    fluid: Fluid, friction: Friction | None, guard: Guard | None, contact: Contact | None,
-    bulk: Array | None, force: Array,
+def sample_forces(
+    first: int, last: int, row: Whole, listed: Whole, particles: Particles,
+    boundary: BoundaryRows, lists: Lists, law: PairLaw, force: Array,
 ) -> None:  # fmt: skip
-    """Write the force on surface samples: pair by pair, minus that on the fluid [N]."""
-    begin, _, end, neighbour = near
-    nil = place.dtype.type(0)
+    """Write the force on surface samples: pair by pair, minus that on the fluid.
+
+    Parameters
+    ----------
+    first, last : int
+        Samples to write.
+    row, listed : (samples,) int array
+        Where they stand among the particles, and where the lists have what is around them.
+    particles, boundary, lists, law
+    force : (samples, 3) float array, N
+        Written.
+    """
+    begin, _, end, neighbour = lists
+    position, velocity = particles
+    apparent, volume, mask = boundary
+    constants, terms = law.constants, law.boundary
+    zero = position.dtype.type(0)
     for s in range(first, last):
         i = row[s]
-        x, y, z, density = place[i, 0], place[i, 1], place[i, 2], place[i, 3]
-        u, v, w, term = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
-        fx, fy, fz = nil, nil, nil
+        x, y, z, density = position[i, 0], position[i, 1], position[i, 2], position[i, 3]
+        u, v, w, pressure = velocity[i, 0], velocity[i, 1], velocity[i, 2], velocity[i, 3]
+        on_sample = zero, zero, zero
         for k in range(np.uint64(begin[listed[s]]), np.uint64(end[listed[s]])):
             j = np.uint64(neighbour[k])
-            dx, dy, dz = x - place[j, 0], y - place[j, 1], z - place[j, 2]
+            dx, dy, dz = x - position[j, 0], y - position[j, 1], z - position[j, 2]
             r2 = dx * dx + dy * dy + dz * dz
-            du, dv, dw = u - motion[j, 0], v - motion[j, 1], w - motion[j, 2]
+            du, dv, dw = u - velocity[j, 0], v - velocity[j, 1], w - velocity[j, 2]
             dot = dx * du + dy * dv + dz * dw
-            both = density + place[j, 3] + fluid.base + fluid.base
-            per_r, per_r2, per_both = inverses(r2, both, fluid)
-            closing = fluid.grip * dot * per_r2
-            slope = gradient(r2, per_r, fluid.smoothing)
-            if bulk is not None:
-                slope *= bulk[i]
-            terms = term + motion[j, 3]
-            if contact is not None:
-                terms = term * bear(r2, i, contact.some, contact, fluid) + motion[j, 3]
-            size = slope * push(terms, closing, per_both, fluid)
-            if guard is not None:
-                size -= repel(r2, guard)
-            fx -= size * dx
-            fy -= size * dy
-            fz -= size * dz
-            if friction is not None and friction.stress is not None:
-                rub = dx * (friction.seen[i, 0] - motion[j, 0])
-                rub += dy * (friction.seen[i, 1] - motion[j, 1])
-                rub += dz * (friction.seen[i, 2] - motion[j, 2])
-                rub *= friction.strength * fluid.grip * slope * per_r2 * per_both
-                fx += rub * dx
-                fy += rub * dy
-                fz += rub * dz
-            elif friction is not None:
-                shear = fluid.grip * slope * (r2 * per_r2 * per_both)
-                fx += friction.strength * shear * (friction.seen[i, 0] - motion[j, 0])
-                fy += friction.strength * shear * (friction.seen[i, 1] - motion[j, 1])
-                fz += friction.strength * shear * (friction.seen[i, 2] - motion[j, 2])
-        force[s, 0] = fluid.mass * fluid.mass * fx
-        force[s, 1] = fluid.mass * fluid.mass * fy
-        force[s, 2] = fluid.mass * fluid.mass * fz
-
-
-# Not `fastmath`: that would take every number for finite, and this loop finds those that are not.
-@njit(**EXACT)
-def advance(
-    first: int, last: int, split: int, dt: float, ahead: float, furthest: float, fluid: Fluid,
-    rate: Array, reference: Array, place: Array, motion: Array, before: Array,
-) -> tuple[float, int]:  # fmt: skip
-    """Advance rows [first, last); return the greatest shift² since the list, and failures."""
-    moved, failed = 0.0, 0
-    for i in range(first, last):
-        growth = rate[i, 3] + ahead * (rate[i, 3] - before[i])
-        before[i] = rate[i, 3]
-        density = place[i, 3] + dt * growth
-        if i < split:
-            step2, moved2 = 0.0, 0.0
-            for d in range(3):
-                step = dt * (motion[i, d] + 0.5 * dt * rate[i, d])
-                place[i, d] += step
-                motion[i, d] += dt * rate[i, d]
-                step2 += step * step
-                moved2 += (place[i, d] - reference[i, d]) ** 2
-            moved = max(moved, moved2)
-            failed += int(not (step2 <= furthest * furthest and 0.0 < density < math.inf))
-        else:
-            density = max(density, fluid.density)
-        place[i, 3] = density
-        motion[i, 3] = pressure_term(density, fluid)
-    return moved, failed
+            density_sum = density + position[j, 3] + constants.base + constants.base
+            per_r, per_r2, per_density = inverses(r2, density_sum, constants)
+            slope = gradient(r2, per_r, constants.smoothing)
+            if terms.volume is not None:
+                slope *= volume[i]
+            own = pressure
+            if terms.contact.on is not None:
+                acts = zero
+                if terms.contact.partial is not None:
+                    acts = mask[i]
+                own = pressure * contact_factor(r2, acts, terms.contact, constants.smoothing)
+            seen = u, v, w
+            if terms.viscosity.on is not None:
+                seen = apparent[i, 0], apparent[i, 1], apparent[i, 2]
+            going = velocity[j, 0], velocity[j, 1], velocity[j, 2]
+            on_sample = add_pair_force(
+                on_sample, (dx, dy, dz), seen, going, r2, own + velocity[j, 3], dot * per_r2,
+                slope, per_r2, per_density, terms,
+            )  # fmt: skip
+        for d in range(3):
+            force[s, d] = constants.mass * constants.mass * on_sample[d]
 
 
 @njit(**FAST)
-def shift(first: int, last: int, time: float, drift: Array, place: Array) -> None:
+def move_by(first: int, last: int, time: float, velocity: Array, position: Array) -> None:
     """Move rows [first, last) with velocities (fluid, 3) m/s for a time [s]."""
     for i in range(first, last):
         for d in range(3):
-            place[i, d] += time * drift[i, d]
+            position[i, d] += time * velocity[i, d]
 
 
+# Not `FAST`: that would take every number for finite, and densities may not be.
 @njit(**EXACT)
-def press(fluid: Fluid, place: Array, motion: Array) -> None:
+def write_pressure(constants: Constants, position: Array, velocity: Array) -> None:
     """Write p/ρ² of all rows from their densities."""
-    for i in range(place.shape[0]):
-        motion[i, 3] = pressure_term(place[i, 3], fluid)
+    for i in range(position.shape[0]):
+        velocity[i, 3] = pressure_term(position[i, 3], constants)

@@ -5,10 +5,10 @@ from typing import ClassVar, Literal
 
 from pydantic import NonNegativeInt
 
-from quintet.components.sph_fluid import geometry
-from quintet.components.sph_fluid.checks import check
-from quintet.components.sph_fluid.geometry import Axis, Box, Exponent, Face, Spot, UprightFace
-from quintet.components.sph_fluid.standing_wave import StandingWave
+from quintet.components.sph_fluid.setup import geometry
+from quintet.components.sph_fluid.setup.checks import check
+from quintet.components.sph_fluid.setup.geometry import Axis, Box, Exponent, Face, Spot, UprightFace
+from quintet.components.sph_fluid.setup.standing_wave import StandingWave
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
 

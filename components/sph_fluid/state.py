@@ -17,24 +17,24 @@ class State:
     """Rows are the fluid, then the boundary (walls and surface samples), each sorted by cell.
 
     Position and density, velocity and pressure stand side by side, as pairs need them; of these,
-    images in planes of symmetry follow (`symmetry.py`).
+    images in planes of symmetry follow (`boundary/symmetry.py`).
     """
 
-    place: Array  # (n + images, 4) m, m, m, kg/m3: x, y, z, ρ
-    motion: Array  # (n + images, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
-    before: Array  # (n,) kg/(m3 s), dρ/dt one step ago
-    pull: Array  # (fluid, 3) m/s2, acceleration at the last step's end; (0, 3) if not symplectic
-    squeeze: Array  # (n,) kg/(m3 s), -ρ∇·u of the last pass over pairs; (0,) without a damper
-    reference: Array  # (n, 3) m, where the neighbour list was made, with mirrors (n + boundary, 3);
-    # (0, 3): there is none yet
-    mirror: Array  # (boundary, 3) m, mirror points of walls and samples; (0, 3) without mdbc
+    position_density: Array  # (n + images, 4) m, m, m, kg/m3: x, y, z, ρ
+    velocity_pressure: Array  # (n + images, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
+    previous_density_rate: Array  # (n,) kg/(m3 s), dρ/dt one step ago
+    acceleration: Array  # (fluid, 3) m/s2, at the last step's end; (0, 3) if not symplectic
+    minus_rho_div_u: Array  # (n,) kg/(m3 s), of the last pass over pairs; (0,) without a damper
+    reference: Array  # (n, 3) m, where the neighbour list was made, with mirror points
+    # (n + boundary, 3); (0, 3): there is none yet
+    mirror_point: Array  # (boundary, 3) m, of walls and samples; (0, 3) without mdbc
     identity: Whole  # (fluid,) the number each fluid particle was born with
     sample: Whole  # (boundary,) row in the port `surface`; -1 for walls
     force: Array  # (samples, 3) N, mean over the last step
     film: Array  # (samples, 3) of films in narrow gaps: pressure [Pa], full share, width [m] or 0
     # where there is none; (0, 3) where they are not wanted
-    acceleration: float = 0.0  # m/s2, largest of the last step
-    approach: float = 0.0  # 1/s, largest |u·r|/(r²+0.01h²) of the last step
+    largest_acceleration: float = 0.0  # m/s2, of the last step
+    largest_approach: float = 0.0  # 1/s, largest |u·r|/(r²+0.01h²) of the last step
     moved: float = 0.0  # m, furthest that a fluid particle is from its reference
     last_dt: float = 0.0  # s
     steps: int = 0
@@ -45,13 +45,13 @@ class State:
         """State of particles at rest that are nowhere yet."""
         n = fluid + boundary
         return cls(
-            place=np.zeros((n, 4)),
-            motion=np.zeros((n, 4)),
-            before=np.zeros(n),
-            pull=np.zeros((0, 3)),
-            squeeze=np.zeros(0),
+            position_density=np.zeros((n, 4)),
+            velocity_pressure=np.zeros((n, 4)),
+            previous_density_rate=np.zeros(n),
+            acceleration=np.zeros((0, 3)),
+            minus_rho_div_u=np.zeros(0),
             reference=np.zeros((0, 3)),
-            mirror=np.zeros((0, 3)),
+            mirror_point=np.zeros((0, 3)),
             identity=np.arange(fluid),
             sample=np.full(boundary, -1),
             force=np.zeros((0, 3)),
@@ -66,34 +66,34 @@ class State:
     @property
     def particles(self) -> int:
         """Number of fluid and boundary particles, without images."""
-        return len(self.before)
+        return len(self.previous_density_rate)
 
     def keep(self, fluid: Whole, boundary: Whole) -> None:
         """Keep these rows of the fluid and of the boundary, in this order; all else goes."""
         rows = np.concatenate([fluid, self.fluid + boundary])
         # `take` copies rows many times faster than indexing does.
-        self.place, self.motion = self.place.take(rows, axis=0), self.motion.take(rows, axis=0)
-        self.before = self.before[rows]
-        if len(self.pull):
-            self.pull = self.pull.take(fluid, axis=0)
-        if len(self.squeeze):
-            self.squeeze = self.squeeze[rows]
+        self.position_density = self.position_density.take(rows, axis=0)
+        self.velocity_pressure = self.velocity_pressure.take(rows, axis=0)
+        self.previous_density_rate = self.previous_density_rate[rows]
+        if len(self.acceleration):
+            self.acceleration = self.acceleration.take(fluid, axis=0)
+        if len(self.minus_rho_div_u):
+            self.minus_rho_div_u = self.minus_rho_div_u[rows]
         self.identity, self.sample = self.identity[fluid], self.sample[boundary]
-        if len(self.mirror):
-            self.mirror = self.mirror.take(boundary, axis=0)
+        if len(self.mirror_point):
+            self.mirror_point = self.mirror_point.take(boundary, axis=0)
 
-    def add_samples(self, count: int, density: float, mirrored: bool = False) -> None:
+    def add_samples(self, count: int, density: float) -> None:
         """Append surface samples to the boundary; they are nowhere until they are placed."""
-        place = np.zeros((count, 4))
-        place[:, 3] = density
-        self.place = np.concatenate([self.place, place])
-        self.motion = np.concatenate([self.motion, np.zeros((count, 4))])
-        self.before = np.concatenate([self.before, np.zeros(count)])
-        if len(self.squeeze):
-            self.squeeze = np.concatenate([self.squeeze, np.zeros(count)])
+        rows = np.zeros((count, 4))
+        self.velocity_pressure = np.concatenate([self.velocity_pressure, rows])
+        rows[:, 3] = density
+        self.position_density = np.concatenate([self.position_density, rows])
+        none = np.zeros(count)
+        self.previous_density_rate = np.concatenate([self.previous_density_rate, none])
+        if len(self.minus_rho_div_u):
+            self.minus_rho_div_u = np.concatenate([self.minus_rho_div_u, none])
         self.sample = np.concatenate([self.sample, np.arange(count)])
-        if mirrored:
-            self.mirror = np.concatenate([self.mirror, np.zeros((count, 3))])
         self.force = np.zeros((count, 3))
 
     def sample_rows(self) -> Whole:

@@ -1,11 +1,17 @@
-"""Parameters of small fluids."""
+"""Parameters of small fluids, and passes over their pairs."""
 
 import json
 from typing import Any
 
+import numpy as np
 from pydantic import TypeAdapter
 
+from quintet.components.shared.search.neighbours import Lists
 from quintet.components.sph_fluid import SphFluidParams
+from quintet.components.sph_fluid.kernels import BoundaryRows, Particles, Rates, pair_rates
+from quintet.components.sph_fluid.laws import PairLaw
+
+ORIGIN = (0.0, 0.0, 0.0)
 
 
 def nested(settings: dict[str, Any]) -> dict[str, Any]:
@@ -25,3 +31,16 @@ def fluid_params(**given: Any) -> SphFluidParams:
     text = json.dumps(nested(given))
     params: SphFluidParams = TypeAdapter(SphFluidParams).validate_json(text)
     return params
+
+
+def summed(
+    law: PairLaw, position: np.ndarray, velocity: np.ndarray, lists: Lists, fluid: int,
+    gravity: tuple[float, float, float] = ORIGIN,
+) -> np.ndarray:  # fmt: skip
+    """Accelerations and rates of density (n, 4) of the first rows, which are fluid."""
+    none = np.zeros(0)
+    rates = Rates(np.zeros_like(position), np.zeros((0, 3)), none)
+    boundary = BoundaryRows(np.zeros((0, 4)), none, none)
+    particles = Particles(position, velocity)
+    pair_rates(0, fluid, fluid, particles, boundary, lists, law, gravity, rates)
+    return rates.rate

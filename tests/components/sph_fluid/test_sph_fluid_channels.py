@@ -13,7 +13,7 @@ from fluid_params import nested
 
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.geometry import depth
+from quintet.components.sph_fluid.setup.geometry import depth
 from quintet.interfaces.params import read
 
 LENGTH, SPEED, SPACING = 6.0, 0.2, 0.05

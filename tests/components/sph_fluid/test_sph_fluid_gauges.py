@@ -33,7 +33,7 @@ def walled(**given):
 def test_pressure_of_still_water_is_read_exactly(point):
     fluid = walled(gauges__pressure_gauges=(point,))
     rows, shake = slice(fluid.state.fluid), np.random.default_rng(2).uniform(-0.2, 0.2, (2000, 3))
-    place, motion = fluid.state.place, fluid.state.motion
+    place, motion = fluid.state.position_density, fluid.state.velocity_pressure
     place[rows, :3] += SPACING * shake[: fluid.state.fluid]
     motion[rows, 3] = (5000.0 - 9810.0 * place[rows, 2]) / place[rows, 3] ** 2
     found = fluid.give()["pressure_gauge.pressure"]
@@ -54,7 +54,7 @@ def test_a_gauge_on_a_face_that_is_half_wet_reads_its_share(top, share):
         fluid=(water,), gauges__pressure_gauges=((0.0, 0.1, 0.08),), gravity=(0.0, 0.0, 0.0)
     )
     rows = slice(fluid.state.fluid)
-    fluid.state.motion[rows, 3] = 5000.0 / fluid.state.place[rows, 3] ** 2
+    fluid.state.velocity_pressure[rows, 3] = 5000.0 / fluid.state.position_density[rows, 3] ** 2
     found = fluid.give()["pressure_gauge.pressure"]
     assert found == pytest.approx([5000.0 * share], rel=0.01)
 
@@ -62,9 +62,11 @@ def test_a_gauge_on_a_face_that_is_half_wet_reads_its_share(top, share):
 def test_a_dry_gauge_reads_zero_and_one_that_a_drop_strikes_its_share():
     spot = (0.5, 0.1, 0.1)
     fluid = fluid_with(boundary__method="mdbc", gauges__pressure_gauges=(spot, (0.5, 0.1, 0.5)))
-    fluid.state.place[0, :3] = spot
-    fluid.state.motion[0, 3] = 70.0 / fluid.state.place[0, 3] ** 2
-    share = SPACING**3 / (math.pi * (1.5 * SPACING) ** 3) * 1000.0 / fluid.state.place[0, 3]
+    fluid.state.position_density[0, :3] = spot
+    fluid.state.velocity_pressure[0, 3] = 70.0 / fluid.state.position_density[0, 3] ** 2
+    share = (
+        SPACING**3 / (math.pi * (1.5 * SPACING) ** 3) * 1000.0 / fluid.state.position_density[0, 3]
+    )
     found = fluid.give()["pressure_gauge.pressure"]
     assert found == pytest.approx([70.0 * share / 0.85, 0.0], rel=1e-3)
 
@@ -95,16 +97,16 @@ def test_level_is_the_highest_and_passes_over_drops():
     boxes = (BOX, ((0.0, 0.0, 0.4), (0.2, 0.2, 0.5)))
     spots = ((0.1, 0.1), (0.17, 0.1))
     fluid = fluid_with(fluid=boxes, gauges__level_gauges=spots)
-    fluid.state.place[0, :3] = [0.1, 0.1, 0.8]
+    fluid.state.position_density[0, :3] = [0.1, 0.1, 0.8]
     assert fluid.give()["level_gauge.height"] == pytest.approx([0.5, 0.5], abs=0.1 * SPACING)
-    high = fluid.state.place[:, 2] > 0.35
-    fluid.state.place[high, 0] += 1.0
+    high = fluid.state.position_density[:, 2] > 0.35
+    fluid.state.position_density[high, 0] += 1.0
     assert fluid.give()["level_gauge.height"] == pytest.approx([0.16, 0.16], abs=0.1 * SPACING)
 
 
 def test_level_follows_a_slope():
     fluid = fluid_with(gauges__level_gauges=((0.1, 0.1), (0.06, 0.1), (0.14, 0.1)))
-    fluid.state.place[:, 2] += 0.1 * (fluid.state.place[:, 0] - 0.1)
+    fluid.state.position_density[:, 2] += 0.1 * (fluid.state.position_density[:, 0] - 0.1)
     exact = [0.16, 0.156, 0.164]
     assert fluid.give()["level_gauge.height"] == pytest.approx(exact, abs=0.1 * SPACING)
 
@@ -120,8 +122,10 @@ def test_front_of_a_box_is_its_face(axis, end):
 @pytest.mark.parametrize(("drops", "front"), [(0, 0.2), (1, 0.2), (3, 0.2), (200, 0.3)])
 def test_front_leaves_out_spray_but_not_bulk(drops, front):
     fluid = fluid_with(gauges__front_gauge="x", gravity=(0.0, 0.0, 0.0))
-    ahead = fluid.state.place[: fluid.state.fluid, 0].argsort(kind="stable")[::-1][:drops]
-    fluid.state.place[ahead, 0] += 0.1
+    ahead = fluid.state.position_density[: fluid.state.fluid, 0].argsort(kind="stable")[::-1][
+        :drops
+    ]
+    fluid.state.position_density[ahead, 0] += 0.1
     fluid.step(1e-9)
     assert fluid.give()["front_gauge.position"] == pytest.approx([front], abs=1e-6)
 

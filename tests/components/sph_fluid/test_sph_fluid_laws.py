@@ -4,15 +4,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fluid_params import fluid_params
+from fluid_params import fluid_params, summed
 
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import laws
-from quintet.components.sph_fluid.kernels import interact, press
-from quintet.components.sph_fluid.laws import Fluid, constants
-from quintet.components.sph_fluid.shepard import shepard
+from quintet.components.sph_fluid.kernels import write_pressure
+from quintet.components.sph_fluid.laws import PairLaw
+from quintet.components.sph_fluid.pairs.constants import pair_law
+from quintet.components.sph_fluid.pairs.shepard_filter import filter_density
 
 REACH = 3.3  # spacings
 
@@ -30,7 +31,7 @@ def near(points: np.ndarray, spacing: float) -> NeighbourLists:
     return neighbours_within(REACH * spacing, points, len(points), Team(1))
 
 
-def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: Any) -> Fluid:
+def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: Any) -> PairLaw:
     box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     settings = {
         "spacing": spacing,
@@ -38,22 +39,19 @@ def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: An
         "sound_speed": 40.0,
         "viscosity.artificial": 0.0,
     }
-    return constants(fluid_params(fluid=(box,), dimensions=dimensions, **settings, **given))
+    given = {**settings, **{name.replace("__", "."): value for name, value in given.items()}}
+    return pair_law(fluid_params(fluid=(box,), dimensions=dimensions, **given))
 
 
 def rates(
-    points: np.ndarray, velocity: np.ndarray, density: np.ndarray, fluid: Fluid
+    points: np.ndarray, velocity: np.ndarray, density: np.ndarray, fluid: PairLaw
 ) -> np.ndarray:
     """Acceleration and dρ/dt (n, 4) without gravity."""
     place = np.column_stack([points, density])
     motion = np.column_stack([velocity, np.zeros(len(points))])
-    press(fluid, place, motion)
-    lists = near(points, fluid.smoothing.length / 1.5).arrays
-    rate = np.empty_like(place)
-    count = len(points)
-    terms = ((0.0, 0.0, 0.0), rate, None, None, None, None, None, None, None)
-    interact(0, count, count, place, motion, lists, fluid, *terms)
-    return rate
+    write_pressure(fluid.constants, place, motion)
+    lists = near(points, fluid.constants.smoothing.length / 1.5).arrays
+    return summed(fluid, place, motion, lists, len(points))
 
 
 def test_continuity_converges_to_the_divergence_at_second_order() -> None:
@@ -77,7 +75,7 @@ def test_pressure_gradient_converges_at_second_order() -> None:
         points = lattice(round(1.2 / spacing), spacing)
         # Small waves on a small pressure, for the lattice's mass per volume is ρ₀ exactly.
         pressure = 1000.0 * (2.0 + np.sin(3.0 * points[:, 0]))
-        density = 1000.0 * (pressure / fluid.stiffness + 1.0) ** (1.0 / 7.0)
+        density = 1000.0 * (pressure / fluid.constants.stiffness + 1.0) ** (1.0 / 7.0)
         found = rates(points, np.zeros_like(points), density, fluid)[:, 0]
         inside = (np.abs(points) < 0.15).all(axis=1)
         exact = -3.0 * np.cos(3.0 * points[inside, 0])
@@ -87,15 +85,16 @@ def test_pressure_gradient_converges_at_second_order() -> None:
 
 
 def test_viscosity_acts_on_approach_only() -> None:
-    fluid = law(0.1)._replace(drag=1.0)
-    assert laws.push.py_func(0.0, -2.0, 1.0 / 2000.0, fluid) == pytest.approx(1e-3)
-    assert laws.push.py_func(0.0, 2.0, 1.0 / 2000.0, fluid) == 0.0
+    terms = law(0.1).fluid._replace(artificial=1.0)
+    assert laws.pair_pressure.py_func(0.0, -2.0, 1.0 / 2000.0, terms) == pytest.approx(1e-3)
+    assert laws.pair_pressure.py_func(0.0, 2.0, 1.0 / 2000.0, terms) == 0.0
 
 
-def test_pressure_is_cut_unless_tension_is_allowed() -> None:
-    assert laws.tait.py_func(990.0, law(0.1)) == 0.0
-    assert laws.tait.py_func(990.0, law(0.1, negative_pressure=True)) < 0.0
-    slope = (laws.tait.py_func(1000.001, law(0.1)) - 0.0) / 0.001
+def test_pressure_is_cut_unless_it_may_be_negative() -> None:
+    cut = law(0.1).constants
+    assert laws.tait.py_func(990.0, cut) == 0.0
+    assert laws.tait.py_func(990.0, law(0.1, negative_pressure=True).constants) < 0.0
+    slope = (laws.tait.py_func(1000.001, cut) - 0.0) / 0.001
     assert slope == pytest.approx(40.0**2, rel=1e-4)
 
 
@@ -104,5 +103,6 @@ def test_shepard_filter_keeps_a_uniform_density() -> None:
     fluid = law(0.1)
     place = np.column_stack([points, np.full(len(points), 1003.0)])
     density = np.empty(len(points))
-    shepard(0, len(points), place, near(points, 0.1).arrays, fluid, density)
+    lists = near(points, 0.1).arrays
+    filter_density(0, len(points), place, lists, fluid.constants, density)
     assert density == pytest.approx(1003.0, rel=1e-12)

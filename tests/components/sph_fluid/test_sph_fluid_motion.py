@@ -8,7 +8,6 @@ import pytest
 from fluid_params import fluid_params
 
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid import component
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import OrderError, QuintetError, StepError
@@ -19,7 +18,7 @@ Join = Callable[..., Fields]
 
 def push_all(fluid: SphFluid, velocity: list[float]) -> None:
     state = {name: np.array(array) for name, array in fluid.save().items()}
-    state["motion"][:, :3] += velocity
+    state["velocity_pressure"][:, :3] += velocity
     fluid.load(state)
 
 
@@ -27,8 +26,12 @@ def stir(fluid: SphFluid, seed: int = 3) -> None:
     """Give the fluid particles random velocities and densities."""
     state = {name: np.array(array) for name, array in fluid.save().items()}
     random, rows = np.random.default_rng(seed), slice(len(state["identity"]))
-    state["motion"][rows, :3] += random.normal(0.0, 0.1, state["motion"][rows, :3].shape)
-    state["place"][rows, 3] += random.uniform(0.0, 3.0, len(state["place"][rows]))
+    state["velocity_pressure"][rows, :3] += random.normal(
+        0.0, 0.1, state["velocity_pressure"][rows, :3].shape
+    )
+    state["position_density"][rows, 3] += random.uniform(
+        0.0, 3.0, len(state["position_density"][rows])
+    )
     fluid.load(state)
 
 
@@ -44,9 +47,9 @@ def run(fluid: SphFluid, time: float) -> None:
 def test_free_fall_is_a_parabola(drop: Make) -> None:
     fluid = drop(negative_pressure=False)
     state = {name: np.array(array) for name, array in fluid.save().items()}
-    state["place"][:, 3] = 1000.0  # no pressure
-    state["motion"][:, 3] = 0.0
-    state["motion"][:, 0] = 0.7
+    state["position_density"][:, 3] = 1000.0  # no pressure
+    state["velocity_pressure"][:, 3] = 0.0
+    state["velocity_pressure"][:, 0] = 0.7
     fluid.load(state)
     before = fluid.view()["points"].copy()
     run(fluid, 0.2)
@@ -201,13 +204,13 @@ def test_particles_that_leave_are_counted_and_missed() -> None:
     assert fluid.state.lost == 125
     assert fluid.totals().mass == pytest.approx(1.0)
     assert len(fluid.view()["points"]) == 125
-    assert fluid.items() == len(fluid.state.place)
+    assert fluid.items() == len(fluid.state.position_density)
 
 
 def test_too_fast_a_particle_is_an_error_that_names_it(drop: Make) -> None:
     fluid = drop()
     state = {name: np.array(array) for name, array in fluid.save().items()}
-    state["motion"][17, 0] = 900.0
+    state["velocity_pressure"][17, 0] = 900.0
     fluid.load(state)
     with pytest.raises(StepError, match=r"less than a spacing .* particle 17 at .* Lower courant"):
         fluid.step(1e-3)
@@ -275,13 +278,13 @@ def test_bits_do_not_depend_on_the_number_of_threads(pool: Make, precision: str)
 def test_lists_are_renewed_before_a_pair_is_missed(pool: Make) -> None:
     fluid = pool()
     stir(fluid)
-    reach = component.SUPPORT * fluid.fluid.smoothing.length
+    reach = fluid.constants.smoothing.support
     for _ in range(30):
         fluid.step(fluid.stable_dt())
-        old = fluid.state.place.copy()
-        if fluid._list_is_old():
+        old = fluid.state.position_density.copy()
+        if fluid.lists.are_outworn(fluid.state, fluid.boundary, 0.0):
             continue
-        near = fluid.near
+        near = fluid.lists.near
         distance = np.linalg.norm(old[:, None, :3] - old[None, :10, :3], axis=2)
         for i in range(10):
             listed = set(near.list[near.begin[i] : near.end[i]].tolist())

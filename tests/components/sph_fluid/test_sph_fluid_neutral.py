@@ -7,7 +7,7 @@ import pytest
 from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.kernels import press
+from quintet.components.sph_fluid.kernels import write_pressure
 from quintet.coupler.coupling.body_samples import BOX, SPHERE, fill, mirrors
 
 SPACING, EDGE, SIDE = 0.03, 0.15, 0.27  # m: of particles, body, tank
@@ -137,9 +137,9 @@ def test_a_sphere_is_pushed_up_by_the_weight_of_its_water() -> None:
     fluid = sunk(SPHERE, fluid=(*AROUND, *corners()))
     # Water below an overhang starts without the pressure of what is beside and above it.
     state, rows = fluid.state, slice(fluid.state.fluid)
-    depth = SIDE - state.place[rows, 2]
-    state.place[rows, 3] = 1000.0 + WEIGHT * depth / fluid.params.sound_speed**2
-    press(fluid.fluid, state.place, state.motion)
+    depth = SIDE - state.position_density[rows, 2]
+    state.position_density[rows, 3] = 1000.0 + WEIGHT * depth / fluid.params.sound_speed**2
+    write_pressure(fluid.constants, state.position_density, state.velocity_pressure)
     # What starts in the corners of the sphere's box has to find its place first.
     force = push(fluid, 1.6, 2.0) / (WEIGHT * math.pi / 6.0 * EDGE**3)
     assert force[2] == pytest.approx(1.0, abs=0.01)

@@ -6,9 +6,9 @@ from fluid_params import fluid_params, nested
 
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
+from quintet.components.sph_fluid.boundary.obstacles import FELT, obstacle_points
 from quintet.components.sph_fluid.build import state
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.obstacles import FELT, obstacle_points
 from quintet.interfaces.params import read
 
 SPACING = 0.05
@@ -22,10 +22,10 @@ def params(**given):
     return fluid_params(**(settings | {"boundary.obstacles": (BOX,)} | given))
 
 
-@pytest.mark.parametrize("standoff", [0.5, 1.0, 1.5])
-def test_outermost_particles_lie_the_standoff_inside_wet_faces(standoff):
-    points = obstacle_points(params(boundary__wall_offset=standoff))
-    inside = standoff * SPACING
+@pytest.mark.parametrize("wall_offset", [0.5, 1.0, 1.5])
+def test_outermost_particles_lie_the_wall_offset_inside_wet_faces(wall_offset):
+    points = obstacle_points(params(boundary__wall_offset=wall_offset))
+    inside = wall_offset * SPACING
     assert points.min(axis=0) == pytest.approx([0.9 + inside, 0.1 + inside, 0.5 * SPACING])
     assert points.max(axis=0) == pytest.approx([1.2 - inside, 0.3 - inside, 0.4 - inside])
     nearest = np.linalg.norm(points[:, None] - points[None], axis=2) + np.eye(len(points))
@@ -59,10 +59,10 @@ def test_what_water_cannot_feel_is_left_out():
 def test_plan_counts_the_particles_of_obstacles():
     one = params()
     assert MANIFEST.plan is not None
-    assert MANIFEST.plan(one).items == len(state(one).place)
-    assert len(state(one).place) == len(state(params(boundary__obstacles=())).place) + len(
-        obstacle_points(one)
-    )
+    assert MANIFEST.plan(one).items == len(state(one).position_density)
+    assert len(state(one).position_density) == len(
+        state(params(boundary__obstacles=())).position_density
+    ) + len(obstacle_points(one))
 
 
 def test_water_does_not_enter_an_obstacle():

@@ -88,7 +88,7 @@ def test_fluid_may_reach_out_of_an_open_face() -> None:
 def test_plan_counts_what_is_built() -> None:
     params = read(SphFluidParams, nested(GOOD | {"boundary.open_faces": ["z+", "x-"]}), "water")[0]
     plan = MANIFEST.plan(params) if MANIFEST.plan else None
-    assert plan is not None and plan.items == len(state(params).place)
+    assert plan is not None and plan.items == len(state(params).position_density)
     assert plan.dt == pytest.approx(0.2 * 0.15 / 66.0)
 
 
@@ -103,16 +103,16 @@ def test_benchmark_tank_has_142421_particles() -> None:
 def test_wall_goes_on_with_the_lattice_of_the_fluid() -> None:
     params = read(SphFluidParams, nested(GOOD), "water")[0]
     made = state(params)
-    wall = made.place[made.fluid :, :3]
+    wall = made.position_density[made.fluid :, :3]
     assert wall.min(axis=0) == pytest.approx([-0.05, -0.05, -0.05])
     assert wall.max(axis=0) == pytest.approx([2.05, 1.05, 1.95])
-    assert made.place[: made.fluid, :3].min(axis=0) == pytest.approx([0.05] * 3)
+    assert made.position_density[: made.fluid, :3].min(axis=0) == pytest.approx([0.05] * 3)
 
 
 def test_pressure_at_the_start_is_hydrostatic() -> None:
     params = read(SphFluidParams, nested(GOOD), "water")[0]
     made = state(params)
-    z, density = made.place[: made.fluid, 2], made.place[: made.fluid, 3]
+    z, density = made.position_density[: made.fluid, 2], made.position_density[: made.fluid, 3]
     stiffness = 60.0**2 * 1000.0 / 7.0
     pressure = stiffness * ((density / 1000.0) ** 7 - 1.0)
     assert pressure == pytest.approx(9810.0 * (1.0 - z), rel=1e-9)
@@ -135,8 +135,8 @@ def test_water_under_water_starts_under_the_pressure_of_both() -> None:
     beside = ((0.4, 0.0, 0.0), (0.6, 0.4, 0.2))  # nothing stands on it
     one = fluid_params(spacing=0.05, sound_speed=20.0, fluid=(*boxes, beside))
     made = state(one)
-    z, density = made.place[:, 2], made.place[:, 3]
-    below = np.where(made.place[:, 0] < 0.4, 0.4, 0.2) - z
+    z, density = made.position_density[:, 2], made.position_density[:, 3]
+    below = np.where(made.position_density[:, 0] < 0.4, 0.4, 0.2) - z
     pressure = 400.0 * 1000.0 / 7.0 * ((density / 1000.0) ** 7 - 1.0)
     np.testing.assert_allclose(pressure, 9810.0 * below, rtol=1e-6)
 

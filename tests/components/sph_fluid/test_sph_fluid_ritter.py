@@ -45,7 +45,7 @@ def test_layer_holds_together_with_tension_and_carries_ritters_momentum(
         fluid.step(dt)
         time += dt
     state = fluid.state
-    place, motion = state.place[: state.fluid], state.motion[: state.fluid]
+    place, motion = state.position_density[: state.fluid], state.velocity_pressure[: state.fluid]
     density, error = [], []
     for x in (4.0, 4.4, 4.8):
         there = np.abs(place[:, 0] - x) < HALF

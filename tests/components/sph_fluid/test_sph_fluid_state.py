@@ -42,12 +42,21 @@ from quintet.components.sph_fluid import kernels
 box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
 fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
 fluid.step(fluid.stable_dt())
-for module in ("shepard", "contact", "damper", "mdbc", "single", "symplectic"):
-    assert f"quintet.components.sph_fluid.{module}" not in sys.modules
-assert not kernels.push_samples.signatures
-(signature,) = kernels.interact.signatures
-assert [str(one) for one in signature[-3:]] == ["none", "none", "none"], signature
-assert fluid.drift is None and fluid.state.force.size == 0
+loaded = {name.rpartition(".")[2] for name in sys.modules if "sph_fluid" in name}
+left_out = "shepard_filter contact_potential potential acoustic_damper mirrored mirrored_kernels"
+left_out += " single_precision position_verlet symmetry lubrication film_geometry gauges"
+assert not loaded & set(left_out.split()), loaded
+assert not kernels.sample_forces.signatures
+(signature,) = kernels.pair_rates.signatures
+law = dict(zip(signature[6].fields, signature[6].types))
+assert str(law["damper"]) == "none"
+for name in ("fluid", "boundary"):
+    terms = dict(zip(law[name].fields, law[name].types))
+    switches = [terms["volume"], terms["xsph"]]
+    for term in ("viscosity", "diffusion", "repulsion", "contact"):
+        switches.append(dict(zip(terms[term].fields, terms[term].types))["on"])
+    assert [str(one) for one in switches] == ["none"] * 6, terms
+assert fluid.pairs.rates.xsph_velocity.size == fluid.state.force.size == 0
 """
 
 MIRRORED = """
@@ -64,9 +73,11 @@ fluid.bind({f"surface.{key}": array for key, array in static.items()})
 moved = {"position": one, "velocity": 0.0 * one, "mirror": one + (0.0, 0.0, 0.02)}
 fluid.take({f"surface.{key}": array for key, array in moved.items()})
 fluid.step(fluid.stable_dt())
-assert "quintet.components.sph_fluid.contact" not in sys.modules
-(signature,) = kernels.push_samples.signatures
-assert str(signature[-3]) == "none", signature
+assert not [name for name in sys.modules if name.endswith(".contact_potential")]
+(signature,) = kernels.sample_forces.signatures
+law = dict(zip(signature[7].fields, signature[7].types))
+terms = dict(zip(law["boundary"].fields, law["boundary"].types))
+assert str(terms["contact"].types[0]) == "none", terms
 """
 
 
@@ -134,7 +145,9 @@ def test_samples_keep_the_order_of_their_port(drop: Make, plate: Join) -> None:
     fields = plate(fluid)
     fluid.take(fields)
     fluid.step(1e-4)
-    assert np.array_equal(fluid.state.place[fluid.rows, :3], fields["surface.position"])
+    assert np.array_equal(
+        fluid.state.position_density[fluid.samples.row, :3], fields["surface.position"]
+    )
     assert len(fluid.give()["surface_load.force"]) == len(fields["surface.position"])
 
 

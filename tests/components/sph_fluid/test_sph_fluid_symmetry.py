@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.geometry import Box
+from quintet.components.sph_fluid.setup.geometry import Box
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import StepError
 
@@ -114,7 +114,7 @@ def test_water_presses_on_half_a_box_as_on_the_whole(dimensions: int) -> None:
         gauges__pressure_gauges=((0.0, 0.05, 0.06), (0.03, 0.05, 0.06), (0.06, 0.05, 0.03)),
     )
     one, other = SphFluid(half), SphFluid(whole(half))
-    mine, theirs = (fluid.state.place[fluid.state.fluid :, :3] for fluid in (one, other))
+    mine, theirs = (fluid.state.position_density[fluid.state.fluid :, :3] for fluid in (one, other))
     theirs = theirs[theirs[:, 0] > 0.0]
     order, same = (np.lexsort(points.round(6).T) for points in (mine, theirs))
     np.testing.assert_allclose(mine[order], theirs[same], atol=1e-12)
@@ -143,7 +143,7 @@ def test_still_water_is_hydrostatic_beside_the_plane() -> None:
     for _ in range(1500):
         fluid.step(fluid.stable_dt())
     rows = slice(fluid.state.fluid)
-    place, motion = fluid.state.place[rows], fluid.state.motion[rows]
+    place, motion = fluid.state.position_density[rows], fluid.state.velocity_pressure[rows]
     beside = place[:, 0] < 0.06
     pressure = motion[beside, 3] * place[beside, 3] ** 2
     error = pressure - 9810.0 * (2.0 * DEPTH - place[beside, 2])
@@ -168,26 +168,28 @@ def test_a_flow_along_planes_stays_uniform(symmetry: tuple[str, ...]) -> None:
         )
     )
     rows, stream = slice(fluid.state.fluid), np.array([0.5, 0.0, -0.3])
-    fluid.state.motion[rows, :3] = stream
+    fluid.state.velocity_pressure[rows, :3] = stream
     for _ in range(20):
         fluid.step(fluid.stable_dt())
-    change = np.abs(fluid.state.motion[rows, :3] - stream).max()
+    change = np.abs(fluid.state.velocity_pressure[rows, :3] - stream).max()
     assert change < 1e-12 if symmetry else change > 0.01
 
 
 def test_fluid_that_passes_the_plane_changes_places_with_its_image() -> None:
     fluid = SphFluid(params(integration="symplectic"))
     fluid.step(1e-4)
-    state, images = fluid.state, fluid.images
-    assert images is not None
-    row = int(np.argmin(state.place[: state.fluid, 0]))
-    state.place[row, 0], state.motion[row, 0], state.pull[row, 0] = -1e-3, -2.0, -3.0
-    images.fill(state)
-    before = seen(state.place, state.motion)
-    images.turn_back(state)
-    assert (state.place[row, 0], state.motion[row, 0], state.pull[row, 0]) == (1e-3, 2.0, 3.0)
-    images.fill(state)
-    np.testing.assert_array_equal(seen(state.place, state.motion), before)
+    state, planes = fluid.state, fluid.symmetry
+    position, velocity, acceleration = (
+        state.position_density, state.velocity_pressure, state.acceleration,
+    )  # fmt: skip
+    row = int(np.argmin(position[: state.fluid, 0]))
+    position[row, 0], velocity[row, 0], acceleration[row, 0] = -1e-3, -2.0, -3.0
+    planes.write_images(state)
+    before = seen(position, velocity)
+    planes.reflect_crossed(state)
+    assert (position[row, 0], velocity[row, 0], acceleration[row, 0]) == (1e-3, 2.0, 3.0)
+    planes.write_images(state)
+    np.testing.assert_array_equal(seen(position, velocity), before)
 
 
 def seen(place: NDArray[Any], motion: NDArray[Any]) -> NDArray[Any]:
@@ -197,7 +199,7 @@ def seen(place: NDArray[Any], motion: NDArray[Any]) -> NDArray[Any]:
 
 def test_water_thrown_at_the_plane_stays_before_it() -> None:
     fluid = SphFluid(params(sound_speed=60.0, viscosity__artificial=0.01))
-    fluid.state.motion[: fluid.state.fluid, 0] = -5.0
+    fluid.state.velocity_pressure[: fluid.state.fluid, 0] = -5.0
     for _ in range(400):
         fluid.step(fluid.stable_dt())
         assert fluid.view()["points"][:, 0].min() >= 0.0
@@ -241,7 +243,7 @@ def test_half_a_body_feels_what_that_half_of_the_whole_does() -> None:
     for _ in range(10):
         one.step(2e-4)
         other.step(2e-4)
-    rows = other.state.place[other.rows, 0] > 0.0
+    rows = other.state.position_density[other.samples.row, 0] > 0.0
     mine, theirs = one.give()["surface_load.force"], other.give()["surface_load.force"][rows]
     assert np.abs(theirs).max() > 0.01
     np.testing.assert_allclose(mine, theirs, atol=1e-10)
@@ -249,7 +251,7 @@ def test_half_a_body_feels_what_that_half_of_the_whole_does() -> None:
 
 def test_samples_behind_the_plane_are_refused() -> None:
     fluid = cut(True)
-    points = fluid.state.place[fluid.rows, :3] - np.array([0.012, 0.0, 0.0])
+    points = fluid.state.position_density[fluid.samples.row, :3] - np.array([0.012, 0.0, 0.0])
     sentence = r"before the plane of symmetry x-, x = 0 m; sample 0 is at x = -0.002 m. Move"
     with pytest.raises(StepError, match=sentence):
         fluid.take(moving(points))
@@ -279,8 +281,8 @@ def test_only_a_scene_that_asks_imports_them() -> None:
         "from quintet.components.sph_fluid.component import SphFluid;"
         "f = SphFluid(SphFluidParams(spacing=0.1, sound_speed=30.0,"
         " fluid=(((0.0, 0.0, 0.0), (0.3, 0.3, 0.3)),))); f.step(1e-5);"
-        "assert 'quintet.components.sph_fluid.symmetry' not in sys.modules;"
-        "assert f.images is None and len(f.state.place) == f.items() == 27"
+        "assert 'quintet.components.sph_fluid.boundary.symmetry' not in sys.modules;"
+        "assert len(f.state.position_density) == f.items() == 27"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
 

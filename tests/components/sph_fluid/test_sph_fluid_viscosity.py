@@ -4,30 +4,27 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fluid_params import summed
 from test_sph_fluid_laws import lattice, law, near
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.kernels import interact
-from quintet.components.sph_fluid.laws import Friction
+from quintet.components.sph_fluid.laws import KinematicViscosity
 
 SPACING, NU = 0.05, 0.3
-NOTHING = np.zeros((0, 4))
 LAWS = {
-    "laplacian": Friction(None, 4.0 * NU, NOTHING),
-    "stress": Friction(True, 16.0 * NU, NOTHING),
+    "laplacian": KinematicViscosity(True, None, 4.0 * NU),
+    "stress": KinematicViscosity(True, True, 16.0 * NU),
 }
 
 
-def rubbed(points: np.ndarray, velocity: np.ndarray, friction: Friction) -> np.ndarray:
+def rubbed(points: np.ndarray, velocity: np.ndarray, viscosity: KinematicViscosity) -> np.ndarray:
     """Acceleration (n, 3) m/s2 of a fluid in two dimensions without pressure."""
     fluid, count = law(SPACING, 1.5, 2), len(points)
     place = np.column_stack([points, np.full(count, 1000.0)])
     motion = np.column_stack([velocity, np.zeros(count)])
     lists = near(points, SPACING).arrays
-    rate = np.empty_like(place)
-    terms = (rate, None, None, friction._replace(seen=motion), None, None, None, None)
-    interact(0, count, count, place, motion, lists, fluid, (0.0, 0.0, 0.0), *terms)
-    return rate[:, :3]
+    rubbing = fluid._replace(fluid=fluid.fluid._replace(viscosity=viscosity))
+    return summed(rubbing, place, motion, lists, count)[:, :3]
 
 
 @pytest.mark.parametrize("name", LAWS)

@@ -6,7 +6,7 @@ from fluid_params import fluid_params
 
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.particle_count import particles
+from quintet.components.sph_fluid.setup.particle_count import particles
 
 TANK = {
     "boundary.walls": ((0.0, 0.0, 0.0), (1.0, 0.5, 0.5)),
@@ -18,30 +18,30 @@ def params(**given):
     return fluid_params(spacing=0.1, sound_speed=40.0, **TANK, **given)
 
 
-@pytest.mark.parametrize("standoff", [0.5, 1.5, 2.5])
-def test_wall_particles_stand_off_as_asked(standoff):
-    one = params(boundary__wall_offset=standoff)
+@pytest.mark.parametrize("wall_offset", [0.5, 1.5, 2.5])
+def test_wall_particles_are_as_far_out_as_asked(wall_offset):
+    one = params(boundary__wall_offset=wall_offset)
     wall = build.wall_points(one)
-    assert wall.min(axis=0) == pytest.approx([-0.1 * standoff] * 3)
-    assert wall[:, 0].max() == pytest.approx(1.0 + 0.1 * standoff)
+    assert wall.min(axis=0) == pytest.approx([-0.1 * wall_offset] * 3)
+    assert wall[:, 0].max() == pytest.approx(1.0 + 0.1 * wall_offset)
     assert particles(one) == len(wall) + 5 * 5 * 3
 
 
-def test_samples_are_wanted_at_the_inset():
+def test_samples_are_wanted_at_their_depth():
     assert SphFluid(params(boundary__sample_depth=1.5)).describe()["surface.inset"][
         0
     ] == pytest.approx(0.15)
 
 
-@pytest.mark.parametrize(("grip", "drags"), [(0.0, False), (1.0, True)])
-def test_walls_drag_only_with_grip(grip, drags):
+@pytest.mark.parametrize(("factor", "drags"), [(0.0, False), (1.0, True)])
+def test_walls_drag_only_with_a_viscosity_factor(factor, drags):
     # At rest density there is no pressure: what slows a fluid that slides on its wall is drag.
     one = params(
-        boundary__wall_viscosity_factor=grip, gravity=(0.0, 0.0, 0.0), viscosity__artificial=0.5
+        boundary__wall_viscosity_factor=factor, gravity=(0.0, 0.0, 0.0), viscosity__artificial=0.5
     )
     fluid = SphFluid(one)
     rows = slice(fluid.state.fluid)
-    fluid.state.motion[rows, 1] = 1.0
+    fluid.state.velocity_pressure[rows, 1] = 1.0
     before = fluid.totals().momentum[1]
     fluid.step(1e-7)
     lost = 1.0 - fluid.totals().momentum[1] / before

@@ -1,0 +1,180 @@
+"""Films of water in narrow gaps; imported only by a scene that asks.
+
+Between two faces nearer than WIDEST spacings lies a film that the particles do not show, or not
+wholly. It is filled from its rim, where it has the pressure of the fluid outside (none where that
+is dry), and pushes its faces apart, one as much as the other. Reynolds' equation of lubrication,
+
+    ∂(θw)/∂t = ∇·(K ∇(p - ρ₀ g·r)),    K = w³/(12μ),    p ≥ 0,  θ ≤ 1,  p (1 - θ) = 0,
+
+says how fast the share θ of the width w that is full of water grows, and with which pressure: a
+film that is not full has none (Elrod, ASME J. Lubr. Technol. 103 (1981) 350), faces that part
+draw it down and faces that close press it up. Water does not flow in faster than the pressure at
+the rim can drive it, √(2p/ρ₀): this bounds K in wide gaps. The film's own mass is left out.
+
+Particles get into gaps of half a spacing and more, but the kernel reaches through a gap and finds
+less water there than in the open. Per area of a flat face, fluid of pressure p presses with
+
+    2p Σ_j V_j W(r_face - r_j),
+
+the sum over columns of samples below it of what pairs give, ∫∂W/∂z dz = W. Summed over all but
+the body itself this is p. So the film presses with its own pressure on that part of it alone which
+particles leave, as many of them as there are in the gap, and nothing is pressed twice.
+"""
+
+import numpy as np
+from numba import njit
+
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.sph_fluid.boundary.film_geometry import (
+    WIDEST,
+    Films,
+    face_normals,
+    find_films,
+)
+from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.laws import Constants
+from quintet.components.sph_fluid.pairs.constants import constants
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State, Whole
+
+FADING = 0.85  # spacings below WIDEST over which films fade out, as particles get in and press
+WATER = 1e-3  # Pa s, its viscosity
+LARGEST = 0.1  # of the speed of sound, velocity: a pressure above ρu² is sound, not flow
+SWEEPS = 20  # over the film in each step; it starts from the last step's pressure
+
+
+class LubricationFilms:
+    """The films of one fluid."""
+
+    def __init__(self, params: SphFluidParams, samples: Samples) -> None:
+        self.params, self.samples, self.constants = params, samples, constants(params)
+
+    def join(self, state: State) -> None:
+        """Make room for films at all samples."""
+        state.film = np.zeros((len(self.samples.row), 3))
+
+    def resize(self, state: State) -> None:
+        """Find the films of a state with new lists."""
+        if len(state.film):
+            spacing = self.params.spacing
+            self.films = find_films(state, self.samples, spacing, self.constants)
+
+    def push(self, state: State, lists: Lists, dt: float) -> None:
+        """Advance the films by a step [s], and add their push to the samples' force."""
+        if len(state.film):
+            advance(self.films, state, lists, dt, self.params, self.constants)
+
+
+def advance(
+    films: Films, state: State, lists: Lists, dt: float, params: SphFluidParams,
+    constants: Constants,
+) -> None:  # fmt: skip
+    """Advance films by a step [s]; add their push to the samples' force."""
+    spacing, density = params.spacing, params.density
+    position, mirror = state.position_density[state.fluid :], state.mirror_point
+    off, back = (mirror[row] - position[row, :3] for row in (films.row, films.across))
+    across = face_normals(off, back)
+    below, beyond = (np.einsum("nd,nd->n", one, across) for one in (off, back))
+    foot = position[films.row, :3] + 0.5 * below[:, None] * across
+    gap = np.einsum("nd,nd->n", foot - position[films.across, :3], across) - 0.5 * beyond
+    width = np.maximum(gap, params.boundary.roughness)
+    weight = density * np.array(params.gravity)
+    term = state.velocity_pressure[state.fluid + films.row, 3]
+    outside = term * position[films.row, 3] ** 2
+    outside = np.where(outside > 0.0, outside + (foot - position[films.row, :3]) @ weight, 0.0)
+    outside = np.minimum(outside, density * (LARGEST * params.sound_speed) ** 2)
+    driving = max(float(outside[films.rim].max(initial=0.0)), 1.0)
+    bound = width * films.size * np.sqrt(2.0 / (density * driving))
+    mobility = np.minimum(width**3 / (12.0 * WATER), bound)
+    pressure, share, before = state.film[films.sample].T.copy()
+    known = before > 0.0
+    stored = np.where(known, share * before, 0.0)
+    arrays = (films.rim, films.begin, films.near, width, mobility, foot, outside, stored)
+    x, y, z = weight.tolist()
+    solve_reynolds(*arrays, spacing**2 / dt, (x, y, z), SWEEPS, pressure, share)
+    state.film[:] = 0.0
+    state.film[films.sample] = np.stack([pressure, share, width], axis=1)
+    wet = np.empty(len(gap))
+    write_fluid_share(films.row, foot, state.fluid, state.position_density, lists, constants, wet)
+    left = 2.0 * np.maximum(1.0 - films.own - wet, 0.0)
+    left *= np.clip((WIDEST - width / spacing) / FADING, 0.0, 1.0)
+    force = (pressure * left * films.area)[:, None] * across
+    np.add.at(state.force, films.sample, force)
+    bodies = films.facing >= 0
+    np.add.at(state.force, films.facing[bodies], -force[bodies])
+
+
+@njit(**FAST)
+def solve_reynolds(
+    rim: Array, begin: Whole, near: Whole, width: Array, mobility: Array, position: Array,
+    outside: Array, stored: Array, cell: float, weight: tuple[float, float, float],
+    sweeps: int, pressure: Array, share: Array,
+) -> None:  # fmt: skip
+    """Write pressure and full share of films at a step's end, by Gauss and Seidel.
+
+    Parameters
+    ----------
+    rim : (m,) bool array
+        Which places of films have the pressure outside.
+    begin, near : (m + 1,), (any,) int arrays
+        Neighbours of each in its film.
+    width, position, outside : (m,), (m, 3), (m,) float arrays, m, m, Pa
+    mobility : (m,) float array, m4 s/kg
+        K = w³/(12μ), bounded.
+    stored : (m,) float array, m
+        Water per area at the step's beginning.
+    cell : float, m2/s
+        Area of a sample over the step.
+    weight : three floats, N/m3
+        ρ₀ g.
+    sweeps : int
+    pressure, share : (m,) float arrays, Pa, 1
+        Of the last step; written.
+
+    References
+    ----------
+    Elrod, ASME J. Lubr. Technol. 103 (1981) 350.
+    """
+    for i in range(rim.shape[0]):
+        if rim[i]:
+            pressure[i] = outside[i]
+            share[i] = 1.0 if outside[i] > 0.0 else 0.0
+    for _ in range(sweeps):
+        for i in range(rim.shape[0]):
+            if rim[i]:
+                continue
+            brought, paths = 0.0, 0.0
+            for k in range(begin[i], begin[i + 1]):
+                j = near[k]
+                path = 0.5 * (mobility[i] + mobility[j])
+                head = 0.0
+                for d in range(3):
+                    head += weight[d] * (position[i, d] - position[j, d])
+                # What is not full has no pressure to drive anything out.
+                if pressure[j] > 0.0:
+                    brought += path * (pressure[j] + head)
+                paths += path
+            full = brought - cell * (width[i] - stored[i])
+            pressure[i] = max(full / paths, 0.0) if paths > 0.0 else 0.0
+            filled = (stored[i] + brought / cell) / width[i]
+            share[i] = 1.0 if pressure[i] > 0.0 else min(filled, 1.0)
+
+
+@njit(**FAST)
+def write_fluid_share(
+    row: Whole, face: Array, split: int, position: Array, lists: Lists, constants: Constants,
+    share: Array,
+) -> None:  # fmt: skip
+    """Write Σ V W of the fluid around points (m, 3) m of faces, by the lists of mirror points."""
+    begin, _, end, neighbour = lists
+    for s in range(row.shape[0]):
+        i = split + row[s]
+        share[s] = 0.0
+        for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+            j = np.uint64(neighbour[k])
+            r2 = 0.0
+            for d in range(3):
+                r2 += (face[s, d] - position[j, d]) ** 2
+            share[s] += kernel(r2, constants.smoothing) * constants.mass / position[j, 3]

@@ -1,0 +1,76 @@
+"""Boxes that stand still in the water, filled with wall particles as deep as water feels them.
+
+A box that ends on a plane of symmetry is half of one that the plane cuts: its particles are half
+of those that the whole box has, beginning half a step from the plane, where the other half's are
+their images. (A whole box that would have particles on the plane itself gets a row more or less.)
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.lattice import lattice_points
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.geometry import Box, Face
+from quintet.components.sph_fluid.state import Array
+
+FELT = 2.0  # smoothing lengths, the radius of the kernel
+ROUNDING = 1e-6  # of a spacing
+
+
+def obstacle_points(params: SphFluidParams) -> Array:
+    """Particles (n, 3) m of all obstacles, the outermost `wall_offset` spacings inside their faces.
+
+    A face that lies on a wall of the tank never meets water: there the particles go on to half a
+    spacing from the wall, so that no gap is left in the corner.
+    """
+    parts = [_points(box, params)[0] for box in params.boundary.obstacles]
+    return np.concatenate([np.zeros((0, 3)), *parts])
+
+
+def obstacle_mirrors(params: SphFluidParams) -> Array:
+    """Images (n, 3) m of the particles of all obstacles, mirrored in the nearest wet face."""
+    parts = [np.zeros((0, 3))]
+    for box in params.boundary.obstacles:
+        points, depth = _points(box, params)
+        # On edges and corners, in all the faces that are equally near.
+        nearest = depth <= depth.min(axis=(0, 2))[:, np.newaxis] + ROUNDING * params.spacing
+        below, above = 2.0 * np.where(nearest, depth, 0.0)
+        parts.append(points - below + above)
+    return np.concatenate(parts)
+
+
+def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
+    """Particles (n, 3) m of one obstacle, and how deep below each wet face [m]; (2, n, 3)."""
+    wet = _wet(box, params)  # (2, 3)
+    plane = ~wet & _named(params.boundary.symmetry)
+    gap = np.where(plane, 0.0, np.where(wet, params.boundary.wall_offset, 0.5)) * params.spacing
+    low, high = np.array(box[0]) + gap[0], np.array(box[1]) - gap[1]
+    half = 0.5 * plane  # (2, 3) of a step, from the plane to the first particle
+    steps = np.round((high - low) / params.spacing - half.sum(axis=0))
+    steps = np.maximum(np.where(plane.any(axis=0), 0, 1), steps)
+    step = (high - low) / (steps + half.sum(axis=0))
+    low, high = low + half[0] * step, high - half[1] * step
+    counts = steps.astype(int) + 1
+    axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
+    points = lattice_points(axes)
+    below = [points - np.array(box[0]), np.array(box[1]) - points]
+    depth = np.where(wet[:, np.newaxis], below, np.inf)
+    felt = depth.min(axis=(0, 2)) < FELT * params.smoothing_length
+    return points[felt], depth[:, felt]
+
+
+def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
+    """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
+    if params.boundary.walls is None:
+        return np.ones((2, 3), bool)
+    room = ROUNDING * params.spacing
+    lower = np.array(box[0]) > np.array(params.boundary.walls[0]) + room
+    upper = np.array(box[1]) < np.array(params.boundary.walls[1]) - room
+    return np.stack([lower, upper]) | _named(params.boundary.open_faces)
+
+
+def _named(faces: Sequence[Face]) -> NDArray[np.bool_]:
+    """Which faces are among these: lower ones, upper ones; (2, 3)."""
+    return np.array([[f"{axis}{end}" in faces for axis in "xyz"] for end in "-+"])

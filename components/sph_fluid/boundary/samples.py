@@ -1,0 +1,44 @@
+"""Surface samples of what moves in the fluid, as rows of its state."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
+
+
+def _no_rows() -> Whole:
+    return np.zeros(0, np.int64)
+
+
+def _no_numbers() -> Array:
+    return np.zeros(0)
+
+
+@dataclass(slots=True)
+class Samples:
+    """Those of one fluid, in the order of their port."""
+
+    row: Whole = field(default_factory=_no_rows)  # (samples,) in the state
+    listed: Whole = field(default_factory=_no_rows)  # (samples,) in the lists
+    body: Array = field(default_factory=_no_numbers)  # (samples,) number
+    volume: Array = field(default_factory=_no_numbers)  # (samples,) m3
+    placed: bool = True  # whether they have been told where they are
+
+    def join(self, state: State, static: Fields, density: float) -> None:
+        """Make room for the samples that links bring, of a density [kg/m3]."""
+        state.add_samples(len(static["surface.volume"]), density)
+        self.body, self.volume = static["surface.body"], static["surface.volume"]
+        self.placed = False
+        self.find(state)
+
+    def find(self, state: State) -> None:
+        """Find their rows anew."""
+        self.row = state.sample_rows()
+
+    def place(self, state: State, fields: Fields) -> None:
+        """Put them where they are in the coming step."""
+        state.position_density[self.row, :3] = fields["surface.position"]
+        state.velocity_pressure[self.row, :3] = fields["surface.velocity"]
+        self.placed = True

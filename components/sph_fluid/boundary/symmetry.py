@@ -1,0 +1,58 @@
+"""Planes of symmetry of a fluid; imported only by a scene that asks.
+
+To the fluid and to walls the images of fluid are fluid, with all terms between its pairs, and those
+of walls and samples are these: what is left of a symmetric whole moves as that does.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.search.neighbours import NeighbourLists
+from quintet.components.shared.symmetry import Plane, SymmetryImages, neighbours_and_images
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State
+
+
+class Symmetry:
+    """The images of one fluid's rows, from one list of neighbours to the next."""
+
+    def __init__(self, params: SphFluidParams) -> None:
+        assert params.boundary.walls is not None
+        walls, faces = params.boundary.walls, sorted(set(params.boundary.symmetry))
+        self.images = SymmetryImages([Plane.of_face(face, walls) for face in faces])
+        self.write_vectors = self.images.write_vectors
+        self.write_values = self.images.write_values
+        self.all_images = self.images.all_images
+
+    def neighbours(
+        self, state: State, reach: float, team: Team, query_points: Array | None,
+        room: NDArray[np.int32],
+    ) -> NeighbourLists:  # fmt: skip
+        """Make room for images, and lists of the fluid, then of the boundary or query points."""
+        rows = state.particles
+        points = self.images.find(state.reference[:rows], reach)
+        is_fluid = np.arange(len(points)) < state.fluid
+        self.images.write_values(is_fluid, rows)
+        state.position_density = self.images.with_room(state.position_density, rows)
+        state.velocity_pressure = self.images.with_room(state.velocity_pressure, rows)
+        self.write_images(state)
+        return neighbours_and_images(
+            points, is_fluid, state.fluid, rows, reach, team, query_points, room
+        )
+
+    def write_images(self, state: State) -> None:
+        """Write the images of all particles as they are."""
+        self.images.write_positions(state.position_density, state.particles)
+        self.images.write_vectors(state.velocity_pressure, state.particles)
+
+    def reflect_crossed(self, state: State) -> None:
+        """Let fluid that passed a plane change places with its image."""
+        rows = slice(state.fluid)
+        vectors = [state.velocity_pressure[rows]]
+        vectors += [state.acceleration] if len(state.acceleration) else []
+        self.images.reflect_crossed(state.position_density[rows], *vectors)
+
+    def require_before(self, samples: Array) -> None:
+        """Refuse samples (samples, 3) m behind a plane."""
+        self.images.require_before(samples, "surface: sample")

@@ -1,0 +1,69 @@
+"""What a fluid asks of its planes of symmetry, and a fluid without any."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.state import Array, State
+
+
+class SymmetryPlanes(Protocol):
+    """Faces of the tank behind which all is mirrored."""
+
+    def neighbours(
+        self, state: State, reach: float, team: Team, query_points: Array | None,
+        room: NDArray[np.int32],
+    ) -> NeighbourLists:  # fmt: skip
+        """Lists of the fluid, then of the boundary or query points, with images among them."""
+
+    def write_images(self, state: State) -> None:
+        """Write the images of all particles as they are."""
+
+    def write_vectors(self, vectors: Array, rows: int) -> None:
+        """Write the images of vectors (rows + images, 4)."""
+
+    def write_values(self, values: NDArray[np.floating], rows: int) -> None:
+        """Write the images of values (rows + images,)."""
+
+    def reflect_crossed(self, state: State) -> None:
+        """Bring back fluid that passed a plane."""
+
+    def require_before(self, samples: Array) -> None:
+        """Refuse samples (samples, 3) m behind a plane."""
+
+    def all_images(self, points: Array) -> Array:
+        """Points (m, 2 or 3) m, then their images in all planes and edges."""
+
+
+class NoSymmetry:
+    """A fluid that is computed as a whole."""
+
+    def neighbours(
+        self, state: State, reach: float, team: Team, query_points: Array | None,
+        room: NDArray[np.int32],
+    ) -> NeighbourLists:  # fmt: skip
+        """Lists of the fluid, then of the boundary or query points."""
+        points = state.reference[: state.particles]
+        return neighbours_within(reach, points, state.fluid, team, query_points, room)
+
+    def write_images(self, state: State) -> None:
+        """There are none."""
+
+    def write_vectors(self, vectors: Array, rows: int) -> None:
+        """There are none."""
+
+    def write_values(self, values: NDArray[np.floating], rows: int) -> None:
+        """There are none."""
+
+    def reflect_crossed(self, state: State) -> None:
+        """There is no plane to pass."""
+
+    def require_before(self, samples: Array) -> None:
+        """There is no plane to be behind."""
+
+    def all_images(self, points: Array) -> Array:
+        """Return the points alone."""
+        return points

@@ -1,0 +1,128 @@
+"""What a scene asks for beyond the plain fluid, made.
+
+All imports are made where they are asked for: a scene imports, and compiles, nothing of what it
+leaves out. Here alone they are not at the top.
+"""
+
+from typing import TYPE_CHECKING, Protocol
+
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod
+from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
+from quintet.components.sph_fluid.integration.method import Integration
+from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precision
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import State
+
+if TYPE_CHECKING:
+    from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
+    from quintet.components.sph_fluid.boundary.lubrication import LubricationFilms
+    from quintet.components.sph_fluid.gauges.gauges import Gauges
+    from quintet.components.sph_fluid.pairs.shepard_filter import ShepardFilter
+
+
+class PressurePart(Protocol):
+    """What writes pressures before a pass over pairs."""
+
+    def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
+        """Write p/ρ² of some rows of the state."""
+
+
+def boundary_method(params: SphFluidParams, samples: Samples) -> BoundaryMethod:
+    """How walls and samples act."""
+    if params.boundary.method == "mdbc":
+        from quintet.components.sph_fluid.boundary.mirrored import MirroredBoundary
+
+        return MirroredBoundary(params, samples)
+    if params.boundary.method == "potential":
+        from quintet.components.sph_fluid.boundary.potential import PotentialBoundary
+
+        return PotentialBoundary(params, samples)
+    from quintet.components.sph_fluid.boundary.dynamic import DynamicBoundary
+
+    return DynamicBoundary(samples)
+
+
+def contact_stiffness(params: SphFluidParams) -> "ContactStiffness":
+    """The contact potential, for samples of mirrored walls that links choose it for."""
+    from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
+
+    return ContactStiffness(params)
+
+
+def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
+    """Planes of symmetry, if there are any."""
+    if not params.boundary.symmetry:
+        return NoSymmetry()
+    from quintet.components.sph_fluid.boundary.symmetry import Symmetry
+
+    return Symmetry(params)
+
+
+def lubrication_films(params: SphFluidParams, samples: Samples) -> "LubricationFilms | None":
+    """Films in narrow gaps."""
+    if not params.boundary.lubrication_films:
+        return None
+    from quintet.components.sph_fluid.boundary.lubrication import LubricationFilms
+
+    return LubricationFilms(params, samples)
+
+
+def pressure_parts(params: SphFluidParams, boundary: BoundaryMethod) -> list[PressurePart]:
+    """What writes pressures before a pass over pairs, in order: the boundary, and a damper."""
+    if params.acoustic_damper == 0.0:
+        return [boundary]
+    from quintet.components.sph_fluid.pairs.acoustic_damper import AcousticDamper, MirroredDamper
+
+    walls = [MirroredDamper(params)] if params.mirrored else []
+    return [boundary, AcousticDamper(params, boundary), *walls]
+
+
+def courant_limit(params: SphFluidParams) -> float:
+    """Greatest step over the time that sound takes through a smoothing length."""
+    if params.acoustic_damper == 0.0:
+        return params.courant
+    from quintet.components.sph_fluid.pairs.acoustic_damper import courant_limit as damped_limit
+
+    return min(params.courant, damped_limit(params.acoustic_damper))
+
+
+def shepard_filter(params: SphFluidParams) -> "ShepardFilter | None":
+    """A filter of the density."""
+    if not params.shepard_every:
+        return None
+    from quintet.components.sph_fluid.pairs.shepard_filter import ShepardFilter
+
+    return ShepardFilter(params)
+
+
+def precision(params: SphFluidParams) -> Precision:
+    """In which precision pairs are computed."""
+    if params.precision == "float64":
+        return DoublePrecision()
+    from quintet.components.sph_fluid.pairs.single_precision import SinglePrecision
+
+    return SinglePrecision()
+
+
+def integration(params: SphFluidParams) -> Integration:
+    """The scheme in time."""
+    if params.integration == "symplectic":
+        from quintet.components.sph_fluid.integration.position_verlet import PositionVerlet
+
+        return PositionVerlet(params)
+    from quintet.components.sph_fluid.integration.extrapolated import Extrapolated
+
+    return Extrapolated(params)
+
+
+def gauges(params: SphFluidParams, symmetry: SymmetryPlanes) -> "Gauges | None":
+    """What is measured."""
+    asked = params.gauges
+    if not (asked.pressure_gauges or asked.level_gauges or asked.front_gauge or asked.motion_gauge):
+        return None
+    from quintet.components.sph_fluid.gauges.gauges import Gauges
+
+    return Gauges(params, symmetry)

@@ -1,0 +1,130 @@
+"""What gauges read: pressure at points, level above spots, the front, energies.
+
+Pressure is what a face would feel per area: Σ V_j W_j of the particles' pressures, each carried on
+to the gauge's height as in still water, over the room Σ V_j W_j that the walls leave. Where fluid
+fills that room up to a seventh it is the mean over the fluid instead, which knows no gaps between
+particles. A face that a drop strikes feels but its share, as the real one's sensor does; without
+fluid near it a gauge reads 0. Dynamic walls keep the fluid off: there it is always the mean.
+
+A level is where the share of volume Σ_j V_j W_j, seen from above, first rises through one half;
+beside a wall, where it is nowhere 1, through half of its largest value. Lone drops are passed
+over; a dry spot reads the lowest level of the tank.
+
+The front is half a spacing ahead of the furthest particle with 1/(V W(0)) neighbours or more
+(11 in three dimensions, with h = 1.5 spacings): a block's corner has so many, spray has not.
+"""
+
+import math
+
+import numpy as np
+
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
+from quintet.components.sph_fluid.gauges.kernels import add_around, fill_columns, furthest
+from quintet.components.sph_fluid.pairs.constants import constants
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.geometry import slab_thickness
+from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import Fields
+
+FULL = 0.85  # of the room that walls leave: so much is filled where there is but fluid
+FINE = 0.25  # spacings between the heights at which the share of volume is looked at
+SURFACE = 0.5  # share of volume at the surface
+DROP = 2.0  # particles on one spot whose share of volume is not yet a surface
+
+
+class Gauges:
+    """The gauges of one fluid that are switched on."""
+
+    def __init__(self, params: SphFluidParams, symmetry: SymmetryPlanes) -> None:
+        self.params, self.constants = params, constants(params)
+        self.points = np.array(params.gauges.pressure_gauges).reshape(-1, 3)  # (m, 3) m
+        self.spots = np.array(params.gauges.level_gauges).reshape(-1, 2)  # (m, 2) m
+        if params.dimensions == 2:
+            self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
+                corner[1] for corner in params.fluid[0]
+            )
+        # (k m, 3 or 2) m: these, and from where images see what these see in them.
+        self.seen = symmetry.all_images(self.points)
+        self.above = symmetry.all_images(self.spots)
+        boxes = [params.boundary.walls] if params.boundary.walls else params.fluid
+        self.floor = min(box[0][2] for box in boxes)  # m
+        volume = self.constants.mass / self.constants.density
+        self.lone = volume * float(kernel(0.0, self.constants.smoothing))  # 1, V W(0)
+
+    def read(self, state: State, lists: Lists) -> Fields:
+        """Read all gauges; `lists` are those of this state, if it has any yet."""
+        found: dict[str, Array] = {}
+        if len(self.points):
+            found["pressure_gauge.pressure"] = self._pressure(state)
+        if len(self.spots):
+            found["level_gauge.height"] = self._height(state)
+        if self.params.gauges.front_gauge is not None:
+            found["front_gauge.position"] = self._front(state, lists)
+        if self.params.gauges.motion_gauge:
+            found |= self._motion(state)
+        return found
+
+    def _pressure(self, state: State) -> Array:
+        sums = np.empty((len(self.seen), 3))
+        weight = self.params.density * np.array(self.params.gravity)
+        position, velocity = (
+            state.position_density[: state.particles],
+            state.velocity_pressure[: state.particles],
+        )
+        add_around(self.seen, state.fluid, position, velocity, self.constants, weight, sums)
+        share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T
+        room = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
+        filled = np.maximum(share, room)
+        pressure = np.divide(load, filled, out=np.zeros(len(load)), where=share > 0.0)
+        return np.maximum(pressure, self.constants.lowest)
+
+    def _height(self, state: State) -> Array:
+        z, spacing = state.position_density[: state.fluid, 2], self.params.spacing
+        reach, rise = SUPPORT * self.constants.smoothing.length, FINE * spacing
+        bottom = z.min() - reach
+        count = math.ceil((z.max() + reach - bottom) / rise) + 1
+        share = np.empty((len(self.above), count))
+        fill_columns(
+            self.above, bottom, rise, state.fluid, state.position_density, self.constants, share
+        )
+        whole = share.reshape(-1, len(self.spots), count).sum(axis=0)
+        return np.array([self._surface(row, bottom, rise) for row in whole])
+
+    def _surface(self, share: Array, bottom: float, rise: float) -> float:
+        most = min(1.0, float(share.max()))
+        if most <= DROP * self.lone:
+            return self.floor
+        half = SURFACE * most
+        k = int(np.flatnonzero(share >= half)[-1])  # never the last: there the share is 0
+        part = (share[k] - half) / (share[k] - share[k + 1])
+        return float(bottom + (k + part) * rise)
+
+    def _front(self, state: State, lists: Lists) -> Array:
+        axis = "xyz".index(str(self.params.gauges.front_gauge))
+        along = state.position_density[: state.fluid, axis]
+        found = -math.inf
+        if len(state.reference):
+            found = furthest(
+                axis, 1.0 / self.lone, state.fluid, state.position_density, lists, self.constants
+            )
+        # At the start there are no lists, and no spray either.
+        front = found if math.isfinite(found) else float(along.max())
+        return np.array([front + 0.5 * self.params.spacing])
+
+    def _motion(self, state: State) -> Fields:
+        points, velocity = (
+            state.position_density[: state.fluid, :3],
+            state.velocity_pressure[: state.fluid, :3],
+        )
+        squares = np.einsum("nd,nd->n", velocity, velocity)
+        one = self.constants.mass * slab_thickness(self.params)  # kg
+        centre, mass = points.mean(axis=0), one * len(points)
+        return {
+            "motion_gauge.speed": np.sqrt(squares.max(keepdims=True)),
+            "motion_gauge.kinetic": 0.5 * one * squares.sum(keepdims=True),
+            "motion_gauge.potential": np.array([-mass * float(centre @ self.params.gravity)]),
+            "motion_gauge.centre": centre[np.newaxis],
+        }

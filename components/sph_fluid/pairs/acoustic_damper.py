@@ -1,0 +1,107 @@
+"""A damper of sound, -ζ h c₀ ρ∇·u beside the pressure; imported only by a scene that asks.
+
+After the acoustic damper of Sun, Pilloton, Antuono & Colagrossi, J. Comput. Phys. 483 (2023)
+112056. It is a bulk viscosity: of a flow that keeps its volume it takes nothing, and sound of wave
+number k fades as e^{-½ ζ h c₀ k² t}. -ρ∇·u is dρ/dt as the flow alone makes it, without what
+diffuses, as the last pass over pairs found it. Pairs feel it as they feel pressure, so that no
+momentum is lost. Mirrored walls go on with what the fluid before them has, and do not pull.
+Gauges read the pressure without it: what is felt of it is its own viscosity's, not the water's.
+
+In a step of position Verlet a sound wave that pairs see as ω = K c₀/h is stable while
+
+    ¼ C² K² + ½ ζ C K² < 1,   C = dt c₀/h,
+
+by the eigenvalues of its two variables; K = STEEPEST is what the steepest wave on a lattice has.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod
+from quintet.components.sph_fluid.laws import Constants, pressure_term
+from quintet.components.sph_fluid.pairs.constants import constants
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State
+
+# Greatest h |Σ V sin(k·r) ∇W| on a square or cubic lattice, cubic spline and Wendland's kernel, h
+# from 1.2 to 2 spacings: 1.06 to 1.16.
+STEEPEST = 1.16
+SAFE = 0.9  # of the step that it allows: what is no lattice is a little steeper
+NO_FLUID = 1e-2  # Σ V W below which there is no fluid around a mirror point
+
+
+def courant_limit(damper: float) -> float:
+    """Greatest step over the time that sound takes through a smoothing length."""
+    return SAFE * (math.sqrt(damper**2 + (2.0 / STEEPEST) ** 2) - damper)
+
+
+class AcousticDamper:
+    """The damper of the fluid, and of walls that obey its equations."""
+
+    def __init__(self, params: SphFluidParams, boundary: BoundaryMethod) -> None:
+        self.boundary, self.constants = boundary, constants(params)
+        self.strength = params.acoustic_damper * params.sound_speed * params.smoothing_length
+
+    def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
+        """Write p/ρ² with the damper's part."""
+        rows = self.boundary.rows_with_density_rate(state)
+        arrays = (state.minus_rho_div_u, state.position_density, state.velocity_pressure)
+        team.run(write_damped_pressure, rows, self.strength, *arrays, self.constants)
+
+
+class MirroredDamper:
+    """The damper's part at mirrored walls and samples."""
+
+    def __init__(self, params: SphFluidParams) -> None:
+        self.constants = constants(params)
+
+    def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
+        """Add to p/ρ² of walls and samples what the fluid at their mirror points has of it."""
+        arrays = (state.mirror_point, state.position_density, state.velocity_pressure, lists)
+        rows = len(state.mirror_point)
+        team.run(add_mirrored_damping, rows, state.fluid, *arrays, self.constants)
+
+
+@njit(**FAST)
+def write_damped_pressure(
+    first: int, last: int, strength: float, minus_rho_div_u: Array, position: Array,
+    velocity: Array, constants: Constants,
+) -> None:  # fmt: skip
+    """Write p/ρ² of rows [first, last) as if strength [m2/s] · -ρ∇·u [kg/(m3 s)] were pressure.
+
+    References
+    ----------
+    Sun et al., J. Comput. Phys. 483 (2023) 112056.
+    """
+    for i in range(first, last):
+        density = position[i, 3]
+        more = strength * minus_rho_div_u[i] / (density * density)
+        velocity[i, 3] = pressure_term(density, constants) + more
+
+
+@njit(**FAST)
+def add_mirrored_damping(
+    first: int, last: int, split: int, mirror_point: Array, position: Array, velocity: Array,
+    lists: Lists, constants: Constants,
+) -> None:  # fmt: skip
+    """Add the damper's mean part around their mirror points to p/ρ² of boundary rows."""
+    begin, _, end, neighbour = lists
+    for b in range(first, last):
+        i = split + b
+        x, y, z = mirror_point[b, 0], mirror_point[b, 1], mirror_point[b, 2]
+        weights, sums = 0.0, 0.0
+        for k in range(np.uint64(begin[i]), np.uint64(end[i])):
+            j = np.uint64(neighbour[k])
+            dx, dy, dz = position[j, 0] - x, position[j, 1] - y, position[j, 2] - z
+            r2 = dx * dx + dy * dy + dz * dz
+            weight = kernel(r2, constants.smoothing) * constants.mass / position[j, 3]
+            weights += weight
+            sums += weight * (velocity[j, 3] - pressure_term(position[j, 3], constants))
+        if weights >= NO_FLUID:
+            velocity[i, 3] = max(velocity[i, 3] + sums / weights, 0.0)

@@ -1,0 +1,105 @@
+"""Passes over pairs of particles: what they write, and what they are given."""
+
+import math
+
+import numpy as np
+
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod
+from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
+from quintet.components.sph_fluid.kernels import (
+    BoundaryRows,
+    Rates,
+    move_by,
+    pair_rates,
+    sample_forces,
+)
+from quintet.components.sph_fluid.pairs.constants import pair_law
+from quintet.components.sph_fluid.pairs.precision import Precision
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State
+
+EVEN = 1e-9  # of a particle's volume: what differs from it by less is as large
+
+
+class Interaction:
+    """Passes over the pairs of one fluid."""
+
+    def __init__(
+        self,
+        params: SphFluidParams,
+        boundary: BoundaryMethod,
+        symmetry: SymmetryPlanes,
+        precision: Precision,
+        samples: Samples,
+    ) -> None:
+        self.params, self.boundary, self.symmetry = params, boundary, symmetry
+        self.precision, self.samples = precision, samples
+        self.rates = Rates(np.empty((0, 4)), np.empty((0, 3)), np.empty(0))
+        self.volume: Array = np.zeros(0)  # (n,) 1, of boundary rows; (0,) if all are alike
+        self._prepare()
+
+    def _prepare(self) -> None:
+        own_volume = True if len(self.volume) else None
+        self.law = self.precision.law(pair_law(self.params, self.boundary.contact, own_volume))
+
+    def resize(self, state: State) -> None:
+        """Make room for what is written of a state with new lists."""
+        self.volume = relative_volume(self.samples, len(state.position_density), self.params)
+        if len(self.volume):
+            self.symmetry.write_values(self.volume, state.particles)
+        self.precision.resize(state, self.params.density)
+        drifting = state.fluid if self.params.xsph > 0.0 else 0
+        self.rates = Rates(
+            np.empty_like(state.position_density), np.empty((drifting, 3)), state.minus_rho_div_u
+        )
+        self._prepare()
+
+    def compute(self, state: State, lists: Lists, team: Team) -> None:
+        """Write accelerations and rates of density, of the state as it is."""
+        boundary = self.precision.boundary(self._boundary_rows(state, lists, team))
+        particles = self.precision.particles(state, team)
+        self.given = (particles, boundary, lists, self.law)
+        rates = self.rates._replace(minus_rho_div_u=state.minus_rho_div_u)
+        rows = self.boundary.rows_with_density_rate(state)
+        arguments = (state.fluid, *self.given, self.params.gravity, rates)
+        found = team.run(pair_rates, rows, *arguments)
+        state.largest_acceleration = math.sqrt(max(greatest for greatest, _ in found))
+        state.largest_approach = max(fastest for _, fastest in found)
+
+    def _boundary_rows(self, state: State, lists: Lists, team: Team) -> BoundaryRows:
+        """What boundary rows have beside particles, as the state is."""
+        velocity: Array = np.zeros((0, 4))
+        if self.params.viscosity.kinematic > 0.0:
+            velocity = self.boundary.apparent_velocity(state, lists, team)
+            self.symmetry.write_vectors(velocity, state.particles)
+        return BoundaryRows(velocity, self.volume, self.boundary.mask)
+
+    def push_samples(self, state: State, team: Team) -> None:
+        """Push the samples as they pushed the fluid in the last pass."""
+        row = self.samples.row
+        if len(row):
+            rows = (row, self.samples.listed)
+            team.run(sample_forces, len(row), *rows, *self.given, state.force)
+
+    def move_with_neighbours(self, state: State, dt: float, team: Team) -> None:
+        """XSPH: move with the neighbours' mean velocity."""
+        if self.params.xsph > 0.0:
+            time, velocity = self.params.xsph * dt, self.rates.xsph_velocity
+            team.run(move_by, state.fluid, time, velocity, state.position_density)
+
+
+def relative_volume(samples: Samples, count: int, params: SphFluidParams) -> Array:
+    """Volumes of `count` rows over a particle's; (0,) if all are alike.
+
+    Where the spacing does not divide a body, its samples stand closer, or less close, than the
+    fluid's particles; as heavy as those they would displace more, or less, than the body does.
+    """
+    share = samples.volume / params.spacing**3
+    if np.abs(share - 1.0).max(initial=0.0) < EVEN:
+        return np.zeros(0)
+    found = np.ones(count)
+    found[samples.row] = share
+    return found

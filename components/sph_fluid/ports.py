@@ -1,0 +1,47 @@
+"""The ports of a fluid: surfaces that move in it, the loads on them, and its gauges."""
+
+from dataclasses import replace
+
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.interfaces.component import Field, Port
+from quintet.interfaces.manifest import Ports
+from quintet.interfaces.ports import CONTACT, MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
+
+PRESSURE = Port("pressure_gauge", (Field("pressure", (), "Pa"),))
+LEVEL = Port("level_gauge", (Field("height", (), "m"),))
+FRONT = Port("front_gauge", (Field("position", (), "m"),))
+MOTION = Port(
+    "motion_gauge",
+    (
+        Field("speed", (), "m/s"),  # of the fastest particle
+        Field("kinetic", (), "J"),
+        Field("potential", (), "J"),  # of gravity, zero at the origin
+        Field("centre", (3,), "m"),  # of mass
+    ),
+)
+
+
+def ports(params: SphFluidParams) -> Ports:
+    """Ports that a fluid takes, and those that it gives."""
+    return (surface(params),), (SURFACE_LOAD, *gauges(params))
+
+
+def surface(params: SphFluidParams) -> Port:
+    """Port as the boundary asks for it; it lets links choose their contact where that can be.
+
+    Dynamic boundary particles know no other contact; films know no potential.
+    """
+    port = MIRRORED_SURFACE if params.mirrored else SURFACE
+    fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films
+    return port if fixed else replace(port, static=(*port.static, CONTACT))
+
+
+def gauges(params: SphFluidParams) -> tuple[Port, ...]:
+    """Ports of the gauges that are switched on."""
+    switched = (
+        (PRESSURE, bool(params.gauges.pressure_gauges)),
+        (LEVEL, bool(params.gauges.level_gauges)),
+        (FRONT, params.gauges.front_gauge is not None),
+        (MOTION, params.gauges.motion_gauge),
+    )
+    return tuple(port for port, on in switched if on)

@@ -1,0 +1,137 @@
+"""The damper of sound: how fast sound fades, what it leaves alone, and its step limit."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from fluid_params import fluid_params
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.pairs.acoustic_damper import STEEPEST, courant_limit
+from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import StepError
+
+Make = Callable[..., SphFluid]
+LENGTH, SOUND = 0.48, 20.0  # m, m/s
+K = math.pi / LENGTH  # 1/m, of the longest wave between the ends
+CALM = {
+    "gravity": (0.0, 0.0, 0.0),
+    "negative_pressure": True,
+    "viscosity.artificial": 0.0,
+    "kernel": "wendland",
+}
+
+
+def tube(spacing: float = 0.02, **given: Any) -> SphFluid:
+    """Make a closed slab of fluid between two planes of symmetry, floor and lid."""
+    box = ((0.0, 0.0, 0.0), (LENGTH, 0.1, LENGTH))
+    shut = {
+        "fluid": (box,),
+        "boundary.walls": box,
+        "boundary.open_faces": (),
+        "boundary.symmetry": ("x-", "x+"),
+        "dimensions": 2,
+    }
+    settings = {"spacing": spacing, "sound_speed": SOUND, "integration": "symplectic"}
+    fluid = SphFluid(fluid_params(**(settings | shut | {"boundary.method": "mdbc"} | CALM | given)))
+    fluid.state.position_density[:, 3] += 1.0  # kg/m3: walls do not pull, so that none must
+    return fluid
+
+
+def fading(fluid: SphFluid) -> float:
+    """Rate [1/s] at which the longest standing wave fades, over two periods."""
+    rows, time = slice(fluid.state.fluid), 2.0 * 2.0 * math.pi / (K * SOUND)
+    fluid.state.velocity_pressure[rows, 0] = 1e-3 * np.sin(
+        K * fluid.state.position_density[rows, 0]
+    )
+    count, sizes = math.ceil(time / fluid.stable_dt()), []
+    for _ in range(count):
+        fluid.step(time / count)
+        along, moving = (
+            K * fluid.state.position_density[rows, 0],
+            fluid.state.velocity_pressure[rows, 0],
+        )
+        pressed = (fluid.state.position_density[rows, 3] - 1001.0) * SOUND / 1000.0
+        sizes.append([(moving * np.sin(along)).mean(), (pressed * np.cos(along)).mean()])
+    energy = (np.array(sizes) ** 2).sum(axis=1)
+    return -0.5 * float(np.polyfit(np.arange(count) * time / count, np.log(energy), 1)[0])
+
+
+@pytest.mark.parametrize(("spacing", "error"), [(0.02, 0.09), (0.01, 0.06)])
+@pytest.mark.parametrize("diffusion", [0.0, 0.1])
+def test_sound_fades_as_bulk_viscosity_lets_it(
+    spacing: float, error: float, diffusion: float
+) -> None:
+    """Beside floor and lid, which stand still, pairs see less of ∇·u: the more, the coarser."""
+    plain, damped = (
+        fading(tube(spacing, density_diffusion=diffusion, acoustic_damper=z)) for z in (0.0, 0.5)
+    )
+    expected = 0.5 * 0.5 * 1.5 * spacing * SOUND * K**2
+    assert damped - plain == pytest.approx(expected, rel=error)
+
+
+def squeezed(fluid: SphFluid) -> np.ndarray:
+    """What the damper knows of the flow: -ρ∇·u (n,) kg/(m3 s)."""
+    fluid.lists.sort(fluid.state)
+    fluid._list()
+    fluid._compute_rates()
+    return fluid.state.minus_rho_div_u[: fluid.state.fluid]
+
+
+def test_damper_leaves_shear_alone() -> None:
+    fluid = tube(acoustic_damper=1.0)
+    place, motion = fluid.state.position_density, fluid.state.velocity_pressure
+    inside = (np.abs(place[: fluid.state.fluid, [0, 2]] - 0.24) < 0.12).all(axis=1)
+    motion[:, 0] = np.sin(20.0 * place[:, 2])
+    assert np.abs(squeezed(fluid)[inside]).max() < 1e-9  # of 2e4 that ∂u/∂z would make
+
+
+def test_damper_knows_the_flow_without_what_diffuses() -> None:
+    fluid = tube(acoustic_damper=1.0, density_diffusion=0.1)
+    fluid.state.position_density[:, 3] += np.random.default_rng(1).normal(
+        0.0, 1.0, len(fluid.state.position_density)
+    )
+    assert not squeezed(fluid).any()
+    assert np.abs(fluid.pairs.rates.rate[: fluid.state.fluid, 3]).min() > 0.0
+
+
+@pytest.mark.parametrize("size", [0.3, 1.0, 2.0])
+@pytest.mark.parametrize(("share", "calm"), [(0.97, True), (1.06, False)])
+def test_step_limit_is_where_the_steepest_sound_grows(
+    size: float, share: float, calm: bool
+) -> None:
+    steepest = 1.127  # of this lattice and kernel, h = 1.5 spacings
+    assert steepest < STEEPEST
+    exact = math.sqrt(size**2 + (2.0 / steepest) ** 2) - size
+    fluid = tube(acoustic_damper=size, courant=4.0)
+    assert fluid.stable_dt() == pytest.approx(courant_limit(size) * 0.03 / SOUND, rel=1e-3)
+    assert courant_limit(size) < exact
+    noise = np.random.default_rng(1).normal(0.0, 1e-6, (fluid.state.fluid, 2))
+    fluid.state.velocity_pressure[: fluid.state.fluid, [0, 2]] = noise
+    before = fluid.totals().kinetic
+    try:
+        for _ in range(300):
+            fluid.step(share * exact * 0.03 / SOUND)
+    except StepError:
+        assert not calm
+    else:
+        assert (fluid.totals().kinetic < before) is calm
+
+
+@pytest.mark.parametrize("boundary", ["dbc", "mdbc"])
+def test_surface_takes_what_the_fluid_gives(
+    drop: Make, plate: Any, struck: Any, boundary: str
+) -> None:
+    given = CALM | {
+        "acoustic_damper": 1.0,
+        "boundary.method": boundary,
+        "integration": "symplectic",
+    }
+    fluid = drop(**given)
+    fields: Fields = plate(fluid)
+    mirror = fields["surface.position"] + [0.0, 0.0, 0.02]
+    impulse, gained = struck(fluid, fields | {"surface.mirror": mirror})
+    assert np.abs(impulse[:, 2]).sum() > 0.0
+    assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())

@@ -1,0 +1,233 @@
+"""The contact potential: opposite forces, and the clearance that a pressure leaves."""
+
+import math
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from fluid_params import fluid_params, nested, summed
+
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.sph_fluid.boundary.contact_potential import (
+    SAFE,
+    contact_potential,
+    fluid_share,
+    lattice_pressure,
+    pressure_at_rest,
+    step_limit,
+    stiffness,
+    wall_force,
+)
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.laws import PairLaw
+from quintet.components.sph_fluid.pairs.constants import NO_REPULSION, pair_law
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import PortError
+from quintet.interfaces.params import read
+from quintet.interfaces.ports import CONTACT
+
+Make = Callable[..., SphFluid]
+Join = Callable[..., Fields]
+Strike = Callable[..., tuple[Any, Any]]
+SPACING = 0.02  # m, of the fixtures too
+EDGE = 8 * SPACING
+
+
+def run(fluid: SphFluid, time: float) -> None:
+    """Step for a time [s] or a little more."""
+    while time > 0.0:
+        dt = fluid.stable_dt()
+        fluid.step(dt)
+        time -= dt
+
+
+def params(**given: Any) -> SphFluidParams:
+    box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
+    settings = {"spacing": SPACING, "sound_speed": 20.0 * math.sqrt(9.81 * EDGE), "fluid": (box,)}
+    return fluid_params(**({"boundary.method": "potential"} | settings | given))
+
+
+# σ/(K Δp³) between two facing cubic lattices, summed independently of this code.
+@pytest.mark.parametrize(
+    ("smoothing", "exponent", "pressures"),
+    [
+        (1.5, 1, (14.2, 9.64, 4.77, 1.66, 0.263)),
+        (1.5, 2, (11.5, 6.71, 1.93, 0.224, 4.4e-3)),
+        (1.5, 4, (20.1, 6.62, 0.425, 4.5e-3, 1.9e-6)),
+        (1.5, 6, (54.6, 7.93, 0.107, 1.0e-4, 7.7e-10)),
+        (2.09, 4, (11.9, 6.85, 2.08, 0.274, 0.015)),
+    ],
+)
+def test_pressure_between_lattices_is_the_tabled_one(
+    smoothing: float, exponent: int, pressures: tuple[float, ...]
+) -> None:
+    one = params(smoothing=smoothing, boundary__potential_exponent=exponent)
+    found = [lattice_pressure(distance, one) for distance in (0.5, 1.0, 1.5, 2.0, 2.5)]
+    assert found == pytest.approx(pressures, rel=0.05)  # its digits
+
+
+@pytest.mark.parametrize(
+    ("kernel", "exponent"), [*(("cubic", n) for n in range(1, 9)), ("wendland", 4)]
+)
+def test_force_on_a_plate_is_that_of_the_lattices(
+    drop: Make, plate: Join, kernel: str, exponent: int
+) -> None:
+    given = {"kernel": kernel, "boundary.potential_exponent": exponent, "gravity": (0.0, 0.0, 0.0)}
+    fluid = drop(boundary__method="potential", boundary__potential_stiffness=3e3, **given)
+    fluid.state.position_density[:216, :3] += SPACING * np.array(
+        [0.5, 0.5, -0.5]
+    )  # above samples, from z = 0
+    fluid.take(plate(fluid, height=-1.3 * SPACING, speed=0.0))
+    fluid.step(1e-9)
+    force = fluid.give()["surface_load.force"].reshape(7, 7, 3)[3, 3]
+    # One layer of samples: less than a thick wall by what the layers below it would push.
+    expected = 3e3 * (lattice_pressure(1.3, fluid.params) - lattice_pressure(2.3, fluid.params))
+    assert force[2] / SPACING**2 == pytest.approx(-expected, rel=1e-6)
+
+
+def test_contact_gives_and_takes_the_same_impulse(drop: Make, plate: Join, struck: Strike) -> None:
+    given = {
+        "gravity": (0.0, 0.0, 0.0),
+        "viscosity.kinematic": 1e-3,
+        "boundary.potential_stiffness": 3e3,
+    }
+    fluid = drop(boundary__method="potential", **given)
+    impulse, gained = struck(fluid, plate(fluid))
+    assert np.abs(impulse[:, 2]).sum() > 0.0
+    assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())
+
+
+@pytest.mark.parametrize("exponent", [1, 4])
+def test_energy_is_the_work_of_the_plate(drop: Make, plate: Join, exponent: int) -> None:
+    given = {
+        "boundary.potential_exponent": exponent,
+        "boundary.potential_stiffness": 2e3,
+        "viscosity.artificial": 0.0,
+    }
+    fluid = drop(boundary__method="potential", gravity=(0.0, 0.0, 0.0), courant=0.02, **given)
+    fields = {name: np.array(array) for name, array in plate(fluid, height=-SPACING).items()}
+    work, energies = 0.0, []
+    for _ in range(400):
+        fluid.take(fields)
+        dt = fluid.stable_dt()
+        fluid.step(dt)
+        work -= dt * float((fluid.give()["surface_load.force"] * fields["surface.velocity"]).sum())
+        fields["surface.position"] += dt * fields["surface.velocity"]
+        now = fluid.totals()
+        energies.append(now.kinetic + now.internal - work)
+    assert work > 0.05
+    assert np.ptp(energies) < 0.02 * work
+
+
+@pytest.mark.parametrize("exponent", [1, 4])
+def test_water_settles_at_one_spacing_where_its_weight_is_lattice_pressure(exponent: int) -> None:
+    width, depth = 40 * SPACING, 10 * SPACING
+    given = {
+        "dimensions": 2,
+        "fluid": (((0.0, 0.0, 0.0), (width, SPACING, depth)),),
+        "boundary.walls": ((0.0, 0.0, 0.0), (width, SPACING, 2.0 * depth)),
+        "sound_speed": 20.0 * math.sqrt(9.81 * depth),
+        "boundary.potential_exponent": exponent,
+    }
+    stiff = float(stiffness(np.array([1000.0 * 9.81 * depth]), params(**given))[0])
+    how = {
+        "boundary.potential_stiffness": stiff,
+        "boundary.wall_viscosity_factor": 0.0,
+        "viscosity.artificial": 1.0,
+        "negative_pressure": True,
+    }
+    fluid = SphFluid(params(**given, **how))
+    run(fluid, 0.8)
+    lowest = np.sort(fluid.view()["points"][:, 2])[:40]
+    assert lowest.mean() / SPACING + 0.5 == pytest.approx(1.0, rel=0.03)
+
+
+def test_walls_and_bodies_hold_the_pressure_of_water_at_rest(pool: Make, plate: Join) -> None:
+    fluid = pool(boundary__method="potential")
+    walls = fluid.state.position_density[fluid.state.fluid :]
+    fluid.take(plate(fluid, height=0.03, speed=0.0))
+    depth = 0.1 - np.concatenate([walls[:, 2], np.full(49, 0.03)])
+    pressures = 1000.0 * 9.81 * np.maximum(depth, 0.0)
+    assert pressure_at_rest(walls[:, :3], fluid.params) == pytest.approx(pressures[:-49])
+    expected = stiffness(pressures, fluid.params) / 1e6
+    assert fluid.state.velocity_pressure[fluid.state.fluid :, 3] == pytest.approx(expected)
+    found = stiffness(pressures, fluid.params) * lattice_pressure(1.0, fluid.params)
+    assert found + pressures * fluid_share(1.0, fluid.params) == pytest.approx(pressures)
+
+
+def test_bodies_that_are_dry_hold_the_mean_pressure(pool: Make, plate: Join) -> None:
+    fluid = pool(boundary__method="potential")
+    fluid.take(plate(fluid, height=0.13))
+    expected = stiffness(np.array([490.5]), fluid.params)[0] / 1e6
+    assert fluid.state.velocity_pressure[fluid.samples.row, 3] == pytest.approx(
+        np.full(49, expected)
+    )
+
+
+def wander(step: float) -> float:
+    """Hold a particle where the potential is steepest, in steps of so many √(m/k); how far it gets.
+
+    In spacings, from a start 1e-3 off.
+    """
+    law = params(gravity=(0.0, 0.0, 0.0), viscosity__artificial=0.0, boundary__potential_exponent=4)
+    stiff = 3e3  # Pa
+    line = np.linspace(0.3, 2.0, 171)
+    push = np.array([wall_force(one, law) for one in line])
+    steepest = int(np.gradient(push, line).argmin())
+    pull = stiff * push[steepest] / (1000.0 * SPACING)  # m/s2
+    wall = np.arange(-4, 5) * SPACING
+    z, y, x = (grid.ravel() for grid in np.meshgrid(SPACING * np.arange(-2, 1), wall, wall))
+    start = line[steepest] * SPACING
+    particle = np.array([0.0, 0.0, start + 1e-3 * SPACING, 1000.0])
+    place = np.vstack([particle, np.column_stack([x, y, z, np.full(x.size, 1000.0)])])
+    motion, dt = np.zeros_like(place), step * step_limit(stiff, law) / SAFE
+    motion[1:, 3] = stiff / 1000.0**2
+    zero, one, all_of_them = np.array([0]), np.array([1]), np.array([len(place)])
+    lists = Lists(zero, one, all_of_them, np.arange(len(place), dtype=np.int32))
+    # Of the boundary's terms the potential alone.
+    numbers = pair_law(law, contact_potential(law))
+    terms = numbers.boundary._replace(repulsion=NO_REPULSION)
+    alone: PairLaw = numbers._replace(boundary=terms)
+    furthest = 0.0
+    for _ in range(25):  # before it slides off the ridge that it stands on
+        rate = summed(alone, place, motion, lists, 1, (0.0, 0.0, -pull))
+        motion[0, :3] += dt * rate[0, :3]
+        place[0, :3] += dt * motion[0, :3]
+        furthest = max(furthest, abs(place[0, 2] - start) / SPACING)
+    return furthest
+
+
+def test_step_limit_is_a_tenth_of_where_rest_becomes_unstable() -> None:
+    assert SAFE == 0.1 * 2.0
+    assert wander(1.9) < 0.01
+    assert wander(2.1) > 0.1
+
+
+def test_a_stiffness_without_the_potential_is_a_mistake() -> None:
+    given = {"spacing": 0.1, "sound_speed": 60.0, "fluid": [[[0, 0, 0], [1, 1, 1]]]}
+    found = read(SphFluidParams, nested(given | {"boundary.potential_stiffness": 1e3}), "water")[1]
+    sentence = (
+        r"potential_stiffness belongs to boundary.method potential, or .* found dbc. Remove it, or"
+    )
+    assert re.search(sentence, "\n".join(found))
+
+
+def test_films_leave_a_link_no_choice() -> None:
+    box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
+    for gaps in (False, True):
+        port = SphFluid(
+            params(boundary__method="mdbc", boundary__lubrication_films=gaps, fluid=(box,))
+        ).takes[0]
+        assert (CONTACT in port.static) is not gaps
+
+
+def test_the_contact_of_some_samples_alone_is_refused() -> None:
+    box = ((0.0, 0.0, 0.0), (EDGE, EDGE, EDGE))
+    one = SphFluid(params(boundary__method="mdbc", fluid=(box,)))
+    static = {"volume": np.full(2, SPACING**3), "body": np.zeros(2), "contact": np.ones(1)}
+    sentence = "contact must be said of all 2 samples or of none; found 1. Let every link"
+    with pytest.raises(PortError, match=sentence):
+        one.bind({f"surface.{key}": array for key, array in static.items()})

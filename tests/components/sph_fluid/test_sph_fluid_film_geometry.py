@@ -1,0 +1,107 @@
+"""Faces near each other: what lies across, and what is left for a film to press."""
+
+import numpy as np
+import pytest
+from fluid_params import fluid_params
+
+from quintet.components.sph_fluid.boundary.film_geometry import face_normals
+from quintet.components.sph_fluid.boundary.lubrication import write_fluid_share
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.coupler.coupling.body_samples import BOX, fill, mirrors
+
+SPACING = 0.01  # m
+SIZE = np.array([0.03, 0.06, 0.06])  # m, of each of two blocks side by side
+LONG, WIDE, HIGH = 0.14, 0.1, 0.11  # m, of the water
+
+
+def boxes(width: float) -> tuple:
+    """Water all around both blocks, and none between them; m."""
+    last = 0.09 + width  # where the right block ends
+    return (
+        ((0.0, 0.0, 0.0), (LONG, WIDE, 0.02)),
+        ((0.0, 0.0, 0.08), (LONG, WIDE, HIGH)),
+        ((0.0, 0.0, 0.02), (LONG, 0.02, 0.08)),
+        ((0.0, 0.08, 0.02), (LONG, WIDE, 0.08)),
+        ((0.0, 0.02, 0.02), (0.03, 0.08, 0.08)),
+        ((last, 0.02, 0.02), (LONG, 0.08, 0.08)),
+    )
+
+
+def pair(width: float, **given: object) -> SphFluid:
+    """Two fixed blocks under water, a gap of `width` [m] apart."""
+    settings = {
+        "spacing": SPACING,
+        "sound_speed": 11.0,
+        "fluid": boxes(width),
+        "boundary.walls": ((0.0, 0.0, 0.0), (LONG, WIDE, 0.15)),
+        "boundary.method": "mdbc",
+        "density_diffusion": 0.1,
+        "negative_pressure": True,
+        "courant": 0.3,
+        "boundary.lubrication_films": True,
+    }
+    fluid = SphFluid(fluid_params(**(settings | given)))
+    arm, normal, volume = fill(BOX, SIZE, SPACING, 3.0 * SPACING)
+    image, count = mirrors(BOX, SIZE, arm, normal), len(arm)
+    static = {"normal": np.tile(normal, (2, 1)), "volume": np.tile(volume, 2)}
+    static["body"] = np.repeat([0.0, 1.0], count)
+    fluid.bind({f"surface.{key}": value for key, value in static.items()})
+    centres = np.array([[0.045, 0.05, 0.05], [0.075 + width, 0.05, 0.05]])
+    place, mirror = (np.concatenate(centres[:, None] + one) for one in (arm, image))
+    moves = {"position": place, "velocity": np.zeros_like(place), "mirror": mirror}
+    fluid.take({f"surface.{key}": value for key, value in moves.items()})
+    return fluid
+
+
+def test_normals_are_those_of_the_faces_not_of_edges() -> None:
+    face, edge, corner = [0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 1.0, 1.0]
+    down, below, under = [0.0, 0.0, -1.0], [0.0, 1.0, -1.0], [1.0, 1.0, -1.0]
+    off = np.array([down, below, down, below, under, under, face, edge])
+    back = np.array([face, face, edge, edge, corner, face, face, edge])
+    expected = np.array([face] * 6 + [[0.0] * 3] * 2)  # the last two look the same way
+    np.testing.assert_allclose(face_normals(off, back), expected, atol=1e-15)
+
+
+def test_a_film_covers_a_face_with_its_edges_and_corners() -> None:
+    near, far = pair(0.002), pair(1.25 * SPACING)
+    near.step(1e-5)
+    far.step(1e-5)
+    assert len(near.films.films.sample) == 36
+    assert near.films.films.rim.sum() == 20
+    assert len(far.films.films.sample) == 0
+
+
+def test_body_water_and_what_lies_across_press_the_whole_face() -> None:
+    # One lattice goes on through both blocks and a gap of one spacing that is full of water.
+    gap = ((0.06, 0.02, 0.02), (0.07, 0.08, 0.08))
+    one = pair(SPACING, fluid=(*boxes(SPACING), gap))
+    one.step(1e-9)
+    film, state = one.films.films, one.state
+    wet = np.empty(len(film.row))
+    place = state.position_density[state.fluid :]
+    foot = place[film.row, :3] - [0.5 * SPACING, 0.0, 0.0]  # on the right block's left face
+    lists, numbers = one.lists.arrays, one.constants
+    write_fluid_share(film.row, foot, state.fluid, state.position_density, lists, numbers, wet)
+    rows = np.flatnonzero(state.sample >= 0)
+    left = rows[place[rows, 0] < 0.06]
+    apart = np.linalg.norm(foot[:, None] - place[left, :3], axis=2) / one.constants.smoothing.length
+    shape = np.maximum(2.0 - apart, 0.0) ** 3 - 4.0 * np.maximum(1.0 - apart, 0.0) ** 3
+    across = one.constants.smoothing.height * shape.sum(axis=1) * SPACING**3
+    np.testing.assert_allclose(film.own + wet + across, 1.0, atol=0.01)
+
+
+@pytest.mark.parametrize("width", [0.1, 0.5, 1.0, 1.25])
+def test_the_pressure_in_a_narrow_gap_is_that_outside(width: float) -> None:
+    fluid, time, found = pair(width * SPACING), 0.0, []
+    while time < 0.2:
+        dt = fluid.stable_dt()
+        fluid.step(dt)
+        time += dt
+        if time > 0.1:
+            found.append(fluid.state.force.reshape(2, -1, 3).sum(axis=1)[:, 0])
+    volume = fluid.state.fluid * SPACING**3 + 2.0 * SIZE.prod()
+    outside = 9810.0 * (volume / (LONG * WIDE) - 0.05) * SIZE[1] * SIZE[2]
+    left, right = np.array(found).T
+    inside = 1.0 - 0.5 * (left - right) / outside
+    assert inside.mean() == pytest.approx(1.0, abs=0.2)
+    assert inside.std() < 0.2
