@@ -66,7 +66,7 @@ class DemBodies(Component):
         several = threads_wanted() > 1 and len(self.sums) >= 2 * FEWEST
         self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
-        self.skin = build.SKIN * float(self.model.sphere_radius.min())  # m
+        self.skin = build.skin(params.bodies, self.solids)  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
         self.damping = float(self.model.material_pairs[:, :, 2].max())  # ζ of the most damped
         self.contacts = np.zeros(self.count + 1, np.int64)  # of each row
