@@ -16,8 +16,16 @@ from quintet.components.dem_bodies.integration.step_limit import (
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import ports
-from quintet.components.shared.threads import Team, threads_wanted
-from quintet.interfaces.component import Array, Component, Fields, Totals
+from quintet.components.shared.threads import Team
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Array,
+    Component,
+    Fields,
+    Keys,
+    Resources,
+    Totals,
+)
 from quintet.interfaces.errors import StepError
 
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
@@ -49,7 +57,7 @@ class DemBodies(Component):
         Bodies, materials, planes.
     """
 
-    def __init__(self, params: DemBodiesParams) -> None:
+    def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params = params
         self.takes, self.gives = ports(params)
         self.solids = [build.solid(body) for body in params.bodies]
@@ -63,8 +71,8 @@ class DemBodies(Component):
         self.loaded = False  # whether any body has a load
         self.accumulated = Accumulated()
         self.count = len(self.solids)
-        several = threads_wanted() > 1 and len(self.sums) >= 2 * FEWEST
-        self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
+        several = resources.threads > 1 and len(self.sums) >= 2 * FEWEST
+        self.team = Team(resources.threads if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
         self.skin = build.skin(params.bodies, self.solids)  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
@@ -192,7 +200,7 @@ class DemBodies(Component):
         i, j = self.state.body[touching[touching[:, 0] == pair - count][0, 1:3]]
         return int(i), int(j)
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
         s, n = self.state, self.count
         # One piece of memory, for pieces of their own are fetched from the system at every call.

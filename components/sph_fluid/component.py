@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
-from quintet.components.shared.threads import Team, threads_wanted
+from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import build, lists
 from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples, shift
@@ -18,19 +18,29 @@ from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, refuse_dense, totals, view
 from quintet.components.sph_fluid.surface import chosen, surface
 from quintet.components.sph_fluid.terms import bulk, damped, friction, mark, terms
-from quintet.interfaces.component import Component, Fields, Port, Totals
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Component,
+    Fields,
+    Keys,
+    Port,
+    Resources,
+    Totals,
+)
 from quintet.interfaces.errors import OrderError, PortError, StepError
 from quintet.interfaces.ports import SURFACE_LOAD
+
+LOADS = frozenset({"surface_load.force"})
 
 
 class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
 
-    def __init__(self, params: SphFluidParams) -> None:
+    def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, self.gives = params, (SURFACE_LOAD, *gauge_ports(params))
         self.takes: tuple[Port, ...] = (surface(params),)
         self.fluid = constants(params)
-        self.team, self.state = Team(threads_wanted()), build.state(params)
+        self.team, self.state = Team(resources.threads), build.state(params)
         press(self.fluid, self.state.place, self.state.motion)
         self.near = NeighbourLists()
         self.rows: Whole = np.zeros(0, np.int64)  # (samples,) where the samples are in the state
@@ -62,7 +72,7 @@ class SphFluid(Component):
             "surface.inset": np.array([self.params.boundary.sample_depth * self.params.spacing]),
         }
 
-    def bind(self, static: Fields) -> None:
+    def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""
         if "surface.volume" in static:
             if self.params.dimensions == 2:
@@ -256,13 +266,12 @@ class SphFluid(Component):
         state.moved = math.sqrt(max(distance for distance, _ in moved))
         state.last_dt, state.steps = dt, state.steps + 1
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
-        return {"surface_load.force": self.state.force.copy(), **self._read_gauges()}
+        given = {} if wanted <= LOADS else self._read_gauges()
+        return {**given, "surface_load.force": self.state.force.copy()}
 
     def _read_gauges(self) -> Fields:
-        if len(self.gives) == 1:
-            return {}
         from quintet.components.sph_fluid.gauges import Gauges
 
         return Gauges(self.params, self.fluid).read(self.state, self.near.arrays)

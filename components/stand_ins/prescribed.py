@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
-from quintet.interfaces.component import Array, Component, Fields
+from quintet.interfaces.component import Array, Component, Fields, Keys
 
 LOADS = ("force", "torque")
 SHAPES = {"sphere": 0.0, "box": 1.0}  # as ports.MOTION gives them
@@ -48,7 +48,7 @@ class Prescribed(Component):
         """Let time pass."""
         self.time += dt
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         """Return the pose and its rate at the present time."""
         phase = self.angular_frequency * self.time
         moved = self.velocity * self.time + self.amplitude * np.sin(phase)

@@ -8,15 +8,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling import convergence_log
+from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
-from quintet.coupler.coupling.participant import ComponentFailed
-from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.coupling.schedule import Costs
 from quintet.coupler.files.toml_writer import dumps
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.run import results, snapshots
-from quintet.coupler.run.loop import Progress, run
+from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import run_arguments
@@ -29,27 +31,32 @@ RUN_FILES = (
     "scene.toml",
     "scene.png",
     "comparison.png",
+    "convergence.csv",
 )
 
 
 def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     """Run a scene in a prepared folder, or from a snapshot in it; return the exit status."""
     clock, stop = results.Clock(), StopRequest()
-    exchange = Exchange(scene.links, {n: (c.takes, c.gives) for n, c in scene.components.items()})
-    size = snapshots.ledger_size(snapshot) if snapshot else 0
+    exchange = scene.exchange()
+    size, lines = snapshots.file_sizes(snapshot) if snapshot else (0, 0)
     ledger = Ledger(exchange, folder / "ledger.csv", size)
+    repeats = scene.coupling.scheme == "iterated"
+    log = ConvergenceLog(folder / convergence_log.FILE, lines) if repeats else None
     writer = OutputWriter(scene, folder, stop, snapshots.window_of(snapshot) if snapshot else None)
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
-    coupling = Coupling({}, exchange, ledger, 0.0, scene.iteration())
+    participants: dict[str, Participant] = {}
+    costs = Costs()
     try:
         with stop.listening():
             connection = connect(scene, folder, stop)
-            coupling.parts = connection.parts
-            resume = partial(snapshots.restore, path=snapshot) if snapshot else lambda _: 0
-            progress = run(scene, coupling.parts, coupling, writer, resume)
+            participants = connection.participants
+            coupling = assemble(scene.coupling, participants, exchange, ledger, log, costs)
+            resume = partial(snapshots.restore, path=snapshot) if snapshot else lambda _: None
+            end = run(coupling, scene.file.end, writer, scene.asked_outputs(), resume)
             writer.close()
-            outcome |= progress_of(progress)
+            outcome |= outcome_of(end)
             connection.close(True)
             connection = None
     except KeyboardInterrupt:
@@ -61,9 +68,12 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
             connection.close(False)
         writer.close()
         ledger.close()
+        if log:
+            log.close()
     if stop.asked and outcome["status"] != "done":
         outcome["status"] = "interrupted"
-    return conclude(scene, folder, outcome, coupling, clock())
+    summary = ledger.summary()
+    return conclude(scene, folder, outcome, participants, summary, costs, clock())
 
 
 def make_folder(scene: Scene, folder: Path) -> None:
@@ -79,10 +89,10 @@ def make_folder(scene: Scene, folder: Path) -> None:
     (folder / "scene.toml").write_text(dumps(scene.resolved))
 
 
-def progress_of(progress: Progress) -> dict[str, Any]:
+def outcome_of(end: RunEnd) -> dict[str, Any]:
     """Status of a run, complete or interrupted."""
-    status = "done" if progress.done == progress.windows else "interrupted"
-    return {"status": status, "windows": progress.done, "time": progress.time}
+    status = "done" if end.finished else "interrupted"
+    return {"status": status, "windows": end.windows, "time": end.time}
 
 
 def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -> dict[str, Any]:
@@ -104,7 +114,9 @@ def conclude(
     scene: Scene,
     folder: Path,
     outcome: dict[str, Any],
-    coupling: Coupling,
+    participants: dict[str, Participant],
+    ledger: dict[str, Any],
+    costs: Costs,
     wall: float,
 ) -> int:
     """Evaluate the expectations, write the results, draw; return the exit status."""
@@ -115,9 +127,10 @@ def conclude(
         "transport": scene.transport,
         **outcome,
         "expect": results.expectations(found),
-        "ledger": coupling.ledger.summary(),
-        "repetitions": coupling.repetitions,
-        "timing": results.timing(coupling.parts, wall, coupling.mapping),
+        "ledger": ledger,
+        "repetitions": costs.repetitions,
+        "unconverged": costs.unconverged,
+        "timing": results.timing(participants, wall, costs.mapping),
         "machine": results.machine(),
         "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
     }

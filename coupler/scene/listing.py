@@ -78,8 +78,8 @@ def print_plan(scene: Scene, console: Console) -> None:
     for one in scene.components.values():
         console.print(f"{one.name} takes {_names(one.takes)}; gives {_names(one.gives)}")
     for link in scene.links:
-        for leg in link.legs:
-            console.print(f"link {link.name}: {leg.giver} -> {leg.taker}")
+        for one_way in link.transfers:
+            console.print(f"link {link.name}: {one_way.giver} -> {one_way.taker}")
     for expected in scene.expect:
         console.print(f"expects {expected.name} within {expected.within:g} {expected.unit}")
 

@@ -7,9 +7,10 @@ import signal
 import sys
 import time
 import traceback
+from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import Component
+from quintet.interfaces.component import Component, Resources, make
 from quintet.interfaces.errors import LineError, QuintetError
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.lines.transport import Line
@@ -90,12 +91,11 @@ def linger(line: Line) -> None:
 
 def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     """Check the parameters, then import the solver and make the component."""
-    # Before numba is imported: it reads the size of its thread pool once.
-    os.environ["NUMBA_NUM_THREADS"] = str(header["threads"])
     params, mistakes = read(manifest.params, header["params"], manifest.kind)
     if mistakes:
         raise QuintetError("\n".join(mistakes))
-    return manifest.load()(params)
+    resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
+    return make(manifest.load(), params, resources)
 
 
 def over_zenoh(given: argparse.Namespace) -> Line:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from quintet.coupler.files.recording import Recorder
-from quintet.interfaces.component import Array, Component, Fields
+from quintet.coupler.files.recording import Instant, Recorder
+from quintet.interfaces.component import Array, Component, Fields, Resources, make
 from quintet.interfaces.manifest import find
 from quintet.interfaces.params import read
 from quintet.interfaces.ports import MOTION
@@ -37,10 +37,11 @@ class Case:
         table = self.params(tmp_path) if callable(self.params) else self.params
         params, mistakes = read(manifest.params, table, self.kind)
         assert not mistakes
-        component = manifest.load()(params)
+        component = make(manifest.load(), params, Resources(folder=tmp_path))
         assert (component.takes, component.gives) == tuple(manifest.ports(params))
         component.describe()
-        component.bind(frozen(self.static))
+        joined = frozenset(port.name for port in (*component.takes, *component.gives))
+        component.bind(frozen(self.static), joined)
         return component
 
     def inputs(self, seed: int | None = None) -> Fields:
@@ -62,11 +63,11 @@ def frozen(fields: Fields) -> dict[str, Array]:
 
 def _recorded(tmp_path):
     random = np.random.default_rng(3)
-    with Recorder(tmp_path / "recording.h5", "run", "") as recorder:
+    with Recorder(tmp_path / "recording.h5", "run", "", 0.01) as recorder:
         recorder.component("cubes", (MOTION,), {"motion.mass": np.ones(2)})
         for row in range(8):
             fields = {f"motion.{f.name}": random.normal(size=(2, *f.shape)) for f in MOTION.fields}
-            recorder.add("cubes", 0.01 * row, fields)
+            recorder.add("cubes", Instant(0.01 * row, row, 0.01), fields)
     return {"recording": str(tmp_path), "component": "cubes"}
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from cases import CASES, frozen
 
-from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.component import Array, Fields, outputs_of
 from quintet.interfaces.lines.message import decode, encode
 from quintet.interfaces.manifest import known_kinds
 from quintet.interfaces.units import UNITS
@@ -26,7 +26,7 @@ def _move(component, case, dt, steps=3, seed=1):
     for number in range(steps):
         component.take(case.inputs(seed + number))
         component.step(dt)
-        found.append({key: np.array(array) for key, array in component.give().items()})
+        found.append({key: np.array(array) for key, array in outputs_of(component).items()})
     return found
 
 
@@ -53,7 +53,7 @@ def test_units_are_legal_and_names_told_apart(component):
 def test_give_matches_the_ports(component, case):
     shapes = {f"{port.name}.{f.name}": f.shape for port in component.gives for f in port.fields}
     _move(component, case, case.dt)
-    given = component.give()
+    given = outputs_of(component)
     assert given.keys() == shapes.keys()
     for key, array in given.items():
         assert array.shape[1:] == shapes[key]
@@ -97,11 +97,11 @@ def test_zero_input_gives_zero_output(component, case):
         for f in port.fields
         if f.centring == "impulse"
     }
-    before = {key: np.array(array) for key, array in component.give().items()}
+    before = {key: np.array(array) for key, array in outputs_of(component).items()}
     for _ in range(3):
         component.take(case.inputs())
         component.step(case.dt)
-    for key, array in component.give().items():
+    for key, array in outputs_of(component).items():
         expected = 0.0 if key in impulses else before[key]
         np.testing.assert_allclose(array, expected, rtol=0.0, atol=1e-14, err_msg=key)
 
@@ -129,7 +129,7 @@ def _gap(case, tmp_path, dt):
         for piece in range(pieces):
             component.step(dt / pieces)
             if case.any_time or piece + 1 == pieces:
-                given = component.give()
+                given = outputs_of(component)
             total = {key: total.get(key, 0.0) + dt / pieces * given[key] for key in given}
         ends.append(given)
         sums.append(total)
@@ -180,13 +180,13 @@ def test_what_is_loaded_is_not_written_to(component, case):
 
 def test_outputs_are_copies(component, case):
     _move(component, case, case.dt)
-    first = component.give()
+    first = outputs_of(component)
     kept = {key: np.array(array) for key, array in first.items()}
     for array in first.values():
         array[...] = np.nan
-    _same_bits(component.give(), kept)
+    _same_bits(outputs_of(component), kept)
     _move(component, case, case.dt, seed=9)
-    assert all(np.isfinite(array).all() for array in component.give().values())
+    assert all(np.isfinite(array).all() for array in outputs_of(component).values())
 
 
 def test_received_arrays_are_neither_written_to_nor_kept(case, tmp_path):
@@ -204,5 +204,5 @@ def test_received_arrays_are_neither_written_to_nor_kept(case, tmp_path):
         for buffer in buffers.values() if spoils else ():
             buffer[...] = 1e9
         component.step(case.dt)
-        outputs.append(component.give())
+        outputs.append(outputs_of(component))
     _same_bits(*outputs)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Component, Fields, Totals
+from quintet.interfaces.component import Component, Fields, Keys, Totals
 from quintet.interfaces.params import NotNegative, Positive, parameters
 from quintet.interfaces.ports import FACES, NODE_LOAD, SURFACE, SURFACE_LOAD
 
@@ -45,7 +45,7 @@ class Plate(Component):
         self.u = self.u + dt * half
         self.v = half + 0.5 * dt * (self.push - stiffness * self.u) / mass
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         return {"faces.position": self.start + self.u, "faces.velocity": self.v.copy()}
 
     def save(self) -> Fields:
@@ -96,7 +96,7 @@ class Gust(Component):
             "surface.inset": np.array([0.5 * params.spacing]),
         }
 
-    def bind(self, static: Fields) -> None:
+    def bind(self, static: Fields, joined: Keys) -> None:
         self.area = static["surface.volume"] / self.params.spacing
         self.normal = np.array(static["surface.normal"])
         self.force = np.zeros_like(self.normal)
@@ -115,7 +115,7 @@ class Gust(Component):
         self.force = self.area[:, None] * stress
         self.time += dt
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         return {"surface_load.force": self.force.copy()}
 
     def save(self) -> Fields:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Component, Field, Fields, Port, Totals
+from quintet.interfaces.component import Component, Field, Fields, Keys, Port, Totals
 from quintet.interfaces.params import Count, NotNegative, Number, Positive, Vector, parameters
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 
@@ -46,7 +46,7 @@ class Pucks(Component):
         self.velocity = self.velocity + kick
         self.warmth = self.warmth + dt * self.heating
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         return {"flight.position": self.position.copy(), "flight.velocity": self.velocity.copy()}
 
     def save(self) -> Fields:
@@ -95,7 +95,7 @@ class Air(Component):
         self.momentum = self.momentum + dt * drag * self.speed.sum(axis=0)
         self.warmth += dt * drag * float(lost) * (1.0 - self.params.share)
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         drag, share = self.params.drag, self.params.share
         heat = share * drag * (self.speed**2).sum(axis=1)
         return {"breath.force": -drag * self.speed, "breath.heat": heat}
@@ -148,7 +148,7 @@ class Swing(Component):
         self.v = self.v + dt * (self.push - self.params.stiffness * middle) / self.params.mass
         self.x = middle + 0.5 * dt * self.v
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         return {"swing.position": self.x.copy(), "swing.velocity": self.v.copy()}
 
     def save(self) -> Fields:
@@ -193,7 +193,7 @@ class Burden(Component):
         self.force = -self.params.mass * (end - self.v) / dt
         self.v = end
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         return {"lump.force": self.force.copy()}
 
     def save(self) -> Fields:

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from quintet.interfaces.component import Array, Component, Fields, Port, Totals
+from quintet.interfaces.component import Array, Component, Fields, Keys, Port, Totals
 from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 
@@ -93,7 +93,7 @@ class Membrane(Component):
                 break
         self.q, self.v = self.q + dt * mean, 2.0 * mean - self.v
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         start = np.outer(self.place, [1.0, 0.0, 0.0])
         position = start + np.outer(self.sines @ self.q, UP)
         return {
@@ -151,7 +151,7 @@ class Channel(Component):
         self.force = -self.mass @ (end - self.v) / dt
         self.v = end
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         return {"pressure.force": np.outer(self.force, UP)}
 
     def save(self) -> Fields:

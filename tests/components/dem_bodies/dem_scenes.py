@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.component import Resources
 from quintet.interfaces.params import read
 
 GLASS = {"youngs_modulus": 4.8e10, "poissons_ratio": 0.2, "restitution": 1.0, "friction": 0.0}
@@ -46,8 +47,8 @@ def mistakes(bodies, **given):
     return read(DemBodiesParams, scene, "bodies")[1]
 
 
-def build(bodies, materials=None, **given):
-    return DemBodies(params(bodies, materials, **given))
+def build(bodies, materials=None, threads=1, **given):
+    return DemBodies(params(bodies, materials, **given), Resources(threads))
 
 
 def run(component, end, watch=None, dt=None):

@@ -9,6 +9,7 @@ from quintet.components.dem_bodies.shapes.agglomerate import agglomerate
 from quintet.components.dem_bodies.shapes.mesh_files import voxels
 from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
 from quintet.coupler.coupling.body_samples import fill
+from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import LinkError
 
 EDGE = 0.15  # m
@@ -122,7 +123,7 @@ def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
     bodies += [body(files / "cube.stl", scale=1e-3, position=[0.16, 0.0, 0.0755])]
     pile = build(bodies, stuff, planes=[FLOOR], contact_forces=True, impact_speed=0.5)
     run(pile, 0.3)
-    given = pile.give()
+    given = outputs_of(pile)
     assert given["motion.position"][1, 2] == pytest.approx(0.075, abs=2e-4)
     assert np.abs(given["motion.velocity"]).max() < 1e-4
     np.testing.assert_allclose(given["contact.force"][:2, 2], 9.81 * pile.mass, rtol=1e-3)

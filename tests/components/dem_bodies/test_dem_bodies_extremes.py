@@ -10,6 +10,7 @@ from dem_scenes import FLOOR, NOTHING, about, box, build, energy, material, run,
 from quintet.components.dem_bodies.contact.materials import DURATION
 from quintet.components.dem_bodies.laws import DAMPING
 from quintet.components.dem_bodies.state import DEEPEST, DEEPEST_PAIR
+from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import StepError
 
 STIFF = [3.0e9, 6.5e10, 2.1e11]  # Pa: plastic, glass, steel
@@ -82,7 +83,7 @@ def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(turned):
     cube = build([body], stuff, gravity=NOTHING, planes=[FLOOR], impact_speed=20.0)
     energies = [energy(cube)]
     run(cube, 2e-3, lambda _: energies.append(energy(cube)))
-    assert cube.give()["motion.velocity"][0, 2] == pytest.approx(12.0, rel=5e-2)
+    assert outputs_of(cube)["motion.velocity"][0, 2] == pytest.approx(12.0, rel=5e-2)
     assert np.diff(energies).max() <= 0.0
 
 
@@ -135,8 +136,8 @@ def test_many_dampers_on_one_body_are_stable():
     stuff = {"a": material(youngs_modulus=1e7, restitution=0.05)}
     body = build([slab], stuff, planes=[FLOOR], impact_speed=0.5, contact_forces=True)
     run(body, 0.3)
-    assert body.give()["contact.force"][0, 2] == pytest.approx(9.81 * body.mass[0], rel=1e-6)
-    assert np.abs(body.give()["motion.velocity"]).max() < 1e-9
+    assert outputs_of(body)["contact.force"][0, 2] == pytest.approx(9.81 * body.mass[0], rel=1e-6)
+    assert np.abs(outputs_of(body)["motion.velocity"]).max() < 1e-9
 
 
 def test_damped_balls_in_a_heap_come_to_rest():
@@ -149,7 +150,7 @@ def test_damped_balls_in_a_heap_come_to_rest():
     stuff = {"a": material(youngs_modulus=2e6, restitution=0.05, friction=0.3)}
     heap = build([ball], stuff, planes=planes, impact_speed=0.5)
     run(heap, 0.4)
-    assert np.median(np.linalg.norm(heap.give()["motion.velocity"], axis=1)) < 1e-5
+    assert np.median(np.linalg.norm(outputs_of(heap)["motion.velocity"], axis=1)) < 1e-5
 
 
 def test_a_damped_stack_of_cubes_stands_still():
@@ -157,7 +158,7 @@ def test_a_damped_stack_of_cubes_stands_still():
     stuff = {"a": material(youngs_modulus=3e9, restitution=0.05, friction=0.4)}
     stack = build(bodies, stuff, planes=[FLOOR], impact_speed=0.1)
     run(stack, 0.3)
-    assert np.abs(stack.give()["motion.velocity"]).max() < 1e-6
+    assert np.abs(outputs_of(stack)["motion.velocity"]).max() < 1e-6
 
 
 def flight(size, **given):
@@ -207,13 +208,15 @@ def test_a_body_that_leaves_disturbs_nobody():
     for others in ([], [sphere([9.0, 0.0, 0.5], 0.1, velocity=[1e5, 0.0, 1e5])]):
         scene = build([stays, *others], planes=[FLOOR])
         run(scene, 0.1, dt=1e-4)
-        found.append({key: array[0].copy() for key, array in scene.give().items()})
+        found.append({key: array[0].copy() for key, array in outputs_of(scene).items()})
     for key in found[0]:
         np.testing.assert_array_equal(found[0][key], found[1][key], err_msg=key)
-    assert scene.give()["motion.position"][1, 0] == pytest.approx(1e4 + 9.0)
+    assert outputs_of(scene)["motion.position"][1, 0] == pytest.approx(1e4 + 9.0)
 
 
 def test_a_body_that_falls_out_of_the_scene_falls_on():
     ball = build([sphere([0.0, 0.0, 0.0], 0.1)])
     run(ball, 2.0)
-    assert ball.give()["motion.position"][0, 2] == pytest.approx(-0.5 * 9.81 * 2.0**2, rel=1e-9)
+    assert outputs_of(ball)["motion.position"][0, 2] == pytest.approx(
+        -0.5 * 9.81 * 2.0**2, rel=1e-9
+    )

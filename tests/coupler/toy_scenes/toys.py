@@ -67,7 +67,7 @@ class Toy(Component):
             case "nan":
                 self.value = np.full_like(self.value, np.nan)
 
-    def give(self):
+    def give(self, wanted):
         return {"out.number": self.value.copy(), "out.push": self.push.copy()}
 
     def save(self):
