@@ -84,7 +84,7 @@ def skin(bodies: Sequence[Body], solids: Sequence[Solid]) -> float:
 
 
 def contact_length(body: Body, one: Solid) -> float:
-    """Smallest contact radius [m], of a box at least that of a rounded one not ten times as long."""
+    """Smallest contact radius [m]; of a box at least that of a rounded, less slender one."""
     radius = float(one.radii.min())
     if body.size is None:
         return radius

@@ -198,7 +198,7 @@ def test_a_plate_of_a_thousandth_of_its_length_comes_to_lie_under_balls():
     scene = build([plate, *balls], stuff, **given)
     run(scene, 0.1)
     weight = 9.81 * scene.mass.sum()
-    assert scene.give()["contact.force"][-1, 2] == pytest.approx(-weight, rel=1e-3)
+    assert outputs_of(scene)["contact.force"][-1, 2] == pytest.approx(-weight, rel=1e-3)
 
 
 def test_a_body_that_leaves_disturbs_nobody():
