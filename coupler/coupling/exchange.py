@@ -191,6 +191,9 @@ class Exchange:
         self.links, self.ports = list(links), ports
         self.takes = {name: fields_of(takes) for name, (takes, _) in ports.items()}
         self.gives = {name: fields_of(gives) for name, (_, gives) in ports.items()}
+        self._ports = {
+            name: {port.name: port for port in takes} for name, (takes, _) in ports.items()
+        }
         pairs = [(n, one) for n, link in enumerate(self.links) for one in link.transfers]
         self.transfers = [one for _, one in pairs]
         self.link_of = [number for number, _ in pairs]  # of each transfer
@@ -246,8 +249,7 @@ class Exchange:
         return self.takes[taker][key].centring == "impulse"
 
     def _port(self, taker: str, key: str) -> Port:
-        name = key.partition(".")[0]
-        return next(port for port in self.ports[taker][0] if port.name == name)
+        return self._ports[taker][key.partition(".")[0]]
 
     def unit(self, taker: str, key: str) -> str:
         """Unit of an input; of an impulse, that of its rate."""
