@@ -139,8 +139,8 @@ def _sweep(
         for (component, key), value in guess.items():
             if component in inputs:
                 mine = inputs[component]
-                owed = coupling.in_transit.get((component, key), 0.0)
-                mine.fields[key] = value + owed
+                lacking = coupling.in_transit.get((component, key), 0.0)
+                mine.fields[key] = value + lacking
                 mine.ends.append(key)
         coupling.start(name, window, inputs)
         gave[name] = coupling.finish(name, window)
