@@ -53,11 +53,11 @@ def _plan(params: DemBodiesParams) -> Plan:
     count, ω = len(solids), build.expected_frequency(params, solids)
     dt = DURATION * SPEED_UP / ω / params.steps_per_contact
     if count == 1 and not params.planes:  # nothing to touch: two steps for each half of the skin
-        dt = max(dt, 0.25 * build.SKIN * float(solids[0].radii.min()) / params.impact_speed)
+        dt = max(dt, 0.25 * build.skin(params.bodies, solids) / params.impact_speed)
     dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
     # Of a step, some time is for calling it, and some for each body: more where it is no ball.
     balls = sum(body.diameter is not None for body in params.bodies)
-    step = 1.5e-5 + 1.7e-7 * balls + 1e-6 * (count - balls)  # s
+    step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
     return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from quintet.components.dem_bodies.contact import materials
 from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
 from quintet.components.dem_bodies.shapes.placement import (
+    ROUNDED,
     bounding_radius,
     contact_spheres,
     cover,
@@ -28,7 +29,8 @@ from quintet.components.dem_bodies.state import (
     Whole,
 )
 
-SKIN = 0.4  # over the smallest contact radius: pairs nearer than that are listed
+SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
+THIN = 0.1  # of a box's longest edge: what is thinner is listed as if it were not
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
 # Pairs of corners that differ in one coordinate.
 EDGES = np.array([(k, k + step) for step in (1, 2, 4) for k in range(8) if not k & step])
@@ -70,6 +72,23 @@ def solid(body: Body) -> Solid:
     density = body.density if body.mass is None else body.mass / volume
     assert density is not None
     return Solid(density * volume, density * inertia, centres, radii, size)
+
+
+def skin(bodies: Sequence[Body], solids: Sequence[Solid]) -> float:
+    """Distance [m] within which pairs are listed.
+
+    It follows the smallest contact radius; but the edge radius of a sharp box, or of a thin plate,
+    is no measure of how far it goes before it touches, and lists would be renewed at every step.
+    """
+    return SKIN * min(map(contact_length, bodies, solids))
+
+
+def contact_length(body: Body, one: Solid) -> float:
+    """Smallest contact radius [m]; of a box at least that of a rounded, less slender one."""
+    radius = float(one.radii.min())
+    if body.size is None:
+        return radius
+    return max(radius, ROUNDED * max(min(body.size), THIN * max(body.size)))
 
 
 def material_pairs(params: DemBodiesParams) -> Numbers:

@@ -35,6 +35,7 @@ FEWEST = 8  # blocks of rows that are worth handing to another thread
 SHARED = (kernels.DRIFT, kernels.BALLS, kernels.KICK)  # stages of a step that threads share out
 # Of the port, in the order that kernels.copy_motion takes.
 MOTION = ("motion.position", "motion.velocity", "motion.orientation", "motion.angular_velocity")
+CONTACT_FIELDS = ("contact.force", "contact.torque")
 # Of the pairs of balls; the rest follows from these.
 SAVED = ("begin", "partner", "history", "rolling_moment", "force")
 
@@ -74,7 +75,7 @@ class DemBodies(Component):
         several = resources.threads > 1 and len(self.sums) >= 2 * FEWEST
         self.team = Team(resources.threads if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
-        self.skin = build.SKIN * float(self.model.sphere_radius.min())  # m
+        self.skin = build.skin(params.bodies, self.solids)  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
         self.damping = float(self.model.material_pairs[:, :, 2].max())  # ζ of the most damped
         self.contacts = np.zeros(self.count + 1, np.int64)  # of each row
@@ -201,17 +202,19 @@ class DemBodies(Component):
         return int(i), int(j)
 
     def give(self, wanted: Keys) -> Fields:
-        """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
-        s, n = self.state, self.count
+        """Copy out the motion of all bodies; if wanted, what contacts did in the last step."""
+        s, n, found = self.state, self.count, dict[str, Array]()
+        if not wanted.isdisjoint(CONTACT_FIELDS):
+            # The mean of both ends gives the change of momentum to rounding.
+            mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
+            found = {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
+        if wanted.isdisjoint(MOTION):
+            return found
         # One piece of memory, for pieces of their own are fetched from the system at every call.
         parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
         motion = dict(zip(MOTION, (part.reshape(n, -1) for part in parts), strict=True))
         kernels.copy_motion(s, *motion.values())
-        if not self.params.contact_forces:
-            return motion
-        # The mean of both ends gives the change of momentum to rounding.
-        mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
-        return {**motion, "contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
+        return found | motion
 
     def contact_points(self) -> Fields:
         """List what touched in the last step, of bodies with `contact_forces`.

@@ -9,6 +9,7 @@ from quintet.components.dem_bodies.shapes import placement
 from quintet.components.dem_bodies.shapes.description import check_body
 from quintet.interfaces.params import (
     Count,
+    DataFile,
     NotNegative,
     Number,
     Positive,
@@ -103,7 +104,7 @@ class Agglomerate:
     Parameters
     ----------
     file : str
-        STL, OBJ, PLY, or voxels as .npy; beside the scene.
+        STL, OBJ, PLY, or voxels as .npy; named from the scene's folder on.
     scale : float, m, > 0, by default 1
         What one unit of length in the file, or one voxel, stands for.
     dim : int, ≥ 2
@@ -111,7 +112,7 @@ class Agglomerate:
     sphere_radius : float, m, > 0
     """
 
-    file: str
+    file: DataFile
     scale: Positive = 1.0
     dim: Annotated[int, Field(ge=2)]
     sphere_radius: Positive

@@ -106,7 +106,8 @@ class Group:
 
     def keep(self, depth: int) -> None:
         """See `Member.keep`."""
-        self._kept[depth] = {**self.save(), "ledger": self.coupling.ledger.save()}
+        books = {"ledger": self.coupling.ledger.save(), "log": self._log_sizes()}
+        self._kept[depth] = {**self.save(), **books}
         for one in self.components.values():
             one.order_keep(depth)
 
@@ -114,8 +115,18 @@ class Group:
         """See `Member.rewind`: the books of its own windows come back too."""
         self.load(self._kept[depth])
         self.coupling.ledger.load(self._kept[depth]["ledger"])
+        for log, size in self._kept[depth]["log"]:
+            log.cut(size)
         for one in self.components.values():
             one.order_rewind(depth)
+
+    def _log_sizes(self) -> list[tuple[ConvergenceLog, int]]:
+        """Logs of the group and of those in it, and their lengths [bytes]."""
+        log = self.coupling.log
+        sizes = [(log, log.size())] if log else []
+        for one in self.coupling.members.values():
+            sizes += one._log_sizes() if isinstance(one, Group) else []
+        return sizes
 
     def confirm(self) -> None:
         """See `Member.confirm`."""
@@ -146,20 +157,20 @@ def assemble(
     participants: Mapping[str, Participant],
     exchange: Exchange,
     ledger: Ledger,
-    log: ConvergenceLog | None = None,
+    logs: Mapping[str, ConvergenceLog] | None = None,
     costs: Costs | None = None,
     depth: int = 0,
 ) -> Coupling:
-    """Make the coupling of a plan, with its groups; only that of the whole run has a log."""
-    costs = costs or Costs()
+    """Make the coupling of a plan, with its groups; `logs` are those of convergence, by name."""
+    costs, logs = costs or Costs(), logs or {}
     members: dict[str, Member] = {}
     for name, inner in plan.members.items():
         if inner is None:
             members[name] = Single(participants[name])
         else:
-            made = assemble(inner, participants, exchange, ledger, None, costs, depth + 1)
+            made = assemble(inner, participants, exchange, ledger, logs, costs, depth + 1)
             members[name] = Group(made)
-    return Coupling(plan, members, exchange, ledger, depth, costs, log)
+    return Coupling(plan, members, exchange, ledger, depth, costs, logs.get(plan.name))
 
 
 def join_ports(

@@ -71,6 +71,13 @@ class CouplingPlan:
         """Plans of its groups."""
         return [one for one in self.members.values() if one is not None]
 
+    def iterated(self) -> Iterator[str]:
+        """Names of the couplings that repeat windows: this one, and groups in it."""
+        if self.scheme == "iterated":
+            yield self.name
+        for one in self.inner():
+            yield from one.iterated()
+
     def follows(self, exchange: Exchange) -> bool:
         """Whether its windows, or those of a group in it, follow the state."""
         own = self.window == "auto" or bool(self.equal(exchange))

@@ -328,7 +328,7 @@ class Single:
         with coupling.timed():
             ledger.given(self.name, answer.header, answer.fields)
             ledger.applied(self.name, self._inputs.fields, answer.header)
-            ledger.moved(self.name, self._inputs, answer.header["handed"], window.dt)
+            ledger.moved(self.name, self._inputs, answer.header["inputs"], window.dt)
         if answer.header.get("totals"):
             ledger.totals[self.name] = answer.header["totals"]
 

@@ -4,6 +4,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
+from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows, in_ticks
 from quintet.coupler.files.recording import NAME, Instant, Recorder
@@ -22,10 +23,16 @@ class OutputWriter:
     """Writes recording, views and ledger of a run, and shows its progress."""
 
     def __init__(
-        self, scene: Scene, folder: Path, stop: StopRequest, first: int | None = None
+        self,
+        scene: Scene,
+        folder: Path,
+        stop: StopRequest,
+        logs: Mapping[str, ConvergenceLog],
+        first: int | None = None,
     ) -> None:
         """Begin the files, or continue them after the first windows of an earlier run."""
         self.scene, self.folder, self.stop, self.first = scene, folder, stop, first
+        self.logs, self.begun = logs, False
         self.done, self.time = first or 0, 0.0  # windows, s
         self._kept = time.monotonic()  # when the last snapshot was made
         self._views = 0  # ticks between two views; 0: none
@@ -52,6 +59,7 @@ class OutputWriter:
 
     def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:
         """See `Observer.begin`."""
+        self.begun = True
         self.done, self._now = self._windows.done, self._windows.now
         self.time = self._began = self._windows.time
         if self.scene.file.output.record:
@@ -105,7 +113,7 @@ class OutputWriter:
         """Make a snapshot, with all rows written that the run had until then."""
         if self._recorder:
             self._recorder.flush()
-        save(coupling, self.scene, self.folder)
+        save(coupling, self.scene, self.folder, self.logs)
         self._kept = time.monotonic()
 
     def wants_end(self) -> bool:

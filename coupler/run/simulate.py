@@ -8,8 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.coupling import convergence_log
-from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
@@ -23,6 +22,7 @@ from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
+from quintet.interfaces.errors import LinkError, SceneError
 
 RUN_FILES = (
     "results.json",
@@ -31,7 +31,6 @@ RUN_FILES = (
     "scene.toml",
     "scene.png",
     "comparison.png",
-    "convergence.csv",
 )
 
 
@@ -39,11 +38,14 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     """Run a scene in a prepared folder, or from a snapshot in it; return the exit status."""
     clock, stop = results.Clock(), StopRequest()
     exchange = scene.exchange()
-    size, lines = snapshots.file_sizes(snapshot) if snapshot else (0, 0)
+    size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
     ledger = Ledger(exchange, folder / "ledger.csv", size)
-    repeats = scene.coupling.scheme == "iterated"
-    log = ConvergenceLog(folder / convergence_log.FILE, lines) if repeats else None
-    writer = OutputWriter(scene, folder, stop, snapshots.window_of(snapshot) if snapshot else None)
+    logs = {
+        name: ConvergenceLog(folder / log_file(name), lengths.get(name, 0))
+        for name in scene.coupling.iterated()
+    }
+    first = snapshots.window_of(snapshot) if snapshot else None
+    writer = OutputWriter(scene, folder, stop, logs, first)
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
     participants: dict[str, Participant] = {}
@@ -52,7 +54,7 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
         with stop.listening():
             connection = connect(scene, folder, stop)
             participants = connection.participants
-            coupling = assemble(scene.coupling, participants, exchange, ledger, log, costs)
+            coupling = assemble(scene.coupling, participants, exchange, ledger, logs, costs)
             resume = partial(snapshots.restore, path=snapshot) if snapshot else lambda _: None
             end = run(coupling, scene.file.end, writer, scene.asked_outputs(), resume)
             writer.close()
@@ -62,13 +64,13 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     except KeyboardInterrupt:
         outcome |= {"status": "interrupted", "windows": writer.done, "time": writer.time}
     except Exception as error:  # any failure is reported in the results
-        outcome |= failed(error, scene, folder, writer)
+        outcome |= refused(error, writer) or failed(error, scene, folder, writer)
     finally:
         if connection:
             connection.close(False)
         writer.close()
         ledger.close()
-        if log:
+        for log in logs.values():
             log.close()
     if stop.asked and outcome["status"] != "done":
         outcome["status"] = "interrupted"
@@ -82,6 +84,7 @@ def make_folder(scene: Scene, folder: Path) -> None:
     for path in [
         *(folder / name for name in RUN_FILES),
         *folder.glob("*.vtkhdf"),
+        *folder.glob("convergence*.csv"),
         *folder.glob("log/*"),
         *snapshots.snapshots(folder),
     ]:
@@ -93,6 +96,14 @@ def outcome_of(end: RunEnd) -> dict[str, Any]:
     """Status of a run, complete or interrupted."""
     status = "done" if end.finished else "interrupted"
     return {"status": status, "windows": end.windows, "time": end.time}
+
+
+def refused(error: Exception, writer: OutputWriter) -> dict[str, Any]:
+    """Report what a scene asks for and its components, once joined, do not allow."""
+    if writer.begun or not isinstance(error, (SceneError, LinkError)):
+        return {}
+    print(f"\nquintet: {error}", file=sys.stderr, flush=True)
+    return {"status": "refused", "cause": str(error)}
 
 
 def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -> dict[str, Any]:
@@ -120,7 +131,8 @@ def conclude(
     wall: float,
 ) -> int:
     """Evaluate the expectations, write the results, draw; return the exit status."""
-    found = results.outcomes(scene, folder) if outcome["status"] != "failed" else []
+    ended = outcome["status"] in ("done", "interrupted")
+    found = results.outcomes(scene, folder) if ended else []
     content = {
         "scene": scene.file.name,
         "preset": scene.preset,
@@ -140,6 +152,8 @@ def conclude(
         content["resume"] = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
         print(f"to go on: {content['resume']}", file=sys.stderr)
     results.write(folder, content)
+    if outcome["status"] == "refused":
+        return results.BAD
     if outcome["status"] == "failed":
         return results.FAILED
     results.draw(scene, folder, found)

@@ -6,7 +6,7 @@ the run were. Nothing in it is pickled; it is there whole or not at all.
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.scene.read import load, parse
@@ -41,7 +42,9 @@ def remove(paths: Iterable[Path]) -> None:
         path.unlink(missing_ok=True)
 
 
-def save(coupling: Coupling, scene: Scene, folder: Path) -> Path:
+def save(
+    coupling: Coupling, scene: Scene, folder: Path, logs: Mapping[str, ConvergenceLog]
+) -> Path:
     """Write a snapshot at the end of a window, and remove all but the last few."""
     path = folder / f"snapshot-{coupling.windows.done}.h5"
     part = path.with_suffix(".part")
@@ -53,7 +56,7 @@ def save(coupling: Coupling, scene: Scene, folder: Path) -> Path:
         _put(file, "coupling", states(coupling))
         _put(file, "ledger", coupling.ledger.save())
         _put(file, "costs", asdict(coupling.costs))
-        _put(file, "log", coupling.log.size() if coupling.log else 0)
+        _put(file, "logs", {name: log.size() for name, log in logs.items()})
         _put(file, "asked", scene.asked)
         _put(file, "tick", coupling.windows.tick)
     part.replace(path)
@@ -119,10 +122,10 @@ def check_same(scene: Scene, folder: Path) -> None:
         )
 
 
-def file_sizes(path: Path) -> tuple[int, int]:
-    """Lengths of the ledger and of the convergence log when a snapshot was made [bytes]."""
+def file_sizes(path: Path) -> tuple[int, dict[str, int]]:
+    """Lengths of the ledger and of the convergence logs when a snapshot was made [bytes]."""
     with h5py.File(path, "r", locking=False) as file:
-        return int(_get(file, "ledger")["size"]), int(_get(file, "log"))
+        return int(_get(file, "ledger")["size"]), dict(_get(file, "logs"))
 
 
 def _put(group: Any, name: str, value: Any) -> None:

@@ -91,10 +91,10 @@ def linger(line: Line) -> None:
 
 def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     """Check the parameters, then import the solver and make the component."""
-    params, mistakes = read(manifest.params, header["params"], manifest.kind)
+    resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
+    params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
         raise QuintetError("\n".join(mistakes))
-    resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
     return make(manifest.load(), params, resources)
 
 

@@ -48,7 +48,7 @@ class Server:
         fields = self.inputs.fields
         # Turns about several axes do not add up: of rotations the first step alone is checked.
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
-        self.handed = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
+        self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
         self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
@@ -115,7 +115,7 @@ class Server:
             "sent": self.outputs.audit(),
             "received": received,
             "applied": applied,
-            "handed": self.handed.audit(),
+            "inputs": self.input_audit.audit(),
             "totals": self._totals() if header.get("totals") else None,
             "busy": time.perf_counter() - began,
             "cpu": time.process_time() - spent,
@@ -132,7 +132,7 @@ class Server:
         """
         component, inputs, outputs = self.component, self.inputs, self.outputs
         outputs.begin()
-        self.handed.begin()
+        self.input_audit.begin()
         applied = {key: np.zeros(rate[0].size) for key, rate in inputs.rate.items() if len(rate)}
         sums = {key: np.asarray(column_sums(inputs.rate[key])) for key in applied}
         done, steps = 0.0, 0
@@ -147,7 +147,7 @@ class Server:
             if steps == 0 or not inputs.constant:
                 taken = inputs.over(done, end, window)
                 component.take(taken)
-                self.handed.add(taken, dt)
+                self.input_audit.add(taken, dt)
             component.step(dt)
             self._stable = None
             if pieces == 1:

@@ -18,7 +18,7 @@ from quintet.coupler.coupling.exchange import (
     Works,
     misfits,
 )
-from quintet.coupler.coupling.links.keys import only
+from quintet.coupler.coupling.links.keys import is_stand_in, only
 from quintet.interfaces.component import Array, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
@@ -42,6 +42,8 @@ def join(name: str, pairs: Any, ports: Mapping[str, Ports]) -> "Direct":
     mistakes: list[str] = []
     joined = []
     for giver, taker in pairs:
+        if is_stand_in(ports.get(taker.partition(".")[0])):
+            continue
         given = _port(name, giver, ports, 1, mistakes)
         taken = _port(name, taker, ports, 0, mistakes)
         if given and taken:
@@ -142,8 +144,8 @@ class Direct:
 def _passing(transfer: Transfer) -> Callable[[Ends, Ends], Mapped]:
     names = tuple(zip(transfer.reads, transfer.fills, strict=True))
 
-    def carry(_: Ends, end: Ends) -> Mapped:
+    def maps(_: Ends, end: Ends) -> Mapped:
         given = end[transfer.giver]
         return {taken: given[key] for key, taken in names}
 
-    return carry
+    return maps

@@ -1,4 +1,4 @@
-"""Fluid and structure: surface samples move with bodies or faces, and carry forces back.
+"""Fluid and structure: surface samples move with bodies or faces, and maps forces back.
 
 The fluid takes samples and gives a force on each; it never learns what moves them. The body
 gives its shape or its faces; it never learns how finely they are sampled. `contact` says what
@@ -183,8 +183,8 @@ class RigidFsi:
             }
         }
         count = len(self.transfers)
-        carry = (partial(self._move, samples, mirror), partial(self._load, samples))
-        return Binding(static, carry[:count], (None, self._moment)[:count])
+        maps = (partial(self._move, samples, mirror), partial(self._load, samples))
+        return Binding(static, maps[:count], (None, self._moment)[:count])
 
     def _check(self, widths: Array, least: float) -> None:
         for body in np.flatnonzero(widths < least)[:1]:

@@ -5,7 +5,7 @@ v_S = Σ φ v_M, with the shape functions φ of the face on which a particle lie
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from quintet.coupler.coupling.exchange import (
     Binding,
@@ -18,7 +18,7 @@ from quintet.coupler.coupling.exchange import (
     Works,
     requires,
 )
-from quintet.coupler.coupling.links.keys import between
+from quintet.coupler.coupling.links.keys import between, is_stand_in
 from quintet.coupler.coupling.mapping import project
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
@@ -31,6 +31,7 @@ from quintet.interfaces.ports import (
     NODE_LOAD,
 )
 
+T = TypeVar("T")
 FORCE = ("glued_load.force", "node_load.force")
 ERODED = ("face_activity.active", "glue_activity.active")
 # Glued chains of equal masses, thirty transits of a wave, step a tenth of the limit: the energy
@@ -59,13 +60,14 @@ def join(name: str, pair: tuple[str, str], ports: Mapping[str, Ports]) -> "Glue"
     first, second = pair
     complaints = []
     for particles, mesh in ((first, second), (second, first)):
-        lacks = requires(ports[particles], particles, GLUED, GLUED_LOAD)
-        lacks += requires(ports[mesh], mesh, NODE_LOAD, NODE_GLUE)
+        moved, loaded = (not is_stand_in(ports[one]) for one in (particles, mesh))
+        lacks = requires(ports[particles], particles, GLUED if moved else None, GLUED_LOAD)
+        lacks += requires(ports[mesh], mesh, NODE_LOAD if loaded else None, NODE_GLUE)
         if not lacks:
             gives = {port.name for port in ports[mesh][1]}
             takes = {port.name for port in ports[particles][0]}
             frees = FACE_ACTIVITY.name in gives and GLUE_ACTIVITY.name in takes
-            return Glue(name, particles, mesh, frees)
+            return Glue(name, particles, mesh, (loaded, moved, frees))
         complaints.append("; ".join(lacks))
     raise SceneError(f"link {name}: glue needs: {' or: '.join(complaints)}. Link others.")
 
@@ -73,8 +75,9 @@ def join(name: str, pair: tuple[str, str], ports: Mapping[str, Ports]) -> "Glue"
 class Glue:
     """Forces and masses to nodes, velocities back."""
 
-    def __init__(self, name: str, particles: str, mesh: str, frees: bool = False) -> None:
-        self.name, self.particles, self.mesh = name, particles, mesh
+    def __init__(self, name: str, particles: str, mesh: str, ways: tuple[bool, bool, bool]) -> None:
+        """Glue two components; `ways`: force to the mesh, motion and freeing to the particles."""
+        self.name, self.particles, self.mesh, self.ways = name, particles, mesh, ways
         self.partner: dict[str, str] = {}
         self.works: dict[str, Works] = {particles: [("glued_load.force", "glued.velocity", "")]}
         load = Transfer(
@@ -86,8 +89,12 @@ class Glue:
             works_on=(("node_load.force", "node_glue.velocity", "integral"),),
         )
         move = Transfer(mesh, particles, reads=("node_glue.velocity",), fills=("glued.velocity",))
-        freeing = Transfer(mesh, particles, reads=(ERODED[0],), fills=(ERODED[1],))
-        self.transfers = (load, move, freeing) if frees else (load, move)
+        free = Transfer(mesh, particles, reads=(ERODED[0],), fills=(ERODED[1],))
+        self.transfers = self._those((load, move, free))
+
+    def _those(self, each: tuple[T, T, T]) -> tuple[T, ...]:
+        """Of three things for the three ways, those of the ways that it has."""
+        return tuple(one for one, has in zip(each, self.ways, strict=True) if has)
 
     def demands(self) -> Demands:
         """One step of both sides in every window, one after the other."""
@@ -111,4 +118,4 @@ class Glue:
             return {ERODED[1]: end[self.mesh][ERODED[0]][shape.face]}
 
         static = {self.mesh: {"node_load.added_mass": mass}}
-        return Binding(static, (load, move, free)[: len(self.transfers)])
+        return Binding(static, self._those((load, move, free)))

@@ -22,6 +22,11 @@ def between(
     return str(given.get("name", "-".join(pair))), (pair[0], pair[1])
 
 
+def is_stand_in(ports: Ports | None) -> bool:
+    """Whether a component takes nothing at all, as a recording does: it is sent nothing."""
+    return ports is not None and not ports[0]
+
+
 def only(number: int, given: Mapping[str, Any], known: tuple[str, ...]) -> None:
     """Refuse keys that a link's table does not have."""
     wrong = [unknown(f"links.{number}.{key}", key, known) for key in given if key not in known]

@@ -1,6 +1,7 @@
 """Stiff, fast, crowded and lost bodies: stable, or ended with a reason."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -158,6 +159,46 @@ def test_a_damped_stack_of_cubes_stands_still():
     stack = build(bodies, stuff, planes=[FLOOR], impact_speed=0.1)
     run(stack, 0.3)
     assert np.abs(outputs_of(stack)["motion.velocity"]).max() < 1e-6
+
+
+def flight(size, **given):
+    """Steps and lists of a box that tumbles for 0.2 s above the floor, and seconds they take."""
+    turning = {"velocity": [0.3, 0.0, 0.0], "angular_velocity": [1.0, 2.0, 0.5]}
+    high = box([0.0, 0.0, 0.6 * np.linalg.norm(size) + 0.2], size, **turning, **given)
+    began = time.perf_counter()
+    scene = build([high], planes=[FLOOR])
+    lists, steps, renew = [], [], scene._list
+    scene._list = lambda: (lists.append(1), renew())
+    run(scene, 0.2, steps.append)
+    return len(steps), len(lists), time.perf_counter() - began
+
+
+@pytest.mark.parametrize("sharp", [1e-2, 1e-4, 1e-6])
+def test_a_sharp_box_flies_in_no_more_steps_than_a_round_one(sharp):
+    """Lists follow the size of the box, not the radius of its edges."""
+    steps, lists, _ = flight((0.1, 0.1, 0.1))
+    found = flight((0.1, 0.1, 0.1), edge_radius=0.1 * sharp)
+    assert found[0] <= 1.1 * steps and found[1] <= lists
+
+
+@pytest.mark.parametrize("thin", [100, 500, 1000])
+def test_a_thin_plate_flies_in_no_more_steps_than_a_thick_one(thin):
+    """Of the same mass. Its listing scans no cells where nothing is."""
+    steps, lists, _ = flight((5.0, 5.0, 0.5))
+    found = flight((5.0, 5.0, 5.0 / thin), density=80.0 * thin)
+    assert found[0] <= 1.2 * steps and found[1] <= 1.2 * lists
+    assert found[2] < 5.0
+
+
+def test_a_plate_of_a_thousandth_of_its_length_comes_to_lie_under_balls():
+    plate = box([0.0, 0.0, 0.0006], (1.0, 1.0, 0.001), density=2000.0)
+    balls = [sphere([x, y, 0.0112], density=100.0) for x in (-0.4, 0.4) for y in (-0.4, 0.4)]
+    stuff = {"a": material(youngs_modulus=2e11, restitution=0.2)}
+    given = {"planes": [FLOOR], "contact_forces": True, "impact_speed": 0.05}
+    scene = build([plate, *balls], stuff, **given)
+    run(scene, 0.1)
+    weight = 9.81 * scene.mass.sum()
+    assert outputs_of(scene)["contact.force"][-1, 2] == pytest.approx(-weight, rel=1e-3)
 
 
 def test_a_body_that_leaves_disturbs_nobody():

@@ -209,14 +209,14 @@ def _cube_in_water():
 
 def _move(bound, pose):
     """Samples of a cube in a pose."""
-    return bound.carry[0]({}, {"cubes": pose})
+    return bound.maps[0]({}, {"cubes": pose})
 
 
 def _load(bound, force, first, second):
     """Load of a cube that moved from a pose to another, and its moment about the origin."""
     start = {"cubes": first}
     end = {"cubes": second, "water": {"surface_load.force": force}}
-    load = bound.carry[1](start, end)
+    load = bound.maps[1](start, end)
     return load, bound.moment[1](start, end, load)
 
 
@@ -292,7 +292,7 @@ def test_direct_passes_only_what_is_taken():
     pairs = [["puck.pose", "air.flight"], ["air.drag", "puck.push"]]
     link = join_direct("drag", pairs, PORTS)
     pose = {"pose.position": np.zeros((2, 3)), "pose.velocity": np.ones((2, 3))}
-    carry, _ = link.bind({"puck": {}, "air": {}}).carry
+    carry, _ = link.bind({"puck": {}, "air": {}}).maps
     assert set(carry({}, {"puck": pose})) == {"flight.velocity"}
     assert link.transfers[0].reads == ("pose.velocity",)
     assert link.transfers[1].sums == (("drag.force", "push.force"), ("drag.heat", "push.heat"))
