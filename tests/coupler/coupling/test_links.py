@@ -161,7 +161,7 @@ def test_bodies_of_two_dimensions_are_sampled_in_one_row_for_one_metre():
     area = np.bincount(static["surface.body"].astype(int), static["surface.volume"])
     np.testing.assert_allclose(area, [np.pi * 0.04, 0.06], rtol=1e-12)
     pose = {name: np.repeat(value, 2, axis=0) for name, value in _pose(1.0, STILL).items()}
-    moved = bound.carry[0]({}, {"discs": pose})
+    moved = bound.maps[0]({}, {"discs": pose})
     assert not moved["surface.position"][:, 1].any()
 
 
