@@ -84,8 +84,7 @@ def test_files_and_functions_that_are_named_are_there(path):
 
 @pytest.mark.parametrize("path", TEXTS, ids=where)
 def test_commands_are_those_of_the_command_line(path):
-    lines = [line for block in blocks(path.read_text(), "sh") for line in block.splitlines()]
-    for line in lines:
+    for line in "".join(blocks(path.read_text(), "sh")).replace("\\\n", "").splitlines():
         for command in line.split("&&"):
             words = shlex.split(command, comments=True)
             names = [Path(word).name for word in words]
