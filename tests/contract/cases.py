@@ -94,6 +94,16 @@ BOXES = {
     "planes": [{"point": [0.0, 0.0, 2.9], "normal": [0.0, 0.0, 1.0], "material": "wood"}],
 }
 
+# A wedge that hovers there in two dimensions, and a wheel over it.
+WEDGE = {
+    "shape": "polygon",
+    "corners": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]],
+    "density": 500.0,
+    "material": "wood",
+    "position": [1.0, 2.0, 3.0],
+}
+WHEEL = {**BALL, "shape": "disc"}
+
 CASES = {
     "sph_fluid": Case(
         "sph_fluid",
@@ -141,6 +151,13 @@ CASES = {
     "dem_bodies, contact forces": Case(
         "dem_bodies",
         {**BOXES, "contact_forces": True},
+        rest={"load.force": TWO, "load.torque": TWO},
+        scale={"load.force": 1.0, "load.torque": 0.1},
+        dt=1e-4,
+    ),
+    "dem_bodies, two dimensions": Case(
+        "dem_bodies",
+        {**BOXES, "dimensions": 2, "bodies": [WEDGE, {**WHEEL, "position": [1.0, 2.0, 3.12]}]},
         rest={"load.force": TWO, "load.torque": TWO},
         scale={"load.force": 1.0, "load.torque": 0.1},
         dt=1e-4,
