@@ -45,7 +45,7 @@ class Trial:
         self.read_only = True  # whether inputs come as they do over a line
         table = case.params(folder) if callable(case.params) else case.params
         where = f"conform {manifest.kind}, {case.name}"
-        self.params, mistakes = read(manifest.params, table, where)
+        self.params, mistakes = read(manifest.params, table, where, folder)
         if mistakes:
             raise SceneError(mistakes)
         self.takes, self.gives = manifest.ports(self.params)

@@ -81,7 +81,7 @@ class Binding:
     ----------
     static : mapping
         Component -> static fields that it takes.
-    carry : tuple of functions
+    maps : tuple of functions
         One for each transfer: outputs of both sides at the start and at the end of the window in
         which the giver summed its impulses -> inputs of the taker.
     moment : tuple of functions or None
@@ -90,7 +90,7 @@ class Binding:
     """
 
     static: Mapping[str, Mapped]
-    carry: tuple[Callable[[Ends, Ends], Mapped], ...]
+    maps: tuple[Callable[[Ends, Ends], Mapped], ...]
     moment: tuple[Callable[[Ends, Ends, Fields], Array] | None, ...] = ()
 
 
@@ -179,6 +179,11 @@ class WindowInputs:
     def add(self, other: "WindowInputs") -> None:
         """Add inputs that come from elsewhere: rows that one side does not have are zero there."""
         for key, array in other.fields.items():
+            if key in self.fields and (key in self.ends) != (key in other.ends):
+                raise LinkError(
+                    f"{key}: what comes from within a group and from beyond it must hold at the "
+                    "same time. Change the order, or use the same kind of scheme for both."
+                )
             self.fields[key] = self.fields[key] + array if key in self.fields else array
         self.ends += [key for key in other.ends if key not in self.ends]
         self.mixed += other.mixed
@@ -191,20 +196,23 @@ class Exchange:
         self.links, self.ports = list(links), ports
         self.takes = {name: fields_of(takes) for name, (takes, _) in ports.items()}
         self.gives = {name: fields_of(gives) for name, (_, gives) in ports.items()}
+        self._ports = {
+            name: {port.name: port for port in takes} for name, (takes, _) in ports.items()
+        }
         pairs = [(n, one) for n, link in enumerate(self.links) for one in link.transfers]
         self.transfers = [one for _, one in pairs]
         self.link_of = [number for number, _ in pairs]  # of each transfer
         self._bindings: list[Binding] = []
-        self._carry: list[Callable[[Ends, Ends], Mapped]] = []
+        self._maps: list[Callable[[Ends, Ends], Mapped]] = []
         self._moment: list[Callable[[Ends, Ends, Fields], Array] | None] = []
         self._rows: dict[tuple[str, str], dict[int, slice]] = {}  # (component, port) -> by link
 
     def bind(self, described: Mapping[str, Fields]) -> dict[str, Mapped]:
         """Static fields for every component: a partner's in rows, those of own items added up."""
         self._bindings = [link.bind(described) for link in self.links]
-        self._carry = [carry for one in self._bindings for carry in one.carry]
+        self._maps = [maps for one in self._bindings for maps in one.maps]
         self._moment = [
-            moment for one in self._bindings for moment in one.moment or (None,) * len(one.carry)
+            moment for one in self._bindings for moment in one.moment or (None,) * len(one.maps)
         ]
         merged: dict[str, Mapped] = {name: {} for name in self.ports}
         for binding in self._bindings:
@@ -231,7 +239,7 @@ class Exchange:
             partner = self.links[link].partner.get(taker)
             if partner is None:
                 continue
-            mapped = self._carry[number](outputs, outputs)
+            mapped = self._maps[number](outputs, outputs)
             sizes = [len(a) for key, a in mapped.items() if key.partition(".")[0] == partner]
             if sizes:
                 counts.setdefault((taker, partner), {})[link] = sizes[0]
@@ -246,8 +254,7 @@ class Exchange:
         return self.takes[taker][key].centring == "impulse"
 
     def _port(self, taker: str, key: str) -> Port:
-        name = key.partition(".")[0]
-        return next(port for port in self.ports[taker][0] if port.name == name)
+        return self._ports[taker][key.partition(".")[0]]
 
     def unit(self, taker: str, key: str) -> str:
         """Unit of an input; of an impulse, that of its rate."""
@@ -282,7 +289,7 @@ class Exchange:
         """Map what a giver gave in a window, from the outputs of both sides at its two ends."""
         transfer = self.transfers[number]
         start, end = self._own_rows(number, start), self._own_rows(number, end)
-        after = self._carry[number](start, end)
+        after = self._maps[number](start, end)
         moment = self._moment[number]
         turned = moment(start, end, after) if moment else None
         return Delivery(number, transfer, end[transfer.giver], after, turned)

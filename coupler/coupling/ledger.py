@@ -2,7 +2,7 @@
 
 Four sums must agree in every window: of the impulses as the giver made them, as they arrived,
 after the mapping, and as the taker applied them in its steps. Over the whole run all that was
-given is applied once, but for what is on its way. Motion is handed out in each step as it was
+given is applied once, but for what is on its way. Motion is interpolated in each step as it was
 sent. Work is counted on both sides from what each did itself; it agrees as well as the
 staggering in time lets it.
 """
@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
-from quintet.coupler.coupling.motion_audit import Motion
-from quintet.coupler.coupling.run_balance import Balance
+from quintet.coupler.coupling.motion_audit import MotionAudit
+from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.rotation import vector_between
 from quintet.interfaces.sums import column_sums, product, size
@@ -46,7 +46,7 @@ class Account:
     momentum_residual: float = 0.0  # worst window, relative to the sum of its forces' sizes
     angular_residual: float = 0.0  # worst window, relative likewise (with the lever arm)
     heat_residual: float = 0.0  # worst window, relative likewise
-    kinematic_residual: float = 0.0  # worst window, of motion handed out, relative to its size
+    kinematic_residual: float = 0.0  # worst window, of motion interpolated, relative to its size
     other_residual: float = 0.0  # worst window, of rates in other units, relative likewise
     impulse: Array = field(default_factory=lambda: np.zeros(3))  # N s, on the taker
     work_given: float = 0.0  # J, as the side that gives the force counts it
@@ -77,8 +77,8 @@ class Ledger:
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy: list[float] = []  # J, sum over the components, at every note
-        self._balance = Balance(exchange)
-        self._motion = Motion(exchange)
+        self._balance = RunBalance(exchange)
+        self._motion = MotionAudit(exchange)
         self._file = open(path, "a" if size else "w", newline="") if path else None
         self._rows = csv.writer(self._file) if self._file else None
         if self._file and size:
@@ -153,14 +153,16 @@ class Ledger:
         numbers = [n for n, one in enumerate(self.exchange.transfers) if one.taker == name]
         return {id(one): one for one in map(self._account, numbers)}.values()
 
-    def moved(self, name: str, inputs: WindowInputs, handed: Mapping[str, Any], dt: float) -> None:
+    def moved(self, name: str, inputs: WindowInputs, given: Mapping[str, Any], dt: float) -> None:
         """Book the motion that a component was given in its steps against what it was sent."""
         self._motion.arrive(name, inputs.fields, inputs.ends, dt)
-        worst = self._motion.residual(name, handed)
+        worst = self._motion.residual(name, given)
         for account in self._feeding(name):
             account.note("m/s", worst, 1.0)
 
-    def settle(self, late: Collection[int], in_transit: Mapping[tuple[str, str], Array]) -> None:
+    def close_window(
+        self, late: Collection[int], in_transit: Mapping[tuple[str, str], Array]
+    ) -> None:
         """Book, at a window's end, all that was ever given against all that was ever applied.
 
         The last impulses of `late` transfers, and what is in transit, will be applied later.
@@ -217,8 +219,8 @@ class Ledger:
             work = [account.work_given, account.work_taken, account.heat]
             self._rows.writerow([time, account.link, *residuals, *account.impulse, *work])
         for name, one in totals.items():
-            held = [one["mass"], *one["momentum"], *(one[kind] for kind in kinds)]
-            self._rows.writerow([time, name, *[""] * 8, *held])
+            totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in kinds)]
+            self._rows.writerow([time, name, *[""] * 8, *totals_row])
         self._file.flush()
 
     def save(self) -> dict[str, Any]:

@@ -32,7 +32,7 @@ class Running:
         self.scale += size(array)
 
 
-class Balance:
+class RunBalance:
     """Sums over the run of every impulse whose sum a mapping keeps."""
 
     def __init__(self, exchange: Exchange) -> None:

@@ -69,12 +69,15 @@ def iterated(coupling: Coupling, window: Window) -> None:
     sent = dict(coupling.sent)
     guess = _first_guess(coupling, window)
     acceleration.begin_window(window.dt)
+    guessing = [  # members whose inputs are guessed
+        name for name, one in coupling.members.items() if any(k in one.components for k, _ in guess)
+    ]
     _all(coupling, "keep")
     repetition = 0
     while True:
         inputs, given = _sweep(coupling, window, guess)
         everyone = list(coupling.members)
-        taken = {name: coupling.gather(name, everyone, window) for name in everyone}
+        taken = {name: coupling.gather(name, everyone, window) for name in guessing}
         found = {(one, key): _inputs_of(taken, one).fields[key] for one, key in guess}
         residuals = measure.compare(guess, found, window.dt)
         if converged(residuals):
@@ -136,8 +139,8 @@ def _sweep(
         for (component, key), value in guess.items():
             if component in inputs:
                 mine = inputs[component]
-                owed = coupling.in_transit.get((component, key), 0.0)
-                mine.fields[key] = value + owed
+                lacking = coupling.in_transit.get((component, key), 0.0)
+                mine.fields[key] = value + lacking
                 mine.ends.append(key)
         coupling.start(name, window, inputs)
         gave[name] = coupling.finish(name, window)

@@ -50,7 +50,7 @@ class _Closed(ABC):
 
 
 class Recorder(_Closed):
-    """Write a recording; rows are held back and written in batches."""
+    """Write a recording; rows are collected back and written in batches."""
 
     def __init__(self, path: Path | str, run: str, scene: str, tick: float = 1.0) -> None:
         self._file = h5py.File(path, "w", locking=False)
@@ -118,8 +118,8 @@ class _Track:
                 group.create_dataset(key, (0,), dtype, maxshape=(None,), chunks=(1024,))
         self.times = group["times"]
         self.data: dict[str, h5py.Dataset] = {}
-        self.held: dict[str, Array] = {}  # (batch, n, *shape)
-        self.held_marks = {key: np.zeros(BATCH, dtype) for key, dtype in MARKS.items()}
+        self.batch_rows: dict[str, Array] = {}  # (batch, n, *shape)
+        self.batch_marks = {key: np.zeros(BATCH, dtype) for key, dtype in MARKS.items()}
         self.batch = BATCH
         self.rows = 0  # taken
         self.written = 0
@@ -127,22 +127,22 @@ class _Track:
     def add(self, instant: Instant, fields: Fields) -> None:
         if not self.rows:
             self._begin(fields)
-        if fields.keys() != self.held.keys():
+        if fields.keys() != self.batch_rows.keys():
             raise PortError(
                 f"recording of {self.name}: row {self.rows} must have the fields of the first, "
-                f"{', '.join(self.held)}; found {', '.join(fields)}. Correct give()."
+                f"{', '.join(self.batch_rows)}; found {', '.join(fields)}. Correct give()."
             )
         place = self.rows - self.written
         for key, array in fields.items():
-            into = self.held[key]
+            into = self.batch_rows[key]
             if array.shape != into.shape[1:]:
                 raise PortError(
                     f"recording of {self.name}: {key} must keep its shape {into.shape[1:]}; found "
                     f"{array.shape}. The number of items of a port must not change."
                 )
             into[place] = array
-        for held, mark in zip(self.held_marks.values(), instant, strict=True):
-            held[place] = mark
+        for marks, mark in zip(self.batch_marks.values(), instant, strict=True):
+            marks[place] = mark
         self.rows += 1
         # Whole batches begin at multiples of a chunk, so that no chunk is packed twice.
         if self.rows % self.batch == 0:
@@ -161,22 +161,22 @@ class _Track:
         self.batch = _rows_within(BATCH_BYTES, row)
         for key, dataset in self.data.items():
             dataset.resize(rows, axis=0)
-            self.held[key] = np.zeros((self.batch, *dataset.shape[1:]))
+            self.batch_rows[key] = np.zeros((self.batch, *dataset.shape[1:]))
         for key in MARKS:
             self.group[key].resize(rows, axis=0)
         self.rows = self.written = rows
 
     def write(self) -> None:
-        """Append the held rows to the file; the times last, as they say how many rows there are."""
+        """Append the collected rows; the times last, as they say how many rows there are."""
         count = self.rows - self.written
         if not count:
             return
         for key, dataset in self.data.items():
             dataset.resize(self.rows, axis=0)
-            dataset[self.written :] = self.held[key][:count]
-        for key, held in reversed(self.held_marks.items()):
+            dataset[self.written :] = self.batch_rows[key][:count]
+        for key, marks in reversed(self.batch_marks.items()):
             self.group[key].resize(self.rows, axis=0)
-            self.group[key][self.written :] = held[:count]
+            self.group[key][self.written :] = marks[:count]
         self.written = self.rows
 
     def _begin(self, fields: Fields) -> None:
@@ -191,7 +191,7 @@ class _Track:
         self.batch = _rows_within(BATCH_BYTES, sum(8 * array.size for array in fields.values()))
         for key, array in fields.items():
             rows = min(self.batch, _rows_within(CHUNK_BYTES, 8 * array.size))
-            self.held[key] = np.zeros((self.batch, *array.shape))
+            self.batch_rows[key] = np.zeros((self.batch, *array.shape))
             self.data[key] = self.group["fields"].create_dataset(
                 key,
                 (0, *array.shape),

@@ -65,7 +65,7 @@ def run(
     observer.begin(coupling, described)
     while not windows.finished and not observer.wants_end():
         advance(coupling, observer.due)
-        coupling.ledger.settle(coupling.all_late(), coupling.all_in_transit())
+        coupling.ledger.close_window(coupling.all_late(), coupling.all_in_transit())
         observer.end_window(coupling)
     if not windows.finished:
         observer.ends_early(coupling)

@@ -99,7 +99,7 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
     own = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, own, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
-    components = _components(table.get("components"), mistakes)
+    components = _components(table.get("components"), path.parent, mistakes)
     wrong = set(table.get("components") or ()) - set(components)  # told of already
     links = _links(_tables(table, "links", mistakes), components, wrong, mistakes)
     expect = _expect(_tables(table, "expect", mistakes), components, wrong, path.parent, mistakes)
@@ -174,7 +174,7 @@ def _tables(table: dict[str, Any], key: str, mistakes: list[str]) -> list[dict[s
     return []
 
 
-def _components(table: Any, mistakes: list[str]) -> dict[str, ComponentPlan]:
+def _components(table: Any, folder: Path, mistakes: list[str]) -> dict[str, ComponentPlan]:
     if not isinstance(table, dict) or not table:
         mistakes.append("components: a scene needs at least one. Add [components.NAME].")
         return {}
@@ -187,12 +187,14 @@ def _components(table: Any, mistakes: list[str]) -> dict[str, ComponentPlan]:
             )
         elif not isinstance(given, dict):
             mistakes.append(f"components.{name} must be a table; found {given!r}. Give it a kind.")
-        elif one := _component(name, dict(given), mistakes):
+        elif one := _component(name, dict(given), folder, mistakes):
             found[name] = one
     return found
 
 
-def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> ComponentPlan | None:
+def _component(
+    name: str, given: dict[str, Any], folder: Path, mistakes: list[str]
+) -> ComponentPlan | None:
     where = f"components.{name}"
     kind, threads = given.pop("kind", None), given.pop("threads", 1)
     if not isinstance(kind, str):
@@ -204,7 +206,7 @@ def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> Compone
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
         return None
-    params, wrong = read(manifest.params, given, where)
+    params, wrong = read(manifest.params, given, where, folder)
     if wrong:
         mistakes += wrong
         return None

@@ -73,7 +73,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
             status = 0
     except LineError as error:
         say(f"{given.name}: the coupler: {error}")
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         traceback.print_exc()
         line.send(failure(error), {})
     if status:
@@ -91,10 +91,10 @@ def linger(line: Line) -> None:
 
 def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     """Check the parameters, then import the solver and make the component."""
-    params, mistakes = read(manifest.params, header["params"], manifest.kind)
+    resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
+    params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
         raise QuintetError("\n".join(mistakes))
-    resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
     return make(manifest.load(), params, resources)
 
 

@@ -22,6 +22,7 @@ from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
 MOST = 1e9  # steps in a window; more would never end
+LONGEST = 1 << 16  # characters of an error's text or traceback
 PATIENCE = 3600.0  # s between two orders; the coupler's death is noticed at once
 
 
@@ -48,7 +49,7 @@ class Server:
         fields = self.inputs.fields
         # Turns about several axes do not add up: of rotations the first step alone is checked.
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
-        self.handed = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
+        self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
         self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
@@ -115,7 +116,7 @@ class Server:
             "sent": self.outputs.audit(),
             "received": received,
             "applied": applied,
-            "handed": self.handed.audit(),
+            "inputs": self.input_audit.audit(),
             "totals": self._totals() if header.get("totals") else None,
             "busy": time.perf_counter() - began,
             "cpu": time.process_time() - spent,
@@ -132,7 +133,7 @@ class Server:
         """
         component, inputs, outputs = self.component, self.inputs, self.outputs
         outputs.begin()
-        self.handed.begin()
+        self.input_audit.begin()
         applied = {key: np.zeros(rate[0].size) for key, rate in inputs.rate.items() if len(rate)}
         sums = {key: np.asarray(column_sums(inputs.rate[key])) for key in applied}
         done, steps = 0.0, 0
@@ -147,7 +148,7 @@ class Server:
             if steps == 0 or not inputs.constant:
                 taken = inputs.over(done, end, window)
                 component.take(taken)
-                self.handed.add(taken, dt)
+                self.input_audit.add(taken, dt)
             component.step(dt)
             self._stable = None
             if pieces == 1:
@@ -229,19 +230,31 @@ def peak_memory() -> int:
 def failure(error: BaseException) -> dict[str, Any]:
     """Put an error into the header that tells the coupler of it."""
     own = isinstance(error, QuintetError)
+    said = str(error)
+    if isinstance(error, SystemExit):
+        said = f"asked Python to exit, with status {error.code!r}; raise an error instead"
     return {
         "order": "failed",
         "error": type(error).__name__,
-        "text": str(error),
-        "traceback": "" if own else "".join(traceback.format_exception(error)),
+        "text": sendable(said),
+        "traceback": "" if own else sendable("".join(traceback.format_exception(error))),
     }
+
+
+def sendable(text: str) -> str:
+    """Text that a header can hold: valid UTF-8, and of a long one its beginning and its end."""
+    text = text.encode("utf-8", "backslashreplace").decode("utf-8")
+    if len(text) <= LONGEST:
+        return text
+    left_out = len(text) - LONGEST
+    return f"{text[: LONGEST // 2]} … {left_out} characters … {text[-LONGEST // 2 :]}"
 
 
 def answer(server: Server, line: Line, message: Message) -> bool:
     """Handle one order and send the answer; tell whether to go on."""
     try:
         header, fields = server.handle(message)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         if not isinstance(error, QuintetError):
             traceback.print_exc()  # into the component's log, before the coupler looks there
         line.send(failure(error), {})

@@ -144,8 +144,8 @@ class Direct:
 def _passing(transfer: Transfer) -> Callable[[Ends, Ends], Mapped]:
     names = tuple(zip(transfer.reads, transfer.fills, strict=True))
 
-    def carry(_: Ends, end: Ends) -> Mapped:
+    def maps(_: Ends, end: Ends) -> Mapped:
         given = end[transfer.giver]
         return {taken: given[key] for key, taken in names}
 
-    return carry
+    return maps

@@ -9,7 +9,7 @@ import pytest
 from quintet.coupler.coupling.exchange import Exchange
 from quintet.coupler.coupling.ledger import Account, Ledger
 from quintet.coupler.coupling.links import maker
-from quintet.coupler.coupling.motion_audit import Motion
+from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.interfaces.component import Port
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 from quintet.interfaces.serving.inputs import Inputs
@@ -47,17 +47,17 @@ def test_all_that_was_given_is_applied_or_on_its_way():
     fields = {"pushed.force": force}
     ledger.given("b", header, fields)
     ledger.given_for(back, fields)
-    ledger.settle(late, {})
+    ledger.close_window(late, {})
     assert ledger.worst == 0.0
     ledger.given("b", header, fields)
     ledger.given_for(back, fields)
     ledger.applied("a", fields, {"received": sums, "applied": sums})
-    ledger.settle(late, {})
+    ledger.close_window(late, {})
     assert ledger.worst == 0.0
     in_transit = {("a", "pushed.force"): force}
-    ledger.settle((), in_transit)
+    ledger.close_window((), in_transit)
     assert ledger.worst == 0.0
-    ledger.settle((), {})
+    ledger.close_window((), {})
     assert ledger.worst == pytest.approx(4.0 / 22.0)
 
 
@@ -66,7 +66,7 @@ def test_a_hermite_path_is_found_anew_from_its_sums():
     random, window = np.random.default_rng(1), 0.7
     inputs = Inputs([MOVED])
     handed = InputAudit(["moved.position"], {"moved.position": "moved.velocity"})
-    motion = Motion(_exchange())
+    motion = MotionAudit(_exchange())
     for number in range(4):
         fields = {f"moved.{key}": random.normal(size=(5, 3)) for key in ("position", "velocity")}
         ends = list(fields) if number else []

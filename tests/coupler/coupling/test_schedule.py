@@ -87,7 +87,7 @@ class _Stub:
 
     def finish(self):
         header = {"sent": {}, "received": {}, "applied": {}}
-        header["handed"] = {"first": {}, "moved": {}, "span": 1.0}
+        header["inputs"] = {"first": {}, "moved": {}, "span": 1.0}
         message = Message(header, {"out.value": np.array([self.answers[self.window]])})
         self.window += 1
         return message
