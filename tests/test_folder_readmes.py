@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from quintet.coupler import cli
+from quintet.coupler.conform.check import try_all
+from quintet.coupler.conform.trial import Trial
 from quintet.coupler.coupling.exchange import Binding, Demands, Transfer
 from quintet.coupler.coupling.iteration_settings import IterationSettings
 from quintet.coupler.measures.expectation import Expectation
@@ -21,7 +23,7 @@ from quintet.coupler.scene.scene import GroupSettings, OutputSettings, SceneFile
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.scene.study_table import RefinementTable
 from quintet.interfaces.component import Component, Field, Port, Resources
-from quintet.interfaces.manifest import BenchCase, Manifest, Plan, find
+from quintet.interfaces.manifest import BenchCase, ConformCase, Manifest, Plan, find
 from quintet.interfaces.params import read
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -99,7 +101,7 @@ def test_examples_of_scenes_can_be_read(path):
         tomllib.loads(block)
 
 
-CONTRACT = [Field, Port, Resources, Manifest, Plan, BenchCase]
+CONTRACT = [Field, Port, Resources, Manifest, Plan, BenchCase, ConformCase]
 SCENE = [SceneFile, OutputSettings, GroupSettings, IterationSettings, Expectation]
 SCENE += [RefinementTable, LimitTable]
 TOLD = {
@@ -159,6 +161,9 @@ def test_the_example_of_a_solver_is_installed_measured_and_runs(installed):
     manifest = find("mooring")
     (case,) = manifest.cases()
     assert not read(manifest.params, case.params, case.name)[1]
+    (case,) = manifest.conform_cases()
+    findings = [one for _, one in try_all(Trial(manifest, case, folder)) if one is not None]
+    assert [one.said for one in findings if one.status == "failed"] == []
     assert run_scene(load(str(folder / "scene.toml")), folder / "run") == 0
     assert results(folder / "run")["ledger"]["links"][0]["momentum_residual"] < 1e-13
 
