@@ -134,6 +134,18 @@ CASES = {
         scale={"surface.velocity": 1.0},
         dt=1e-4,
     ),
+    "sph_fluid, two dimensions": Case(
+        "sph_fluid",
+        {**DROP, "dimensions": 2, "fluid": [[[0.0, 0.0, 0.0], [0.2, 1.0, 0.2]]]},
+        static={
+            "surface.normal": np.tile([0.0, 0.0, 1.0], (2, 1)),
+            "surface.volume": np.full(2, 2.5e-3),
+            "surface.body": np.zeros(2),
+        },
+        rest={"surface.position": BESIDE, "surface.velocity": TWO},
+        scale={"surface.velocity": 1.0},
+        dt=1e-4,
+    ),
     "dem_bodies, spheres": Case(
         "dem_bodies",
         {**BOXES, "bodies": [{**BALL, "position": [1.0, 2.0, z]} for z in (3.0, 3.15)]},
