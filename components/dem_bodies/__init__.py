@@ -75,4 +75,5 @@ MANIFEST = Manifest(
     ports=ports,
     plan=_plan,
     bench="quintet.components.dem_bodies.bench:cases",
+    conform="quintet.components.dem_bodies.conform:cases",
 )

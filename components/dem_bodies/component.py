@@ -220,12 +220,12 @@ class DemBodies(Component):
             mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
             found = {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
         if wanted.isdisjoint(MOTION):
-            return found
+            return {key: found[key] for key in wanted}
         # One piece of memory, for pieces of their own are fetched from the system at every call.
         parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
         motion = dict(zip(MOTION, (part.reshape(n, -1) for part in parts), strict=True))
         kernels.copy_motion(s, *motion.values())
-        return found | motion
+        return {key: array for key, array in (found | motion).items() if key in wanted}
 
     def contact_points(self) -> Fields:
         """List what touched in the last step, of bodies with `contact_forces`.
