@@ -125,7 +125,7 @@ def bodies_of_pairs(pairs: BallPairs, body: Whole) -> tuple[Whole, Whole]:
 
 def transfer_history(old: BallPairs, old_body: Whole, new: BallPairs, body: Whole) -> None:
     """Take over the history of the pairs that touch."""
-    touching = np.flatnonzero(old.history[:, 3])
+    touching = np.flatnonzero(old.history[3])
     first, second = (end[touching] for end in bodies_of_pairs(old, old_body))
     key = np.minimum(first, second) << 32 | np.maximum(first, second)
     order = np.argsort(key)
@@ -136,10 +136,10 @@ def transfer_history(old: BallPairs, old_body: Whole, new: BallPairs, body: Whol
     known = np.flatnonzero(place < len(key))
     known = known[key[place[known]] == wanted[known]]
     source = place[known]
-    new.history[known] = old.history[touching[source]]
+    new.history[:, known] = old.history[:, touching[source]]
     # The force is that on the pair's first body, which may have become its second.
     swapped = known[first[source] != new_first[known]]
-    new.history[swapped, :3] *= -1.0
+    new.history[:3, swapped] *= -1.0
     if new.rolling_moment is not None and old.rolling_moment is not None:
         new.rolling_moment[known] = old.rolling_moment[touching[source]]
         new.rolling_moment[swapped] *= -1.0
@@ -162,7 +162,7 @@ def ball_pairs(model: Model, begin: Whole, partner: Short, asked: bool) -> BallP
         partner=partner,
         constants_row=constants_row.astype(np.uint32),
         constants=constants_of_pairs(model, row, partner, some),
-        history=np.zeros((pairs, 4)),
+        history=np.zeros((4, pairs)),
         rolling_moment=np.zeros((pairs, 3)) if rolls else None,
         force=np.zeros((pairs if rolls or asked else 0, 3)),
         outgoing=np.zeros((len(towards), 6)),
@@ -211,14 +211,14 @@ def list_ball_pairs(
 
 def touching_balls(model: Model, state: State, pairs: BallPairs) -> Touching:
     """List the pairs that touched in the last step."""
-    some, ground = np.flatnonzero(pairs.history[:, 3]), len(state.body) - 1
+    some, ground = np.flatnonzero(pairs.history[3]), len(state.body) - 1
     row, partner = pairs.row[some], pairs.partner[some].astype(np.int64)
     on_ground = partner > ground
     x, other = state.motion[row], state.motion[np.minimum(partner, ground)]
     r_ij = x[:, :3] - other[:, :3]
     normal = r_ij / np.maximum(np.linalg.norm(r_ij, axis=1, keepdims=True), 1e-300)
     normal[on_ground] = model.plane[partner[on_ground] - ground - 1, :3]
-    depth = pairs.history[some, 3] ** -2
+    depth = pairs.history[3, some] ** -2
     bodies = state.body[np.column_stack([row, np.minimum(partner, ground)])]
     point = x[:, :3] - (x[:, RADIUS] - 0.5 * depth)[:, None] * normal
     return Touching(bodies, point, normal, pairs.force[some], depth)
@@ -226,7 +226,7 @@ def touching_balls(model: Model, state: State, pairs: BallPairs) -> Touching:
 
 def deepest_pair(state: State, pairs: BallPairs) -> tuple[int, int]:
     """Find the bodies of the pair that is deepest for its radius; a plane is beyond all bodies."""
-    radius, inverse_root = state.motion[:, RADIUS], pairs.history[:, 3]
+    radius, inverse_root = state.motion[:, RADIUS], pairs.history[3]
     other = radius[np.minimum(pairs.partner, len(radius) - 1)]  # the ground has none
     low = np.minimum(radius[pairs.row], np.where(other > 0.0, other, np.inf))
     k = int(np.argmin(np.where(inverse_root > 0.0, inverse_root * np.sqrt(low), np.inf)))
