@@ -79,12 +79,22 @@ def parser() -> argparse.ArgumentParser:
         "--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given"
     )
     one.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
+    one = command("conform", conform, "try the laws of the contract on a kind of component")
+    one.add_argument("kind", nargs="?", default="", help="an installed kind, or module:Class")
+    one.add_argument("--case", default="", help="one of the kind's cases; all if not given")
+    one.add_argument("--params", type=Path, metavar="FILE", help=PARAMS)
+    one.add_argument("--scene", default="", help="a scene with such a component, in place of cases")
+    one.add_argument("--component", default="", metavar="NAME", help="its name in the scene")
+    one.add_argument("--preset", default="", help="a preset of the scene")
+    one.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", dest="settings")
+    one.add_argument("--json", type=Path, metavar="FILE", help="what was found, for programs")
     return top
 
 
 KEEP = "keep runs that an earlier study completed in DIR, of the same scene on the same machine"
 RESUME = "go on with an interrupted or failed run, from its last snapshot"
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
+PARAMS = "its parameters in TOML, in place of cases; a table conform in it has what it takes"
 ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
 
 
@@ -249,6 +259,14 @@ def bench(given: argparse.Namespace) -> int:
     from quintet.coupler.bench.throughput import run_kind
 
     return run_kind(given)
+
+
+def conform(given: argparse.Namespace) -> int:
+    """Try the laws of the contract on a component."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.conform.command import run_conform
+
+    return run_conform(given)
 
 
 if __name__ == "__main__":

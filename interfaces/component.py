@@ -173,8 +173,8 @@ class Component(ABC):
         Parameters
         ----------
         wanted : set of str
-            Keys that somebody reads; others need not be computed. Asked for impulses after
-            every step, for instants at the window's end.
+            Keys that somebody reads; just these are given. Asked for impulses after every
+            step, for instants at the window's end.
         """
 
     @abstractmethod

@@ -42,6 +42,14 @@ MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,
 CONTACT = Field("contact", (), "1")
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 
+# Said by solvers in two dimensions: 2. All that they hold lies in the plane of x and z and is 1 m
+# deep along y, so that a body's volume is its area times 1 m. Positions keep three numbers; a
+# surface is sampled by one row of points in the plane, each standing for 1 m of depth, and forces
+# and torques are those on 1 m. Solvers that do not say it have three dimensions.
+DIMENSIONS = Field("dimensions", (), "1")
+
+# Shapes of rigid bodies: OTHER ones cannot be sampled; discs and polygons are of two dimensions.
+SPHERE, BOX, OTHER, DISC, POLYGON = range(5)
 # Rigid bodies: given by whatever moves them, loaded by a force and a torque about the centre.
 MOTION = Port(
     "motion",
@@ -52,9 +60,21 @@ MOTION = Port(
         ANGULAR_VELOCITY,
     ),
     static=(
-        Field("shape", (), "1"),  # 0 sphere, 1 box
-        Field("size", (3,), "m"),  # edges of a box; diameter of a sphere, three times
+        Field("shape", (), "1"),  # one of the above
+        Field("size", (3,), "m"),  # edges of a box; diameter of a sphere, three times; see below
         Field("mass", (), "kg"),
+    ),
+)
+# The same of bodies in two dimensions. Their size is how far they reach along x and z, and 1 m
+# along y. Polygons are convex; their corners, from the centre in the body's frame, stand one body
+# after another, each going round from x to z.
+PLANAR_MOTION = replace(
+    MOTION,
+    static=(
+        *MOTION.static,
+        DIMENSIONS,
+        Field("corners", (), "1"),  # how many corners each body has; a disc 0
+        Field("corner", (3,), "m"),  # (corners of all bodies, 3)
     ),
 )
 LOAD = Port("load", fields=(FORCE, TORQUE))

@@ -1,6 +1,7 @@
 """Units of the fields that may cross a link: SI, one spelling each; others can be added."""
 
 import re
+from collections import Counter
 
 from quintet.interfaces.errors import PortError
 
@@ -13,6 +14,15 @@ UNITS = {
 # What an impulse field carries over a link: its integral over the window.
 INTEGRATED = {"N": "N s", "N m": "N m s", "W": "J", "m/s": "m", "rad/s": "rad", "kg/s": "kg"}
 
+# Derived units in base ones; rad is none.
+DERIVED = {
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "Pa": {"kg": 1, "m": -1, "s": -2},
+    "J": {"kg": 1, "m": 2, "s": -2},
+    "W": {"kg": 1, "m": 2, "s": -3},
+    "rad": {},
+}
+PART = re.compile(r"([A-Za-z]+)(\d*)|[/()]")
 SPELLING = re.compile(r"[A-Za-z0-9][A-Za-z0-9 /()]{0,23}")
 
 
@@ -53,3 +63,20 @@ def check_unit(unit: str, where: str, centring: str) -> None:
             f"{where}: an impulse field must be in {', '.join(sorted(INTEGRATED))}; "
             f"found {unit!r}. Give its rate, or make it an instant field."
         )
+
+
+def dimensions(unit: str) -> dict[str, int]:
+    """Powers of the base units in a unit: ``{"kg": 1, "s": -3}`` of ``W/m2``."""
+    found: Counter[str] = Counter()
+    bracket, sign = 1, 1
+    for part in PART.finditer(unit):
+        symbol, power = part[1], int(part[2] or 1)
+        if symbol:
+            for base, times in DERIVED.get(symbol, {symbol: 1}).items():
+                found[base] += bracket * sign * power * times
+        if part[0] == "/":
+            sign = -1
+        else:  # a stroke divides by what follows next, a symbol or a bracket
+            bracket = sign if part[0] == "(" else 1 if part[0] == ")" else bracket
+            sign = 1
+    return {base: power for base, power in found.items() if power}

@@ -18,6 +18,12 @@ small spheres, whose bumps would add to the friction.
 An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
 cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.
 
+In two dimensions bodies are discs and convex polygons in the plane of x and z, prisms of 1 m along
+y, and move in it: nothing here pushes them out of it, and what loads would is left out. A disc has
+the contacts of a sphere of its radius, a polygon those of its rounded corners with the edges of
+others; so contacts are softer than those of a cylinder along 1 m, but restitution, friction and
+momentum are those of the prisms.
+
 Two materials in contact have the lower of their frictions, restitutions and rolling coefficients;
 `pairs` in a scene overrides each of them for two materials, or for one and itself. Rolling
 resistance is that of `contact/rolling_resistance.py`, between spheres, and spheres and planes.
@@ -69,4 +75,5 @@ MANIFEST = Manifest(
     ports=ports,
     plan=_plan,
     bench="quintet.components.dem_bodies.bench:cases",
+    conform="quintet.components.dem_bodies.conform:cases",
 )

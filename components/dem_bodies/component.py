@@ -16,6 +16,7 @@ from quintet.components.dem_bodies.integration.step_limit import (
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import ports
+from quintet.components.dem_bodies.shapes import planar
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -27,10 +28,14 @@ from quintet.interfaces.component import (
     Totals,
 )
 from quintet.interfaces.errors import StepError
+from quintet.interfaces.ports import BOX, DISC, OTHER, POLYGON, SPHERE
 
 DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
-# As ports.MOTION gives them; 2 is our own.
-SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
+SHAPES = {
+    "sphere": SPHERE, "box": BOX, "spheres": OTHER, "agglomerate": OTHER,
+    "disc": DISC, "polygon": POLYGON,
+}  # fmt: skip
+LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 FEWEST = 8  # blocks of rows that are worth handing to another thread
 SHARED = (kernels.DRIFT, kernels.BALLS, kernels.KICK)  # stages of a step that threads share out
 # Of the port, in the order that kernels.copy_motion takes.
@@ -83,12 +88,16 @@ class DemBodies(Component):
         self._move(0.0)
 
     def describe(self) -> Fields:
-        """State shapes, sizes, masses; all unions of spheres are shape 2 with the box around."""
-        return {
-            "motion.shape": np.array([SHAPES[body.shape] for body in self.params.bodies]),
+        """State shapes, sizes, masses, corners; unions of spheres have the box around them."""
+        bodies = self.params.bodies
+        stated: dict[str, Array] = {
+            "motion.shape": np.array([float(SHAPES[body.shape]) for body in bodies]),
             "motion.size": np.array([one.size for one in self.solids]),
             "motion.mass": self.mass.copy(),
         }
+        if self.params.dimensions == 2:
+            stated |= planar.describe(bodies)
+        return stated
 
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
@@ -126,6 +135,8 @@ class DemBodies(Component):
         load, row = self.state.load, self.state.row[: self.count]
         load[row, :3] = 0.0 if force is None else force
         load[row, 3:] = 0.0 if torque is None else torque
+        if self.params.dimensions == 2:
+            load[:, LEAVE_PLANE] = 0.0
         self.loaded = bool(load.any())
 
     def step(self, dt: float) -> None:
@@ -209,12 +220,12 @@ class DemBodies(Component):
             mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
             found = {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
         if wanted.isdisjoint(MOTION):
-            return found
+            return {key: found[key] for key in wanted}
         # One piece of memory, for pieces of their own are fetched from the system at every call.
         parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
         motion = dict(zip(MOTION, (part.reshape(n, -1) for part in parts), strict=True))
         kernels.copy_motion(s, *motion.values())
-        return found | motion
+        return {key: array for key, array in (found | motion).items() if key in wanted}
 
     def contact_points(self) -> Fields:
         """List what touched in the last step, of bodies with `contact_forces`.
@@ -299,6 +310,9 @@ class DemBodies(Component):
             if body.size is not None:
                 corners = build.CORNERS * 0.5 * np.array(body.size)
                 faces.append(build.FACES + len(owners))
+            elif body.corners is not None:
+                corners = planar.in_space(planar.corners(body))
+                faces.append(planar.triangles(len(corners)) + len(owners))
             axes = self.state.axes[a].reshape(3, 3)
             points.append(self.state.position[a] + corners @ axes.T)
             owners += [k] * len(corners)

@@ -16,7 +16,7 @@ Numbers = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Short = NDArray[np.uint32]
 
-# Kinds of contact: of a sphere with a plane, a sphere or a box; of two edges.
+# Kinds of contact: of a sphere with a plane, a sphere, a box or polygon; of two edges.
 SPHERE_PLANE, SPHERE_SPHERE, SPHERE_BOX, EDGE_EDGE = range(4)
 KIND, FIRST = 60, 30  # bits of a pair's key: kind, first, second; sorted keys keep kinds together
 
@@ -31,7 +31,8 @@ class Model(NamedTuple):
     ball: NDArray[np.bool_]  # (n,) whether the body is one sphere
     others: Whole  # (o,) rows of the bodies that are no balls
     half_extent: Numbers  # (n, 3) m, half edges of a box less its edge radius; 0 for others
-    edge_radius: Numbers  # (n,) m, of a box; 0 for others
+    edge_radius: Numbers  # (n,) m, of a box or polygon; 0 for others
+    polygon: NDArray[np.bool_]  # (n,) whether the body is a polygon, whose spheres are its corners
     bounding_radius: Numbers  # (m,) m, radius of a sphere about the centre that holds the body
     material: Whole  # (n,) number of the material
     kind: Whole  # (n,) number that bodies of one radius, mass and material share

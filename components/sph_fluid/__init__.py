@@ -93,4 +93,5 @@ MANIFEST = Manifest(
     ports=_ports,
     plan=_plan,
     bench="quintet.components.sph_fluid.bench:cases",
+    conform="quintet.components.sph_fluid.conform:cases",
 )

@@ -83,7 +83,8 @@ class SphFluid(Component):
                 press(self.fluid, self.state.place, self.state.motion)
             self.rows = self.state.sample_rows()
             self.placed = False
-            self.body, self.volume = static["surface.body"], static["surface.volume"]
+            self.body = np.array(static["surface.body"])
+            self.volume = np.array(static["surface.volume"])
             self.state.film = np.zeros((count if self.params.boundary.lubrication_films else 0, 3))
             self.held = chosen(static, self.params)
             if len(self.held):
@@ -268,8 +269,10 @@ class SphFluid(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
-        given = {} if wanted <= LOADS else self._read_gauges()
-        return {**given, "surface_load.force": self.state.force.copy()}
+        given = {} if wanted <= LOADS else dict(self._read_gauges())
+        if wanted & LOADS:
+            given["surface_load.force"] = self.state.force.copy()
+        return {key: given[key] for key in wanted}
 
     def _read_gauges(self) -> Fields:
         from quintet.components.sph_fluid.gauges import Gauges

@@ -50,7 +50,7 @@ class Echo(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Return what came last."""
-        return {"returned.value": self.value.copy()}
+        return {key: self.value.copy() for key in wanted}
 
     def save(self) -> Fields:
         """Copy out the last value and the count."""

@@ -32,7 +32,8 @@ class Prescribed(Component):
 
     def describe(self) -> Fields:
         """State shapes, sizes and masses."""
-        return {"motion.shape": self.shape, "motion.size": self.size, "motion.mass": self.mass}
+        told = {"shape": self.shape, "size": self.size, "mass": self.mass}
+        return {f"motion.{name}": array.copy() for name, array in told.items()}
 
     def stable_dt(self) -> float:
         """Allow any step: the path is known."""
@@ -54,13 +55,14 @@ class Prescribed(Component):
         moved = self.velocity * self.time + self.amplitude * np.sin(phase)
         rate = self.velocity + self.amplitude * self.angular_frequency * np.cos(phase)
         loads = {key: value.copy() for key, value in self.loads.items()} if self.takes else {}
-        return {
+        given = {
             **loads,
             "motion.position": self.origin + moved,
             "motion.velocity": rate,
             "motion.orientation": steady_rotation(self.angular_velocity, self.time),
             "motion.angular_velocity": self.angular_velocity.copy(),
         }
+        return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out the time and the loads."""

@@ -31,7 +31,7 @@ class Replay(Component):
 
     def describe(self) -> Fields:
         """Give what was described then."""
-        return dict(self.static)
+        return {key: array.copy() for key, array in self.static.items()}
 
     def stable_dt(self) -> float:
         """Return what the recorded component allowed then."""

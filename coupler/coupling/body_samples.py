@@ -7,8 +7,8 @@ import numpy as np
 
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import LinkError
+from quintet.interfaces.ports import BOX, SPHERE
 
-SPHERE, BOX = 0, 1  # codes of a body's shape, as ports.MOTION gives them
 # Shares of the cubes in a shell that its samples are, tried one after the other; 1 first.
 SHELL_FACTORS = (1.0, *(1.0 + sign * 0.005 * k for k in range(1, 17) for sign in (1, -1)))
 
@@ -40,15 +40,22 @@ def fill(
         )
     if inset is not None:
         size = size - 2.0 * (inset - 0.5 * spacing)
-    return _box(size, spacing, depth) if shape == BOX else _sphere(size, spacing, depth)
+    return box_lattice(size, spacing, depth) if shape == BOX else _sphere(size, spacing, depth)
 
 
-def _box(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array]:
+def box_lattice(
+    size: Array, spacing: float, depth: float, planar: bool = False
+) -> tuple[Array, Array, Array]:
+    """Arms, normals and volumes on a lattice whose cells divide a box; `planar`: one along y."""
     cells = np.maximum(1, np.rint(size / spacing)).astype(int)
+    if planar:
+        cells[1] = 1
     step = size / cells
     axes = [(np.arange(n) - 0.5 * (n - 1)) * s for n, s in zip(cells, step, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     below = 0.5 * size - np.abs(points)  # distance to the faces of each axis
+    if planar:
+        below[:, 1] = np.inf
     near = below.min(axis=1)
     keep = near < depth
     # On edges and corners the normal points between the faces, as a mirror there needs it.

@@ -179,6 +179,11 @@ class WindowInputs:
     def add(self, other: "WindowInputs") -> None:
         """Add inputs that come from elsewhere: rows that one side does not have are zero there."""
         for key, array in other.fields.items():
+            if key in self.fields and (key in self.ends) != (key in other.ends):
+                raise LinkError(
+                    f"{key}: what comes from within a group and from beyond it must hold at the "
+                    "same time. Change the order, or use the same kind of scheme for both."
+                )
             self.fields[key] = self.fields[key] + array if key in self.fields else array
         self.ends += [key for key in other.ends if key not in self.ends]
         self.mixed += other.mixed

@@ -13,7 +13,7 @@ import numpy as np
 
 from quintet.coupler.coupling.exchange import Exchange
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.serving.inputs import value_at
+from quintet.interfaces.serving.inputs import KnownEnds, value_at
 from quintet.interfaces.sums import column_sums, size
 
 
@@ -176,8 +176,8 @@ class MotionAudit:
         """Quaternions (n, 4) of a rotation at a time [s] of the window."""
         turn, rate = self._turns[name][key], self._turns[name].get(self._fields[name][key])
         known = (rate.start, rate.end) if rate else (None, None)
-        ends = (turn.start, known[0], turn.end, known[1])
-        return value_at("rotation", *ends, time, self._window[name])
+        ends = KnownEnds(turn.start, known[0], turn.end, known[1])
+        return value_at("rotation", ends, time, self._window[name])
 
 
 def _turn(start: Array, end: Array | None) -> Turn:

@@ -22,7 +22,7 @@ from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.coupling.windows import BLIND, Windows, auto_length
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.lines.message import Message
-from quintet.interfaces.serving.inputs import value_at
+from quintet.interfaces.serving.inputs import KnownEnds, value_at
 
 # What components take from those that step after them: by the taker's name and the field's.
 Guess = dict[tuple[str, str], Array]
@@ -191,7 +191,7 @@ class Coupling:
         for key in keys:
             one = self.exchange.output(name, key)
             rate = known.get(f"{key.partition('.')[0]}.{one.rate}") if one.rate else None
-            found[key] = value_at(one.kind, known[key], rate, None, None, dt, dt)
+            found[key] = value_at(one.kind, KnownEnds(known[key], rate), dt, dt)
         return found
 
     def _relax(self, delivery: Delivery, window: Window) -> None:

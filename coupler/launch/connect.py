@@ -66,7 +66,7 @@ class InMemory:
         for name, one in scene.components.items():
             try:
                 component = build(one.manifest, settings(scene, name))
-            except Exception as error:
+            except (Exception, SystemExit) as error:
                 trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
                 raise ComponentFailed(name, 0, str(error), trace) from error
             line = MemoryLine(run, name)

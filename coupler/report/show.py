@@ -175,7 +175,9 @@ def _shares(found: Mapping[str, Any]) -> str:
     text = "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in times.items()) if times else ""
     text += f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else ""
     again = found.get("repetitions")
-    return text + (f"; windows repeated {again} times" if again else "")
+    text += f"; windows repeated {again} times" if again else ""
+    lacking = found.get("unconverged")
+    return text + (f"; {lacking} windows did not converge" if lacking else "")
 
 
 def _fault(fault: Mapping[str, Any]) -> Text:

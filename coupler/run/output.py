@@ -73,7 +73,7 @@ class OutputWriter:
         path = self.folder / NAME
         if self.first is not None:
             return Recorder.resume(path, self.first + 1)
-        text = (self.folder / "scene.toml").read_text()
+        text = (self.folder / "scene.toml").read_text(encoding="utf-8")
         made = Recorder(path, self.folder.name, text, self._windows.tick)
         for name, one in self.scene.components.items():
             ports = only_fields(one.gives, coupling.outputs[name])

@@ -8,12 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import tomli_w
+
 from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs
-from quintet.coupler.files.toml_writer import dumps
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.run import results, snapshots
@@ -89,7 +90,7 @@ def make_folder(scene: Scene, folder: Path) -> None:
         *snapshots.snapshots(folder),
     ]:
         path.unlink(missing_ok=True)
-    (folder / "scene.toml").write_text(dumps(scene.resolved))
+    (folder / "scene.toml").write_text(tomli_w.dumps(scene.resolved), encoding="utf-8")
 
 
 def outcome_of(end: RunEnd) -> dict[str, Any]:

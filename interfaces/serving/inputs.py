@@ -11,12 +11,22 @@ lead to the end, the one nearest to the mean angular velocity times the window.
 """
 
 from collections.abc import Collection, Iterable
+from typing import NamedTuple
 
 import numpy as np
 
 from quintet.interfaces import rotation
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import PortError
+
+
+class KnownEnds(NamedTuple):
+    """An instant and its rate at the beginning of a window, and at its end where it is known."""
+
+    first: Array
+    first_rate: Array | None = None
+    last: Array | None = None
+    last_rate: Array | None = None
 
 
 class Inputs:
@@ -82,19 +92,19 @@ class Inputs:
         return np.asarray(rotation.vector_between(*ends, near) / (end - begin))
 
     def _at(self, key: str, time: float, window: float) -> Array:
-        return value_at(self.fields[key].kind, *self._ends(key), time, window)
+        return value_at(self.fields[key].kind, self._ends(key), time, window)
 
     def value(self, key: str, time: float, window: float) -> Array:
         """Value of an instant at a time [s] of the window."""
         return self._at(key, time, window)
 
     def _turn(self, key: str, time: float, window: float) -> Array:
-        return turn_at(*self._ends(key), time, window)
+        return turn_at(self._ends(key), time, window)
 
-    def _ends(self, key: str) -> tuple[Array, Array | None, Array | None, Array | None]:
-        """Value and rate at the beginning, value and rate at the end, where they are known."""
+    def _ends(self, key: str) -> KnownEnds:
         rate = self.rates.get(key, "")
-        return self.start[key], self.start.get(rate), self.end.get(key), self.end.get(rate)
+        ends = self.start.get(rate), self.end.get(key), self.end.get(rate)
+        return KnownEnds(self.start[key], *ends)
 
     def save(self) -> dict[str, Array]:
         """What must come back with a component's state."""
@@ -111,22 +121,15 @@ class Inputs:
         self.start, self.end, self.rate = parts["start"], parts["end"], parts["rate"]
 
 
-def value_at(
-    kind: str,
-    first: Array,
-    first_rate: Array | None,
-    last: Array | None,
-    last_rate: Array | None,
-    time: float,
-    window: float,
-) -> Array:
+def value_at(kind: str, ends: KnownEnds, time: float, window: float) -> Array:
     """Value of an instant at a time [s] of a window, from what is known at its two ends."""
+    first, first_rate, last, last_rate = ends
     if kind == "flag" and time < window:
         return first.view()
     if kind == "rotation":
         if time in (0.0, window) and (last is not None or time == 0.0):
             return (first if time == 0.0 or last is None else last).view()
-        turn = turn_at(first, first_rate, last, last_rate, time, window)
+        turn = turn_at(ends, time, window)
         return rotation.product(rotation.exponential(turn), first)
     if last is None:
         return first + time * first_rate if first_rate is not None else first.view()
@@ -141,15 +144,9 @@ def value_at(
     return straight
 
 
-def turn_at(
-    first: Array,
-    first_rate: Array | None,
-    last: Array | None,
-    last_rate: Array | None,
-    time: float,
-    window: float,
-) -> Array:
+def turn_at(ends: KnownEnds, time: float, window: float) -> Array:
     """Rotation vector (n, 3) that leads from a quaternion to where it is at a time [s]."""
+    first, first_rate, last, last_rate = ends
     if last is None:
         return np.zeros((len(first), 3)) if first_rate is None else time * first_rate
     s = time / window

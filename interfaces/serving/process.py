@@ -73,7 +73,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
             status = 0
     except LineError as error:
         say(f"{given.name}: the coupler: {error}")
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         traceback.print_exc()
         line.send(failure(error), {})
     if status:

@@ -22,6 +22,7 @@ from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
 MOST = 1e9  # steps in a window; more would never end
+LONGEST = 1 << 16  # characters of an error's text or traceback
 PATIENCE = 3600.0  # s between two orders; the coupler's death is noticed at once
 
 
@@ -229,19 +230,31 @@ def peak_memory() -> int:
 def failure(error: BaseException) -> dict[str, Any]:
     """Put an error into the header that tells the coupler of it."""
     own = isinstance(error, QuintetError)
+    said = str(error)
+    if isinstance(error, SystemExit):
+        said = f"asked Python to exit, with status {error.code!r}; raise an error instead"
     return {
         "order": "failed",
         "error": type(error).__name__,
-        "text": str(error),
-        "traceback": "" if own else "".join(traceback.format_exception(error)),
+        "text": sendable(said),
+        "traceback": "" if own else sendable("".join(traceback.format_exception(error))),
     }
+
+
+def sendable(text: str) -> str:
+    """Text that a header can hold: valid UTF-8, and of a long one its beginning and its end."""
+    text = text.encode("utf-8", "backslashreplace").decode("utf-8")
+    if len(text) <= LONGEST:
+        return text
+    left_out = len(text) - LONGEST
+    return f"{text[: LONGEST // 2]} … {left_out} characters … {text[-LONGEST // 2 :]}"
 
 
 def answer(server: Server, line: Line, message: Message) -> bool:
     """Handle one order and send the answer; tell whether to go on."""
     try:
         header, fields = server.handle(message)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         if not isinstance(error, QuintetError):
             traceback.print_exc()  # into the component's log, before the coupler looks there
         line.send(failure(error), {})

@@ -7,15 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli_w
 
 from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Account, Ledger
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows
-from quintet.coupler.files.toml_writer import dumps
 from quintet.coupler.launch.connect import connect
 from quintet.coupler.run.loop import run
+from quintet.coupler.scene.overrides import plain
 from quintet.coupler.scene.read import load
 from quintet.interfaces.component import Array, Component, Fields
 
@@ -86,7 +87,8 @@ def scene(folder: Path, components: dict[str, Any], link: Any, **settings: Any) 
     links = link if isinstance(link, list) else [link]
     table = {"name": "toy", "transport": "memory", **settings}
     path = folder / "scene.toml"
-    path.write_text(dumps({**table, "components": components, "links": links}))
+    made = plain({**table, "components": components, "links": links})
+    path.write_text(tomli_w.dumps(made))
     return path
 
 

@@ -100,3 +100,18 @@ def test_what_an_iteration_lacks_is_applied_in_the_next_window(tmp_path):
     middle = 0.5 * (place[1:] + place[:-1])
     wall = -STIFFNESS * loose.coupling.last_dt * middle.sum()
     assert spring[0] + owed[0] == pytest.approx(wall, rel=2e-3)
+
+
+def test_at_the_limit_of_repetitions_a_run_may_go_on_and_counts_the_windows(tmp_path):
+    iteration = {"limit": 2, "at_limit": "continue", "acceleration": "constant"}
+    trace = _run(tmp_path, 0.01, 0.5, "iterated", iteration=iteration)
+    assert trace.coupling.costs.unconverged > 0.9 * (len(trace.outputs) - 1)
+    assert trace.account.momentum_residual <= 1e-12  # what lacked was applied a window later
+
+
+def test_an_absolute_tolerance_is_met_sooner(tmp_path):
+    tight = _run(tmp_path, 0.01, 2.0, "iterated")
+    wide = {"absolute": {"swing.lump.force": 0.5}}
+    loose = _run(tmp_path, 0.01, 2.0, "iterated", iteration=wide)
+    assert loose.coupling.costs.repetitions < 0.8 * tight.coupling.costs.repetitions
+    assert loose.account.momentum_residual <= 1e-12

@@ -51,8 +51,8 @@ class Balls(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.force = np.array(fields["load.force"])
-        self.torque = np.array(fields["load.torque"])
+        self.force = np.array(fields.get("load.force", self.force))
+        self.torque = np.array(fields.get("load.torque", self.torque))
 
     def step(self, dt: float) -> None:
         """Drift half, kick, drift half."""
@@ -62,12 +62,13 @@ class Balls(Component):
         self.x, self.q = self.x + 0.5 * dt * self.v, turn(self.q, self.spin, 0.5 * dt)
 
     def give(self, wanted: Keys) -> Fields:
-        return {
-            "motion.position": self.x.copy(),
-            "motion.velocity": self.v.copy(),
-            "motion.orientation": self.q.copy(),
-            "motion.angular_velocity": self.spin.copy(),
+        given = {
+            "motion.position": self.x,
+            "motion.velocity": self.v,
+            "motion.orientation": self.q,
+            "motion.angular_velocity": self.spin,
         }
+        return {key: given[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {
@@ -115,6 +116,8 @@ class Wind(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
+        if "body.velocity" not in fields:
+            return
         params = self.params
         self.force = params.drag * (np.array(params.velocity) - fields["body.velocity"])
         hard = 1.0 + fields["body.orientation"][:, 1:2] ** 2
@@ -125,7 +128,8 @@ class Wind(Component):
         pass
 
     def give(self, wanted: Keys) -> Fields:
-        return {"drag.force": self.force.copy(), "drag.torque": self.torque.copy()}
+        given = {"drag.force": self.force, "drag.torque": self.torque}
+        return {key: given[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {"force": self.force.copy(), "torque": self.torque.copy()}

@@ -70,13 +70,14 @@ class Column(Component):
         return {"node_glue.start": start, "node_glue.corner": corner}
 
     def bind(self, static: Fields, joined: Keys) -> None:
-        self.mass = self.mass + static["node_load.added_mass"].reshape(-1, 4).T
+        if "node_load" in joined:
+            self.mass = self.mass + static["node_load.added_mass"].reshape(-1, 4).T
 
     def stable_dt(self) -> float:
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.push = np.array(fields["node_load.force"])
+        self.push = np.array(fields.get("node_load.force", self.push))
 
     def step(self, dt: float) -> None:
         force = chain_force(self.u, self.params.stiffness) + self.push[:, 0].reshape(-1, 4).T
@@ -84,7 +85,7 @@ class Column(Component):
         self.u = self.u + dt * self.v
 
     def give(self, wanted: Keys) -> Fields:
-        return {"node_glue.velocity": self.v.T.reshape(-1, 1) * X}
+        return {key: self.v.T.reshape(-1, 1) * X for key in wanted}
 
     def save(self) -> Fields:
         return {"u": self.u.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -126,7 +127,7 @@ class Rods(Component):
     def describe(self) -> Fields:
         places = np.array(self.params.places)
         start = np.column_stack([np.full(len(places), 19.0), places])
-        return {"glued_load.position": start, "glued_load.mass": self.mass[:, 0]}
+        return {"glued_load.position": start, "glued_load.mass": self.mass[:, 0].copy()}
 
     def stable_dt(self) -> float:
         """As if the rods grew stiffer and back, and hovered about a limit."""
@@ -137,7 +138,8 @@ class Rods(Component):
         return self.params.dt * factor * swing
 
     def take(self, fields: Fields) -> None:
-        self.pulled = np.array(fields["glued.velocity"][:, 0])
+        if "glued.velocity" in fields:
+            self.pulled = np.array(fields["glued.velocity"][:, 0])
 
     def step(self, dt: float) -> None:
         force = chain_force(self.u, self.params.stiffness)
@@ -147,7 +149,7 @@ class Rods(Component):
         self.time, self.steps = self.time + dt, self.steps + 1
 
     def give(self, wanted: Keys) -> Fields:
-        return {"glued_load.force": chain_force(self.u, self.params.stiffness)[:, :1] * X}
+        return {key: chain_force(self.u, self.params.stiffness)[:, :1] * X for key in wanted}
 
     def save(self) -> Fields:
         kept = {"u": self.u.copy(), "v": self.v.copy(), "pulled": self.pulled.copy()}

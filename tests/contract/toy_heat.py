@@ -35,14 +35,14 @@ class Slab(Component):
         return np.inf
 
     def take(self, fields: Fields) -> None:
-        self.flow = np.array(fields["node_heat.heat_flow"])
+        self.flow = np.array(fields.get("node_heat.heat_flow", self.flow))
 
     def step(self, dt: float) -> None:
         self.temperature = self.params.hot + self.flow / self.params.conductance
         self.gained += dt * float(self.flow.sum())
 
     def give(self, wanted: Keys) -> Fields:
-        return {"node_temperature.temperature": self.temperature.copy()}
+        return {key: self.temperature.copy() for key in wanted}
 
     def save(self) -> Fields:
         state = {"temperature": self.temperature.copy(), "flow": self.flow.copy()}
@@ -85,7 +85,7 @@ class Wall(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.temperature = np.array(fields["wall_temperature.temperature"])
+        self.temperature = np.array(fields.get("wall_temperature.temperature", self.temperature))
 
     def step(self, dt: float) -> None:
         random = np.random.default_rng(self.steps)
@@ -94,7 +94,7 @@ class Wall(Component):
         self.steps, self.lost = self.steps + 1, self.lost + dt * float(self.flow.sum())
 
     def give(self, wanted: Keys) -> Fields:
-        return {"wall_heat.heat_flow": self.flow.copy()}
+        return {key: self.flow.copy() for key in wanted}
 
     def save(self) -> Fields:
         state = {"temperature": self.temperature.copy(), "flow": self.flow.copy()}

@@ -13,10 +13,9 @@ from quintet.components.dem_bodies.contact.ball_search import (
     sorted_balls,
 )
 from quintet.components.dem_bodies.contact.geometry import (
-    rotation_matrix,
     row_vector,
     segment_distance,
-    sphere_box,
+    sphere_body,
     sphere_plane,
 )
 from quintet.components.dem_bodies.state import (
@@ -60,12 +59,9 @@ def edge_distance(ends: Whole, centre: Numbers, e: int, f: int) -> float:
 def list_spheres_of_box(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
-    """List the spheres of body i that are near the box j."""
-    r, o = rotation_matrix(state.axes, j), row_vector(state.motion, j)
-    half, q = row_vector(model.half_extent, j), model.edge_radius[j]
+    """List the spheres of body i that are near the box or polygon j."""
     for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
-        centre, radius = row_vector(state.centre, s), model.sphere_radius[s]
-        if sphere_box(centre, radius, o, r, half, q)[0] < skin:
+        if sphere_body(model, state, s, j)[0] < skin:
             count = add_key(keys, count, SPHERE_BOX, s, j)
     return count
 

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from quintet.coupler.coupling.body_samples import fill, mirrors
 from quintet.coupler.coupling.exchange import (
     Binding,
     Demands,
@@ -26,10 +25,12 @@ from quintet.coupler.coupling.exchange import (
 )
 from quintet.coupler.coupling.links.keys import between
 from quintet.coupler.coupling.mapping import RigidMap, sample_faces
+from quintet.coupler.coupling.rigid_samples import asked_sampling, body_widths, sample_bodies
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
     CONTACT,
+    DIMENSIONS,
     FACES,
     LOAD,
     MIRRORED_SURFACE,
@@ -78,6 +79,8 @@ def join(
             raise SceneError(f"link {name}: {'; '.join(lacks)}. Correct the ports.")
         surface = next(port for port in ports[fluid][0] if port.name == SURFACE.name)
         mirrored = any(field.name == "mirror" for field in surface.fields)
+        moving = next(port for port in ports[body][1] if port.name == motion.name)
+        _same_dimensions(name, {fluid: surface, body: moving})
         contact = _contact(name, fluid, surface, potential)
         kind = RigidFsi if rigid else FaceFsi
         return kind(name, fluid, body, mirrored, contact, loaded)
@@ -87,6 +90,21 @@ def join(
         f"{_names(ports[first][0])} and gives {_names(ports[first][1])}, {second} takes "
         f"{_names(ports[second][0])} and gives {_names(ports[second][1])}. Link others."
     )
+
+
+def _same_dimensions(name: str, ports: Mapping[str, Port]) -> None:
+    """Refuse a fluid of two dimensions beside bodies of three, and the reverse."""
+    planar = [
+        one
+        for one, port in ports.items()
+        if any(field.name == DIMENSIONS.name for field in (*port.static, *port.states))
+    ]
+    if len(planar) == 1:
+        (solid,) = set(ports) - set(planar)
+        raise SceneError(
+            f"link {name}: both sides must have two dimensions or both three; {planar[0]} has two, "
+            f"{solid} has three. Set dimensions = 2 in both, or 3 in both."
+        )
 
 
 def _contact(name: str, fluid: str, surface: Port, potential: bool) -> float | None:
@@ -149,36 +167,26 @@ class RigidFsi:
 
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Sample every body at the fluid's spacing."""
-        stated = described[self.fluid]
-        spacing, depth = float(stated["surface.spacing"][0]), float(stated["surface.depth"][0])
-        inset = float(stated.get("surface.inset", [0.5 * spacing])[0])
-        shapes, sizes = described[self.body]["motion.shape"], described[self.body]["motion.size"]
-        self._check(sizes, max(spacing, 2.0 * inset))
-        pairs = zip(shapes, sizes, strict=True)
-        parts = [fill(int(shape), size, spacing, depth, inset) for shape, size in pairs]
-        owner = np.repeat(np.arange(len(parts)), [len(arm) for arm, _, _ in parts])
-        samples = RigidMap(np.concatenate([arm for arm, _, _ in parts]), owner, len(parts))
+        asked, bodies = asked_sampling(described[self.fluid]), described[self.body]
+        self._check(body_widths(bodies, asked.planar), asked.least)
+        found = sample_bodies(bodies, asked, self.mirrored)
+        samples = RigidMap(found.arm, found.body, len(bodies["motion.shape"]))
         mirror = None
-        if self.mirrored:
-            images = [
-                mirrors(int(shape), size, arm, normal)
-                for shape, size, (arm, normal, _) in zip(shapes, sizes, parts, strict=True)
-            ]
-            mirror = RigidMap(np.concatenate(images), owner, len(parts))
+        if found.image is not None:
+            mirror = RigidMap(found.image, found.body, samples.bodies)
         static = {
             self.fluid: {
-                "surface.normal": np.concatenate([normal for _, normal, _ in parts]),
-                "surface.volume": np.concatenate([volume for _, _, volume in parts]),
-                "surface.body": owner.astype(np.float64),
-                **_marks(self.contact, len(owner)),
+                "surface.normal": found.normal,
+                "surface.volume": found.volume,
+                "surface.body": found.body.astype(np.float64),
+                **_marks(self.contact, len(found.body)),
             }
         }
         count = len(self.transfers)
         maps = (partial(self._move, samples, mirror), partial(self._load, samples))
         return Binding(static, maps[:count], (None, self._moment)[:count])
 
-    def _check(self, sizes: Array, least: float) -> None:
-        widths = sizes.min(axis=1)
+    def _check(self, widths: Array, least: float) -> None:
         for body in np.flatnonzero(widths < least)[:1]:
             raise LinkError(
                 f"link {self.name}: a body must be at least {least:g} m across, a spacing of "

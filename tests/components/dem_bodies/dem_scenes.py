@@ -35,6 +35,21 @@ def box(position, size=(0.15, 0.15, 0.15), **given):
     return plain | {"position": position} | given
 
 
+def disc(position, diameter=0.2, **given):
+    plain = {"shape": "disc", "diameter": diameter, "density": 1000.0, "material": "a"}
+    return plain | {"position": position} | given
+
+
+def polygon(position, corners, **given):
+    plain = {"shape": "polygon", "corners": corners, "density": 800.0, "material": "a"}
+    return plain | {"position": position} | given
+
+
+def rectangle(position, width=0.15, height=0.15, **given):
+    x, z = 0.5 * width, 0.5 * height
+    return polygon(position, [[-x, -z], [x, -z], [x, z], [-x, z]], **given)
+
+
 def params(bodies, materials=None, **given):
     scene = {"bodies": bodies, "materials": {"a": material()} if materials is None else materials}
     found, mistakes = read(DemBodiesParams, scene | given, "bodies")

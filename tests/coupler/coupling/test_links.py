@@ -15,6 +15,8 @@ from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
     CONTACT,
+    DIMENSIONS,
+    DISC,
     FACES,
     FORCE,
     GLUED,
@@ -24,6 +26,8 @@ from quintet.interfaces.ports import (
     MOTION,
     NODE_GLUE,
     NODE_LOAD,
+    PLANAR_MOTION,
+    POLYGON,
     POSITION,
     SURFACE,
     SURFACE_LOAD,
@@ -116,6 +120,59 @@ def test_fsi_refuses_bodies_smaller_than_a_spacing(shape, surface, inset, least)
         "Refine the spacing",
     ):
         assert words in str(refused.value)
+
+
+PLANAR = {
+    **PORTS,
+    "flume": ((replace(SURFACE, states=(*SURFACE.states, DIMENSIONS)),), (SURFACE_LOAD,)),
+    "discs": ((LOAD,), (PLANAR_MOTION,)),
+}
+
+
+@pytest.mark.parametrize("pair", [("flume", "cubes"), ("water", "discs"), ("flume", "plate")])
+def test_fsi_refuses_two_dimensions_beside_three_before_anything_starts(pair):
+    with pytest.raises(SceneError, match=r"link a: both sides must have two dimensions or both"):
+        join_fsi("a", pair, PLANAR)
+    flat = next(name for name in pair if name in ("flume", "discs"))
+    with pytest.raises(SceneError, match=f"{flat} has two, .* has three. Set dimensions = 2 in"):
+        join_fsi("a", pair[::-1], PLANAR)
+
+
+FLAT = {
+    "motion.shape": np.array([DISC, POLYGON], float),
+    "motion.size": np.array([[0.4, 1.0, 0.4], [0.3, 1.0, 0.2]]),
+    "motion.mass": np.ones(2),
+    "motion.dimensions": np.array([2.0]),
+    "motion.corners": np.array([0.0, 4.0]),
+    "motion.corner": np.array(
+        [[-0.15, 0.0, -0.1], [0.15, 0.0, -0.1], [0.15, 0.0, 0.1], [-0.15, 0.0, 0.1]]
+    ),
+}
+
+
+def _asked(**more):
+    asked = {"spacing": 0.05, "depth": 1.0, "dimensions": 2.0, **more}
+    return {f"surface.{name}": np.array([value]) for name, value in asked.items()}
+
+
+def test_bodies_of_two_dimensions_are_sampled_in_one_row_for_one_metre():
+    bound = join_fsi("link", ("flume", "discs"), PLANAR).bind({"flume": _asked(), "discs": FLAT})
+    static = bound.static["flume"]
+    area = np.bincount(static["surface.body"].astype(int), static["surface.volume"])
+    np.testing.assert_allclose(area, [np.pi * 0.04, 0.06], rtol=1e-12)
+    pose = {name: np.repeat(value, 2, axis=0) for name, value in _pose(1.0, STILL).items()}
+    moved = bound.maps[0]({}, {"discs": pose})
+    assert not moved["surface.position"][:, 1].any()
+
+
+def test_what_a_fluid_says_and_what_bodies_are_must_agree():
+    link = join_fsi("link", ("flume", "discs"), PLANAR)
+    with pytest.raises(LinkError, match=r"must be 0 \(sphere\) or 1 \(box\).*found 3"):
+        link.bind({"flume": _asked(dimensions=3.0), "discs": FLAT})
+    with pytest.raises(LinkError, match=r"must be 3 \(disc\) or 4 \(polygon\).*found 1"):
+        link.bind({"flume": _asked(), "discs": SINGLE})
+    with pytest.raises(LinkError, match=r"at least 0\.25 m across.*body 1 of discs is 0\.2 m"):
+        link.bind({"flume": _asked(spacing=0.25), "discs": FLAT})
 
 
 def test_fsi_says_what_does_not_fit():
