@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from test_layers import FLOORS
 
 from quintet.coupler import cli
 from quintet.coupler.conform.check import try_all
@@ -175,6 +176,12 @@ def test_the_example_of_a_link_is_installed_and_conserves_momentum(installed):
     (link,) = results(folder / "run")["ledger"]["links"]
     assert max(link["momentum_residual"], link["angular_residual"]) < 1e-13
     assert link["energy_residual"] < 1e-6
+
+
+def test_the_floors_of_the_coupler_are_told_as_they_are():
+    table = (ROOT / "coupler/README.md").read_text().partition("A run, from")[0]
+    rows = re.findall(r"^\| \d \| (`coupler.+?) \|", table, re.MULTILINE)  # the top one first
+    assert [set(re.findall(r"`coupler/(\w+)", row)) for row in rows[::-1]] == FLOORS["coupler"]
 
 
 def test_questions_of_newcomers_are_answered_within_two_hops():
