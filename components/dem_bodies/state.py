@@ -94,7 +94,7 @@ class BallPairs(NamedTuple):
     partner: Short  # (pairs,) row of the other ball, or n + number of the plane
     constants_row: Short  # (pairs,)
     constants: Numbers  # (kinds of pairs, 7) see laws
-    history: Numbers  # (pairs, 4) elastic tangential force on the ball [N], 1/√δ; 0 if apart
+    history: Numbers  # (4, pairs) elastic tangential force on the ball [N], 1/√δ; 0 if apart
     rolling_moment: Numbers | None  # (pairs, 3) N m, elastic, on the ball; None if none resists
     force: Numbers  # (pairs, 3) N, on the ball; (0, 3) if nothing asks for it
     outgoing: Numbers  # (sent, 6) N and N m, on partners in later blocks, in the order of the pairs

@@ -169,6 +169,11 @@ def check_methods(params: "SphFluidParams") -> None:
             "boundary.lubrication_films needs boundary.method mdbc, whose samples know the "
             f"pressure at a gap's rim; found {edge.method}. Set method, or leave films out."
         )
+    if params.dimensions == 2 and edge.lubrication_films:
+        raise ValueError(
+            "boundary.lubrication_films needs three dimensions, in which water flows into a film "
+            "from its rim; found dimensions 2. Set dimensions to 3, or leave films out."
+        )
     if edge.symmetry and edge.lubrication_films:
         raise ValueError(
             "boundary.lubrication_films knows no planes of symmetry; found films and symmetry "

@@ -14,6 +14,7 @@ from quintet.components.sph_fluid.gauge_ports import gauge_ports
 from quintet.components.sph_fluid.kernels import advance, interact, press, push_samples, shift
 from quintet.components.sph_fluid.laws import AHEAD, constants
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.plane import in_plane, require_one_metre
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.components.sph_fluid.sums import failure, refuse_dense, totals, view
 from quintet.components.sph_fluid.surface import chosen, surface
@@ -27,7 +28,7 @@ from quintet.interfaces.component import (
     Resources,
     Totals,
 )
-from quintet.interfaces.errors import OrderError, PortError, StepError
+from quintet.interfaces.errors import OrderError, StepError
 from quintet.interfaces.ports import SURFACE_LOAD
 
 LOADS = frozenset({"surface_load.force"})
@@ -66,7 +67,8 @@ class SphFluid(Component):
 
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
-        return {
+        planar = {"surface.dimensions": np.array([2.0])} if self.params.dimensions == 2 else {}
+        return planar | {
             "surface.spacing": np.array([self.params.spacing]),
             "surface.depth": np.array([SUPPORT * self.fluid.smoothing.length]),
             "surface.inset": np.array([self.params.boundary.sample_depth * self.params.spacing]),
@@ -76,7 +78,7 @@ class SphFluid(Component):
         """Make room for the samples of the surfaces joined."""
         if "surface.volume" in static:
             if self.params.dimensions == 2:
-                raise PortError("surface: samples need three dimensions; this fluid has two.")
+                require_one_metre(self.params)
             count = len(static["surface.volume"])
             self.state.add_samples(count, self.params.density, self.params.mirrored)
             if self.params.boundary.method == "dbc":
@@ -105,6 +107,8 @@ class SphFluid(Component):
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
         if len(self.rows):
+            if self.params.dimensions == 2:
+                fields = in_plane(fields, self.params)
             self.state.place[self.rows, :3] = fields["surface.position"]
             self.state.motion[self.rows, :3] = fields["surface.velocity"]
             if self.params.mirrored:

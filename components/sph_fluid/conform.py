@@ -23,19 +23,23 @@ PLACES = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])  # (2, 3) m, of the s
 
 
 def cases() -> tuple[ConformCase, ...]:
-    """Walls of either kind, both integrators, and gauges."""
+    """Walls of either kind, both integrators, gauges, two dimensions."""
     twice = {**DROP, "integration": "symplectic"}
+    slab = {**DROP, "dimensions": 2, "fluid": [[[0.0, 0.0, 0.0], [0.2, 1.0, 0.2]]]}
     return (
         _case("drop", DROP),
         _case("drop, mirrored walls and films", {**DROP, **MIRRORED}, mirror=True),
         _case("drop, symplectic, with gauges", {**twice, "gauges": GAUGES}),
+        _case("drop in two dimensions", slab, volume=2.5e-3),
     )
 
 
-def _case(name: str, params: dict[str, Any], mirror: bool = False) -> ConformCase:
+def _case(
+    name: str, params: dict[str, Any], mirror: bool = False, volume: float = 1.25e-4
+) -> ConformCase:
     static: Fields = {
         "surface.normal": np.tile([0.0, 0.0, 1.0], (2, 1)),
-        "surface.volume": np.full(2, 1.25e-4),
+        "surface.volume": np.full(2, volume),
         "surface.body": np.arange(2.0) if mirror else np.zeros(2),
     }
     rest = {"surface.position": PLACES, "surface.velocity": np.zeros((2, 3))}

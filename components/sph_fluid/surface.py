@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.plane import planar_surface
 from quintet.components.sph_fluid.state import Whole
 from quintet.interfaces.component import Fields, Port
 from quintet.interfaces.errors import PortError
@@ -17,6 +18,8 @@ def surface(params: SphFluidParams) -> Port:
     Dynamic boundary particles know no other contact; films know no potential.
     """
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
+    if params.dimensions == 2:
+        port = planar_surface(port)
     fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films
     return port if fixed else replace(port, static=(*port.static, CONTACT))
 

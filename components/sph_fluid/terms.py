@@ -113,7 +113,7 @@ def bulk(volume: Array, rows: Whole, count: int, params: SphFluidParams) -> Arra
     Where the spacing does not divide a body, its samples stand closer, or less close, than the
     fluid's particles; as heavy as those they would displace more, or less, than the body does.
     """
-    share = volume / params.spacing**3
+    share = volume / params.spacing**params.dimensions
     if np.abs(share - 1.0).max(initial=0.0) < EVEN:
         return None
     found = np.ones(count, params.precision)

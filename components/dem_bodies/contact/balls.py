@@ -13,7 +13,6 @@ from quintet.components.dem_bodies.contact.geometry import (
     FAR,
     row_vector,
     set_row_vector,
-    set_vector,
     vector,
 )
 from quintet.components.dem_bodies.contact.rolling_resistance import rolling_moments
@@ -45,11 +44,11 @@ from quintet.components.shared.rotations import Vector, axpy, cross, dot, scaled
 BATCH = 48  # pairs that are computed at once; all their numbers fit in the nearest cache
 # A batch has columns, one for each number of the pairs: r_ij, which becomes the normal; velocities
 # of i over j, which become those of the point of contact; angular velocities, which become
-# torques; the elastic tangential force; the force.
+# torques; the elastic tangential force and 1/√δ, as in the history; the force.
 R_IJ, V_IJ, END_V_IJ, OMEGA_I, OMEGA_J = 0, 3 * BATCH, 6 * BATCH, 9 * BATCH, 12 * BATCH
-END_OMEGA_I, END_OMEGA_J, TANGENTIAL, FORCE = 15 * BATCH, 18 * BATCH, 21 * BATCH, 24 * BATCH
+END_OMEGA_I, END_OMEGA_J, TANGENTIAL, BEFORE = 15 * BATCH, 18 * BATCH, 21 * BATCH, 24 * BATCH
 TORQUE_I, TORQUE_J = OMEGA_I, OMEGA_J
-CONSTANTS, BEFORE, RADII, RADIUS_I = 27 * BATCH, 34 * BATCH, 35 * BATCH, 36 * BATCH
+FORCE, CONSTANTS, RADII, RADIUS_I = 25 * BATCH, 28 * BATCH, 35 * BATCH, 36 * BATCH
 DEPTH, ROOT, QUARTER, INVERSE_ROOT, WEIGHT, OPENING = range(37 * BATCH, 43 * BATCH, BATCH)
 # Extremes and sums of each place in the batch over a block.
 LEAST_GAP, MOST_DEPTH, MOST_STIFFNESS, ENERGY = range(43 * BATCH, 47 * BATCH, BATCH)
@@ -71,14 +70,15 @@ def set_column(batch: Numbers, first: int, a: Vector) -> None:
 
 @njit(**INNER)
 def load_pairs(
-    row: Short, partner: Short, plane: Numbers, motion: Numbers, history: Numbers, batch: Numbers
-) -> None:
-    """Read the motion of both rows and the history of pairs; both arrays are flat."""
+    first: int, count: int, row: Short, partner: Short, plane: Numbers, motion: Numbers,
+    batch: Numbers,
+) -> None:  # fmt: skip
+    """Read the motion of both rows of the pairs from one on, from a flat array."""
     rows = motion.shape[0] // COLUMNS
     ground = np.uint32(rows - 1)
-    for c in range(row.shape[0]):
-        b = partner[c]
-        i, j = COLUMNS * row[c], COLUMNS * min(b, ground)
+    for c in range(count):
+        b = partner[first + c]
+        i, j = COLUMNS * row[first + c], COLUMNS * min(b, ground)
         x, radius = vector(motion, i), motion[i + RADIUS]
         if b <= ground:
             d = sub(x, vector(motion, j))
@@ -96,18 +96,44 @@ def load_pairs(
         set_column(batch, OMEGA_J + c, vector(motion, j + OMEGA))
         set_column(batch, END_OMEGA_I + c, vector(motion, i + END_OMEGA))
         set_column(batch, END_OMEGA_J + c, vector(motion, j + END_OMEGA))
-        set_column(batch, TANGENTIAL + c, vector(history, 4 * c))
-        batch[BEFORE + c] = history[4 * c + 3]
 
 
 @njit(**INNER)
-def load_constants(constants_row: Short, constants: Numbers, batch: Numbers, loaded: Short) -> None:
-    """Read the constants of pairs: mostly those of the pair before in this place."""
-    for c in range(constants_row.shape[0]):
-        if loaded[c] != constants_row[c]:
-            loaded[c] = constants_row[c]
+def load_history(first: int, count: int, history: Numbers, batch: Numbers) -> None:
+    """Read the history of the pairs from one on, a flat array, number by number."""
+    pairs = history.shape[0] // 4
+    for number in range(4):
+        k = number * pairs + first
+        for c in range(count):
+            batch[TANGENTIAL + number * BATCH + c] = history[k + c]
+
+
+@njit(**INNER)
+def store_history(first: int, count: int, history: Numbers, batch: Numbers) -> None:
+    """Write the history of the pairs from one on, a flat array, number by number."""
+    pairs = history.shape[0] // 4
+    for number in range(4):
+        k = number * pairs + first
+        for c in range(count):
+            history[k + c] = batch[TANGENTIAL + number * BATCH + c]
+
+
+@njit(**INNER)
+def load_constants(
+    first: int, count: int, constants_row: Short, constants: Numbers, batch: Numbers, loaded: Short
+) -> None:
+    """Read the constants of the pairs from one on, if these are not there already."""
+    differ = np.uint32(0)
+    for c in range(count):
+        differ |= loaded[c] ^ constants_row[first + c]
+    if differ == 0:
+        return
+    for c in range(count):
+        k = constants_row[first + c]
+        if loaded[c] != k:
+            loaded[c] = k
             for number in range(7):
-                batch[CONSTANTS + number * BATCH + c] = constants[constants_row[c], number]
+                batch[CONSTANTS + number * BATCH + c] = constants[k, number]
 
 
 @njit(**INNER)
@@ -142,6 +168,11 @@ def pair_kinematics(count: int, batch: Numbers) -> None:
 @njit(**INNER)
 def first_step_weights(count: int, batch: Numbers, dt: float) -> None:
     """Weight of the damping of the pairs that begin to touch."""
+    begins = False
+    for c in range(count):
+        begins |= (batch[BEFORE + c] == 0.0) & (batch[DEPTH + c] > 0.0)
+    if not begins:
+        return
     for c in range(count):
         if batch[BEFORE + c] == 0.0 and batch[DEPTH + c] > 0.0:
             weight = damping_weight(0.0, batch[DEPTH + c], -batch[OPENING + c], dt)
@@ -190,17 +221,18 @@ def add_load(loads: Numbers, k: int, force: Vector, torque: Vector) -> None:
 
 @njit(**INNER)
 def scatter_forces(
-    row: Short, partner: Short, state: State, loads: Numbers, history: Numbers, outgoing: Numbers,
-    sums: Numbers, batch: Numbers, block: int, slot: int,
+    first: int, count: int, row: Short, partner: Short, motion: Numbers, loads: Numbers,
+    outgoing: Numbers, sums: Numbers, batch: Numbers, block: int, slot: int,
 ) -> int:  # fmt: skip
-    """Add the forces of the pairs to their rows, and keep those for later blocks.
+    """Add the forces of the pairs from one on to their rows, and keep those for later blocks.
 
-    `slot` is where the first of these is kept; return where the next one is.
+    `motion` and `loads` are flat. `slot` is where the first of the kept is; return where the next
+    one is.
     """
-    rows = state.motion.shape[0]
+    rows = motion.shape[0] // COLUMNS
     end = min((block + 1) * BLOCK, rows)
-    for c in range(row.shape[0]):
-        a, b = row[c], partner[c]
+    for c in range(count):
+        a, b = row[first + c], partner[first + c]
         force, torque = column(batch, FORCE + c), column(batch, TORQUE_I + c)
         back, other = scaled(-1.0, force), column(batch, TORQUE_J + c)
         add_load(loads, 6 * a, force, torque)
@@ -211,12 +243,10 @@ def scatter_forces(
             set_row_vector(outgoing, slot, 3, other)
             slot += 1
         else:  # the ground's torque is about the origin
-            turn = sub(cross(force, row_vector(state.motion, a)), torque)
+            turn = sub(cross(force, vector(motion, COLUMNS * a)), torque)
             for d in range(3):
                 sums[block, GROUND_LOAD + d] += back[d]
                 sums[block, GROUND_LOAD + 3 + d] += turn[d]
-        set_vector(history, 4 * c, column(batch, TANGENTIAL + c))
-        history[4 * c + 3] = batch[BEFORE + c]
     return slot
 
 
@@ -272,27 +302,27 @@ def ball_loads(
         As `batch_of` makes them.
     dt : float, s
     """
-    begin, count = pairs.begin, pairs.begin.shape[0] - 1
-    # Flat, so that compilers know how far apart rows are.
-    motion, history = state.motion.reshape(state.motion.size), pairs.history.reshape(-1)
-    loads = state.contact_load.reshape(state.contact_load.size)
+    # Flat, so that compilers know how far apart rows are; and none is sliced in the loop, where
+    # references to it would be counted.
+    motion, history = state.motion.reshape(-1), pairs.history.reshape(-1)
+    loads, plane, outgoing = state.contact_load.reshape(-1), model.plane, pairs.outgoing
+    row, partner, constants_row = pairs.row, pairs.partner, pairs.constants_row
+    constants, force, count = pairs.constants, pairs.force, pairs.begin.shape[0] - 1
     begin_block(state, sums, batch, block)
-    start, end = begin[min(block * BLOCK, count)], begin[min((block + 1) * BLOCK, count)]
-    slot = pairs.outgoing_begin[block]
+    start = pairs.begin[min(block * BLOCK, count)]
+    end, slot = pairs.begin[min((block + 1) * BLOCK, count)], pairs.outgoing_begin[block]
     for k in range(start, end, BATCH):
-        to = min(k + BATCH, end)
-        row, partner, kept = pairs.row[k:to], pairs.partner[k:to], history[4 * k : 4 * to]
-        load_pairs(row, partner, model.plane, motion, kept, batch)
-        load_constants(pairs.constants_row[k:to], pairs.constants, batch, loaded)
-        pair_kinematics(to - k, batch)
-        first_step_weights(to - k, batch, dt)
-        pair_forces(to - k, batch, dt)
-        slot = scatter_forces(
-            row, partner, state, loads, kept, pairs.outgoing, sums, batch, block, slot
-        )
-        if pairs.force.shape[0] > 0:
-            for c in range(to - k):
-                set_row_vector(pairs.force, k + c, 0, column(batch, FORCE + c))
+        n = min(BATCH, end - k)
+        load_pairs(k, n, row, partner, plane, motion, batch)
+        load_history(k, n, history, batch)
+        load_constants(k, n, constants_row, constants, batch, loaded)
+        pair_kinematics(n, batch)
+        first_step_weights(n, batch, dt)
+        pair_forces(n, batch, dt)
+        slot = scatter_forces(k, n, row, partner, motion, loads, outgoing, sums, batch, block, slot)
+        store_history(k, n, history, batch)
+        for c in range(n if force.shape[0] > 0 else 0):
+            set_row_vector(force, k + c, 0, column(batch, FORCE + c))
     end_block(sums, batch, block, start)
     if rolling_moment is not None:
         rolling_moments(block, model, state, pairs, rolling_moment, sums, dt)

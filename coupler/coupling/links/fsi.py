@@ -1,4 +1,4 @@
-"""Fluid and structure: surface samples move with bodies or faces, and maps forces back.
+"""Fluid and structure: surface samples move with bodies or faces, whose loads they map back.
 
 The fluid takes samples and gives a force on each; it never learns what moves them. The body
 gives its shape or its faces; it never learns how finely they are sampled. `contact` says what

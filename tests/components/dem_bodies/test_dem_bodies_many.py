@@ -227,6 +227,6 @@ def test_benchmark_touches_its_six_neighbours():
     scene = DemBodies(params)
     for _ in range(20):
         scene.step(scene.stable_dt())
-    assert np.count_nonzero(scene.balls.history[:, 3]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
+    assert np.count_nonzero(scene.balls.history[3]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
     with pytest.raises(ValueError, match=r"contact_forces must be true.*found false\. Set it"):
         scene.contact_points()
