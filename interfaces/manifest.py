@@ -4,7 +4,8 @@ A manifest is light: importing it imports no solver. Kinds are found by name und
 entry-point group ``quintet.components``, or as ``module:Class``.
 """
 
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -121,6 +122,20 @@ class Manifest:
             return tuple(resolve(self.conform)())
         own = getattr(self.load(), "conform_cases", None)
         return tuple(own()) if own else ()
+
+
+_looked_in: list[str] = []  # folders that `look_in` has put on the import path
+
+
+def look_in(folders: Iterable[str]) -> None:
+    """Look for modules of components in these folders too, after all that is installed.
+
+    A file there must never stand for a module of Python or of a package that has its name.
+    """
+    own = [path for path in sys.path if path not in _looked_in]
+    new = [folder for folder in dict.fromkeys(folders) if folder not in own]
+    _looked_in[:] = [*new, *(folder for folder in _looked_in if folder not in new)]
+    sys.path[:] = [*own, *_looked_in]
 
 
 def resolve(path: str) -> Any:

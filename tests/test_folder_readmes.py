@@ -51,8 +51,17 @@ def quoted(path):
 
 @pytest.mark.parametrize("path", TEXTS, ids=where)
 def test_links_lead_to_files(path):
-    for link in re.findall(r"\]\(([^)#]+)\)", FENCE.sub("", path.read_text())):
-        assert link.startswith("https://") or (path.parent / link).exists(), link
+    for link, part in re.findall(r"\]\(([^)#]*)#?([^)]*)\)", FENCE.sub("", path.read_text())):
+        if not link.startswith("https://"):
+            assert (path.parent / link).exists(), link
+            assert not part or part in anchors(path.parent / link if link else path), part
+
+
+@cache
+def anchors(path):
+    """Parts of a text that links may lead to: its headings, as they are written in addresses."""
+    heads = re.findall(r"^#+ (.+)$", FENCE.sub("", path.read_text()), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-") for head in heads}
 
 
 @cache

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from quintet.interfaces.component import Component, fields_of
-from quintet.interfaces.manifest import BenchCase, Manifest, find
+from quintet.interfaces.manifest import BenchCase, Manifest, find, look_in
 from quintet.interfaces.serving.process import build
 
 
@@ -77,6 +77,7 @@ def resident() -> int:
 
 if __name__ == "__main__":
     kind, number, threads, file = sys.argv[1:]
+    look_in([str(Path.cwd())] if ":" in kind else [])
     known = find(kind)
     found = measure(known, known.cases()[int(number)], int(threads))
     Path(file).write_text(json.dumps(found))

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import sys
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,7 +17,7 @@ from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Array, Component, Fields, Resources, fields_of, make
 from quintet.interfaces.errors import QuintetError, SceneError
-from quintet.interfaces.manifest import ConformCase, Manifest, find, known_kinds
+from quintet.interfaces.manifest import ConformCase, Manifest, find, known_kinds, look_in
 from quintet.interfaces.params import unknown
 
 OWN_TABLE = "conform"  # of a file with parameters: what else the case says
@@ -27,8 +26,7 @@ DT = 1e-3  # s, of a component that allows any step
 
 def manifest_of(kind: str) -> Manifest:
     """Find a kind by its installed name, or as ``module:Class`` beside or below this folder."""
-    if str(Path.cwd()) not in sys.path:
-        sys.path.insert(0, str(Path.cwd()))
+    look_in([str(Path.cwd())] if ":" in kind else [])
     try:
         return find(kind)
     except KeyError as error:

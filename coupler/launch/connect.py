@@ -113,8 +113,10 @@ class OverZenoh:
         ]
         if scene.tls:
             arguments += ["--tls", *scene.tls]
+        for place in scene.import_folders:
+            arguments += ["--look-in", place]
         log = folder / "log" / f"{name}.log"
-        process = start(arguments, log, one.threads, scene.import_folders)
+        process = start(arguments, log, one.threads)
         self.watches[name] = Watch(name, process.pid, process)
 
     def _await_hello(

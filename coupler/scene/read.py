@@ -1,6 +1,5 @@
 """Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
 
-import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -15,11 +14,11 @@ from quintet.coupler.measures.expectation import Expectation, check
 from quintet.coupler.scene import variants
 from quintet.coupler.scene.groups import lay_out, refused, unknown_outputs
 from quintet.coupler.scene.overrides import put_preset, put_set, put_swap
-from quintet.coupler.scene.scene import NAME, ComponentPlan, Scene, SceneFile
+from quintet.coupler.scene.scene import NAME, ComponentPlan, Scene, SceneFile, import_folders
 from quintet.coupler.scene.stability_table import Scope
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
-from quintet.interfaces.manifest import Manifest, find, known_kinds
+from quintet.interfaces.manifest import Manifest, find, known_kinds, look_in
 from quintet.interfaces.params import read, unknown
 
 TABLES = ("components", "links", "groups", "expect", "presets", "stand_ins", *variants.TABLES)
@@ -95,7 +94,7 @@ def parse(path: Path) -> dict[str, Any]:
 
 
 def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
-    sys.path[:0] = [p for p in (str(path.parent.resolve()), str(Path.cwd())) if p not in sys.path]
+    look_in(import_folders(path, table.get("components")))
     own = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, own, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]

@@ -131,8 +131,8 @@ class Scene:
 
     @property
     def import_folders(self) -> list[str]:
-        """Where components named as ``module:Class`` are looked for."""
-        return [str(self.folder.resolve()), str(Path.cwd())]
+        """See `import_folders`."""
+        return import_folders(self.path, self.resolved["components"])
 
     def exchange(self) -> Exchange:
         """The links of the scene, ready to be joined in a run."""
@@ -149,3 +149,10 @@ class Scene:
             name, _, key = path.partition(".")
             asked[name].add(key)
         return asked
+
+
+def import_folders(path: Path, components: Any) -> list[str]:
+    """Folders where components named as ``module:Class`` are looked for; none without any."""
+    tables = components.values() if isinstance(components, dict) else ()
+    kinds = [str(one.get("kind", "")) for one in tables if isinstance(one, dict)]
+    return [str(path.parent.resolve()), str(Path.cwd())] if ":" in "".join(kinds) else []

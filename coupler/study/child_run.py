@@ -9,13 +9,12 @@ import contextlib
 import os
 import signal
 import subprocess
-import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.launch.processes import tail
+from quintet.coupler.launch.processes import PYTHON, tail
 from quintet.coupler.report.show import NAME, results
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import assignments, run_arguments
@@ -67,7 +66,7 @@ class ChildRun:
     def _command(self, settings: dict[str, Any], folder: Path) -> list[str]:
         overrides = [*self.settings, *assignments(settings)]
         asked = run_arguments(self.scene, self.preset, overrides, self.swaps, self.transport)
-        python = [sys.executable, "-m", "quintet.coupler.cli"]
+        python = [*PYTHON, "-m", "quintet.coupler.cli"]
         return [*python, "run", *asked, "--out", str(folder)]
 
     def _await(self, process: "subprocess.Popen[bytes]", seconds: float) -> bool:
