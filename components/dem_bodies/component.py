@@ -17,6 +17,7 @@ from quintet.components.dem_bodies.integration.step_limit import (
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import ports
 from quintet.components.dem_bodies.shapes import planar
+from quintet.components.shared.polygons import in_space
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -311,7 +312,7 @@ class DemBodies(Component):
                 corners = build.CORNERS * 0.5 * np.array(body.size)
                 faces.append(build.FACES + len(owners))
             elif body.corners is not None:
-                corners = planar.in_space(planar.corners(body))
+                corners = in_space(planar.corners(body))
                 faces.append(planar.triangles(len(corners)) + len(owners))
             axes = self.state.axes[a].reshape(3, 3)
             points.append(self.state.position[a] + corners @ axes.T)
