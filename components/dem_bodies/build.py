@@ -36,10 +36,6 @@ THIN = 0.1  # of a box's longest edge: what is thinner is listed as if it were n
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
 # Pairs of corners that differ in one coordinate.
 EDGES = np.array([(k, k + step) for step in (1, 2, 4) for k in range(8) if not k & step])
-# Corners around each face, seen from outside.
-FACES = np.array(
-    [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-)
 
 
 class Solid(NamedTuple):
@@ -53,7 +49,7 @@ class Solid(NamedTuple):
 
 
 def solid(body: Body) -> Solid:
-    """Measure a body: a clump of spheres by voxels, all others exactly."""
+    """Measure a body: a union of spheres by voxels, all others exactly."""
     if body.size is not None:
         size = np.array(body.size)
         volume = float(size.prod())

@@ -9,6 +9,7 @@ from quintet.components.dem_bodies import build, kernels
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.contact import ball_search, search
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
+from quintet.components.dem_bodies.diagnostics import ALLOWED_DEPTH, contact_points, failure
 from quintet.components.dem_bodies.integration.step_limit import (
     count_ball_contacts,
     count_contacts,
@@ -17,7 +18,7 @@ from quintet.components.dem_bodies.integration.step_limit import (
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import ports
 from quintet.components.dem_bodies.shapes import planar
-from quintet.components.shared.polygons import in_space
+from quintet.components.dem_bodies.shapes.view import view
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -31,7 +32,6 @@ from quintet.interfaces.component import (
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import BOX, DISC, OTHER, POLYGON, SPHERE
 
-DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
 SHAPES = {
     "sphere": SPHERE, "box": BOX, "spheres": OTHER, "agglomerate": OTHER,
     "disc": DISC, "polygon": POLYGON,
@@ -160,8 +160,8 @@ class DemBodies(Component):
                 self._list()
                 stage = kernels.BALLS
         report = self.state.report
-        if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.CONTACT_WORK])):
-            self._refuse(dt)
+        if not (report[rows.DEEPEST] <= ALLOWED_DEPTH and math.isfinite(report[rows.CONTACT_WORK])):
+            raise self._failure(dt)
 
     def _advance(self, stage: int, dt: float) -> int:
         """Run all stages from one on; with several threads, that one. Return the next one."""
@@ -175,7 +175,7 @@ class DemBodies(Component):
 
     def _list(self) -> None:
         if not np.isfinite(self.state.position).all():
-            self._refuse(0.0)
+            raise self._failure(0.0)
         pairs, asked = (self.balls, self.others), self.params.contact_forces
         self.balls, self.others = search.list_pairs(
             self.model, self.state, *pairs, self.skin, asked
@@ -183,35 +183,8 @@ class DemBodies(Component):
         self.most_contacts = self._most_listed()
         self.sums[:, rows.TRAVEL] = 0.0
 
-    def _refuse(self, dt: float) -> None:
-        """End the run with the body that is wrong and what to do."""
-        after = f"dem_bodies, t = {self.accumulated.time + dt:.6g} s"
-        s, m = self.state, self.count
-        good = np.isfinite(s.motion.sum(axis=1))[s.row]
-        if not good.all():
-            k = int(np.argmin(good))
-            a = s.row[k]
-            raise StepError(
-                f"{after}: the state must stay finite; body {k} is at {s.position[a].tolist()} m "
-                f"with {s.velocity[a].tolist()} m/s under a load of {s.load[a].tolist()} N, N m. "
-                "Look at the load it was given, or make steps_per_contact larger."
-            )
-        deepest, (i, j) = s.report[rows.DEEPEST], self._pair(int(s.report[rows.DEEPEST_PAIR]))
-        other = f"body {j}" if j < m else "a plane"
-        raise StepError(
-            f"{after}: a contact may be {DEEPEST} of its radius deep; body {i} is {deepest:.3g} of "
-            f"it deep in {other}, near {s.position[s.row[i]].round(4).tolist()} m. Make "
-            "youngs_modulus or edge_radius larger, or impact_speed nearer to that of the impacts."
-        )
-
-    def _pair(self, pair: int) -> tuple[int, int]:
-        """Bodies of a pair as the report numbers them; planes are beyond all bodies."""
-        count = len(self.balls.partner)
-        if pair < count:
-            return ball_search.deepest_pair(self.state, self.balls)
-        touching = self.others.touching
-        i, j = self.state.body[touching[touching[:, 0] == pair - count][0, 1:3]]
-        return int(i), int(j)
+    def _failure(self, dt: float) -> StepError:
+        return failure(self.state, self.balls, self.others, self.accumulated.time + dt)
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of all bodies; if wanted, what contacts did in the last step."""
@@ -240,17 +213,7 @@ class DemBodies(Component):
         """
         if not self.params.contact_forces:
             raise ValueError("contact_forces must be true to list contacts; found false. Set it.")
-        others = self.others
-        count = int(self.state.report[rows.TOUCHING])
-        geometry, bodies = others.geometry[:count], self.state.body[others.touching[:count, 1:3]]
-        found = ball_search.touching_balls(self.model, self.state, self.balls)
-        return {
-            "bodies": np.vstack([found.bodies, bodies]),
-            "point": np.vstack([found.point, geometry[:, 3:6]]),
-            "normal": np.vstack([found.normal, geometry[:, :3]]),
-            "force": np.vstack([found.force, geometry[:, 8:]]),
-            "depth": np.append(found.depth, geometry[:, 6]),
-        }
+        return contact_points(self.model, self.state, self.balls, self.others)
 
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, what was added up."""
@@ -303,25 +266,7 @@ class DemBodies(Component):
 
     def view(self) -> Fields:
         """Corners and faces of boxes, centres of spheres, with body number and velocity."""
-        points: list[Array] = []
-        owners: list[int] = []
-        faces: list[Array] = []
-        for k, (body, a) in enumerate(zip(self.params.bodies, self.state.row, strict=False)):
-            corners = self.solids[k].centres
-            if body.size is not None:
-                corners = build.CORNERS * 0.5 * np.array(body.size)
-                faces.append(build.FACES + len(owners))
-            elif body.corners is not None:
-                corners = in_space(planar.corners(body))
-                faces.append(planar.triangles(len(corners)) + len(owners))
-            axes = self.state.axes[a].reshape(3, 3)
-            points.append(self.state.position[a] + corners @ axes.T)
-            owners += [k] * len(corners)
-        where, owner = np.vstack(points), np.array(owners)
-        row = self.state.row[owner]
-        turning = np.cross(self.state.angular_velocity[row], where - self.state.position[row])
-        shown = {"points": where, "body": owner, "velocity": self.state.velocity[row] + turning}
-        return shown | ({"cells": np.vstack(faces)} if faces else {})
+        return view(self.params.bodies, self.solids, self.state)
 
     def items(self) -> int:
         """Count the bodies."""

@@ -94,7 +94,7 @@ class BallPairs(NamedTuple):
     partner: Short  # (pairs,) row of the other ball, or n + number of the plane
     constants_row: Short  # (pairs,)
     constants: Numbers  # (kinds of pairs, 7) see laws
-    history: Numbers  # (4, pairs) elastic tangential force on the ball [N], 1/√δ; 0 if apart
+    history: Numbers  # (4, pairs) elastic tangential force on the ball [N], 1/√δ; 0 without contact
     rolling_moment: Numbers | None  # (pairs, 3) N m, elastic, on the ball; None if none resists
     force: Numbers  # (pairs, 3) N, on the ball; (0, 3) if nothing asks for it
     outgoing: Numbers  # (sent, 6) N and N m, on partners in later blocks, in the order of the pairs
@@ -130,7 +130,7 @@ CONTACT_WORK = 5  # J, done by contacts on bodies in the step
 LARGEST_SPEED = 6  # m/s, bound of the speed of any point
 LARGEST_ACCELERATION = 7  # m/s2, bound for any point, by gravity and load
 LOAD_WORK = 8  # J, done by loads in the step
-TRAVEL = 9  # m2, square of the longest way of any sphere since pairs were listed
+TRAVEL = 9  # m2, square of the largest displacement of any sphere since pairs were listed
 TOUCHING = 10  # number of contacts that touch, those of balls not counted
 REPORTED = 11
 

@@ -4,11 +4,12 @@ import time
 import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 from quintet.coupler.conform.laws import FIRST, LAWS, READ_ONLY, Law, name_of
 from quintet.coupler.conform.trial import Trial
-from quintet.coupler.conform.verdict import DoesNotApply, LawBroken
+from quintet.coupler.conform.verdict import DoesNotApply, LawBroken, raised
 from quintet.interfaces.errors import SceneError
 
 Status = Literal["passed", "failed", "does not apply"]
@@ -43,10 +44,11 @@ def try_law(law: Law, trial: Trial) -> Finding:
 
 
 def _place(error: Exception) -> str:
-    """An error with the line that raised it."""
-    last = traceback.extract_tb(error.__traceback__)[-1]
-    text = " ".join(str(error).split())
-    return f"{type(error).__name__}: {text} ({last.filename}:{last.lineno}, in {last.name})"
+    """An error with the line that raised it, in the component if it was there."""
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [one for one in frames if Path(__file__).parent not in Path(one.filename).parents]
+    last = (own or frames)[-1]
+    return f"{raised(error)} ({last.filename}:{last.lineno}, in {last.name})"
 
 
 def try_all(trial: Trial) -> Iterator[tuple[Law, Finding | None]]:

@@ -26,7 +26,9 @@ def run_conform(given: argparse.Namespace) -> int:
             found[trial.case.name] = report(trial)
     all_found = [one for findings in found.values() for one in findings]
     counts = {status: sum(one.status == status for one in all_found) for status in STATUSES}
-    print(f"{manifest.kind}: {summary(counts)}")
+    print(f"{manifest.kind} {summary(counts)}")
+    if counts["failed"] > 1:
+        print("Begin with the first that failed: others may follow from it.")
     if given.json:
         entries = [{"case": k, "laws": [_entry(one) for one in v]} for k, v in found.items()]
         result = {"kind": manifest.kind, "conforms": not counts["failed"], "cases": entries}

@@ -51,15 +51,35 @@ class Trial:
         self.takes, self.gives = manifest.ports(self.params)
         self.inputs_known = fields_of(self.takes)
         self.outputs = fields_of(self.gives)
-        static = {f"{port.name}.{one.name}" for port in self.takes for one in port.static}
+        self._check(where)
+
+    def _check(self, where: str) -> None:
+        """Refuse a case whose inputs are not those of the ports."""
+        case = self.case
+        static = {f"{port.name}.{one.name}": one for port in self.takes for one in port.static}
+        known = self.inputs_known | static
+        given = {**case.rest, **case.static}
         wrong = ({*case.rest, *case.scale} - self.inputs_known.keys()) | (
             case.static.keys() - static
         )
         if wrong:
             raise SceneError(
                 f"{where}: its inputs must be fields of the ports that it takes "
-                f"({', '.join([*self.inputs_known, *sorted(static)]) or 'none'}); found "
-                f"{', '.join(sorted(wrong))}. Correct the case."
+                f"({', '.join(known) or 'none'}); found {', '.join(sorted(wrong))}. Correct the "
+                "case."
+            )
+        for key, array in given.items():
+            if np.shape(array)[1:] != known[key].shape or not np.ndim(array):
+                shape = ", ".join(["n", *map(str, known[key].shape)])
+                raise SceneError(
+                    f"{where}: {key} must have shape ({shape}); found {np.shape(array)}. Correct "
+                    "the case."
+                )
+        if case.scale.keys() - case.rest.keys():
+            unknown = ", ".join(sorted(case.scale.keys() - case.rest.keys()))
+            raise SceneError(
+                f"{where}: what is moved must be given at rest too; found {unknown} moved, but not "
+                "at rest. Add it to rest."
             )
 
     @property

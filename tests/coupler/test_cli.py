@@ -103,7 +103,9 @@ def test_a_run_can_be_run_again_from_the_scene_that_it_left(ran, tmp_path):
 
 def test_a_second_run_into_a_folder_replaces_the_first_and_nothing_else(ran, tmp_path):
     (ran / "notes.txt").write_text("mine")
-    assert status("run", tmp_path / "scene.toml", "--out", ran, "--set", "end=0.005") == 0
+    assert (
+        status("run", tmp_path / "scene.toml", "--out", ran, "--force", "--set", "end=0.005") == 0
+    )
     assert (ran / "notes.txt").read_text() == "mine"
     assert json.loads((ran / "results.json").read_text())["windows"] == 5
 

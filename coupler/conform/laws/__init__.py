@@ -19,6 +19,7 @@ FIRST = declarations.it_is_made_and_joined  # without it no other can be tried
 READ_ONLY = inputs.received_arrays_are_neither_written_to_nor_kept
 LAWS: tuple[Law, ...] = (
     FIRST,
+    state.the_same_inputs_give_the_same_bits,  # else what compares two of them says little
     READ_ONLY,
     declarations.its_ports_are_those_of_its_manifest,
     declarations.names_are_told_apart,
@@ -42,7 +43,6 @@ LAWS: tuple[Law, ...] = (
     time_steps.the_stable_step_is_the_same_after_load,
     time_steps.stable_steps_stay_finite,
     time_steps.two_half_steps_come_to_one,
-    state.the_same_inputs_give_the_same_bits,
     state.instances_share_no_state,
     state.load_then_repeat_gives_the_same_bits,
     state.save_changes_nothing,

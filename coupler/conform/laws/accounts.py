@@ -54,8 +54,9 @@ def momentum_changes_by_the_impulses(trial: Trial) -> None:
         before, inputs = component.totals().momentum.copy(), trial.inputs(number)
         component.take(inputs)
         component.step(trial.case.dt)
-        given = component.give(frozenset(forces) & frozenset(trial.outputs))
-        parts = [inputs[key] for key in forces if key in inputs] + [-a for a in given.values()]
+        own = [key for key in forces if key in trial.outputs]
+        given = component.give(frozenset(own))
+        parts = [inputs[key] for key in forces if key in inputs] + [-given[key] for key in own]
         expected = trial.case.dt * sum((part.sum(axis=0) for part in parts), np.zeros(3))
         change = component.totals().momentum - before
         sizes = [trial.case.dt * float(np.abs(part).sum()) for part in parts]

@@ -8,6 +8,7 @@ from quintet.coupler.conform.trial import Trial, copies
 from quintet.coupler.conform.verdict import (
     DoesNotApply,
     LawBroken,
+    raised,
     require,
     require_same_bits,
 )
@@ -27,9 +28,7 @@ def received_arrays_are_neither_written_to_nor_kept(trial: Trial) -> None:
     except LawBroken:
         raise
     except Exception as error:
-        raise LawBroken(
-            f"{rule}; when it held {SPOILT:g}, {type(error).__name__}: {error} {remedy}"
-        ) from error
+        raise LawBroken(f"{rule}; when it held {SPOILT:g}, {raised(error)}. {remedy}") from error
     require_same_bits(found, expected, rule, remedy)
 
 
@@ -58,7 +57,7 @@ def _hand(verb: str, receive: Callable[[Fields], None], buffers: dict[str, Array
     except ValueError as error:
         if "read-only" not in str(error):
             raise
-        raise LawBroken(f"{rule}; it failed with {error}. Work on copies.") from error
+        raise LawBroken(f"{rule}; it failed with {raised(error)}. Work on copies.") from error
     require_same_bits(buffers, sent, rule, "Work on copies.")
 
 
@@ -89,7 +88,7 @@ def ports_may_be_left_unjoined(trial: Trial) -> None:
         except Exception as error:
             raise LawBroken(
                 f"a port without a partner must be told by bind, and then do without; left out "
-                f"{port.name}, it failed with {type(error).__name__}: {error}. Read inputs with "
+                f"{port.name}, it failed with {raised(error)}. Read inputs with "
                 "fields.get, or refuse in bind with a PortError."
             ) from error
         size = _size(component)

@@ -108,7 +108,7 @@ def test_spheres_touch_a_ball_on_every_side(files):
 
 
 def test_spheres_of_one_body_never_touch(files):
-    """They overlap by a fifth; a free body yet keeps its momentum, spin and energy."""
+    """They overlap by a fifth; a free body yet keeps its momentum, rotation and energy."""
     free = build(
         [body(files / "l.obj", radius=0.0125, angular_velocity=[3.0, 2.0, 1.0])], gravity=NOTHING
     )

@@ -163,8 +163,8 @@ def test_gross_sliding_in_an_oblique_impact(angle):
     given = outputs_of(ball)
     assert given["motion.velocity"][0, 2] == pytest.approx(e * vn, rel=5e-3)
     assert given["motion.velocity"][0, 0] == pytest.approx(vt - μ * (1 + e) * vn, rel=5e-3)
-    spin = 5.0 * μ * (1.0 + e) * vn / (2.0 * radius)
-    assert given["motion.angular_velocity"][0, 1] == pytest.approx(spin, rel=5e-3)
+    ω = 5.0 * μ * (1.0 + e) * vn / (2.0 * radius)
+    assert given["motion.angular_velocity"][0, 1] == pytest.approx(ω, rel=5e-3)
 
 
 def test_collision_conserves_momentum_and_angular_momentum():

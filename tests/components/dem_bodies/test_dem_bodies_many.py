@@ -7,8 +7,9 @@ from dem_scenes import FLOOR, box, build, energy, material, mistakes, run, spher
 from quintet.components.dem_bodies import MANIFEST
 from quintet.components.dem_bodies.bench import lattice
 from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.diagnostics import deepest_pair
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.state import DEEPEST, DEEPEST_PAIR
+from quintet.components.dem_bodies.state import DEEPEST
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.params import read
 
@@ -89,7 +90,7 @@ def test_deepest_of_many_is_the_one_that_is_told(mixed):
     found, report = mixed.contact_points(), mixed.state.report
     k = int(np.argmax(found["depth"]))
     assert report[DEEPEST] == pytest.approx(found["depth"][k] / 0.005, rel=1e-6)
-    i, j = mixed._pair(int(report[DEEPEST_PAIR]))
+    i, j = deepest_pair(mixed.state, mixed.balls, mixed.others)
     assert [i, min(j, mixed.count)] == found["bodies"][k].tolist()
 
 

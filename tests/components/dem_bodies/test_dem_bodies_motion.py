@@ -40,10 +40,10 @@ def test_free_box_turns_by_eulers_equations():
 
 def test_free_box_keeps_angular_momentum_and_energy():
     body = free_box()
-    start, spin = body.totals(), body.state.angular_momentum.copy()
+    start, momentum = body.totals(), body.state.angular_momentum.copy()
     drifts = []
     run(body, 5.0, lambda _: drifts.append(body.totals().kinetic / start.kinetic - 1.0), dt=1e-3)
-    assert (body.state.angular_momentum == spin).all()
+    assert (body.state.angular_momentum == momentum).all()
     assert np.abs(drifts).max() < 2e-5
     assert abs(np.mean(drifts[-1000:])) < 1e-5
     np.testing.assert_allclose(body.totals().momentum, start.momentum, rtol=1e-14)
@@ -56,8 +56,8 @@ def test_load_acts_as_an_impulse():
     body.take({"load.force": force, "load.torque": torque})
     run(body, 0.5, dt=1e-3)
     np.testing.assert_allclose(body.totals().momentum, 0.5 * force[0], rtol=1e-12)
-    spin = body.state.angular_momentum[body.state.row[0]]
-    np.testing.assert_allclose(spin, 0.5 * torque[0], rtol=1e-12, atol=1e-15)
+    momentum = body.state.angular_momentum[body.state.row[0]]
+    np.testing.assert_allclose(momentum, 0.5 * torque[0], rtol=1e-12, atol=1e-15)
     assert body.accumulated.given == pytest.approx(body.totals().kinetic, rel=1e-12)
     body.take({})
     before = body.totals().momentum
@@ -83,7 +83,7 @@ def test_contact_forces_are_what_changes_momentum():
     bodies = [box([0.0, 0.0, 0.0751]), box([0.03, 0.0, 0.2252], angular_velocity=[0.0, 2.0, 0.0])]
     scene = build(bodies, planes=[FLOOR], contact_forces=True)
     force, torque, time = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
-    start, spin = outputs_of(scene), scene.state.angular_momentum.copy()
+    start, momentum = outputs_of(scene), scene.state.angular_momentum.copy()
     while time < 0.2:
         dt = scene.stable_dt()
         scene.step(dt)
@@ -92,7 +92,9 @@ def test_contact_forces_are_what_changes_momentum():
     gained = scene.mass[:, None] * (given["motion.velocity"] - start["motion.velocity"])
     gained[:, 2] += 9.81 * time * scene.mass
     np.testing.assert_allclose(force[:2], gained, atol=1e-12 * np.abs(gained).max())
-    np.testing.assert_allclose(torque[:2], (scene.state.angular_momentum - spin)[:2], atol=1e-12)
+    np.testing.assert_allclose(
+        torque[:2], (scene.state.angular_momentum - momentum)[:2], atol=1e-12
+    )
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-12 * np.abs(force).max())
     assert force[0, 2] > 0.0 > force[2, 2]
 

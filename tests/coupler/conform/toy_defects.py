@@ -1,0 +1,400 @@
+"""Toys that break one law each; the docstring says how, `PLANTED` which."""
+
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+from toy_sound import CLOUD, CLOUD_LOAD, FLIGHT, STATE, Sound
+
+from quintet.coupler.conform.laws import (
+    accounts,
+    activity,
+    declarations,
+    inputs,
+    outputs,
+    state,
+    time_steps,
+)
+from quintet.interfaces import rotation
+from quintet.interfaces.component import ONE_THREAD, Field, Port, Totals
+from quintet.interfaces.ports import ANGULAR_VELOCITY, FORCE, LOAD, POSITION
+
+PLANTED = {}  # class -> the law that it breaks
+
+
+def breaks(law):
+    def plant(cls):
+        PLANTED[cls] = law
+        return cls
+
+    return plant
+
+
+@breaks(declarations.it_is_made_and_joined)
+class FailsWhenJoined(Sound):
+    def bind(self, static, joined):
+        raise ArithmeticError("a defect")
+
+
+@breaks(declarations.its_ports_are_those_of_its_manifest)
+class PortsOfItsOwn(Sound):
+    def __init__(self, params, resources=ONE_THREAD):
+        super().__init__(params, resources)
+        self.gives = (CLOUD_LOAD,)
+
+
+@breaks(declarations.names_are_told_apart)
+class PortGivenTwice(Sound):
+    gives = (FLIGHT, CLOUD_LOAD, CLOUD_LOAD)
+
+
+@breaks(declarations.names_are_told_apart)
+class RateOfNoField(Sound):
+    gives = (Port("flight", (POSITION, ANGULAR_VELOCITY)), CLOUD_LOAD)
+
+
+@breaks(declarations.units_fit_each_other)
+class WorkIsNoPower(Sound):
+    takes = (
+        Port("load", (FORCE, replace(FORCE, name="torque", works_with="angular_velocity"))),
+        CLOUD,
+    )
+
+
+@breaks(declarations.units_fit_each_other)
+class RateInAnotherUnit(Sound):
+    takes = (
+        LOAD,
+        replace(CLOUD, fields=(POSITION, Field("velocity", (3,), "m"), *CLOUD.fields[2:])),
+    )
+
+
+@breaks(declarations.describe_tells_what_its_ports_announce)
+class DescribeMissesAState(Sound):
+    def describe(self):
+        return {"flight.mass": super().describe()["flight.mass"]}
+
+
+@breaks(declarations.describe_tells_what_its_ports_announce)
+class DescribeTellsWhatNoPortAnnounces(Sound):
+    def describe(self):
+        return {**super().describe(), "flight.colour": np.zeros(2)}
+
+
+@breaks(declarations.it_is_made_with_resources_or_without)
+class OneThreadOnly(Sound):
+    def __init__(self, params, resources=ONE_THREAD):
+        assert resources.threads == 1
+        super().__init__(params, resources)
+
+
+@breaks(inputs.received_arrays_are_neither_written_to_nor_kept)
+class KeepsWhatItTakes(Sound):
+    def take(self, fields):
+        super().take(fields)
+        self.force = fields.get("load.force", self.force)
+
+
+@breaks(inputs.received_arrays_are_neither_written_to_nor_kept)
+class WritesIntoWhatItTakes(Sound):
+    def take(self, fields):
+        if "load.force" in fields:
+            fields["load.force"][...] *= 0.5
+        super().take(fields)
+
+
+@breaks(inputs.received_arrays_are_neither_written_to_nor_kept)
+class KeepsStaticFields(Sound):
+    def bind(self, static, joined):
+        super().bind(static, joined)
+        self.volume = static.get("cloud.volume", self.volume)
+
+
+@breaks(inputs.ports_may_be_left_unjoined)
+class NeedsItsLoad(Sound):
+    def take(self, fields):
+        super().take(fields)
+        self.force = np.array(fields["load.force"])
+
+
+@breaks(inputs.ports_may_be_left_unjoined)
+class MakesRoomForWhatIsNotThere(Sound):
+    def bind(self, static, joined):
+        super().bind(static, joined)
+        if "cloud" not in joined:
+            self.clock = np.zeros(1000)
+
+
+@breaks(inputs.alone_it_runs_and_gives_nothing)
+class NeedsAPartner(Sound):
+    def step(self, dt):
+        super().step(dt / len(self.volume))
+
+
+@breaks(outputs.outputs_match_their_ports)
+class WrongShape(Sound):
+    def outputs(self):
+        return {**super().outputs(), "flight.velocity": self.v[:, :2]}
+
+
+@breaks(outputs.outputs_match_their_ports)
+class SinglePrecision(Sound):
+    def outputs(self):
+        return {**super().outputs(), "flight.velocity": self.v.astype(np.float32)}
+
+
+@breaks(outputs.just_what_is_wanted_is_given)
+class GivesWhatIsNotWanted(Sound):
+    def give(self, wanted):
+        return super().give(frozenset(self.outputs()))
+
+
+@breaks(outputs.just_what_is_wanted_is_given)
+class MissesWhatIsWanted(Sound):
+    def give(self, wanted):
+        return super().give(wanted - {"cloud_load.force"})
+
+
+@breaks(outputs.what_else_is_wanted_changes_no_bit)
+class ImpulsesDependOnInstants(Sound):
+    def outputs(self):
+        return {**super().outputs(), "cloud_load.force": self.drag * self.scale}
+
+    def give(self, wanted):
+        self.scale = 1.0 if "flight.position" in wanted else 0.5
+        return super().give(wanted)
+
+
+@breaks(outputs.what_else_is_wanted_changes_no_bit)
+class GiveChangesItsState(Sound):
+    def give(self, wanted):
+        self.v = self.v * (1.0 + 1e-15 * len(wanted))
+        return super().give(wanted)
+
+
+@breaks(outputs.the_number_of_items_never_changes)
+class TheDeadAreLeftOut(Sound):
+    def outputs(self):
+        lives = self.active == 1.0
+        found = super().outputs()
+        return {k: a[lives] if k.startswith("flight") else a for k, a in found.items()}
+
+
+@breaks(outputs.outputs_are_copies)
+class OutputsAreViews(Sound):
+    def give(self, wanted):
+        given = self.outputs()
+        return {key: given[key][:] for key in wanted}
+
+
+@breaks(outputs.outputs_are_copies)
+class DescribesItsOwnArrays(Sound):
+    def __init__(self, params, resources=ONE_THREAD):
+        super().__init__(params, resources)
+        self.told = super().describe()
+
+    def describe(self):
+        return self.told
+
+
+@breaks(outputs.at_rest_nothing_comes_out)
+class DriftsAtRest(Sound):
+    def step(self, dt):
+        super().step(dt)
+        self.x = self.x + 1e-6 * dt
+
+
+@breaks(outputs.values_follow_their_rates)
+class VelocityIsDoubled(Sound):
+    def outputs(self):
+        return {**super().outputs(), "flight.velocity": 2.0 * self.v}
+
+
+@breaks(outputs.values_follow_their_rates)
+class TurnsTheOtherWay(Sound):
+    def outputs(self):
+        found = super().outputs()
+        return {**found, "flight.orientation": rotation.conjugate(found["flight.orientation"])}
+
+
+@breaks(outputs.rotations_are_unit_quaternions)
+class RotationIsNotNormalised(Sound):
+    def step(self, dt):
+        zero = np.zeros((len(self.q), 1))
+        turn = rotation.product(np.concatenate([zero, self.spin], axis=1), self.q)
+        before = self.q
+        super().step(dt)
+        self.q = before + 0.5 * dt * turn
+
+
+@breaks(activity.flags_are_zero_or_one)
+class FlagIsBetween(Sound):
+    def outputs(self):
+        return {**super().outputs(), "flight.active": 0.5 * self.active}
+
+
+@breaks(activity.flags_are_zero_or_one)
+class TheDeadComeBack(Sound):
+    def step(self, dt):
+        super().step(dt)
+        if self.clock[0] % 3 == 0:
+            self.active = np.ones_like(self.active)
+
+
+@breaks(activity.outputs_of_inactive_items_are_zero)
+class PushesWhatIsInactive(Sound):
+    def drags(self):
+        return self.volume[:, None] * (self.v[0] - self.cloud)
+
+
+@breaks(activity.inputs_of_inactive_items_change_nothing)
+class TheDeadFeelTheirLoad(Sound):
+    def step(self, dt):
+        kept, self.active = self.active, np.ones_like(self.active)
+        super().step(dt)
+        self.active = self.active * kept
+
+
+@breaks(time_steps.the_stable_step_is_positive)
+class NoStepIsStable(Sound):
+    def stable_dt(self):
+        return 0.0
+
+
+@breaks(time_steps.the_stable_step_is_positive)
+class StableStepIsNoNumber(Sound):
+    def stable_dt(self):
+        return float("nan")
+
+
+@breaks(time_steps.the_stable_step_is_positive)
+class StableStepChangesAsItIsAsked(Sound):
+    asked = 0
+
+    def stable_dt(self):
+        self.asked += 1
+        return super().stable_dt() / self.asked
+
+
+@breaks(time_steps.the_stable_step_is_the_same_after_load)
+class StableStepIsNotSaved(Sound):
+    largest = 1.0
+
+    def step(self, dt):
+        super().step(dt)
+        self.largest = 0.9 * self.largest
+
+    def stable_dt(self):
+        return self.largest * super().stable_dt()
+
+
+@breaks(time_steps.stable_steps_stay_finite)
+class StableStepIsTooLong(Sound):
+    def stable_dt(self):
+        return 1e4
+
+
+@breaks(time_steps.two_half_steps_come_to_one)
+class StepsByItsOwnStep(Sound):
+    def step(self, dt):
+        super().step(1e-3)
+
+
+@breaks(accounts.momentum_changes_by_the_impulses)
+class GivesIntegralsForRates(Sound):
+    def step(self, dt):
+        super().step(dt)
+        self.drag = dt * self.drag
+
+
+@breaks(state.the_same_inputs_give_the_same_bits)
+class RandomWithoutASeed(Sound):
+    def noise(self):
+        return self.params.noise * np.random.default_rng().normal(size=self.x.shape)
+
+
+@breaks(state.instances_share_no_state)
+class StateOfTheClass(Sound):
+    kicks: ClassVar[list[float]] = []
+
+    def __init__(self, params, resources=ONE_THREAD):
+        super().__init__(params, resources)
+        self.kicks.clear()
+
+    def step(self, dt):
+        super().step(dt)
+        self.kicks.append(1e-9)
+        self.x = self.x + sum(self.kicks) * (np.abs(self.v).max() > 0.0)
+
+
+@breaks(state.load_then_repeat_gives_the_same_bits)
+class ForgetsStateInSave(Sound):
+    def save(self):
+        return {key: array for key, array in super().save().items() if key != "spin"}
+
+    def load(self, state):
+        super().load({"spin": self.spin, **state})
+
+
+@breaks(state.save_changes_nothing)
+class SaveRounds(Sound):
+    def save(self):
+        self.v = np.round(self.v, 4)
+        return super().save()
+
+
+@breaks(state.what_is_saved_crosses_a_line)
+class SavesAnObject(Sound):
+    def save(self):
+        return {**super().save(), "params": np.array(self.params, dtype=object)}
+
+
+@breaks(state.what_is_saved_does_not_change_afterwards)
+class SavesItsOwnArrays(Sound):
+    def step(self, dt):
+        before, x = self.x, self.x
+        super().step(dt)
+        before[...], self.x = self.x, x
+
+    def save(self):
+        return {key: getattr(self, key) for key in STATE}
+
+
+@breaks(state.what_is_loaded_is_neither_written_to_nor_kept)
+class LoadKeepsReferences(Sound):
+    def load(self, state):
+        super().load(state)
+        self.v = state["v"]
+
+
+@breaks(state.what_is_loaded_is_neither_written_to_nor_kept)
+class WritesIntoWhatItLoads(Sound):
+    def load(self, state):
+        state["v"][...] += 0.0
+        super().load(state)
+
+
+@breaks(accounts.it_counts_what_it_advances_and_what_it_holds)
+class CountsNothing(Sound):
+    def items(self):
+        return 0
+
+
+@breaks(accounts.it_counts_what_it_advances_and_what_it_holds)
+class NegativeEnergy(Sound):
+    def totals(self):
+        return Totals(1.0, np.zeros(3), np.zeros(3), -1.0)
+
+
+@breaks(accounts.momentum_changes_by_the_impulses)
+class FeelsNoReaction(Sound):
+    def step(self, dt):
+        before = self.drags().sum(axis=0)
+        super().step(dt)
+        self.v[0] += dt * before / self.params.mass
+
+
+@breaks(accounts.views_are_pictures)
+class PointsInAPlane(Sound):
+    def view(self):
+        return {"points": self.x[:, :2].copy()}
