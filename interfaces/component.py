@@ -1,41 +1,75 @@
 """What every solver must be: it takes fields in, steps, and gives fields out."""
 
+import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.interfaces.errors import PortError
 from quintet.interfaces.units import check_unit
 
 Array = NDArray[Any]
 Fields = Mapping[str, Array]  # "port.field" -> (n, *shape)
+Keys = AbstractSet[str]  # of fields: "port.field"
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
     """One array of a port: ``Field("force", (3,), "N", "impulse")``.
 
-    ``instant`` fields are values at a time. ``impulse`` fields are rates that act over a
-    step: a component gives and takes the rate [N], a link carries its integral over the
-    window [N s], so that momentum closes at every subcycling ratio. ``rate`` names the field
-    of the same port that is this one's time derivative; inputs are then interpolated by
-    cubic Hermite polynomials. ``labels`` are whole numbers of things that the items of one link
-    belong to; those of the next link are counted on from there.
+    Parameters
+    ----------
+    name : str
+        Within its port; the key of an array is ``"port.name"``.
+    shape : tuple of int
+        Of one item; the array is (n, *shape).
+    unit : str
+        One of `units.UNITS`, or one that was added to them.
+    centring : "instant" or "impulse"
+        Instants are values at a time. Impulses are rates that act over a step: a component gives
+        and takes the rate [N], a link carries its integral over the window [N s], so that
+        momentum closes at every subcycling ratio.
+    rate : str
+        Field of the same port that is this one's time derivative; inputs are then interpolated
+        by cubic Hermite polynomials. Of a rotation it is the angular velocity [rad/s].
+    kind : "value", "rotation" or "flag"
+        A rotation is a unit quaternion w, x, y, z (body to world), interpolated on the sphere. A
+        flag is 0 or 1 and never between: what holds at a window's start holds through it.
+    works_with : str
+        Of a rate that does work: the velocity that it works with, by the name of the field that
+        goes the other way over the same link (a force with "velocity").
+    labels : bool
+        Whole numbers of things that the items of one link belong to; those of the next link are
+        counted on from there.
+
+    Raises
+    ------
+    PortError
+        If the unit is not known, or has no integral where one is needed.
     """
 
     name: str
-    shape: tuple[int, ...]  # of one item; the array is (n, *shape)
+    shape: tuple[int, ...]
     unit: str
     centring: Literal["instant", "impulse"] = "instant"
     rate: str = ""
-    frame: Literal["world", "body"] = "world"
+    kind: Literal["value", "rotation", "flag"] = "value"
+    works_with: str = ""
     labels: bool = False
 
     def __post_init__(self) -> None:
         check_unit(self.unit, f"field {self.name}", self.centring)
+        if self.kind == "rotation" and self.shape != (4,):
+            raise PortError(
+                f"field {self.name}: a rotation is a quaternion of shape (4,); found "
+                f"{self.shape}. Give w, x, y, z."
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +79,9 @@ class Port:
     ``static`` fields go once, with the port, before the first step (a body's mass);
     ``states`` go once, against it (the spacing at which the taker wants surfaces sampled).
     ``items`` says whose they are: what several links bring to a component's own items is
-    added up, what they bring as the partner's items stands in rows one after another.
+    added up, what they bring as the partner's items stands in rows one after another. Their
+    number never changes: items that may die have a field ``active`` (`ports.ACTIVE`), which is 0
+    from then on.
     """
 
     name: str
@@ -67,9 +103,35 @@ class Totals:
     internal: float = 0.0  # J, elastic and thermal
 
 
+@dataclass(frozen=True, slots=True)
+class Resources:
+    """What a component may use of the machine.
+
+    Parameters
+    ----------
+    threads : int
+        Threads that it may keep busy at a time.
+    folder : Path
+        The scene's folder; data files are looked for here, nowhere else.
+    communicator : mpi4py communicator or None
+        Of a component that owns several MPI ranks.
+    device : str
+        Where it computes: "cpu".
+    """
+
+    threads: int = 1
+    folder: Path = field(default_factory=Path)
+    communicator: Any = None
+    device: str = "cpu"
+
+
+ONE_THREAD = Resources()
+
+
 class Component(ABC):
     """A solver that the coupler can drive; it knows nothing of the others.
 
+    It is made as ``Component(params)`` or, if it needs them, ``Component(params, resources)``.
     Keys of all fields are ``"port.field"``. Arrays that come in are read-only and are not
     kept; arrays that go out are copies.
     """
@@ -81,12 +143,20 @@ class Component(ABC):
         """Static fields of the ports it gives, and what it states at those it takes."""
         return {}
 
-    def bind(self, static: Fields) -> None:  # noqa: B027  (most need none)
-        """Static fields of the ports that are joined; once, before the first take."""
+    def bind(self, static: Fields, joined: AbstractSet[str]) -> None:  # noqa: B027  (most need none)
+        """Join its ports; once, before the first take.
+
+        Parameters
+        ----------
+        static : mapping of arrays
+            Static fields of the ports it takes that are joined.
+        joined : set of str
+            Names of its ports that have a partner.
+        """
 
     @abstractmethod
     def stable_dt(self) -> float:
-        """Largest step that the present state allows [s]."""
+        """Largest step that the present state allows [s]: told after every window."""
 
     @abstractmethod
     def take(self, fields: Fields) -> None:
@@ -97,8 +167,15 @@ class Component(ABC):
         """Advance by exactly dt [s]."""
 
     @abstractmethod
-    def give(self) -> Fields:
-        """Copy out the outputs: instants at the present time, means over the last step."""
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out the outputs: instants at the present time, means over the last step.
+
+        Parameters
+        ----------
+        wanted : set of str
+            Keys that somebody reads; just these are given. Asked for impulses after every
+            step, for instants at the window's end.
+        """
 
     @abstractmethod
     def save(self) -> Fields:
@@ -119,3 +196,21 @@ class Component(ABC):
     def items(self) -> int:
         """How many particles, bodies or elements it advances per step."""
         return 1
+
+
+def make(cls: type[Component], params: Any, resources: Resources) -> Component:
+    """Make a component, with its resources if its constructor takes them."""
+    makes: Any = cls
+    takes = inspect.signature(cls).parameters
+    made: Component = makes(params, resources) if len(takes) > 1 else makes(params)
+    return made
+
+
+def outputs_of(component: Component) -> Fields:
+    """All outputs of a component as they are now."""
+    return component.give(frozenset(fields_of(component.gives)))
+
+
+def fields_of(ports: tuple[Port, ...]) -> dict[str, Field]:
+    """All fields of some ports, by their keys ``"port.field"``."""
+    return {f"{port.name}.{one.name}": one for port in ports for one in port.fields}

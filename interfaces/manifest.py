@@ -4,10 +4,12 @@ A manifest is light: importing it imports no solver. Kinds are found by name und
 entry-point group ``quintet.components``, or as ``module:Class``.
 """
 
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
+from pathlib import Path
 from typing import Any
 
 from quintet.interfaces.component import Component, Fields, Port
@@ -40,11 +42,58 @@ class BenchCase:
 
 
 @dataclass(frozen=True, slots=True)
+class ConformCase:
+    """A component on which ``quintet conform`` tries the laws of the contract.
+
+    Parameters
+    ----------
+    name : str
+    params : dict, or function of a folder
+        A scene's table for this kind; or what makes it, and the data files that it names, in an
+        empty folder.
+    static : mapping of arrays
+        Static fields of partners, as `Component.bind` gets them.
+    rest : mapping of arrays
+        Inputs under which nothing happens. Ports that it takes are joined if their fields stand
+        here or in `static`.
+    scale : mapping of float
+        How far each of these fields is moved from rest, at random, in its unit; of a rotation in
+        rad.
+    dt : float, s
+        Step that is tried, and halved.
+    still : bool
+        Whether it stays as it is at rest.
+    smooth : bool
+        Whether its answer to constant inputs is smooth in time, so that two half steps come ever
+        nearer to one.
+    any_time : bool
+        Whether it can give after a step of any size.
+    forces : tuple of str
+        Forces that it takes, and those that it gives to its partners, if nothing else changes its
+        momentum; else empty.
+    activity : mapping of tuples of str
+        Of a field ``active``: ports whose items it is about, beside its own.
+    """
+
+    name: str
+    params: dict[str, Any] | Callable[[Path], dict[str, Any]]
+    static: Fields = field(default_factory=dict)
+    rest: Fields = field(default_factory=dict)
+    scale: Mapping[str, float] = field(default_factory=dict)
+    dt: float = 1e-3
+    still: bool = True
+    smooth: bool = True
+    any_time: bool = True
+    forces: tuple[str, ...] = ()
+    activity: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class Manifest:
     """A kind: its parameters, its ports, and where its class is.
 
-    ``ports`` and ``plan`` are functions of the checked parameters; ``bench`` names a function
-    that returns a tuple of `BenchCase`.
+    ``ports`` and ``plan`` are functions of the checked parameters; ``bench`` and ``conform`` name
+    functions that return tuples of `BenchCase` and `ConformCase`.
     """
 
     kind: str
@@ -54,6 +103,7 @@ class Manifest:
     ports: Callable[[Any], Ports]
     plan: Callable[[Any], Plan] | None = None
     bench: str = ""  # "module:function"
+    conform: str = ""  # "module:function"
 
     def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
@@ -65,6 +115,27 @@ class Manifest:
     def cases(self) -> tuple[BenchCase, ...]:
         """Benchmarks of this kind, none if it declares none."""
         return tuple(resolve(self.bench)()) if self.bench else ()
+
+    def conform_cases(self) -> tuple[ConformCase, ...]:
+        """What the laws of the contract are tried on: none if neither it nor its class says."""
+        if self.conform:
+            return tuple(resolve(self.conform)())
+        own = getattr(self.load(), "conform_cases", None)
+        return tuple(own()) if own else ()
+
+
+_looked_in: list[str] = []  # folders that `look_in` has put on the import path
+
+
+def look_in(folders: Iterable[str]) -> None:
+    """Look for modules of components in these folders too, after all that is installed.
+
+    A file there must never stand for a module of Python or of a package that has its name.
+    """
+    own = [path for path in sys.path if path not in _looked_in]
+    new = [folder for folder in dict.fromkeys(folders) if folder not in own]
+    _looked_in[:] = [*new, *(folder for folder in _looked_in if folder not in new)]
+    sys.path[:] = [*own, *_looked_in]
 
 
 def resolve(path: str) -> Any:

@@ -17,9 +17,17 @@ import difflib
 import json
 import re
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Annotated, Any, dataclass_transform, get_args
 
-from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import (
+    AfterValidator,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+)
 from pydantic.dataclasses import dataclass
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -29,6 +37,20 @@ Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
 Vector = tuple[Number, Number, Number]
 PositiveVector = tuple[Positive, Positive, Positive]
+
+
+def _data_file(name: str, info: ValidationInfo) -> str:
+    """Return the path of a file that lies in the scene's folder."""
+    path = Path((info.context or {}).get("folder", "")) / name
+    if not path.is_file():
+        raise ValueError(
+            f"file {name} must lie beside the scene; in its folder there is none. Put it there, "
+            "or correct its name."
+        )
+    return str(path)
+
+
+DataFile = Annotated[str, AfterValidator(_data_file)]  # named from the scene's folder on
 
 
 TAG = re.compile(r"constrained-\w+|literal\[.*\]")  # what pydantic adds to a place
@@ -41,12 +63,27 @@ def parameters(cls: type) -> Any:
     return dataclass(frozen=True, kw_only=True, config=config)(cls)
 
 
-def read(params: type, given: dict[str, Any], where: str) -> tuple[Any, list[str]]:
-    """Check settings against a parameter class; return it filled, or None and every mistake."""
+def read(
+    params: type, given: dict[str, Any], where: str, folder: Path | None = None
+) -> tuple[Any, list[str]]:
+    """Check settings against a parameter class; return it filled, or None and every mistake.
+
+    Parameters
+    ----------
+    params : type
+        Made by `parameters`.
+    given : dict
+        The settings, as they stand in a scene.
+    where : str
+        What the settings are called in sentences.
+    folder : Path, by default the working folder
+        Where their data files lie.
+    """
     try:
         # Strict checking of JSON takes lists for tuples, but no text for numbers.
         text = json.dumps(given)
-        return TypeAdapter(params).validate_json(text, strict=True), []
+        context = {"folder": folder or Path()}
+        return TypeAdapter(params).validate_json(text, strict=True, context=context), []
     except ValidationError as error:
         found = _by_place(error.errors())
         return None, [_sentence(params, where, one) for one in _without_old(params, found)]

@@ -1,15 +1,23 @@
 """The ports that solvers of several kinds share, so that any of them fits any link."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import asdict, replace
 from typing import Any
 
 from quintet.interfaces.component import Field, Port
+from quintet.interfaces.units import UNITS, add_unit
 
 POSITION = Field("position", (3,), "m", rate="velocity")
 VELOCITY = Field("velocity", (3,), "m/s")
-FORCE = Field("force", (3,), "N", "impulse")
+FORCE = Field("force", (3,), "N", "impulse", works_with="velocity")
+TORQUE = Field("torque", (3,), "N m", "impulse", works_with="angular_velocity")
+ORIENTATION = Field("orientation", (4,), "1", rate="angular_velocity", kind="rotation")
+ANGULAR_VELOCITY = Field("angular_velocity", (3,), "rad/s")
+TEMPERATURE = Field("temperature", (), "K")
+HEAT_FLOW = Field("heat_flow", (), "W", "impulse")  # into the side that takes it
+# Of items that may die, as an eroded face: 1, and 0 for good from then on.
+ACTIVE = Field("active", (), "1", kind="flag")
 
 # Moving surface samples, whoever moves them: taken by fluids, which push back with a force on each.
 SURFACE = Port(
@@ -34,22 +42,42 @@ MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,
 CONTACT = Field("contact", (), "1")
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 
+# Said by solvers in two dimensions: 2. All that they hold lies in the plane of x and z and is 1 m
+# deep along y, so that a body's volume is its area times 1 m. Positions keep three numbers; a
+# surface is sampled by one row of points in the plane, each standing for 1 m of depth, and forces
+# and torques are those on 1 m. Solvers that do not say it have three dimensions.
+DIMENSIONS = Field("dimensions", (), "1")
+
+# Shapes of rigid bodies: OTHER ones cannot be sampled; discs and polygons are of two dimensions.
+SPHERE, BOX, OTHER, DISC, POLYGON = range(5)
 # Rigid bodies: given by whatever moves them, loaded by a force and a torque about the centre.
 MOTION = Port(
     "motion",
     fields=(
         POSITION,
         VELOCITY,
-        Field("orientation", (4,), "1"),  # unit quaternion w, x, y, z: body -> world
-        Field("angular_velocity", (3,), "rad/s"),
+        ORIENTATION,  # unit quaternion w, x, y, z: body -> world
+        ANGULAR_VELOCITY,
     ),
     static=(
-        Field("shape", (), "1"),  # 0 sphere, 1 box
-        Field("size", (3,), "m"),  # edges of a box; diameter of a sphere, three times
+        Field("shape", (), "1"),  # one of the above
+        Field("size", (3,), "m"),  # edges of a box; diameter of a sphere, three times; see below
         Field("mass", (), "kg"),
     ),
 )
-LOAD = Port("load", fields=(FORCE, Field("torque", (3,), "N m", "impulse")))
+# The same of bodies in two dimensions. Their size is how far they reach along x and z, and 1 m
+# along y. Polygons are convex; their corners, from the centre in the body's frame, stand one body
+# after another, each going round from x to z.
+PLANAR_MOTION = replace(
+    MOTION,
+    static=(
+        *MOTION.static,
+        DIMENSIONS,
+        Field("corners", (), "1"),  # how many corners each body has; a disc 0
+        Field("corner", (3,), "m"),  # (corners of all bodies, 3)
+    ),
+)
+LOAD = Port("load", fields=(FORCE, TORQUE))
 
 # Meshes: faces that move, loaded at their nodes.
 MESH = (
@@ -61,14 +89,37 @@ NODE_LOAD = Port("node_load", fields=(FORCE,), static=(Field("added_mass", (), "
 
 # Glue: particles that hang on the nodes of a mesh. Velocities cross as impulses, that is as
 # displacements over the window, so that both sides move by the same amount.
-DRIFT = Field("velocity", (3,), "m/s", "impulse")
-NODE_GLUE = Port("node_glue", fields=(DRIFT,), static=MESH)
-GLUED = Port("glued", fields=(DRIFT,))
+DISPLACEMENT_RATE = Field("velocity", (3,), "m/s", "impulse")
+NODE_GLUE = Port("node_glue", fields=(DISPLACEMENT_RATE,), static=MESH)
+GLUED = Port("glued", fields=(DISPLACEMENT_RATE,))
 GLUED_LOAD = Port(
     "glued_load",
     fields=(FORCE,),
     static=(Field("position", (3,), "m"), Field("mass", (), "kg")),
 )
+
+# Of meshes whose faces may erode, and of the particles that hang on them: these are then free.
+FACE_ACTIVITY = Port("face_activity", fields=(ACTIVE,))
+GLUE_ACTIVITY = Port("glue_activity", fields=(ACTIVE,))
+
+# Conduction: one side holds its wall at a temperature, the other answers with the heat that it
+# conducts away. Walls are points (the bath of a particle lattice), meshes take heat at nodes.
+NODE_TEMPERATURE = Port("node_temperature", fields=(TEMPERATURE,), static=MESH)
+NODE_HEAT = Port("node_heat", fields=(HEAT_FLOW,))
+WALL_TEMPERATURE = Port("wall_temperature", fields=(TEMPERATURE,))
+WALL_HEAT = Port(  # what leaves through the wall
+    "wall_heat", fields=(HEAT_FLOW,), static=(Field("position", (3,), "m"),)
+)
+
+
+def only_fields(ports: Iterable[Port], keys: Container[str]) -> tuple[Port, ...]:
+    """Ports with those of their fields whose key ``"port.field"`` is among `keys`."""
+    kept = []
+    for port in ports:
+        fields = tuple(one for one in port.fields if f"{port.name}.{one.name}" in keys)
+        if fields:
+            kept.append(replace(port, fields=fields))
+    return tuple(kept)
 
 
 def to_json(ports: Iterable[Port]) -> str:
@@ -85,4 +136,7 @@ def from_json(text: str) -> tuple[Port, ...]:
 def _fields(value: Any) -> Any:
     if not isinstance(value, list):
         return value
+    for one in value:
+        if one["unit"] not in UNITS:  # of a kind that is not installed here
+            add_unit(one["unit"], f"{one['unit']} s" if one["centring"] == "impulse" else "")
     return tuple(Field(**{**one, "shape": tuple(one["shape"])}) for one in value)

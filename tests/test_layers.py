@@ -30,7 +30,7 @@ FLOORS = {
         {"scene"},
         {"launch", "report"},
         {"run"},
-        {"study", "bench"},
+        {"study", "bench", "conform"},
         {"cli", "python"},
     ],
 }

@@ -8,7 +8,9 @@ import numpy as np
 
 from quintet.components.dem_bodies.contact import materials
 from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
+from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.placement import (
+    ROUNDED,
     bounding_radius,
     contact_spheres,
     cover,
@@ -27,15 +29,13 @@ from quintet.components.dem_bodies.state import (
     State,
     Whole,
 )
+from quintet.components.shared.polygons import area_moments
 
-SKIN = 0.4  # over the smallest contact radius: pairs nearer than that are listed
+SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
+THIN = 0.1  # of a box's longest edge: what is thinner is listed as if it were not
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
 # Pairs of corners that differ in one coordinate.
 EDGES = np.array([(k, k + step) for step in (1, 2, 4) for k in range(8) if not k & step])
-# Corners around each face, seen from outside.
-FACES = np.array(
-    [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-)
 
 
 class Solid(NamedTuple):
@@ -49,7 +49,7 @@ class Solid(NamedTuple):
 
 
 def solid(body: Body) -> Solid:
-    """Measure a body: a clump of spheres by voxels, all others exactly."""
+    """Measure a body: a union of spheres by voxels, all others exactly."""
     if body.size is not None:
         size = np.array(body.size)
         volume = float(size.prod())
@@ -59,7 +59,12 @@ def solid(body: Body) -> Solid:
     else:
         centres, radii = contact_spheres(body)
         size = np.ptp(np.vstack([centres - radii[:, None], centres + radii[:, None]]), axis=0)
-        if body.diameter is not None:
+        if body.shape in planar.SHAPES:
+            volume, inertia = planar_inertia(body)
+            if body.corners is not None:
+                size[[0, 2]] = np.ptp(planar.corners(body), axis=0)
+            size[1] = 1.0
+        elif body.diameter is not None:
             volume = np.pi / 6.0 * body.diameter**3
             inertia = np.eye(3) * volume * body.diameter**2 / 10.0
         elif (covered := cover(body)) is not None:
@@ -70,6 +75,34 @@ def solid(body: Body) -> Solid:
     density = body.density if body.mass is None else body.mass / volume
     assert density is not None
     return Solid(density * volume, density * inertia, centres, radii, size)
+
+
+def planar_inertia(body: Body) -> tuple[float, Numbers]:
+    """Volume [m3] of 1 m along y, and inertia at unit density: about all axes that about y."""
+    if body.diameter is not None:
+        area, moment = np.pi / 4.0 * body.diameter**2, np.pi / 32.0 * body.diameter**4
+    else:
+        area, _, moment = area_moments(planar.corners(body))
+    return area, moment * np.eye(3)
+
+
+def skin(bodies: Sequence[Body], solids: Sequence[Solid]) -> float:
+    """Distance [m] within which pairs are listed.
+
+    It follows the smallest contact radius; but the edge radius of a sharp box, or of a thin plate,
+    is no measure of how far it goes before it touches, and lists would be renewed at every step.
+    """
+    return SKIN * min(map(contact_length, bodies, solids))
+
+
+def contact_length(body: Body, one: Solid) -> float:
+    """Smallest contact radius [m]; of a box at least that of a rounded, less slender one."""
+    radius = float(one.radii.min())
+    if body.corners is not None:
+        return max(radius, ROUNDED * max(planar.shortest_edge(body), THIN * float(one.size.max())))
+    if body.size is None:
+        return radius
+    return max(radius, ROUNDED * max(min(body.size), THIN * max(body.size)))
 
 
 def material_pairs(params: DemBodiesParams) -> Numbers:
@@ -121,6 +154,8 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
             rounded[k] = edge_radius(body)
             half[k] = 0.5 * np.array(body.size) - rounded[k]
             edges[k + 1] = len(EDGES)
+        elif body.corners is not None:
+            rounded[k] = edge_radius(body)
     material = [names[body.material] for body in bodies] + [0]
     balls = [body.diameter is not None for body in bodies]
     first = np.cumsum(counts)
@@ -138,6 +173,7 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
         others=np.flatnonzero(~np.array(balls)),
         half_extent=half,
         edge_radius=rounded,
+        polygon=np.array([*(body.corners is not None for body in bodies), False]),
         bounding_radius=np.array([bounding_radius(body) for body in bodies]),
         material=np.array(material),
         kind=kinds(solids, material),
@@ -222,7 +258,7 @@ def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
         k = names.index(body.material)
         lightest[k] = max(lightest[k], largest_inverse_effective_mass(one))
         largest[k] = max(largest[k], one.radii.max())
-    boxes = any(body.shape == "box" for body in params.bodies)
+    boxes = any(body.shape in ("box", "polygon") for body in params.bodies)
     found = []
     for i in np.flatnonzero(lightest):
         for j in np.flatnonzero(lightest):

@@ -9,6 +9,7 @@ from quintet.components.dem_bodies import build, kernels
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.contact import ball_search, search
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
+from quintet.components.dem_bodies.diagnostics import ALLOWED_DEPTH, contact_points, failure
 from quintet.components.dem_bodies.integration.step_limit import (
     count_ball_contacts,
     count_contacts,
@@ -16,17 +17,31 @@ from quintet.components.dem_bodies.integration.step_limit import (
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import ports
-from quintet.components.shared.threads import Team, threads_wanted
-from quintet.interfaces.component import Array, Component, Fields, Totals
+from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.view import view
+from quintet.components.shared.threads import Team
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Array,
+    Component,
+    Fields,
+    Keys,
+    Resources,
+    Totals,
+)
 from quintet.interfaces.errors import StepError
+from quintet.interfaces.ports import BOX, DISC, OTHER, POLYGON, SPHERE
 
-DEEPEST = 0.5  # overlap over contact radius; Hertz's law is for small ones
-# As ports.MOTION gives them; 2 is our own.
-SHAPES = {"sphere": 0.0, "box": 1.0, "spheres": 2.0, "agglomerate": 2.0}
+SHAPES = {
+    "sphere": SPHERE, "box": BOX, "spheres": OTHER, "agglomerate": OTHER,
+    "disc": DISC, "polygon": POLYGON,
+}  # fmt: skip
+LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 FEWEST = 8  # blocks of rows that are worth handing to another thread
 SHARED = (kernels.DRIFT, kernels.BALLS, kernels.KICK)  # stages of a step that threads share out
 # Of the port, in the order that kernels.copy_motion takes.
 MOTION = ("motion.position", "motion.velocity", "motion.orientation", "motion.angular_velocity")
+CONTACT_FIELDS = ("contact.force", "contact.torque")
 # Of the pairs of balls; the rest follows from these.
 SAVED = ("begin", "partner", "history", "rolling_moment", "force")
 
@@ -49,7 +64,7 @@ class DemBodies(Component):
         Bodies, materials, planes.
     """
 
-    def __init__(self, params: DemBodiesParams) -> None:
+    def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params = params
         self.takes, self.gives = ports(params)
         self.solids = [build.solid(body) for body in params.bodies]
@@ -63,10 +78,10 @@ class DemBodies(Component):
         self.loaded = False  # whether any body has a load
         self.accumulated = Accumulated()
         self.count = len(self.solids)
-        several = threads_wanted() > 1 and len(self.sums) >= 2 * FEWEST
-        self.team = Team(threads_wanted() if several else 1, FEWEST, 1)
+        several = resources.threads > 1 and len(self.sums) >= 2 * FEWEST
+        self.team = Team(resources.threads if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
-        self.skin = build.SKIN * float(self.model.sphere_radius.min())  # m
+        self.skin = build.skin(params.bodies, self.solids)  # m
         self.frequency = build.expected_frequency(params, self.solids)  # rad/s
         self.damping = float(self.model.material_pairs[:, :, 2].max())  # ζ of the most damped
         self.contacts = np.zeros(self.count + 1, np.int64)  # of each row
@@ -74,12 +89,16 @@ class DemBodies(Component):
         self._move(0.0)
 
     def describe(self) -> Fields:
-        """State shapes, sizes, masses; all unions of spheres are shape 2 with the box around."""
-        return {
-            "motion.shape": np.array([SHAPES[body.shape] for body in self.params.bodies]),
+        """State shapes, sizes, masses, corners; unions of spheres have the box around them."""
+        bodies = self.params.bodies
+        stated: dict[str, Array] = {
+            "motion.shape": np.array([float(SHAPES[body.shape]) for body in bodies]),
             "motion.size": np.array([one.size for one in self.solids]),
             "motion.mass": self.mass.copy(),
         }
+        if self.params.dimensions == 2:
+            stated |= planar.describe(bodies)
+        return stated
 
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
@@ -117,6 +136,8 @@ class DemBodies(Component):
         load, row = self.state.load, self.state.row[: self.count]
         load[row, :3] = 0.0 if force is None else force
         load[row, 3:] = 0.0 if torque is None else torque
+        if self.params.dimensions == 2:
+            load[:, LEAVE_PLANE] = 0.0
         self.loaded = bool(load.any())
 
     def step(self, dt: float) -> None:
@@ -139,8 +160,8 @@ class DemBodies(Component):
                 self._list()
                 stage = kernels.BALLS
         report = self.state.report
-        if not (report[rows.DEEPEST] <= DEEPEST and math.isfinite(report[rows.CONTACT_WORK])):
-            self._refuse(dt)
+        if not (report[rows.DEEPEST] <= ALLOWED_DEPTH and math.isfinite(report[rows.CONTACT_WORK])):
+            raise self._failure(dt)
 
     def _advance(self, stage: int, dt: float) -> int:
         """Run all stages from one on; with several threads, that one. Return the next one."""
@@ -154,7 +175,7 @@ class DemBodies(Component):
 
     def _list(self) -> None:
         if not np.isfinite(self.state.position).all():
-            self._refuse(0.0)
+            raise self._failure(0.0)
         pairs, asked = (self.balls, self.others), self.params.contact_forces
         self.balls, self.others = search.list_pairs(
             self.model, self.state, *pairs, self.skin, asked
@@ -162,48 +183,23 @@ class DemBodies(Component):
         self.most_contacts = self._most_listed()
         self.sums[:, rows.TRAVEL] = 0.0
 
-    def _refuse(self, dt: float) -> None:
-        """End the run with the body that is wrong and what to do."""
-        after = f"dem_bodies, t = {self.accumulated.time + dt:.6g} s"
-        s, m = self.state, self.count
-        good = np.isfinite(s.motion.sum(axis=1))[s.row]
-        if not good.all():
-            k = int(np.argmin(good))
-            a = s.row[k]
-            raise StepError(
-                f"{after}: the state must stay finite; body {k} is at {s.position[a].tolist()} m "
-                f"with {s.velocity[a].tolist()} m/s under a load of {s.load[a].tolist()} N, N m. "
-                "Look at the load it was given, or make steps_per_contact larger."
-            )
-        deepest, (i, j) = s.report[rows.DEEPEST], self._pair(int(s.report[rows.DEEPEST_PAIR]))
-        other = f"body {j}" if j < m else "a plane"
-        raise StepError(
-            f"{after}: a contact may be {DEEPEST} of its radius deep; body {i} is {deepest:.3g} of "
-            f"it deep in {other}, near {s.position[s.row[i]].round(4).tolist()} m. Make "
-            "youngs_modulus or edge_radius larger, or impact_speed nearer to that of the impacts."
-        )
+    def _failure(self, dt: float) -> StepError:
+        return failure(self.state, self.balls, self.others, self.accumulated.time + dt)
 
-    def _pair(self, pair: int) -> tuple[int, int]:
-        """Bodies of a pair as the report numbers them; planes are beyond all bodies."""
-        count = len(self.balls.partner)
-        if pair < count:
-            return ball_search.deepest_pair(self.state, self.balls)
-        touching = self.others.touching
-        i, j = self.state.body[touching[touching[:, 0] == pair - count][0, 1:3]]
-        return int(i), int(j)
-
-    def give(self) -> Fields:
-        """Copy out the motion of all bodies; if asked for, what contacts did in the last step."""
-        s, n = self.state, self.count
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out the motion of all bodies; if wanted, what contacts did in the last step."""
+        s, n, found = self.state, self.count, dict[str, Array]()
+        if not wanted.isdisjoint(CONTACT_FIELDS):
+            # The mean of both ends gives the change of momentum to rounding.
+            mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
+            found = {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
+        if wanted.isdisjoint(MOTION):
+            return {key: found[key] for key in wanted}
         # One piece of memory, for pieces of their own are fetched from the system at every call.
         parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
         motion = dict(zip(MOTION, (part.reshape(n, -1) for part in parts), strict=True))
         kernels.copy_motion(s, *motion.values())
-        if not self.params.contact_forces:
-            return motion
-        # The mean of both ends gives the change of momentum to rounding.
-        mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
-        return {**motion, "contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
+        return {key: array for key, array in (found | motion).items() if key in wanted}
 
     def contact_points(self) -> Fields:
         """List what touched in the last step, of bodies with `contact_forces`.
@@ -217,17 +213,7 @@ class DemBodies(Component):
         """
         if not self.params.contact_forces:
             raise ValueError("contact_forces must be true to list contacts; found false. Set it.")
-        others = self.others
-        count = int(self.state.report[rows.TOUCHING])
-        geometry, bodies = others.geometry[:count], self.state.body[others.touching[:count, 1:3]]
-        found = ball_search.touching_balls(self.model, self.state, self.balls)
-        return {
-            "bodies": np.vstack([found.bodies, bodies]),
-            "point": np.vstack([found.point, geometry[:, 3:6]]),
-            "normal": np.vstack([found.normal, geometry[:, :3]]),
-            "force": np.vstack([found.force, geometry[:, 8:]]),
-            "depth": np.append(found.depth, geometry[:, 6]),
-        }
+        return contact_points(self.model, self.state, self.balls, self.others)
 
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, what was added up."""
@@ -280,22 +266,7 @@ class DemBodies(Component):
 
     def view(self) -> Fields:
         """Corners and faces of boxes, centres of spheres, with body number and velocity."""
-        points: list[Array] = []
-        owners: list[int] = []
-        faces: list[Array] = []
-        for k, (body, a) in enumerate(zip(self.params.bodies, self.state.row, strict=False)):
-            corners = self.solids[k].centres
-            if body.size is not None:
-                corners = build.CORNERS * 0.5 * np.array(body.size)
-                faces.append(build.FACES + len(owners))
-            axes = self.state.axes[a].reshape(3, 3)
-            points.append(self.state.position[a] + corners @ axes.T)
-            owners += [k] * len(corners)
-        where, owner = np.vstack(points), np.array(owners)
-        row = self.state.row[owner]
-        turning = np.cross(self.state.angular_velocity[row], where - self.state.position[row])
-        shown = {"points": where, "body": owner, "velocity": self.state.velocity[row] + turning}
-        return shown | ({"cells": np.vstack(faces)} if faces else {})
+        return view(self.params.bodies, self.solids, self.state)
 
     def items(self) -> int:
         """Count the bodies."""

@@ -70,13 +70,37 @@ def first_step_weight(share: float) -> float:
     That force grows as t^{1/4} from the moment of touching, a `share` of the step ago. Two
     trapezia would miss its impulse over this step and the next, 4/5 (1 + share)^{5/4}, by more
     than all other errors of an impact, and differently with every share.
+
+    Parameters
+    ----------
+    share : float, 0 to 1
+        Part of the step since the bodies touched.
+
+    Returns
+    -------
+    float
     """
     return ((1.0 + share) / share) ** 0.25 * (0.8 * share + 0.3)
 
 
 @njit(**INNER)
 def rotate_tangential_force(force: Vector, normal: Vector, scale: float) -> Vector:
-    """Elastic tangential force [N] in the contact plane that has turned, times a scale."""
+    """Elastic tangential force in the plane of contact that has rotated.
+
+    Parameters
+    ----------
+    force : (3,) N
+        Of the last step.
+    normal : (3,)
+        Present unit normal.
+    scale : float
+        By which the force changes as the contact does.
+
+    Returns
+    -------
+    (3,) N
+        In the plane of contact, `scale` times as large as before.
+    """
     x, y, z = axpy(-dot(force, normal), normal, force)
     scale *= math.sqrt(dot(force, force) / max(x * x + y * y + z * z, LEAST))
     return scale * x, scale * y, scale * z
@@ -86,10 +110,29 @@ def rotate_tangential_force(force: Vector, normal: Vector, scale: float) -> Vect
 def limit_friction(
     elastic: Vector, slip: Vector, damping: float, limit: float
 ) -> tuple[Vector, Vector]:
-    """Tangential force [N] and its elastic part, within Coulomb's limit; slip velocity in m/s.
+    """Tangential force and its elastic part, within Coulomb's limit.
 
     Spring and damper slip by the same share. To give the spring the whole force would store
     energy that only the damper has taken.
+
+    Parameters
+    ----------
+    elastic : (3,) N
+        Of the spring, were there no limit.
+    slip : (3,) m/s
+        Tangential velocity of the first body over the other.
+    damping : float, N s/m
+    limit : float, N
+        μ F_n.
+
+    Returns
+    -------
+    force, elastic : (3,) N
+
+    References
+    ----------
+    Mindlin & Deresiewicz (1953), J. Appl. Mech. 20, 327 (the spring); Tsuji, Tanaka & Ishida
+    (1992), Powder Technol. 71, 239 (the damper).
     """
     x, y, z = axpy(-damping, slip, elastic)
     share = limit / max(max(math.sqrt(x * x + y * y + z * z), limit), LEAST)
@@ -99,7 +142,22 @@ def limit_friction(
 
 @njit(**INNER)
 def damping_weight(before: float, depth: float, closing: float, dt: float) -> float:
-    """Weight of the damping force: 1, but in the step in which a contact begins."""
+    """Weight of the damping force: 1, but in the step in which a contact begins.
+
+    Parameters
+    ----------
+    before : float, m^-1/2
+        1/√δ of the last step; 0 in a contact that begins.
+    depth : float, m
+        Present overlap.
+    closing : float, m/s
+        Velocity at which the bodies approach each other.
+    dt : float, s
+
+    Returns
+    -------
+    float
+    """
     if before == 0.0 and depth > 0.0 and closing * dt > 0.0:
         return first_step_weight(min(1.0, depth / (closing * dt)))
     return 1.0
@@ -165,7 +223,17 @@ def contact_force(
 
 @njit(**INNER)
 def limit_rolling(spring: Vector, dashpot: Vector, limit: float) -> tuple[Vector, Vector]:
-    """Rolling moment [N m] and its elastic part: a spring that yields, then without dashpot.
+    """Rolling moment and its elastic part: a spring that yields, then without dashpot.
+
+    Parameters
+    ----------
+    spring, dashpot : (3,) N m
+    limit : float, N m
+        μ_r R* F_n.
+
+    Returns
+    -------
+    moment, spring : (3,) N m
 
     References
     ----------

@@ -7,8 +7,10 @@ from pydantic import Field
 
 from quintet.components.dem_bodies.shapes import placement
 from quintet.components.dem_bodies.shapes.description import check_body
+from quintet.components.dem_bodies.shapes.planar import check_plane
 from quintet.interfaces.params import (
     Count,
+    DataFile,
     NotNegative,
     Number,
     Positive,
@@ -103,7 +105,7 @@ class Agglomerate:
     Parameters
     ----------
     file : str
-        STL, OBJ, PLY, or voxels as .npy; beside the scene.
+        STL, OBJ, PLY, or voxels as .npy; named from the scene's folder on.
     scale : float, m, > 0, by default 1
         What one unit of length in the file, or one voxel, stands for.
     dim : int, ≥ 2
@@ -111,7 +113,7 @@ class Agglomerate:
     sphere_radius : float, m, > 0
     """
 
-    file: str
+    file: DataFile
     scale: Positive = 1.0
     dim: Annotated[int, Field(ge=2)]
     sphere_radius: Positive
@@ -123,20 +125,24 @@ class Body:
 
     Parameters
     ----------
-    shape : "box", "sphere", "spheres" or "agglomerate"
+    shape : "box", "sphere", "spheres" or "agglomerate"; in two dimensions "disc" or "polygon"
     size : three float, m, > 0
         Edges of a box.
     edge_radius : float, m, > 0, by default 5 % of the shortest edge
-        Radius of a box's edges and corners; less than half the shortest edge.
+        Radius of a box's edges and corners, or of a polygon's corners; less than half the shortest
+        edge of a box.
     diameter : float, m, > 0
-        Of a sphere.
+        Of a sphere or disc.
+    corners : three or more times two float, m
+        x and z of a convex polygon's corners, in order round it, in any frame along the body's
+        axes: they are moved so that the centre of mass is the origin.
     centres, radii : n times three float, and n float > 0, m
         Of spheres that are one body, in any frame along the body's axes: they are moved so that
         the centre of mass of their union is the origin.
     agglomerate : Agglomerate
         Its centre of mass is the origin too.
     density, mass : float, kg/m3 or kg, > 0
-        Exactly one of both.
+        Exactly one of both; in two dimensions the mass is that of 1 m along y.
     material : str
         One of the materials.
     position : three float, m
@@ -161,10 +167,11 @@ class Body:
         "dim": "agglomerate.dim",
         "radius": "agglomerate.sphere_radius",
     }
-    shape: Literal["box", "sphere", "spheres", "agglomerate"]
+    shape: Literal["box", "sphere", "spheres", "agglomerate", "disc", "polygon"]
     size: PositiveVector | None = None
     edge_radius: Positive | None = None
     diameter: Positive | None = None
+    corners: tuple[tuple[Number, Number], ...] | None = None
     centres: tuple[Vector, ...] | None = None
     radii: tuple[Positive, ...] | None = None
     agglomerate: Agglomerate | None = None
@@ -206,6 +213,9 @@ class DemBodiesParams:
     bodies : list of Body, at least one
     materials : table of Material, by their names
     planes : list of Plane, by default none
+    dimensions : 2 or 3, by default 3
+        In two all bodies are discs and polygons in the plane of x and z, 1 m deep along y, and move
+        in it.
     pairs : list of Pair, by default none
     gravity : three float, m/s2, by default 0, 0, -9.81
     impact_speed : float, m/s, > 0, by default 1
@@ -224,6 +234,7 @@ class DemBodiesParams:
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
     materials: dict[str, Material]
     planes: tuple[Plane, ...] = ()
+    dimensions: Literal[2, 3] = 3
     pairs: tuple[Pair, ...] = ()
     gravity: Vector = (0.0, 0.0, -9.81)
     impact_speed: Positive = 1.0
@@ -248,6 +259,7 @@ class DemBodiesParams:
             for name in pair.between:
                 self._known(f"pairs[{k}].between", name)
         object.__setattr__(self, "bodies", placement.with_copies(self.bodies))
+        check_plane(self)
         check_pairs(self.pairs)
         placement.check(self.bodies, self.planes)
 

@@ -3,7 +3,7 @@
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.interfaces.component import Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import LOAD, MOTION
+from quintet.interfaces.ports import LOAD, MOTION, PLANAR_MOTION
 
 # Of all contacts of a body; the last item is the load on all planes together.
 CONTACT = Port("contact", LOAD.fields)
@@ -11,4 +11,5 @@ CONTACT = Port("contact", LOAD.fields)
 
 def ports(params: DemBodiesParams) -> Ports:
     """Ports taken and given."""
-    return (LOAD,), (MOTION, CONTACT) if params.contact_forces else (MOTION,)
+    motion = PLANAR_MOTION if params.dimensions == 2 else MOTION
+    return (LOAD,), (motion, CONTACT) if params.contact_forces else (motion,)

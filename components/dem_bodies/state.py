@@ -16,7 +16,7 @@ Numbers = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Short = NDArray[np.uint32]
 
-# Kinds of contact: of a sphere with a plane, a sphere or a box; of two edges.
+# Kinds of contact: of a sphere with a plane, a sphere, a box or polygon; of two edges.
 SPHERE_PLANE, SPHERE_SPHERE, SPHERE_BOX, EDGE_EDGE = range(4)
 KIND, FIRST = 60, 30  # bits of a pair's key: kind, first, second; sorted keys keep kinds together
 
@@ -31,7 +31,8 @@ class Model(NamedTuple):
     ball: NDArray[np.bool_]  # (n,) whether the body is one sphere
     others: Whole  # (o,) rows of the bodies that are no balls
     half_extent: Numbers  # (n, 3) m, half edges of a box less its edge radius; 0 for others
-    edge_radius: Numbers  # (n,) m, of a box; 0 for others
+    edge_radius: Numbers  # (n,) m, of a box or polygon; 0 for others
+    polygon: NDArray[np.bool_]  # (n,) whether the body is a polygon, whose spheres are its corners
     bounding_radius: Numbers  # (m,) m, radius of a sphere about the centre that holds the body
     material: Whole  # (n,) number of the material
     kind: Whole  # (n,) number that bodies of one radius, mass and material share
@@ -93,7 +94,7 @@ class BallPairs(NamedTuple):
     partner: Short  # (pairs,) row of the other ball, or n + number of the plane
     constants_row: Short  # (pairs,)
     constants: Numbers  # (kinds of pairs, 7) see laws
-    history: Numbers  # (pairs, 4) elastic tangential force on the ball [N], 1/√δ; 0 if apart
+    history: Numbers  # (4, pairs) elastic tangential force on the ball [N], 1/√δ; 0 without contact
     rolling_moment: Numbers | None  # (pairs, 3) N m, elastic, on the ball; None if none resists
     force: Numbers  # (pairs, 3) N, on the ball; (0, 3) if nothing asks for it
     outgoing: Numbers  # (sent, 6) N and N m, on partners in later blocks, in the order of the pairs
@@ -129,7 +130,7 @@ CONTACT_WORK = 5  # J, done by contacts on bodies in the step
 LARGEST_SPEED = 6  # m/s, bound of the speed of any point
 LARGEST_ACCELERATION = 7  # m/s2, bound for any point, by gravity and load
 LOAD_WORK = 8  # J, done by loads in the step
-TRAVEL = 9  # m2, square of the longest way of any sphere since pairs were listed
+TRAVEL = 9  # m2, square of the largest displacement of any sphere since pairs were listed
 TOUCHING = 10  # number of contacts that touch, those of balls not counted
 REPORTED = 11
 

@@ -5,18 +5,12 @@ number of threads changes no bit. Kernels release Python's lock; unlike numba's 
 components of one process may run at once, and kernels compile in a fraction of the time.
 """
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 FEWEST = 1000  # rows that are worth handing to another thread
 SHARES = 16  # of each thread, for rows differ in cost: walls and spray take less than half
-
-
-def threads_wanted() -> int:
-    """Threads that this process was told to use; one, if it was told nothing."""
-    return max(1, int(os.environ.get("NUMBA_NUM_THREADS", "1")))
 
 
 class Team:

@@ -90,4 +90,5 @@ MANIFEST = Manifest(
     ports=ports,
     plan=_plan,
     bench="quintet.components.sph_fluid.bench:cases",
+    conform="quintet.components.sph_fluid.conform:cases",
 )

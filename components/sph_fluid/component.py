@@ -5,8 +5,9 @@ from functools import partial
 
 import numpy as np
 
-from quintet.components.shared.threads import Team, threads_wanted
+from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import build, diagnostics, features
+from quintet.components.sph_fluid.boundary.planar import in_plane, require_one_metre
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.integration.method import Moved, StepTask
 from quintet.components.sph_fluid.kernels import write_pressure
@@ -15,17 +16,19 @@ from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import ports
-from quintet.components.sph_fluid.state import State
-from quintet.interfaces.component import Component, Fields, Totals
-from quintet.interfaces.errors import OrderError, PortError, StepError
+from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.errors import OrderError, StepError
+
+LOADS = frozenset({"surface_load.force"})
 
 
 class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
 
-    def __init__(self, params: SphFluidParams) -> None:
+    def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, ports(params)
-        self.team, self.constants = Team(threads_wanted()), constants(params)
+        self.team, self.constants = Team(resources.threads), constants(params)
         self.state, self.samples = build.state(params), Samples()
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)
@@ -44,17 +47,18 @@ class SphFluid(Component):
     def describe(self) -> Fields:
         """At which spacing, and how deep, surfaces should be sampled."""
         depth = self.params.boundary.sample_depth * self.params.spacing
-        return {
+        planar = {"surface.dimensions": np.array([2.0])} if self.params.dimensions == 2 else {}
+        return planar | {
             "surface.spacing": np.array([self.params.spacing]),
             "surface.depth": np.array([self.constants.smoothing.support]),
             "surface.inset": np.array([depth]),
         }
 
-    def bind(self, static: Fields) -> None:
+    def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""
         if "surface.volume" in static:
             if self.params.dimensions == 2:
-                raise PortError("surface: samples need three dimensions; this fluid has two.")
+                require_one_metre(self.params)
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
             if self.films:
@@ -76,6 +80,8 @@ class SphFluid(Component):
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
         if len(self.samples.row):
+            if self.params.dimensions == 2:
+                fields = in_plane(fields, self.params)
             self.samples.place(self.state, fields)
             self.boundary.place(self.state, fields)
             self.symmetry.require_before(fields["surface.position"])
@@ -126,10 +132,14 @@ class SphFluid(Component):
         state.moved = math.sqrt(max(shift2 for shift2, _ in moved))
         state.last_dt, state.steps = dt, state.steps + 1
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
-        read = self.gauges.read(self.state, self.lists.arrays) if self.gauges else {}
-        return {"surface_load.force": self.state.force.copy(), **read}
+        given: dict[str, Array] = {}
+        if self.gauges and not wanted <= LOADS:
+            given.update(self.gauges.read(self.state, self.lists.arrays))
+        if wanted & LOADS:
+            given["surface_load.force"] = self.state.force.copy()
+        return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""

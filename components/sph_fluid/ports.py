@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from quintet.components.sph_fluid.boundary.planar import planar_surface
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
@@ -32,6 +33,8 @@ def surface(params: SphFluidParams) -> Port:
     Dynamic boundary particles know no other contact; films know no potential.
     """
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
+    if params.dimensions == 2:
+        port = planar_surface(port)
     fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films
     return port if fixed else replace(port, static=(*port.static, CONTACT))
 

@@ -21,6 +21,7 @@ REPLAY = Manifest(
     params=ReplayParams,
     component="quintet.components.stand_ins.replay:Replay",
     ports=recorded_ports,
+    conform="quintet.components.stand_ins.conform:replay",
 )
 PRESCRIBED = Manifest(
     kind="prescribed",
@@ -28,6 +29,7 @@ PRESCRIBED = Manifest(
     params=PrescribedParams,
     component="quintet.components.stand_ins.prescribed:Prescribed",
     ports=_prescribed_ports,
+    conform="quintet.components.stand_ins.conform:prescribed",
 )
 ECHO = Manifest(
     kind="echo",
@@ -35,4 +37,5 @@ ECHO = Manifest(
     params=EchoParams,
     component="quintet.components.stand_ins.echo:Echo",
     ports=_echo_ports,
+    conform="quintet.components.stand_ins.conform:echo",
 )

@@ -6,7 +6,7 @@ import signal
 import numpy as np
 
 from quintet.components.stand_ins.params import PASSED, RETURNED, EchoParams
-from quintet.interfaces.component import Component, Fields
+from quintet.interfaces.component import Component, Fields, Keys
 
 
 class Echo(Component):
@@ -48,9 +48,9 @@ class Echo(Component):
             case "nan":
                 self.value = np.full_like(self.value, np.nan)
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         """Return what came last."""
-        return {"returned.value": self.value.copy()}
+        return {key: self.value.copy() for key in wanted}
 
     def save(self) -> Fields:
         """Copy out the last value and the count."""

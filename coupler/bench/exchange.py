@@ -18,10 +18,9 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler.bench.raw_transport import round_trip
-from quintet.coupler.coupling.participant import Part
+from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.launch.connect import connect
 from quintet.coupler.launch.mpi_job import begin_rank, end_rank, run_under_mpi
-from quintet.coupler.run.simulate import make_folder
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
 
@@ -64,7 +63,7 @@ def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str,
     path.write_text(SCENE.format(transport=transport, items=items))
     (folder / "windows").write_text(str(windows))
     scene = load(str(path))
-    make_folder(scene, folder / "run")
+    (folder / "run" / "log").mkdir(parents=True)
     if transport == "mpi":
         os.environ[FOLDER] = str(folder)
         run_under_mpi(["bench", "exchange"], scene, folder / "run")
@@ -84,11 +83,11 @@ def inside_mpi(folder: Path) -> int:
 def exchange(scene: Scene, folder: Path, windows: int) -> None:
     """Join the component, time its windows, and write the result to a file."""
     connection = connect(scene, folder / "run", lambda: False)
-    part = connection.parts["echo"]
-    part.ask("describe")
-    part.ask("bind", {}, works=[])
+    part = connection.participants["echo"]
+    part.call("describe")
+    part.bind({}, works=[])
     value = np.random.default_rng(1).random(part.give()["returned.value"].shape)
-    part.ask("prime", {"passed.value": value})
+    part.call("prime", {"passed.value": value})
     took, spent = windows_of(part, value, windows)
     connection.close(True)
     found = {
@@ -107,7 +106,7 @@ def exchange(scene: Scene, folder: Path, windows: int) -> None:
     (folder / "found.json").write_text(json.dumps(found))
 
 
-def windows_of(part: Part, value: np.ndarray, windows: int) -> tuple[list[float], float]:
+def windows_of(part: Participant, value: np.ndarray, windows: int) -> tuple[list[float], float]:
     """Exchange over many windows; return the time of each and the processor time of all [s]."""
     took = []
     spent = 0.0
@@ -115,7 +114,7 @@ def windows_of(part: Part, value: np.ndarray, windows: int) -> tuple[list[float]
         if window == WARM:
             spent = time.process_time()
         began = time.perf_counter()
-        part.start(window, 1.0, {"passed.value": value}, ["passed.value"], False)
+        part.start(1.0, {"passed.value": value}, ["passed.value"])
         answer = part.finish()
         took.append(time.perf_counter() - began)
         if answer.fields["returned.value"][-1, -1] != value[-1, -1]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from quintet.coupler.launch.connect import free_port
 from quintet.coupler.launch.mpi_job import find_launcher
-from quintet.coupler.launch.processes import GRACE, environment
+from quintet.coupler.launch.processes import GRACE, PYTHON, environment
 from quintet.interfaces.errors import QuintetError
 
 WARM = 100  # windows before the clock starts
@@ -32,16 +32,16 @@ def round_trip(transport: str, size: int, windows: int) -> float:
     """Median round-trip time [s] of `size` bytes over the library alone."""
     program = ["-m", "quintet.coupler.bench.raw_transport", transport, str(size), str(windows)]
     if transport == "mpi":
-        both = [*find_launcher(), "-n", "2", sys.executable, "-m", "mpi4py", *program]
+        both = [*find_launcher(), "-n", "2", *PYTHON, "-m", "mpi4py", *program]
         return _result([_started(both)])
-    line = [sys.executable, *program, f"tcp/127.0.0.1:{free_port()}"]
+    line = [*PYTHON, *program, f"tcp/127.0.0.1:{free_port()}"]
     return _result([_started([*line, "leader"]), _started([*line, "follower"])])
 
 
 def _started(line: list[str]) -> "subprocess.Popen[bytes]":
     return subprocess.Popen(
         line,
-        env=environment(1, []),
+        env=environment(1),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

@@ -17,7 +17,7 @@ from rich.table import Table
 from quintet.coupler.launch.processes import start, tail
 from quintet.coupler.report.show import console
 from quintet.interfaces.errors import QuintetError, SceneError
-from quintet.interfaces.manifest import BenchCase, find, known_kinds
+from quintet.interfaces.manifest import BenchCase, find, known_kinds, look_in
 from quintet.interfaces.params import unknown
 
 Found = dict[str, Any]
@@ -43,6 +43,7 @@ def run_kind(given: argparse.Namespace) -> int:
 
 def select_cases(kind: str, name: str) -> list[tuple[int, BenchCase]]:
     """Find the cases of a kind, or the one that is named."""
+    look_in([str(Path.cwd())] if ":" in kind else [])
     try:
         cases = find(kind).cases()
     except KeyError as error:
@@ -67,7 +68,7 @@ def run_case(kind: str, number: int, threads: int) -> Found:
     with tempfile.TemporaryDirectory() as folder:
         log, file = Path(folder) / "log", Path(folder) / "found.json"
         line = ["-m", "quintet.coupler.bench.worker", kind, str(number), str(threads), str(file)]
-        process = start(line, log, threads, [str(Path.cwd())])
+        process = start(line, log, threads)
         try:
             status = process.wait()
         finally:

@@ -15,8 +15,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import Component
-from quintet.interfaces.manifest import BenchCase, Manifest, find
+from quintet.interfaces.component import Component, fields_of
+from quintet.interfaces.manifest import BenchCase, Manifest, find, look_in
 from quintet.interfaces.serving.process import build
 
 
@@ -52,17 +52,19 @@ def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]
 def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase) -> Component:
     """Make the component with the ports and fields of the case."""
     component = build(manifest, order)
-    component.bind(case.static)
+    joined = frozenset(key.partition(".")[0] for key in (*case.static, *case.fields))
+    component.bind(case.static, joined)
     component.take(case.fields)
     return component
 
 
 def advance(component: Component, steps: int, case: BenchCase) -> None:
     """Advance by many stable steps, taking and giving fields at each."""
+    wanted = frozenset(fields_of(component.gives))
     for _ in range(steps):
         component.take(case.fields)
         component.step(component.stable_dt())
-        component.give()
+        component.give(wanted)
 
 
 def resident() -> int:
@@ -75,6 +77,7 @@ def resident() -> int:
 
 if __name__ == "__main__":
     kind, number, threads, file = sys.argv[1:]
+    look_in([str(Path.cwd())] if ":" in kind else [])
     known = find(kind)
     found = measure(known, known.cases()[int(number)], int(threads))
     Path(file).write_text(json.dumps(found))

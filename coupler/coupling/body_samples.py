@@ -7,10 +7,10 @@ import numpy as np
 
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import LinkError
+from quintet.interfaces.ports import BOX, SPHERE
 
-SPHERE, BOX = 0, 1  # codes of a body's shape, as ports.MOTION gives them
 # Shares of the cubes in a shell that its samples are, tried one after the other; 1 first.
-CROWDS = (1.0, *(1.0 + sign * 0.005 * k for k in range(1, 17) for sign in (1, -1)))
+SHELL_FACTORS = (1.0, *(1.0 + sign * 0.005 * k for k in range(1, 17) for sign in (1, -1)))
 
 
 def fill(
@@ -40,15 +40,22 @@ def fill(
         )
     if inset is not None:
         size = size - 2.0 * (inset - 0.5 * spacing)
-    return _box(size, spacing, depth) if shape == BOX else _sphere(size, spacing, depth)
+    return box_lattice(size, spacing, depth) if shape == BOX else _sphere(size, spacing, depth)
 
 
-def _box(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array]:
+def box_lattice(
+    size: Array, spacing: float, depth: float, planar: bool = False
+) -> tuple[Array, Array, Array]:
+    """Arms, normals and volumes on a lattice whose cells divide a box; `planar`: one along y."""
     cells = np.maximum(1, np.rint(size / spacing)).astype(int)
+    if planar:
+        cells[1] = 1
     step = size / cells
     axes = [(np.arange(n) - 0.5 * (n - 1)) * s for n, s in zip(cells, step, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     below = 0.5 * size - np.abs(points)  # distance to the faces of each axis
+    if planar:
+        below[:, 1] = np.inf
     near = below.min(axis=1)
     keep = near < depth
     # On edges and corners the normal points between the faces, as a mirror there needs it.
@@ -64,7 +71,7 @@ def _sphere(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Ar
     radius = 0.5 * size[0]
     cubes = math.pi / 6 * float(size[0] / spacing) ** 3
     # Water finds the body as large as its samples' cubes together: their number must be right.
-    tries = [_rings(radius, spacing, crowd) for crowd in CROWDS]
+    tries = [_rings(radius, spacing, factor) for factor in SHELL_FACTORS]
     rings = min(tries, key=lambda one: abs(sum(count for _, _, count in one) - cubes))
     points = np.concatenate([_ring(*ring, 0.5 * (k % 2)) for k, ring in enumerate(rings)])
     distance = np.linalg.norm(points, axis=1)
@@ -75,7 +82,7 @@ def _sphere(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Ar
     return points[keep], normal, np.full(int(keep.sum()), volume)
 
 
-def _rings(radius: float, spacing: float, crowd: float) -> list[tuple[float, float, int]]:
+def _rings(radius: float, spacing: float, factor: float) -> list[tuple[float, float, int]]:
     """Rings of a sphere's shells: distance from its axis [m], height [m], number of points.
 
     A shell has about as many as it holds cubes of the spacing. On a lattice the outermost would
@@ -84,7 +91,7 @@ def _rings(radius: float, spacing: float, crowd: float) -> list[tuple[float, flo
     edges = [*np.arange(radius, 0.0, -spacing).tolist(), 0.0]
     found: list[tuple[float, float, int]] = []
     for outer, inner in pairwise(edges):
-        count = crowd * 4.0 * math.pi / 3.0 * (outer**3 - inner**3) / spacing**3
+        count = factor * 4.0 * math.pi / 3.0 * (outer**3 - inner**3) / spacing**3
         if count < 1.5:
             found.append((0.0, 0.0, 1))
             continue

@@ -9,7 +9,10 @@ from pathlib import Path
 from quintet.coupler.coupling.convergence_measure import Residual
 from quintet.coupler.coupling.residual_scaling import Key
 
-FILE = "convergence.csv"
+
+def log_file(group: str) -> str:
+    """Name of the log of a group, "" for the whole run."""
+    return f"convergence-{group}.csv" if group else "convergence.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,14 @@ class ConvergenceLog:
             return 0
         self._file.flush()
         return self._file.tell()
+
+    def cut(self, size: int) -> None:
+        """Forget all that was written after a length of the file [bytes]."""
+        if self._file:
+            self._file.flush()
+            self._file.truncate(size)
+            self._file.seek(0, os.SEEK_END)
+            self._begun = self._begun and size > 0
 
     def close(self) -> None:
         """Close the file."""

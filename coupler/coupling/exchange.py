@@ -1,46 +1,123 @@
-"""What is carried between components: the legs of all links, and how their rows meet."""
+"""What crosses between components: the transfers of all links, and how their rows meet.
 
-from collections.abc import Callable, Collection, Mapping
+Links are data of a scene and remember nothing. What a link makes of the components' static
+fields, its maps, is made when ports are joined and lives here, in the exchange of one run.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
-from quintet.interfaces.component import Array, Field, Fields, Port
+from quintet.interfaces.component import Array, Field, Fields, Port, fields_of
 from quintet.interfaces.errors import LinkError
 
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
 Works = list[tuple[str, str, str]]  # force, velocity, position or "": all of one component
+Ends = Mapping[str, Fields]  # outputs of both components of a transfer at one end of a window
+Mapped = dict[str, Array]
 
 
-@dataclass(slots=True)
-class Leg:
+@dataclass(frozen=True, slots=True)
+class Transfer:
     """One direction of a link: from the giver's outputs to the taker's inputs.
 
-    ``sums`` pairs impulses before and after the mapping whose sums must be equal.
-    ``works_on`` says by which of the taker's own outputs its impulses do work.
-    ``moment`` gives the angular impulse about the origin of what was mapped.
+    Parameters
+    ----------
+    giver, taker : str
+        Names of components.
+    reads : tuple of str
+        Outputs of the giver that are mapped.
+    needs : tuple of str
+        Outputs of the taker that the mapping looks at too (the pose of a loaded body).
+    fills : tuple of str
+        Inputs of the taker that it makes.
+    sums : tuple of pairs of str
+        Impulses before and after the mapping whose sums must be equal.
+    works_on : tuple of (str, str, str)
+        An impulse of the taker, the taker's own output with which it does work, and the output
+        of which that is the rate ("" if there is none; "integral" if the output is an impulse
+        itself).
     """
 
     giver: str
     taker: str
-    carry: Callable[[Fields], dict[str, Array]]
+    reads: tuple[str, ...]
+    fills: tuple[str, ...]
+    needs: tuple[str, ...] = ()
     sums: tuple[tuple[str, str], ...] = ()
-    works_on: tuple[tuple[str, str, str], ...] = ()  # taken impulse, given rate, position or ""
-    moment: Callable[[Fields], Array] | None = None
+    works_on: tuple[tuple[str, str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Demands:
+    """What a link needs of time.
+
+    Parameters
+    ----------
+    equal_steps : bool
+        Whether both sides must step once in every window.
+    schemes : tuple of str
+        Schemes under which it is stable.
+    relaxation : tuple of float
+        Share of the change of its instants that is handed on, in the first windows; the last
+        one holds for all the others. Empty: all of it.
+    reason : str
+        Why, for whoever asks for something else.
+    """
+
+    equal_steps: bool = False
+    schemes: tuple[str, ...] = ("serial", "parallel", "iterated")
+    relaxation: tuple[float, ...] = ()
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """What a link made of two components' static fields: the maps between their items.
+
+    Parameters
+    ----------
+    static : mapping
+        Component -> static fields that it takes.
+    maps : tuple of functions
+        One for each transfer: outputs of both sides at the start and at the end of the window in
+        which the giver summed its impulses -> inputs of the taker.
+    moment : tuple of functions or None
+        One for each transfer: the same and what was mapped -> the angular impulse about the
+        origin (3,) N m s of what was mapped.
+    """
+
+    static: Mapping[str, Mapped]
+    maps: tuple[Callable[[Ends, Ends], Mapped], ...]
+    moment: tuple[Callable[[Ends, Ends, Fields], Array] | None, ...] = ()
 
 
 class Link(Protocol):
-    """A kind of exchange between two components, matched to their ports."""
+    """A kind of exchange between two components, matched to their ports: data, no state."""
 
-    name: str
-    legs: list[Leg]
-    works: dict[str, Works]  # for the component that gives a force on moving items
-    partner: dict[str, str]  # component -> its port whose rows belong to the other side
-    memory: Any  # what must come back when a window is repeated
+    @property
+    def name(self) -> str:
+        """Name in the scene."""
 
-    def describe(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
-        """From what both sides say of themselves, make the static fields that each takes."""
+    @property
+    def transfers(self) -> tuple[Transfer, ...]:
+        """What it carries, in either direction."""
+
+    @property
+    def works(self) -> Mapping[str, Works]:
+        """Forces and velocities, of the component that gives a force on moving items."""
+
+    @property
+    def partner(self) -> Mapping[str, str]:
+        """Component -> its port whose rows belong to the other side."""
+
+    def demands(self) -> Demands:
+        """What it needs of steps and schemes."""
+
+    def bind(self, described: Mapping[str, Fields]) -> Binding:
+        """Make the maps, from what both sides say of themselves."""
 
 
 def requires(ports: Ports, name: str, takes: Port | None, gives: Port | None) -> list[str]:
@@ -72,142 +149,201 @@ def misfits(name: str, found: Port, needed: Port) -> list[str]:
             wrong.append(f"{place} is {mine.centring}, the other side's {other.centring}")
         elif mine.shape != other.shape:
             wrong.append(f"{place} has shape {mine.shape}, the other side's {other.shape}")
+        elif mine.kind != other.kind:
+            wrong.append(f"{place} is a {mine.kind}, the other side's a {other.kind}")
     return wrong
 
 
-@dataclass(frozen=True, slots=True)
-class Brought:
-    """What one leg brought: its giver's rows, before and after the mapping."""
+@dataclass(slots=True)
+class Delivery:
+    """What one transfer brought: its giver's rows, before and after the mapping."""
 
-    number: int  # of the link
-    leg: Leg
+    number: int  # of the transfer
+    transfer: Transfer
     before: Fields
     after: Fields
     moment: Array | None  # angular impulse about the origin, where it is known
 
 
 @dataclass(slots=True)
-class Carried:
-    """Inputs for one component, and what each leg brought to them."""
+class WindowInputs:
+    """Inputs of one component for a window, and the deliveries that they were made from."""
 
     fields: dict[str, Array] = field(default_factory=dict)
-    legs: list[Brought] = field(default_factory=list)
+    deliveries: list[Delivery] = field(default_factory=list)
     ends: list[str] = field(default_factory=list)  # instants that hold at the window's end
-    guessed: list[str] = field(default_factory=list)  # replaced by an iteration's guess
     mixed: list[str] = field(default_factory=list)  # some rows hold at the end, some do not
-    outputs: dict[str, Fields] = field(default_factory=dict)  # from which they were carried
-    sent: dict[str, dict[str, list[float]]] = field(default_factory=dict)  # sums of those
+    outputs: Fields = field(default_factory=dict)  # the taker's own at the window's start
+    sent: dict[str, dict[str, list[float]]] = field(default_factory=dict)  # sums of the givers
+
+    def add(self, other: "WindowInputs") -> None:
+        """Add inputs that come from elsewhere: rows that one side does not have are zero there."""
+        for key, array in other.fields.items():
+            if key in self.fields and (key in self.ends) != (key in other.ends):
+                raise LinkError(
+                    f"{key}: what comes from within a group and from beyond it must hold at the "
+                    "same time. Change the order, or use the same kind of scheme for both."
+                )
+            self.fields[key] = self.fields[key] + array if key in self.fields else array
+        self.ends += [key for key in other.ends if key not in self.ends]
+        self.mixed += other.mixed
 
 
-@dataclass(slots=True)
 class Exchange:
-    """All links of a scene."""
+    """All links of a run, with the maps that they made."""
 
-    links: list[Link]
-    ports: dict[str, Ports]
-    _slices: dict[tuple[str, str, int], slice] = field(default_factory=dict)
+    def __init__(self, links: Sequence[Link], ports: Mapping[str, Ports]) -> None:
+        self.links, self.ports = list(links), ports
+        self.takes = {name: fields_of(takes) for name, (takes, _) in ports.items()}
+        self.gives = {name: fields_of(gives) for name, (_, gives) in ports.items()}
+        self._ports = {
+            name: {port.name: port for port in takes} for name, (takes, _) in ports.items()
+        }
+        pairs = [(n, one) for n, link in enumerate(self.links) for one in link.transfers]
+        self.transfers = [one for _, one in pairs]
+        self.link_of = [number for number, _ in pairs]  # of each transfer
+        self._bindings: list[Binding] = []
+        self._maps: list[Callable[[Ends, Ends], Mapped]] = []
+        self._moment: list[Callable[[Ends, Ends, Fields], Array] | None] = []
+        self._rows: dict[tuple[str, str], dict[int, slice]] = {}  # (component, port) -> by link
 
-    def bind(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
+    def bind(self, described: Mapping[str, Fields]) -> dict[str, Mapped]:
         """Static fields for every component: a partner's in rows, those of own items added up."""
-        merged: dict[str, dict[str, Array]] = {name: {} for name in self.ports}
-        for link in self.links:
-            for name, fields in link.describe(described).items():
+        self._bindings = [link.bind(described) for link in self.links]
+        self._maps = [maps for one in self._bindings for maps in one.maps]
+        self._moment = [
+            moment for one in self._bindings for moment in one.moment or (None,) * len(one.maps)
+        ]
+        merged: dict[str, Mapped] = {name: {} for name in self.ports}
+        for binding in self._bindings:
+            for name, fields in binding.static.items():
                 for key, array in fields.items():
-                    known = merged[name].get(key)
-                    if known is None:
-                        merged[name][key] = array
-                    elif self._port(name, key).items == "partner":
-                        counted = known.max(initial=-1.0) + 1.0 if self._labels(name, key) else 0.0
-                        merged[name][key] = np.concatenate([known, array + counted])
-                    else:
-                        merged[name][key] = known + array
+                    merged[name][key] = self._join(name, key, merged[name].get(key), array)
         return merged
 
-    def memory(self) -> list[Any]:
-        """What the links remember of the last windows."""
-        return [link.memory for link in self.links]
+    def _join(self, name: str, key: str, known: Array | None, array: Array) -> Array:
+        if known is None:
+            return array
+        if self._port(name, key).items == "own":
+            return np.asarray(known + array)
+        field_name = key.partition(".")[2]
+        static = next(one for one in self._port(name, key).static if one.name == field_name)
+        counted = known.max(initial=-1.0) + 1.0 if static.labels else 0.0
+        return np.concatenate([known, array + counted])
 
-    def recall(self, memory: list[Any]) -> None:
-        """Come back to what they remembered."""
-        for link, remembered in zip(self.links, memory, strict=True):
-            link.memory = remembered
+    def count_rows(self, outputs: Mapping[str, Fields]) -> None:
+        """Find out which rows of a port that several links share belong to which of them."""
+        counts: dict[tuple[str, str], dict[int, int]] = {}
+        for number, transfer in enumerate(self.transfers):
+            link, taker = self.link_of[number], transfer.taker
+            partner = self.links[link].partner.get(taker)
+            if partner is None:
+                continue
+            mapped = self._maps[number](outputs, outputs)
+            sizes = [len(a) for key, a in mapped.items() if key.partition(".")[0] == partner]
+            if sizes:
+                counts.setdefault((taker, partner), {})[link] = sizes[0]
+        for place, by_link in counts.items():
+            first, self._rows[place] = 0, {}
+            for link, count in sorted(by_link.items()):
+                self._rows[place][link] = slice(first, first + count)
+                first += count
 
     def is_impulse(self, taker: str, key: str) -> bool:
         """Whether an input of a component is an integral over the window."""
-        return self._field(taker, key).centring == "impulse"
-
-    def _field(self, taker: str, key: str) -> Field:
-        name = key.partition(".")[2]
-        return next(one for one in self._port(taker, key).fields if one.name == name)
-
-    def _labels(self, taker: str, key: str) -> bool:
-        name = key.partition(".")[2]
-        return any(one.labels for one in self._port(taker, key).static if one.name == name)
+        return self.takes[taker][key].centring == "impulse"
 
     def _port(self, taker: str, key: str) -> Port:
-        name = key.partition(".")[0]
-        return next(port for port in self.ports[taker][0] if port.name == name)
+        return self._ports[taker][key.partition(".")[0]]
 
     def unit(self, taker: str, key: str) -> str:
         """Unit of an input; of an impulse, that of its rate."""
-        return self._field(taker, key).unit
+        return self.takes[taker][key].unit
 
-    def follows(self, name: str) -> bool:
-        """Whether a component takes the motion of a partner's items."""
-        return any(name in link.partner for link in self.links)
+    def output(self, giver: str, key: str) -> Field:
+        """Field of a component's output."""
+        return self.gives[giver][key]
 
     def works(self, name: str) -> Works:
         """Pairs of force and velocity by which a component's links do work."""
         return sorted({work for link in self.links for work in link.works.get(name, [])})
 
-    def inputs(self, taker: str, outputs: Mapping[str, Fields], fresh: Collection[str]) -> Carried:
-        """Carry to one component what the others gave; `fresh` ones are a window ahead."""
-        carried = Carried()
-        gathered: dict[str, list[tuple[Brought, Array]]] = {}
-        for number, link in enumerate(self.links):
-            for leg in link.legs:
-                if leg.taker != taker or leg.giver not in outputs:
-                    continue
-                mine = self.rows(number, leg, outputs)
-                mapped = leg.carry(mine)
-                moment = leg.moment(mapped) if leg.moment else None
-                brought = Brought(number, leg, mine, mapped, moment)
-                carried.legs.append(brought)
-                for key, array in mapped.items():
-                    gathered.setdefault(key, []).append((brought, array))
-        for key, parts in gathered.items():
-            carried.fields[key] = self._merge(taker, key, parts)
-            ahead = [brought.leg.giver in fresh for brought, _ in parts]
-            if all(ahead):
-                carried.ends.append(key)
-            elif any(ahead):
-                carried.mixed.append(key)
-        return carried
+    def joined(self, name: str) -> list[str]:
+        """Names of a component's ports that have a partner."""
+        keys = {key for one in self.transfers if one.taker == name for key in one.fills}
+        keys |= {key for one in self.transfers if one.giver == name for key in one.reads}
+        return sorted({key.partition(".")[0] for key in keys})
 
-    def rows(self, number: int, leg: Leg, outputs: Mapping[str, Fields]) -> Fields:
-        """Outputs of a leg's giver; of a port that several links share, the link's own rows."""
-        giver, given = leg.giver, outputs[leg.giver]
-        taken = self.links[number].partner.get(giver)
-        if taken is None or sum(link.partner.get(giver) == taken for link in self.links) == 1:
+    def wanted(self, name: str, asked: Iterable[str] = ()) -> list[str]:
+        """Outputs of a component that a link reads, or that somebody asked for."""
+        keys = set(asked)
+        for one in self.transfers:
+            if one.giver == name:
+                keys |= set(one.reads)
+            if one.taker == name:
+                keys |= set(one.needs)
+                keys |= {key for _, *both in one.works_on for key in both}
+        return [key for key in self.gives[name] if key in keys]
+
+    def deliver(self, number: int, start: Ends, end: Ends) -> Delivery:
+        """Map what a giver gave in a window, from the outputs of both sides at its two ends."""
+        transfer = self.transfers[number]
+        start, end = self._own_rows(number, start), self._own_rows(number, end)
+        after = self._maps[number](start, end)
+        moment = self._moment[number]
+        turned = moment(start, end, after) if moment else None
+        return Delivery(number, transfer, end[transfer.giver], after, turned)
+
+    def rows(self, number: int, given: Fields) -> Fields:
+        """Outputs of a transfer's giver; of a port that several links share, the link's rows."""
+        giver, link = self.transfers[number].giver, self.link_of[number]
+        taken = self.links[link].partner.get(giver, "")
+        shared = self._rows.get((giver, taken), {})
+        if len(shared) < 2:
             return given
-        if (giver, taken, number) not in self._slices:
-            self.inputs(giver, outputs, ())  # finds out which rows are whose
-        rows = self._slices[giver, taken, number]
         partners = {port.name for port in self.ports[giver][1] if port.items == "partner"}
-        return {k: v[rows] if k.split(".")[0] in partners else v for k, v in given.items()}
+        rows = shared[link]
+        return {k: v[rows] if k.partition(".")[0] in partners else v for k, v in given.items()}
 
-    def _merge(self, taker: str, key: str, parts: list[tuple[Brought, Array]]) -> Array:
-        if len(parts) == 1:
-            return parts[0][1]
+    def _own_rows(self, number: int, outputs: Ends) -> Ends:
+        giver = self.transfers[number].giver
+        return {**outputs, giver: self.rows(number, outputs[giver])}
+
+    def merge(self, taker: str, deliveries: Sequence[tuple[Delivery, bool]]) -> WindowInputs:
+        """Bring together what several transfers brought; each says whether it holds at the end."""
+        inputs = WindowInputs(deliveries=[one for one, _ in deliveries])
+        gathered: dict[str, list[tuple[Delivery, bool]]] = {}
+        for delivery, is_end in deliveries:
+            for key in delivery.after:
+                gathered.setdefault(key, []).append((delivery, is_end))
+        for key, parts in gathered.items():
+            inputs.fields[key] = self._merge(taker, key, [one for one, _ in parts])
+            ahead = [is_end for _, is_end in parts]
+            if all(ahead):
+                inputs.ends.append(key)
+            elif any(ahead):
+                inputs.mixed.append(key)
+        return inputs
+
+    def _merge(self, taker: str, key: str, parts: list[Delivery]) -> Array:
         if self._port(taker, key).items == "partner":
-            first, name = 0, key.partition(".")[0]
-            for brought, array in parts:
-                self._slices[taker, name, brought.number] = slice(first, first + len(array))
-                first += len(array)
-            return np.concatenate([array for _, array in parts])
+            rows = self._rows.get((taker, key.partition(".")[0]), {})
+            arrays = {self.link_of[one.number]: one.after[key] for one in parts}
+            if len(arrays) == 1 and len(rows) <= 1:
+                return parts[0].after[key]
+            if len(rows) <= len(arrays):
+                return np.concatenate([arrays[link] for link in sorted(arrays)])
+            whole = np.zeros(
+                (max(one.stop for one in rows.values()), *parts[0].after[key].shape[1:])
+            )
+            for link, array in arrays.items():
+                whole[rows[link]] = array
+            return whole
+        if len(parts) == 1:
+            return parts[0].after[key]
         if not self.is_impulse(taker, key):
             raise LinkError(
                 f"{taker}.{key}: only forces of several links can be added up; this is a value. "
                 f"Join {taker}.{key.partition('.')[0]} once."
             )
-        return np.sum([array for _, array in parts], axis=0)
+        return np.asarray(np.sum([one.after[key] for one in parts], axis=0))

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import field
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -44,6 +44,8 @@ class IterationSettings:
     Küttler and Wall (2008), Comput. Mech. 43, 61; Degroote, Bathe and Vierendeels (2009),
     Comput. Struct. 87, 793; Mehl et al. (2016), Comput. Math. Appl. 71, 869.
     """
+
+    RENAMED: ClassVar = {"aitken": "acceleration"}
 
     acceleration: Literal["constant", "aitken", "iqn-ils"] = "aitken"
     tolerance: Positive = 1e-6

@@ -2,24 +2,25 @@
 
 Four sums must agree in every window: of the impulses as the giver made them, as they arrived,
 after the mapping, and as the taker applied them in its steps. Over the whole run all that was
-given is applied once, but for what is on its way. Motion is handed out in each step as it was
+given is applied once, but for what is on its way. Motion is interpolated in each step as it was
 sent. Work is counted on both sides from what each did itself; it agrees as well as the
 staggering in time lets it.
 """
 
 import csv
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from quintet.coupler.coupling.exchange import Brought, Carried, Exchange
-from quintet.coupler.coupling.motion_audit import Motion
-from quintet.coupler.coupling.run_balance import Balance
+from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
+from quintet.coupler.coupling.motion_audit import MotionAudit
+from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.rotation import vector_between
 from quintet.interfaces.sums import column_sums, product, size
 
 # The residual into which an impulse is booked, by the unit of its rate.
@@ -29,10 +30,11 @@ RESIDUALS = {
     "W": "heat_residual",
     "m/s": "kinematic_residual",
 }
+OTHER = "other_residual"
 
 COLUMNS = (
     "time name momentum_residual angular_residual impulse_x impulse_y impulse_z work_given "
-    "work_taken mass momentum_x momentum_y momentum_z kinetic potential internal"
+    "work_taken heat mass momentum_x momentum_y momentum_z kinetic potential internal"
 ).split()
 
 
@@ -44,10 +46,12 @@ class Account:
     momentum_residual: float = 0.0  # worst window, relative to the sum of its forces' sizes
     angular_residual: float = 0.0  # worst window, relative likewise (with the lever arm)
     heat_residual: float = 0.0  # worst window, relative likewise
-    kinematic_residual: float = 0.0  # worst window, of motion handed out, relative to its size
+    kinematic_residual: float = 0.0  # worst window, of motion interpolated, relative to its size
+    other_residual: float = 0.0  # worst window, of rates in other units, relative likewise
     impulse: Array = field(default_factory=lambda: np.zeros(3))  # N s, on the taker
     work_given: float = 0.0  # J, as the side that gives the force counts it
     work_taken: float = 0.0  # J, as the side that moves counts it
+    heat: float = 0.0  # J, handed to the taker
     turnover: float = 0.0  # J, sum of the magnitudes of the work of every window
 
     @property
@@ -59,7 +63,7 @@ class Account:
         """Book the difference of two sums that should be the same."""
         worst = float(np.abs(gap).max()) if np.size(gap) else 0.0
         if worst:
-            name = RESIDUALS[unit]
+            name = RESIDUALS.get(unit, OTHER)
             relative = worst / scale if scale else float("inf")
             setattr(self, name, max(getattr(self, name), relative))
 
@@ -73,8 +77,8 @@ class Ledger:
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy: list[float] = []  # J, sum over the components, at every note
-        self._balance = Balance(exchange)
-        self._motion = Motion(exchange)
+        self._balance = RunBalance(exchange)
+        self._motion = MotionAudit(exchange)
         self._file = open(path, "a" if size else "w", newline="") if path else None
         self._rows = csv.writer(self._file) if self._file else None
         if self._file and size:
@@ -92,95 +96,116 @@ class Ledger:
         """Book the motion that a component was told before the first window."""
         self._motion.arrive(name, fields, (), 0.0)
 
-    def given(
-        self, name: str, header: Mapping[str, Any], fields: Fields, outputs: Mapping[str, Fields]
-    ) -> None:
+    def given(self, name: str, header: Mapping[str, Any], fields: Fields) -> None:
         """Book what a component gave: its own sums against those of what arrived."""
         sent = header["sent"]
+        for number, transfer in enumerate(self.exchange.transfers):
+            for key, after in transfer.sums if transfer.giver == name else ():
+                scale = sent.get(f"{key}/size", [0.0])[0]
+                gap = np.subtract(column_sums(fields[key]), sent.get(key, 0.0))
+                self._account(number).note(self.exchange.unit(transfer.taker, after), gap, scale)
         for link in self.exchange.links:
             account = self.accounts[link.name]
-            for leg in link.legs:
-                for key, after in leg.sums if leg.giver == name else ():
-                    scale = sent.get(f"{key}/size", [0.0])[0]
-                    gap = np.subtract(column_sums(fields[key]), sent.get(key, 0.0))
-                    account.note(self.exchange.unit(leg.taker, after), gap, scale)
             for key, *_ in link.works.get(name, []):
                 work = sent.get(f"{key}/work", [0.0])[0]
                 account.work_given += work
-                if any(leg.works_on for leg in link.legs):  # else the other side counts none
+                if any(one.works_on for one in link.transfers):  # else the other side counts none
                     account.turnover += abs(work)
-        self._balance.given(name, {**outputs, name: fields})
 
-    def mapped(self, carried: Carried) -> None:
-        """Book a mapping: sums of forces and of moments before against after."""
-        for brought in carried.legs:
-            leg, account = brought.leg, self._account(brought)
-            for before, after in leg.sums:
-                array, unit = brought.before[before], self.exchange.unit(leg.taker, after)
-                total = np.asarray(column_sums(brought.after[after]))
-                if unit == "N":
-                    account.impulse[: len(total)] += total
-                account.note(unit, total - column_sums(array), size(array))
-                if brought.moment is not None and self._alone(brought):
-                    sent = carried.sent.get(leg.giver, {}).get(f"{before}/moment")
-                    if sent is not None:
-                        reach = max(np.abs(sent).max(), np.abs(brought.moment).max())
-                        account.note("N m", brought.moment - sent, float(reach))
+    def given_for(self, number: int, outputs: Fields) -> None:
+        """Book what a component gave for one transfer in a window of its coupling."""
+        self._balance.given(number, outputs)
+
+    def mapped(self, delivery: Delivery, sent: Mapping[str, Mapping[str, list[float]]]) -> None:
+        """Book a mapping: sums of forces and of moments before against after.
+
+        `sent` has the sums that each giver made of what it gave.
+        """
+        transfer, account = delivery.transfer, self._account(delivery.number)
+        for before, after in transfer.sums:
+            array, unit = delivery.before[before], self.exchange.unit(transfer.taker, after)
+            total = np.asarray(column_sums(delivery.after[after]))
+            if unit == "N":
+                account.impulse[: len(total)] += total
+            if unit == "W":
+                account.heat += float(total.sum())
+            account.note(unit, total - column_sums(array), size(array))
+            if delivery.moment is not None and self._alone(delivery):
+                moment = sent.get(transfer.giver, {}).get(f"{before}/moment")
+                if moment is not None:
+                    reach = max(np.abs(moment).max(), np.abs(delivery.moment).max())
+                    account.note("N m", delivery.moment - moment, float(reach))
 
     def applied(self, name: str, fields: Fields, header: Mapping[str, Any]) -> None:
         """Book the impulses that a component was sent against what it received and applied."""
         self._balance.applied(name, header["applied"])
-        for account, keys in self._impulses(name):
-            for key in keys & fields.keys():
+        takes = self.exchange.takes[name]
+        for account in self._feeding(name):
+            for key in fields:
+                if takes[key].centring != "impulse":
+                    continue
                 scale, total = size(fields[key]), column_sums(fields[key])
                 for seen in (header["received"].get(key, 0.0), header["applied"].get(key, 0.0)):
-                    account.note(self.exchange.unit(name, key), np.subtract(total, seen), scale)
+                    account.note(takes[key].unit, np.subtract(total, seen), scale)
 
-    def _impulses(self, name: str) -> list[tuple[Account, set[str]]]:
-        """For each link, the impulses that it brings to a component's ports."""
-        impulses = {
-            f"{port.name}.{one.name}"
-            for port in self.exchange.ports[name][0]
-            for one in port.fields
-            if one.centring == "impulse"
-        }
-        takers = [
-            link for link in self.exchange.links if any(leg.taker == name for leg in link.legs)
-        ]
-        return [(self.accounts[link.name], impulses) for link in takers]
+    def _feeding(self, name: str) -> Iterable[Account]:
+        """Accounts of the links that bring something to a component."""
+        numbers = [n for n, one in enumerate(self.exchange.transfers) if one.taker == name]
+        return {id(one): one for one in map(self._account, numbers)}.values()
 
-    def moved(self, name: str, carried: Carried, handed: Mapping[str, Any], dt: float) -> None:
+    def moved(self, name: str, inputs: WindowInputs, given: Mapping[str, Any], dt: float) -> None:
         """Book the motion that a component was given in its steps against what it was sent."""
-        self._motion.arrive(name, carried.fields, carried.ends, dt)
-        worst = self._motion.residual(name, handed)
-        for brought in carried.legs:
-            self._account(brought).note("m/s", worst, 1.0)
+        self._motion.arrive(name, inputs.fields, inputs.ends, dt)
+        worst = self._motion.residual(name, given)
+        for account in self._feeding(name):
+            account.note("m/s", worst, 1.0)
 
-    def settle(
-        self, is_late: Callable[[str, str], bool], owed: Mapping[tuple[str, str], Array]
+    def close_window(
+        self, late: Collection[int], in_transit: Mapping[tuple[str, str], Array]
     ) -> None:
-        """Book, at a window's end, all that was ever given against all that was ever applied."""
-        for taker, key, links, gap, scale in self._balance.gaps(is_late, owed):
-            for number in links:
-                account = self.accounts[self.exchange.links[number].name]
-                account.note(self.exchange.unit(taker, key), gap, scale)
+        """Book, at a window's end, all that was ever given against all that was ever applied.
 
-    def worked(self, name: str, fields: Fields, before: Fields, after: Fields, dt: float) -> None:
+        The last impulses of `late` transfers, and what is in transit, will be applied later.
+        """
+        for taker, key, numbers, gap, scale in self._balance.gaps(late, in_transit):
+            for number in numbers:
+                self._account(number).note(self.exchange.unit(taker, key), gap, scale)
+
+    def worked(
+        self, delivery: Delivery, fields: Fields, before: Fields, after: Fields, dt: float
+    ) -> None:
         """Book the work of the impulses that a component took, by its own motion."""
-        for link in self.exchange.links:
-            for leg in link.legs:
-                for key, rate, place in leg.works_on if leg.taker == name else ():
-                    mean = mean_rate(before, after, rate, place, dt)
-                    work = product(fields[key], mean)
-                    self.accounts[link.name].work_taken += work
+        takes = self.exchange.transfers
+        for key, rate, place in delivery.transfer.works_on:
+            # What an iteration guessed is what was applied; of shared items each link has its own.
+            others = [one for one in takes if one.taker == delivery.transfer.taker]
+            alone = sum(key in one.fills for one in others) == 1
+            pushed = fields[key] if alone else delivery.after[key]
+            self._account(delivery.number).work_taken += product(
+                pushed, self._mean_rate(delivery.transfer.taker, before, after, (rate, place), dt)
+            )
 
-    def _alone(self, brought: Brought) -> bool:
-        """Whether a leg brings all that its giver gave; shared ports are split by rows."""
-        legs = [one for link in self.exchange.links for one in link.legs if one.sums]
-        return sum(one.giver == brought.leg.giver for one in legs) == 1
+    def _mean_rate(
+        self, name: str, before: Fields, after: Fields, keys: tuple[str, str], dt: float
+    ) -> Array:
+        """Mean of a rate over a window: from the displacement where it is known, else the ends'."""
+        rate, place = keys
+        if place == "integral":
+            return after[rate] / dt
+        ends = 0.5 * (before[rate] + after[rate])
+        if not place:
+            return np.asarray(ends)
+        if self.exchange.output(name, place).kind == "rotation":
+            return vector_between(before[place], after[place], dt * ends) / dt
+        return (after[place] - before[place]) / dt
 
-    def _account(self, brought: Brought) -> Account:
-        return self.accounts[self.exchange.links[brought.number].name]
+    def _alone(self, delivery: Delivery) -> bool:
+        """Whether a transfer brings all that its giver gave; shared ports are split by rows."""
+        others = [one for one in self.exchange.transfers if one.sums]
+        return sum(one.giver == delivery.transfer.giver for one in others) == 1
+
+    def _account(self, number: int) -> Account:
+        return self.accounts[self.exchange.links[self.exchange.link_of[number]].name]
 
     def note(self, time: float, totals: Mapping[str, dict[str, Any]]) -> None:
         """Write a row for every link and component, at a time [s]."""
@@ -191,11 +216,11 @@ class Ledger:
             return
         for account in self.accounts.values():
             residuals = [account.momentum_residual, account.angular_residual]
-            work = [account.work_given, account.work_taken]
+            work = [account.work_given, account.work_taken, account.heat]
             self._rows.writerow([time, account.link, *residuals, *account.impulse, *work])
         for name, one in totals.items():
-            held = [one["mass"], *one["momentum"], *(one[kind] for kind in kinds)]
-            self._rows.writerow([time, name, *[""] * 7, *held])
+            totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in kinds)]
+            self._rows.writerow([time, name, *[""] * 8, *totals_row])
         self._file.flush()
 
     def save(self) -> dict[str, Any]:
@@ -243,12 +268,3 @@ class Ledger:
 
 def _as_row(account: Account) -> dict[str, Any]:
     return {**asdict(account), "impulse": [float(p) for p in account.impulse]}
-
-
-def mean_rate(before: Fields, after: Fields, rate: str, place: str, dt: float) -> Array:
-    """Mean of a rate over a window: from the displacement where it is known, else of the ends."""
-    if place == "integral":
-        return after[rate] / dt
-    if place:
-        return (after[place] - before[place]) / dt
-    return 0.5 * (before[rate] + after[rate])

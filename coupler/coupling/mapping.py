@@ -9,17 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quintet.interfaces.component import Array
-
-
-def rotation(quaternion: Array) -> Array:
-    """Rotation matrices (n, 3, 3) of unit quaternions (n, 4) w, x, y, z; body to world."""
-    w, x, y, z = quaternion.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
+from quintet.interfaces.rotation import matrix
 
 
 def sum_by(values: Array, owner: Array, owners: int) -> Array:
@@ -46,14 +36,15 @@ class RigidMap:
 
     def arms(self, orientation: Array) -> Array:
         """Arms in the world frame (n, 3) m, for orientations (bodies, 4)."""
-        return np.einsum("nij,nj->ni", rotation(orientation)[self.body], self.arm)
+        return np.einsum("nij,nj->ni", matrix(orientation)[self.body], self.arm)
 
     def gather(
-        self, position: Array, velocity: Array, orientation: Array, spin: Array
+        self, position: Array, velocity: Array, orientation: Array, angular_velocity: Array
     ) -> tuple[Array, Array]:
         """Position (n, 3) m and velocity (n, 3) m/s of the samples of moving bodies."""
         arms = self.arms(orientation)
-        return position[self.body] + arms, velocity[self.body] + np.cross(spin[self.body], arms)
+        turning = np.cross(angular_velocity[self.body], arms)
+        return position[self.body] + arms, velocity[self.body] + turning
 
     def spread(self, force: Array, arms: Array) -> tuple[Array, Array]:
         """Force and torque about the centre (bodies, 3) of forces (n, 3) at arms (n, 3)."""
@@ -73,11 +64,14 @@ class ShapeMap:
         Corners of the face on which each point lies.
     weight : (n, 4) float array, 1
         Shape functions there; each row sums to one.
+    face : (n,) int array
+        Number of that face.
     """
 
     node: Array
     weight: Array
     nodes: int
+    face: Array
 
     def gather(self, values: Array) -> Array:
         """Values (nodes, k) at the points: (n, k)."""
@@ -118,8 +112,8 @@ def sample_faces(position: Array, face: Array, spacing: float) -> tuple[ShapeMap
     -------
     ShapeMap, area of each sample (n,) m2, normal (n, 3)
     """
-    nodes, weights, areas, normals = [], [], [], []
-    for corner in corners(face):
+    nodes, weights, areas, normals, faces = [], [], [], [], []
+    for number, corner in enumerate(corners(face)):
         a, b, c, d = position[corner]
         along = max(np.linalg.norm(b - a), np.linalg.norm(c - d))
         across = max(np.linalg.norm(d - a), np.linalg.norm(c - b))
@@ -129,10 +123,12 @@ def sample_faces(position: Array, face: Array, spacing: float) -> tuple[ShapeMap
         normal = np.cross(*tangents(xi, eta, position[corner][None]))
         length = np.linalg.norm(normal, axis=1)
         nodes.append(np.tile(corner, (n * m, 1)))
+        faces.append(np.full(n * m, number))
         weights.append(bilinear(xi, eta))
         areas.append(length * 4 / (n * m))
         normals.append(normal / length[:, None])
-    shape = ShapeMap(np.concatenate(nodes), np.concatenate(weights), len(position))
+    owner = np.concatenate(faces)
+    shape = ShapeMap(np.concatenate(nodes), np.concatenate(weights), len(position), owner)
     return shape, np.concatenate(areas), np.concatenate(normals)
 
 
@@ -146,7 +142,8 @@ def project(points: Array, position: Array, face: Array) -> ShapeMap:
     order = np.lexsort((distance, point))  # stable: of equally near faces the first
     _, first = np.unique(point[order], return_index=True)
     best = order[first]
-    return ShapeMap(corner[candidate[best]], bilinear(xi[best], eta[best]), len(position))
+    weight, owner = bilinear(xi[best], eta[best]), candidate[best]
+    return ShapeMap(corner[owner], weight, len(position), owner)
 
 
 def _candidates(points: Array, x: Array) -> tuple[Array, Array]:

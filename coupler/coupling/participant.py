@@ -32,6 +32,7 @@ class Timing:
     wait: float = 0.0  # s that the coupler waited for it
     first: float = 0.0  # s, its first window
     steps: int = 0
+    windows: int = 0  # that were ordered, repetitions counted
     items: int = 0
     memory: int = 0  # bytes, the most that its process held; of one apart that ended well
     recent: deque[float] = field(default_factory=lambda: deque(maxlen=50))
@@ -42,18 +43,21 @@ class Timing:
         return statistics.median(self.recent) if self.recent else 0.0
 
 
-class Part:
+class Participant:
     """A component behind a line: orders go out, answers come back checked."""
 
     def __init__(self, name: str, line: Line) -> None:
         self.name, self.line = name, line
+        self.components = {name: self}
         self.asking: Callable[[], None] = lambda: None  # called when a wait begins
-        self.window = 0
+        self.window = 0  # the next
+        self.stable = 0.0  # s, largest step from its present state
         self.timing = Timing()
         self.shapes: Shapes | None = None  # of its outputs, once known
         self._asked = 0.0
+        self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
 
-    def tell(self, order: str, fields: Fields | None = None, **header: Any) -> None:
+    def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
         self._asked = time.perf_counter()
         self.asking()
@@ -62,7 +66,7 @@ class Part:
         except LineError as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
 
-    def hear(self, expected: Shapes | None = None, finite: bool = True) -> Message:
+    def receive(self, expected: Shapes | None = None, finite: bool = True) -> Message:
         """Wait for the answer."""
         try:
             message = self.line.receive(PATIENCE, expected)
@@ -76,19 +80,24 @@ class Part:
             raise ComponentFailed(self.name, self.window, said, trace)
         return message
 
-    def ask(self, order: str, fields: Fields | None = None, **header: Any) -> Message:
+    def call(self, order: str, fields: Fields | None = None, **header: Any) -> Message:
         """Send an order and wait for the answer."""
-        self.tell(order, fields, **header)
-        return self.hear()
+        self.send_order(order, fields, **header)
+        return self.receive()
 
-    def start(self, window: int, dt: float, fields: Fields, ends: list[str], totals: bool) -> None:
-        """Order one window, from `window` times `dt` on."""
-        self.window = window
-        self.tell("advance", fields, dt=dt, ends=ends, totals=totals)
+    def bind(self, static: Fields, **header: Any) -> None:
+        """Join its ports: who reads what, and with what forces do work."""
+        answer = self.call("bind", static, **header)
+        self.timing.items = int(answer.header["items"])
+        self.stable = float(answer.header["stable"])
+
+    def start(self, dt: float, fields: Fields, ends: list[str], **header: Any) -> None:
+        """Order the next window, of a length `dt` [s]."""
+        self.send_order("advance", fields, dt=dt, ends=ends, **header)
 
     def finish(self) -> Message:
         """Wait for the end of the window that was ordered."""
-        message = self.hear(self.shapes)
+        message = self.receive(self.shapes)
         took = time.perf_counter() - self._asked
         timing, header = self.timing, message.header
         timing.first = timing.first or took
@@ -96,21 +105,39 @@ class Part:
         timing.compute += float(header["busy"])
         timing.cpu += float(header["cpu"])
         timing.steps += int(header["steps"])
+        timing.windows += 1
         timing.recent.append(took)
+        self.stable = float(header["stable"])
+        self.window += 1
         return message
 
     def give(self) -> dict[str, Array]:
         """Ask for the outputs at the start, and remember their shapes."""
-        fields = self.ask("give").fields
+        fields = self.call("give").fields
         self.shapes = {key: array.shape for key, array in fields.items()}
         return fields
 
+    def order_keep(self, depth: int) -> None:
+        """Order that the present state be kept, for couplings that repeat windows at a depth."""
+        self._kept[depth] = self.window, self.stable
+        self.send_order("keep", depth=depth)
+
+    def order_rewind(self, depth: int) -> None:
+        """Order that it come back to the state that was kept."""
+        self.send_order("rewind", depth=depth)
+        self.window, self.stable = self._kept[depth]
+
     def save(self) -> dict[str, Array]:
         """Ask for all state; it may hold what is not finite, as a limit that was not met yet."""
-        self.tell("save")
-        return self.hear(finite=False).fields
+        self.send_order("save")
+        return self.receive(finite=False).fields
+
+    def load(self, state: Fields, window: int) -> None:
+        """Bring it to a saved state, after so many windows."""
+        self.window = window
+        self.stable = float(self.call("load", state).header["stable"])
 
 
-def describe_all(parts: Mapping[str, Part]) -> dict[str, Fields]:
+def describe_all(participants: Mapping[str, Participant]) -> dict[str, Fields]:
     """Ask every component for its static fields."""
-    return {name: part.ask("describe").fields for name, part in parts.items()}
+    return {name: one.call("describe").fields for name, one in participants.items()}

@@ -60,6 +60,6 @@ class ResidualScaling:
             former = FORGET * self.sizes if self.sizes.size else np.zeros(len(keys))
             self.sizes = np.maximum(np.maximum(norms, floors), former)
             self._first = False
-        else:  # a field that was still at rest in the first
-            self.sizes = np.where(self.sizes > 0.0, self.sizes, norms)
+        else:  # a field may have agreed in the first, and lack much when others have moved
+            self.sizes = np.maximum(self.sizes, norms)
         return np.repeat(1.0 / np.where(self.sizes > 0.0, self.sizes, 1.0), counts)

@@ -4,22 +4,22 @@ A window that is lost between two components, or carried twice, closes in itself
 sums over the whole run show it.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from quintet.coupler.coupling.exchange import Exchange, Leg
+from quintet.coupler.coupling.exchange import Exchange
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.sums import column_sums, size
 
-Gap = tuple[str, str, set[int], Array, float]  # taker, field, links, difference, scale
+Gap = tuple[str, str, set[int], Array, float]  # taker, field, transfers, difference, scale
 
 
 @dataclass(slots=True)
 class Running:
-    """What one leg's giver gave of one impulse."""
+    """What one transfer's giver gave of one impulse."""
 
     total: Array = field(default_factory=lambda: np.zeros(1))  # since the start
     last: Array = field(default_factory=lambda: np.zeros(1))  # in the last window
@@ -32,25 +32,25 @@ class Running:
         self.scale += size(array)
 
 
-class Balance:
+class RunBalance:
     """Sums over the run of every impulse whose sum a mapping keeps."""
 
     def __init__(self, exchange: Exchange) -> None:
         self.exchange = exchange
-        self._given: dict[tuple[str, str], list[tuple[int, Leg, str, Running]]] = {}  # by taker
+        # by taker and its field: number of the transfer, the giver's field, sums
+        self._given: dict[tuple[str, str], list[tuple[int, str, Running]]] = {}
         self._applied: dict[tuple[str, str], Array] = {}
-        for number, link in enumerate(exchange.links):
-            for leg in link.legs:
-                for before, after in leg.sums:
-                    entry = (number, leg, before, Running())
-                    self._given.setdefault((leg.taker, after), []).append(entry)
+        for number, transfer in enumerate(exchange.transfers):
+            for before, after in transfer.sums:
+                place = transfer.taker, after
+                self._given.setdefault(place, []).append((number, before, Running()))
 
-    def given(self, name: str, outputs: Mapping[str, Fields]) -> None:
-        """Add what a component gave in a window, as it arrived."""
+    def given(self, number: int, outputs: Fields) -> None:
+        """Add what the giver of a transfer gave in a window, as it arrived."""
         for entries in self._given.values():
-            for number, leg, before, running in entries:
-                if leg.giver == name:
-                    running.add(self.exchange.rows(number, leg, outputs)[before])
+            for one, before, running in entries:
+                if one == number:
+                    running.add(self.exchange.rows(number, outputs)[before])
 
     def applied(self, name: str, sums: Mapping[str, list[float]]) -> None:
         """Add what a component says it applied in a window."""
@@ -74,17 +74,17 @@ class Balance:
         self._applied = {(name, key): np.array(sums) for name, key, sums in state["applied"]}
 
     def gaps(
-        self, is_late: Callable[[str, str], bool], owed: Mapping[tuple[str, str], Array]
+        self, late: Collection[int], in_transit: Mapping[tuple[str, str], Array]
     ) -> Iterator[Gap]:
-        """Yield what is missing of every impulse; late and owed ones are still on their way."""
+        """Yield what is missing of every impulse; late ones are still on their way."""
         for (taker, key), entries in self._given.items():
             due: Array = np.zeros(1)
-            for _, leg, _, running in entries:
+            for number, _, running in entries:
                 due = due + running.total
-                if is_late(leg.giver, taker):
+                if number in late:
                     due = due - running.last
-            if (taker, key) in owed:
-                due = due - column_sums(owed[taker, key])
+            if (taker, key) in in_transit:
+                due = due - column_sums(in_transit[taker, key])
             scale = sum(running.scale for *_, running in entries)
             numbers = {number for number, *_ in entries}
             yield taker, key, numbers, due - self._applied.get((taker, key), 0.0), scale

@@ -1,231 +1,345 @@
-"""Who steps when: serial and parallel staggered windows, and windows iterated to agreement.
+"""A coupling: the members that it steps, what they gave last, and the books of their transfers.
 
-Literature: Farhat and Lesoinne (2000) for the staggered schemes; Küttler and Wall (2008),
-Comput. Mech. 43, 61, equation 44, for Aitken's relaxation of a repeated window.
+Its scheme (`schemes`) decides in which order windows are stepped. A member is a component or a
+group of components, which is a coupling itself (`group`).
 """
 
 import contextlib
+import math
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
-import numpy as np
-
-from quintet.coupler.coupling.exchange import Carried, Exchange
+from quintet.coupler.coupling.acceleration import Acceleration
+from quintet.coupler.coupling.acceleration import make as make_acceleration
+from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure
+from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.ledger import Ledger
-from quintet.coupler.coupling.participant import Part
+from quintet.coupler.coupling.participant import Participant
+from quintet.coupler.coupling.plan import CouplingPlan
+from quintet.coupler.coupling.windows import BLIND, Windows, auto_length
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.errors import LinkError, StepError
 from quintet.interfaces.lines.message import Message
+from quintet.interfaces.serving.inputs import KnownEnds, value_at
 
 # What components take from those that step after them: by the taker's name and the field's.
 Guess = dict[tuple[str, str], Array]
-FLOOR = 1e-3  # of the largest value so far: below it agreement is not asked for
-# Of the largest of all fields, in SI: below it there is only rounding, as in the torque on a body
-# that water pushes evenly.
-ROUNDING = 1e-12
+Sums = dict[str, list[float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """What a member gave in a window: outputs of each component in it, and their sums."""
+
+    outputs: dict[str, Fields]
+    sent: dict[str, Sums]
+
+
+class Member(Protocol):
+    """What a coupling steps: a component, or a group of them."""
+
+    @property
+    def components(self) -> Mapping[str, Participant]:
+        """All components in it, by name."""
+
+    @property
+    def inner(self) -> "Coupling | None":
+        """Coupling of a group."""
+
+    def stable(self) -> float:
+        """Largest step from the present state [s]."""
+
+    def start(
+        self, coupling: "Coupling", window: "Window", inputs: dict[str, WindowInputs]
+    ) -> None:
+        """Order a window."""
+
+    def finish(self, coupling: "Coupling", window: "Window") -> Given:
+        """Wait for its end."""
+
+    def book(self, coupling: "Coupling", window: "Window") -> None:
+        """Book what its components say of the window, once it counts."""
+
+    def keep(self, depth: int) -> None:
+        """Order that the present state be kept."""
+
+    def rewind(self, depth: int) -> None:
+        """Order that it come back to the state kept."""
+
+    def confirm(self) -> None:
+        """Wait until such an order is carried out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """One window of a coupling."""
+
+    number: int
+    ticks: int
+    dt: float  # s
+    totals: bool  # whether the components' totals are wanted at its end
 
 
 @dataclass(slots=True)
-class Iteration:
-    """How a window is repeated until what crosses the links agrees."""
+class Costs:
+    """What coupling costs, in all groups together."""
 
-    tolerance: float = 1e-6  # of the change of every field, relative to its size
-    limit: int = 50
-    relaxation: float = 0.5  # of the first repetition; later ones as Aitken's method finds
-    aitken: bool = True
+    mapping: float = 0.0  # s spent on transfers and bookkeeping
+    repetitions: int = 0  # of windows
+    unconverged: int = 0  # windows that went on at the limit of repetitions
 
 
 @dataclass(slots=True)
 class Coupling:
-    """All that a scheme works on."""
+    """All that a scheme works on.
 
-    parts: dict[str, Part]  # in the order in which they step
+    Parameters
+    ----------
+    plan : CouplingPlan
+        Members, scheme and window, as the scene has them.
+    members : mapping
+        In the order in which they step.
+    depth : int
+        In how many groups it is.
+    """
+
+    plan: CouplingPlan
+    members: Mapping[str, Member]
     exchange: Exchange
     ledger: Ledger
-    dt: float  # s, one window
-    iteration: Iteration = field(default_factory=Iteration)
+    depth: int = 0
+    costs: Costs = field(default_factory=Costs)
+    log: ConvergenceLog | None = None
+    windows: Windows = field(default_factory=lambda: Windows(1.0, 1, 1.0))
+    outside: Callable[[str], WindowInputs | None] = lambda _: None  # inputs from beyond a group
     outputs: dict[str, Fields] = field(default_factory=dict)  # the latest of every component
-    sent: dict[str, dict[str, list[float]]] = field(default_factory=dict)  # sums as given
-    owed: Guess = field(default_factory=dict)  # impulses not yet applied
-    sizes: dict[tuple[str, str], float] = field(default_factory=dict)  # largest norms so far
-    repetitions: int = 0
-    mapping: float = 0.0  # s spent on carrying and bookkeeping so far
+    previous: dict[str, Fields] = field(default_factory=dict)  # those a window before
+    iterate: dict[str, Fields] = field(default_factory=dict)  # those of the last repetition
+    sent: dict[str, Sums] = field(default_factory=dict)  # sums as given
+    in_transit: Guess = field(default_factory=dict)  # impulses not yet applied
+    relaxed: dict[tuple[int, str], Array] = field(default_factory=dict)  # last instants handed on
+    late: set[int] = field(default_factory=set)  # transfers whose impulses wait for the next window
+    last_dt: float = 0.0  # s, the last window
+    transfers: dict[int, tuple[str, str]] = field(init=False)  # by number: members, giver and taker
+    equal: set[str] = field(init=False)  # components that must make equal steps
+    acceleration: Acceleration = field(init=False)
+    measure: ConvergenceMeasure = field(init=False)
 
-    def gather(self, name: str, fresh: Collection[str]) -> Carried:
-        """Carry to one component what the others gave last."""
-        with self._timed():
-            carried = self.exchange.inputs(name, self.outputs, fresh)
-            carried.outputs, carried.sent = dict(self.outputs), dict(self.sent)
-            return carried
+    def __post_init__(self) -> None:
+        self.transfers = self.plan.transfers(self.exchange)
+        self.equal = self.plan.equal(self.exchange)
+        settings, is_impulse = self.plan.iteration, self.exchange.is_impulse
+        self.acceleration = make_acceleration(settings, is_impulse)
+        self.measure = ConvergenceMeasure(settings.tolerance, settings.absolute, is_impulse)
 
-    def settle(self, is_late: Callable[[str, str], bool]) -> None:
-        """End a window's books; `is_late` tells which giver's impulses wait for the next."""
-        with self._timed():
-            self.ledger.settle(is_late, self.owed)
+    @property
+    def components(self) -> dict[str, Participant]:
+        """Every component, also those in groups."""
+        return {k: v for one in self.members.values() for k, v in one.components.items()}
+
+    def allowed(self) -> float:
+        """How long the next window may be where it follows the state [s]."""
+        stable = {name: one.stable() for name, one in self.members.items()}
+        joined = {name for ends in self.transfers.values() for name in ends}
+        steps = [step for name, step in stable.items() if name in joined or not joined]
+        equal = [stable[name] for name in stable if name in self.equal]
+        length, _ = auto_length(steps, equal)
+        return length if math.isfinite(length) else self.windows.end * self.windows.tick / BLIND
+
+    def gather(
+        self, name: str, stepped: Collection[str], window: Window
+    ) -> dict[str, WindowInputs]:
+        """Bring to a member's components what the others gave; `stepped` have done this window."""
+        with self.timed():
+            found: dict[str, list[tuple[Delivery, bool]]] = {}
+            for number, (giver, member) in self.transfers.items():
+                if member == name:
+                    is_end, taker = giver in stepped, self.exchange.transfers[number].taker
+                    one = self._deliver(number, is_end and name not in stepped, window)
+                    found.setdefault(taker, []).append((one, is_end))
+            gathered = {}
+            for taker, deliveries in found.items():
+                inputs = self.exchange.merge(taker, deliveries)
+                inputs.outputs, inputs.sent = self.outputs[taker], dict(self.sent)
+                gathered[taker] = inputs
+            return gathered
+
+    def _deliver(self, number: int, is_ahead: bool, window: Window) -> Delivery:
+        """Map a transfer over the window of its giver.
+
+        Where the giver is a window ahead of the taker, the taker's own end is not known yet: it is
+        where the last repetition ended, or where its rates lead.
+        """
+        transfer = self.exchange.transfers[number]
+        giver, taker = transfer.giver, transfer.taker
+        start, end = {giver: self.previous[giver]}, {giver: self.outputs[giver]}
+        if transfer.needs and is_ahead:
+            start[taker] = self.outputs[taker]
+            end[taker] = self.iterate.get(taker) or self._ahead(taker, transfer.needs, window.dt)
+        elif transfer.needs:
+            start[taker], end[taker] = self.previous[taker], self.outputs[taker]
+        delivery = self.exchange.deliver(number, start, end)
+        self._relax(delivery, window)
+        return delivery
+
+    def _ahead(self, name: str, keys: Iterable[str], dt: float) -> Fields:
+        """Outputs of a component as far ahead as their rates lead."""
+        known = self.outputs[name]
+        found = {}
+        for key in keys:
+            one = self.exchange.output(name, key)
+            rate = known.get(f"{key.partition('.')[0]}.{one.rate}") if one.rate else None
+            found[key] = value_at(one.kind, KnownEnds(known[key], rate), dt, dt)
+        return found
+
+    def _relax(self, delivery: Delivery, window: Window) -> None:
+        """Hand on only a share of the change of instants, where the link says so."""
+        number, link = delivery.number, self.exchange.link_of[delivery.number]
+        factors = self.exchange.links[link].demands().relaxation
+        if not factors:
+            return
+        factor = factors[min(window.number, len(factors) - 1)]
+        after = dict(delivery.after)
+        for key, array in after.items():
+            if not self.exchange.is_impulse(delivery.transfer.taker, key):
+                last = self.relaxed.get((number, key), array)
+                after[key] = self.relaxed[number, key] = last + factor * (array - last)
+        delivery.after = after
+
+    def start(self, name: str, window: Window, inputs: dict[str, WindowInputs]) -> None:
+        """Order one member's window."""
+        self.members[name].start(self, window, inputs)
+
+    def finish(self, name: str, window: Window) -> Given:
+        """Wait for the end of one member's window."""
+        return self.members[name].finish(self, window)
+
+    def advance_outputs(self, given: Given) -> None:
+        """Make what a member gave the latest of its components."""
+        for component, fields in given.outputs.items():
+            self.previous[component] = self.outputs[component]
+            self.outputs[component] = fields
+            self.sent[component] = given.sent[component]
+
+    def book(self, given: Given, inputs: dict[str, WindowInputs], window: Window) -> None:
+        """Book the transfers that brought a member's inputs, and those that it gave for."""
+        with self.timed():
+            for taker, one in inputs.items():
+                for delivery in one.deliveries:
+                    self.ledger.mapped(delivery, one.sent)
+                    ends = one.outputs, given.outputs[taker]
+                    self.ledger.worked(delivery, one.fields, *ends, window.dt)
+            for number in self.transfers:
+                giver = self.exchange.transfers[number].giver
+                if giver in given.outputs:
+                    self.ledger.given_for(number, given.outputs[giver])
+
+    def all_late(self) -> set[int]:
+        """Transfers of this coupling and of its groups whose last impulses wait."""
+        found = set(self.late)
+        for inner in self._inner():
+            found |= inner.all_late()
+        return found
+
+    def all_in_transit(self) -> Guess:
+        """Impulses of this coupling and of its groups that are not yet applied."""
+        found = dict(self.in_transit)
+        for inner in self._inner():
+            for key, array in inner.all_in_transit().items():
+                found[key] = found[key] + array if key in found else array
+        return found
+
+    def _inner(self) -> Iterator["Coupling"]:
+        return (one.inner for one in self.members.values() if one.inner is not None)
 
     @contextlib.contextmanager
-    def _timed(self) -> Iterator[None]:
+    def timed(self) -> Iterator[None]:
+        """Count the time that goes into transfers and bookkeeping."""
         began = time.perf_counter()
         yield
-        self.mapping += time.perf_counter() - began
+        self.costs.mapping += time.perf_counter() - began
 
-    def agree(self, gap: Guess, found: Guess) -> bool:
-        """Whether what was guessed is what was found, to the iteration's tolerance."""
-        norms = {key: float(np.linalg.norm(array)) for key, array in found.items()}
-        for key, norm in norms.items():
-            self.sizes[key] = max(self.sizes.get(key, 0.0), norm)
-        least = {key: max(norm, FLOOR * self.sizes[key]) for key, norm in norms.items()}
-        tolerance, rounding = self.iteration.tolerance, ROUNDING * max(norms.values(), default=0.0)
-        return all(np.linalg.norm(gap[key]) <= max(tolerance * least[key], rounding) for key in gap)
+    def save(self) -> dict[str, Any]:
+        """What outlives a window, for a snapshot and for a group that is repeated."""
+        return {
+            "outputs": dict(self.outputs),
+            "previous": dict(self.previous),
+            "sent": dict(self.sent),
+            "in_transit": dict(self.in_transit),
+            "relaxed": dict(self.relaxed),
+            "late": sorted(self.late),
+            "last_dt": self.last_dt,
+            "windows": self.windows.save(),
+            "acceleration": self.acceleration.save(),
+            "measure": self.measure.save(),
+        }
 
-    def start(self, name: str, window: int, carried: Carried, totals: bool) -> None:
-        """Order one component's window."""
-        self.parts[name].start(window, self.dt, carried.fields, carried.ends, totals)
-
-    def book(self, name: str, carried: Carried, answer: Message) -> None:
-        """Put an answer into the ledger and among the outputs."""
-        ledger, header = self.ledger, answer.header
-        with self._timed():
-            ledger.mapped(carried)
-            ledger.given(name, header, answer.fields, self.outputs)
-            ledger.applied(name, carried.fields, header)
-            ledger.moved(name, carried, header["handed"], self.dt)
-            ledger.worked(name, carried.fields, carried.outputs[name], answer.fields, self.dt)
-        self.keep(name, answer)
-        if header.get("totals"):
-            ledger.totals[name] = header["totals"]
-
-    def keep(self, name: str, answer: Message) -> None:
-        """Make an answer the latest of its component."""
-        self.outputs[name], self.sent[name] = answer.fields, answer.header["sent"]
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to what was saved."""
+        self.outputs, self.previous = dict(state["outputs"]), dict(state["previous"])
+        self.sent, self.in_transit = dict(state["sent"]), dict(state["in_transit"])
+        self.relaxed, self.late = dict(state["relaxed"]), set(state["late"])
+        self.last_dt = state["last_dt"]
+        self.windows.load(state["windows"])
+        self.measure.load(state["measure"])
+        if self.plan.scheme == "iterated" and state["acceleration"]:
+            self.acceleration.load(state["acceleration"])
 
 
-Scheme = Callable[[Coupling, int, bool], None]  # coupling, window, whether totals are wanted
+class Single:
+    """A component as a member of a coupling."""
 
+    inner: Coupling | None = None
 
-def serial(coupling: Coupling, window: int, totals: bool) -> None:
-    """One after the other: each sees the window's end of those before it."""
-    done: list[str] = []
-    for name, part in coupling.parts.items():
-        carried = coupling.gather(name, done)
-        if any(not coupling.exchange.is_impulse(name, key) for key in carried.mixed):
-            raise LinkError(
-                f"{name}: what it takes in {carried.mixed[0].partition('.')[0]} must all come from "
-                "components that step before it, or all from ones after it; it comes from both. "
-                "Change scene.order, or use scheme parallel or iterated."
-            )
-        coupling.start(name, window, carried, totals)
-        coupling.book(name, carried, part.finish())
-        done.append(name)
-    coupling.settle(lambda giver, taker: done.index(taker) <= done.index(giver))
+    def __init__(self, participant: Participant) -> None:
+        self.participant, self.name = participant, participant.name
+        self.components = {participant.name: participant}
+        self._inputs = WindowInputs()
+        self._answer: Message | None = None
 
+    def stable(self) -> float:
+        """See `Member.stable`."""
+        return self.participant.stable
 
-def parallel(coupling: Coupling, window: int, totals: bool) -> None:
-    """All at once: each sees the others as they were at the window's beginning."""
-    # Those that follow a partner's motion first: their last loads were made along that way.
-    first = sorted(coupling.parts, key=lambda name: not coupling.exchange.follows(name))
-    inputs = {name: coupling.gather(name, ()) for name in first}
-    for name in coupling.parts:
-        coupling.start(name, window, inputs[name], totals)
-    for name, part in coupling.parts.items():
-        coupling.book(name, inputs[name], part.finish())
-    coupling.settle(lambda giver, taker: True)
+    def start(self, coupling: Coupling, window: Window, inputs: dict[str, WindowInputs]) -> None:
+        """See `Member.start`."""
+        self._inputs = inputs.get(self.name) or WindowInputs()
+        fields, ends = self._inputs.fields, self._inputs.ends
+        if (beyond := coupling.outside(self.name)) is not None:
+            fields, ends = dict(fields), list(ends)
+            both = WindowInputs(fields, ends=ends)
+            both.add(beyond)
+            self._inputs = WindowInputs(fields, self._inputs.deliveries, ends)
+        steps = int(self.name in coupling.equal)
+        self.participant.start(window.dt, fields, ends, totals=window.totals, steps=steps)
 
+    def finish(self, coupling: Coupling, window: Window) -> Given:
+        """See `Member.finish`."""
+        self._answer = self.participant.finish()
+        fields, sent = self._answer.fields, self._answer.header["sent"]
+        return Given({self.name: fields}, {self.name: sent})
 
-def iterated(coupling: Coupling, window: int, totals: bool) -> None:
-    """Repeat the serial window until what goes back to the first components agrees.
+    def book(self, coupling: Coupling, window: Window) -> None:
+        """See `Member.book`."""
+        answer, ledger = self._answer, coupling.ledger
+        assert answer is not None
+        with coupling.timed():
+            ledger.given(self.name, answer.header, answer.fields)
+            ledger.applied(self.name, self._inputs.fields, answer.header)
+            ledger.moved(self.name, self._inputs, answer.header["inputs"], window.dt)
+        if answer.header.get("totals"):
+            ledger.totals[self.name] = answer.header["totals"]
 
-    What the last repetition still lacked of an impulse is added in the next window, so that
-    momentum closes to rounding although the iteration stops at its tolerance.
-    """
-    memory, before = coupling.exchange.memory(), dict(coupling.outputs)
-    guess = _stale(coupling)
-    aitken = Aitken(coupling.iteration)
-    _all(coupling, "keep")
-    for repetition in range(coupling.iteration.limit):
-        coupling.exchange.recall(memory)
-        if repetition:
-            _all(coupling, "rewind")
-            coupling.outputs = dict(before)
-            coupling.repetitions += 1
-        booked = _sweep(coupling, window, totals, guess)
-        taken = {name: coupling.gather(name, coupling.parts) for name, _ in guess}
-        found = {(name, key): taken[name].fields[key] for name, key in guess}
-        gap = {key: found[key] - guess[key] for key in guess}
-        if coupling.agree(gap, found):
-            break
-        guess = aitken.next(guess, gap)
-    else:
-        raise StepError(
-            f"window {window}: {coupling.iteration.limit} repetitions must bring the components "
-            "to agreement; they did not. Shorten the window, lower iteration.relaxation, or "
-            "raise iteration.limit."
-        )
-    for name, carried, answer in booked:
-        if name in taken:  # the mapping that counts is that of the agreed outputs
-            carried.legs, carried.sent = taken[name].legs, taken[name].sent
-        coupling.book(name, carried, answer)
-    coupling.owed = {k: v for k, v in gap.items() if coupling.exchange.is_impulse(*k)}
-    coupling.settle(lambda giver, taker: False)
+    def keep(self, depth: int) -> None:
+        """See `Member.keep`."""
+        self.participant.order_keep(depth)
 
+    def rewind(self, depth: int) -> None:
+        """See `Member.rewind`."""
+        self.participant.order_rewind(depth)
 
-def _sweep(
-    coupling: Coupling, window: int, totals: bool, guess: Guess
-) -> list[tuple[str, Carried, Message]]:
-    """Step all components once with guessed inputs where the true ones come later."""
-    fresh: set[str] = set()
-    booked = []
-    for name, part in coupling.parts.items():
-        carried = coupling.gather(name, fresh)
-        for (taker, key), value in guess.items():
-            if taker == name:
-                carried.fields[key] = value + coupling.owed.get((taker, key), 0.0)
-                carried.guessed.append(key)
-                carried.ends.append(key)
-        coupling.start(name, window, carried, totals)
-        answer = part.finish()
-        booked.append((name, carried, answer))
-        coupling.keep(name, answer)
-        fresh.add(name)
-    return booked
-
-
-def _stale(coupling: Coupling) -> Guess:
-    """Inputs that come, wholly or in part, from components which step after their taker."""
-    names = list(coupling.parts)
-    found: Guess = {}
-    for number, name in enumerate(names):
-        carried = coupling.gather(name, names[:number])
-        found |= {(name, k): v for k, v in carried.fields.items() if k not in carried.ends}
-    return found
-
-
-def _all(coupling: Coupling, order: str) -> None:
-    for part in coupling.parts.values():
-        part.tell(order)
-    for part in coupling.parts.values():
-        part.hear()
-
-
-class Aitken:
-    """Relaxation of a fixed-point iteration, its factor found from the last two residuals."""
-
-    def __init__(self, settings: Iteration) -> None:
-        self.settings = settings
-        self.factor = settings.relaxation
-        self._last: Array | None = None
-
-    def next(self, guess: Guess, gap: Guess) -> Guess:
-        """Next guess, from this one and what it lacked."""
-        residual = np.concatenate([gap[key].ravel() for key in gap])
-        if self.settings.aitken and self._last is not None:
-            change = residual - self._last
-            square = float(change @ change)
-            if square > 0.0:
-                self.factor *= -float(self._last @ change) / square
-        self._last = residual
-        return {key: guess[key] + self.factor * gap[key] for key in guess}
-
-
-SCHEMES: dict[str, Scheme] = {"serial": serial, "parallel": parallel, "iterated": iterated}
+    def confirm(self) -> None:
+        """See `Member.confirm`."""
+        self.participant.receive()

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from quintet.coupler.coupling.participant import ComponentFailed, Part
+from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch.mpi_job import write_processes
 from quintet.coupler.launch.processes import GRACE, Watch, start
 from quintet.coupler.scene.scene import Scene
@@ -31,7 +31,7 @@ JOINING_BY_HAND = 3600.0  # s until one does that somebody starts elsewhere
 class Connection(Protocol):
     """Components joined to the coupler."""
 
-    parts: dict[str, Part]
+    participants: dict[str, Participant]
 
     def close(self, well: bool) -> None:
         """Close all connections; components finish in order if all is well, else they are ended."""
@@ -50,7 +50,8 @@ def connect(scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> Conn
 def settings(scene: Scene, name: str) -> dict[str, Any]:
     """Header of the order that gives a component its parameters."""
     one = scene.components[name]
-    return {"order": "go", "params": one.params, "threads": one.threads}
+    folder = str(scene.folder.resolve())
+    return {"order": "go", "params": one.params, "threads": one.threads, "folder": folder}
 
 
 class InMemory:
@@ -60,18 +61,17 @@ class InMemory:
         # Only the transport that a run uses is loaded.
         from quintet.interfaces.lines.memory import MemoryLine
 
-        self.parts: dict[str, Part] = {}
+        self.participants: dict[str, Participant] = {}
         run = secrets.token_hex(4)
-        threads = max(one.threads for one in scene.components.values())
         for name, one in scene.components.items():
             try:
-                component = build(one.manifest, {**settings(scene, name), "threads": threads})
-            except Exception as error:
+                component = build(one.manifest, settings(scene, name))
+            except (Exception, SystemExit) as error:
                 trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
                 raise ComponentFailed(name, 0, str(error), trace) from error
             line = MemoryLine(run, name)
             line.handle = partial(answer, Server(component, name), line.far)
-            self.parts[name] = Part(name, line)
+            self.participants[name] = Participant(name, line)
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
@@ -85,7 +85,7 @@ class OverZenoh:
         from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
-        self.parts: dict[str, Part] = {}
+        self.participants: dict[str, Participant] = {}
         self.watches: dict[str, Watch] = {}
         self.session = Session(endpoint, True, "coupler", scene.security)
         run = secrets.token_hex(4)
@@ -113,8 +113,10 @@ class OverZenoh:
         ]
         if scene.tls:
             arguments += ["--tls", *scene.tls]
+        for place in scene.import_folders:
+            arguments += ["--look-in", place]
         log = folder / "log" / f"{name}.log"
-        process = start(arguments, log, one.threads, scene.import_folders)
+        process = start(arguments, log, one.threads)
         self.watches[name] = Watch(name, process.pid, process)
 
     def _await_hello(
@@ -133,11 +135,11 @@ class OverZenoh:
             hello = line.receive(seconds)
         except LineError as error:
             raise ComponentFailed(name, 0, f"did not join: {error}") from error
-        accept(scene, name, line, hello, watch, self.parts)
+        accept(scene, name, line, hello, watch, self.participants)
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
-        end_all(self.parts, list(self.watches.values()), well)
+        end_all(self.participants, list(self.watches.values()), well)
         self.session.close()
 
 
@@ -150,7 +152,7 @@ class OverMpi:
 
         mpi.self_check(1 + len(scene.components))
         run = secrets.token_hex(4)
-        self.parts: dict[str, Part] = {}
+        self.participants: dict[str, Participant] = {}
         self.watches: dict[str, Watch] = {}
         write_processes(folder, None, shared_files())
         for rank, name in enumerate(scene.components, start=1):
@@ -164,7 +166,7 @@ class OverMpi:
             watch = Watch(name, int(hello.header["pid"])) if here else None
             if watch:
                 self.watches[name] = watch
-            accept(scene, name, line, hello, watch, self.parts)
+            accept(scene, name, line, hello, watch, self.participants)
         watches = self.watches.values()
         shared = [path for watch in watches for path in watch.shared]
         write_processes(folder, [watch.pid for watch in watches], [*shared_files(), *shared])
@@ -172,7 +174,7 @@ class OverMpi:
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
         if well:
-            finish(self.parts)
+            finish(self.participants)
             return
         # A dead rank would keep MPI from ending in order: end the others ourselves.
         for watch in self.watches.values():
@@ -185,7 +187,7 @@ def accept(
     line: FramedLine,
     hello: Message,
     watch: Watch | None,
-    parts: dict[str, Part],
+    participants: dict[str, Participant],
 ) -> None:
     """Accept a component: check its kind, watch its process, send its parameters."""
     expected = scene.components[name].manifest.kind
@@ -193,30 +195,30 @@ def accept(
         raise ComponentFailed(
             name, 0, f"{expected} must say hello; found {hello.header.get('kind')!r}. Start that."
         )
-    part = parts[name] = Part(name, line)
+    one = participants[name] = Participant(name, line)
     if watch:
         watch.shared = [str(path) for path in hello.header.get("shared", [])]
-        watch.usual = lambda: part.timing.usual
-        line.watch, part.asking = watch, watch.reset
+        watch.usual = lambda: one.timing.usual
+        line.watch, one.asking = watch, watch.reset
     line.send(settings(scene, name), {})
 
 
-def finish(parts: dict[str, Part]) -> None:
+def finish(participants: dict[str, Participant]) -> None:
     """Order every component to finish, and await its answer."""
-    for part in parts.values():
-        part.tell("finish")
-    for part in parts.values():
-        part.timing.memory = int(part.hear().header["memory"])
+    for one in participants.values():
+        one.send_order("finish")
+    for one in participants.values():
+        one.timing.memory = int(one.receive().header["memory"])
 
 
-def end_all(parts: dict[str, Part], watches: list[Watch], well: bool) -> None:
+def end_all(participants: dict[str, Participant], watches: list[Watch], well: bool) -> None:
     """End all component processes: in order, or at once."""
     if well:
-        finish(parts)
+        finish(participants)
     else:
-        for part in parts.values():
+        for one in participants.values():
             with contextlib.suppress(QuintetError):
-                part.line.send({"order": "abort"}, {})
+                one.line.send({"order": "abort"}, {})
     limit = time.monotonic() + (GRACE if well else 0.3)
     for watch in watches:
         watch.end(max(0.0, limit - time.monotonic()))

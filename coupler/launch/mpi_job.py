@@ -20,7 +20,7 @@ from pathlib import Path
 from types import FrameType
 from typing import IO
 
-from quintet.coupler.launch.processes import environment, tail
+from quintet.coupler.launch.processes import PYTHON, environment, tail
 from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
@@ -36,14 +36,15 @@ ENDING = 3.0  # s for all ranks to end after the coupler has its results
 
 def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
     """The MPMD command line: rank 0 couples, the others are components in the scene's order."""
-    python = [sys.executable, "-m", "mpi4py"]
-    new_session = [sys.executable, "-m", "quintet.coupler.launch.new_session"]
+    python = [*PYTHON, "-m", "mpi4py"]
+    new_session = [*PYTHON, "-m", "quintet.coupler.launch.new_session"]
     line = [*find_launcher(), "-n", "1", *new_session, *python]
     line += ["-m", "quintet.coupler.cli", *arguments, "--inside-mpi"]
     for name, one in scene.components.items():
         log = str(folder / "log" / f"{name}.log")
         line += [":", "-n", "1", *python, "-m", "quintet.interfaces.serving.process", one.kind]
         line += ["--name", name, "--mpi", "--log", log]
+        line += [word for place in scene.import_folders for word in ("--look-in", place)]
     return line
 
 
@@ -74,7 +75,7 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
     job_file.unlink(missing_ok=True)
     threads = max(one.threads for one in scene.components.values())
     line = command(arguments, scene, folder)
-    env = {**environment(threads, scene.import_folders), STARTER: str(os.getpid())}
+    env = {**environment(threads), STARTER: str(os.getpid())}
     log = job_file.with_name(LAUNCHER_LOG)
     with open(log, "wb") as file:
         process = subprocess.Popen(

@@ -16,6 +16,8 @@ QUIET_FACTOR, QUIET_EXTRA = 3.0, 5.0  # inactive for 3 usual windows and 5 s: ha
 BUSY = 0.02  # share of a core below which a process counts as inactive
 INTERVAL = 0.5  # s between two readings of a process's times
 STATES = {"R": "running", "S": "sleeping", "D": "waiting for a disk", "T": "stopped"}
+# Python, which by itself looks for modules where it is started before it looks anywhere else.
+PYTHON = (sys.executable, "-P")
 GRACE = 2.0  # s for a process to end by itself
 
 
@@ -85,25 +87,23 @@ class Watch:
                 os.unlink(path)
 
 
-def start(
-    arguments: list[str], log: Path, threads: int, folders: list[str]
-) -> subprocess.Popen[bytes]:
+def start(arguments: list[str], log: Path, threads: int) -> subprocess.Popen[bytes]:
     """Start a Python program in a session of its own, its output in a log."""
     with open(log, "ab") as file:
         return subprocess.Popen(
-            [sys.executable, *arguments],
+            [*PYTHON, *arguments],
             stdin=subprocess.DEVNULL,
             stdout=file,
             stderr=file,
             start_new_session=True,
-            env=environment(threads, folders),
+            env=environment(threads),
         )
 
 
-def environment(threads: int, folders: list[str]) -> dict[str, str]:
+def environment(threads: int) -> dict[str, str]:
     """Environment of a component: size of its thread pools, import path, passive waiting."""
     known = os.environ.get("PYTHONPATH", "").split(os.pathsep)
-    path = os.pathsep.join(dict.fromkeys([*folders, *filter(None, known)]))
+    path = os.pathsep.join(filter(None, known))  # nothing between two separators: where we are
     sizes = dict.fromkeys(("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), threads)
     return {
         **os.environ,

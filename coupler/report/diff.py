@@ -119,7 +119,7 @@ def _values(one: Recording, other: Recording) -> Iterator[Difference]:
 
 
 def _times(one: Recording, other: Recording, name: str, part: slice) -> Iterator[Difference]:
-    arrays = [recording.times(name)[part] for recording in (one, other)]
+    arrays = [recording.ticks(name)[part] * recording.tick for recording in (one, other)]
     if (place := _first(*arrays)) is not None:
         a, b = (float(array[place]) for array in arrays)
         yield Difference("time", name, "", part.start + place[0], a, 0, (), a, b)

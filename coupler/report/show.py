@@ -114,10 +114,19 @@ def _met(met: Any) -> Text:
     return Text("met", style="green") if met else Text("not met", style="red")
 
 
+def _is_more(value: Any) -> bool:
+    """Whether a number, or any of a list, is not 0."""
+    return any(value) if isinstance(value, list) else bool(value)
+
+
+ALWAYS = ("momentum_residual", "work_given", "work_taken", "energy_residual")  # even if all 0
+
+
 def _ledger(found: Mapping[str, Any]) -> Table | None:
-    """One row for each link; a column for each residual that any of them has."""
+    """One row for each link; a column for what any of them has."""
     links = (found.get("ledger") or {}).get("links") or []
     keys = list(dict.fromkeys(key for link in links for key in link if key != "link"))
+    keys = [key for key in keys if key in ALWAYS or any(_is_more(one.get(key)) for one in links)]
     rows = [[link.get("link", "?"), *(_number(link.get(key)) for key in keys)] for link in links]
     return _table("Ledger", ["link", *(key.replace("_", " ") for key in keys)], 1, rows)
 
@@ -166,7 +175,9 @@ def _shares(found: Mapping[str, Any]) -> str:
     text = "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in times.items()) if times else ""
     text += f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else ""
     again = found.get("repetitions")
-    return text + (f"; windows repeated {again} times" if again else "")
+    text += f"; windows repeated {again} times" if again else ""
+    lacking = found.get("unconverged")
+    return text + (f"; {lacking} windows did not converge" if lacking else "")
 
 
 def _fault(fault: Mapping[str, Any]) -> Text:

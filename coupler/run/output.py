@@ -1,16 +1,21 @@
 """Output during a run: recording, views, ledger, snapshots."""
 
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
+from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.schedule import Coupling
-from quintet.coupler.files.recording import NAME, Recorder
+from quintet.coupler.coupling.windows import Windows, in_ticks
+from quintet.coupler.files.recording import NAME, Instant, Recorder
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
+from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.snapshots import save
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.component import Fields
+from quintet.interfaces.ports import only_fields
 
 SNAPSHOT_INTERVAL = 600.0  # s of wall time between two snapshots, where the scene gives none
 
@@ -19,94 +24,119 @@ class OutputWriter:
     """Writes recording, views and ledger of a run, and shows its progress."""
 
     def __init__(
-        self, scene: Scene, folder: Path, stop: StopRequest, first: int | None = None
+        self,
+        scene: Scene,
+        folder: Path,
+        stop: StopRequest,
+        logs: Mapping[str, ConvergenceLog],
+        first: int | None = None,
     ) -> None:
         """Begin the files, or continue them after the first windows of an earlier run."""
         self.scene, self.folder, self.stop, self.first = scene, folder, stop, first
+        self.logs, self.begun = logs, False
         self.done, self.time = first or 0, 0.0  # windows, s
-        self._last_snapshot = time.monotonic()  # when the last snapshot was made
-        self._snapshot_every = 0  # windows between two; 0: by the clock
-        self._view_every = 0  # windows between two views
-        self._ledger_every = 0  # windows between two rows of the ledger
+        self._kept = time.monotonic()  # when the last snapshot was made
+        self._views = 0  # ticks between two views; 0: none
+        self._totals = 0  # ticks between two rows of the ledger
+        self._snapshots = 0  # ticks between two snapshots; 0: by the clock
+        self._now = 0  # ticks
+        self._windows = Windows(1.0, 1)
         self._recorder: Recorder | None = None
         self._progress: ProgressReport | None = None
         self._files: dict[str, VtkHdf] = {}
         self._began = 0.0  # s, simulated
 
-    def begin(self, coupling: Coupling, described: dict[str, Fields], windows: int) -> None:
-        """See `Witness.begin`."""
-        interval, scene = self.scene.file.output.interval, self.scene
-        self._view_every = max(1, round(interval / coupling.dt)) if interval else 0
-        totals = scene.file.output.totals
-        self._ledger_every = max(1, round(totals / coupling.dt)) if totals else 0
-        snapshots = scene.file.output.snapshots
-        self._snapshot_every = max(1, round(snapshots / coupling.dt)) if snapshots else 0
-        self.time = self._began = self.done * coupling.dt
-        if scene.file.output.record:
-            self._recorder = self._recording(described)
-        if self.first is None:
-            self._record(coupling, 0.0)
-            self._note(coupling, 0.0)
-        self._progress = ProgressReport(windows, scene.file.end, self.done)
+    def plan(self, windows: Windows) -> None:
+        """See `Observer.plan`."""
+        output, tick = self.scene.file.output, windows.tick
+        self._views, self._totals, self._snapshots = (
+            in_ticks(one, tick) if one else 0
+            for one in (output.interval, output.totals, output.snapshots)
+        )
+        # Rows of the ledger come at the windows' ends: to watch a run must not change its steps.
+        windows.stops = [one for one in (self._views, self._snapshots) if one]
+        windows.marks = tuple(in_ticks(one, tick) for one in output.pictures if one)
+        self._windows = windows
 
-    def _recording(self, described: dict[str, Fields]) -> Recorder:
+    def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:
+        """See `Observer.begin`."""
+        self.begun = True
+        discard_former(self.folder)  # all checks are passed
+        self.done, self._now = self._windows.done, self._windows.now
+        self.time = self._began = self._windows.time
+        if self.scene.file.output.record:
+            self._recorder = self._recording(coupling, described)
+        if self.first is None:
+            self._record(coupling)
+            self._note(coupling)
+        self._progress = ProgressReport(self.scene.file.end, self.done, self.time)
+
+    def _recording(self, coupling: Coupling, described: Mapping[str, Fields]) -> Recorder:
         path = self.folder / NAME
         if self.first is not None:
             return Recorder.resume(path, self.first + 1)
-        made = Recorder(path, self.folder.name, (self.folder / "scene.toml").read_text())
+        text = (self.folder / "scene.toml").read_text(encoding="utf-8")
+        made = Recorder(path, self.folder.name, text, self._windows.tick)
         for name, one in self.scene.components.items():
-            made.component(name, one.gives, described[name])
+            ports = only_fields(one.gives, coupling.outputs[name])
+            made.component(name, ports, described[name])
         return made
 
-    def due(self, window: int) -> bool:
-        """See `Witness.due`."""
-        return any(
-            every and (window + 1) % every == 0 for every in (self._view_every, self._ledger_every)
-        )
+    def due(self, ticks: int) -> bool:
+        """See `Observer.due`."""
+        often = any(self._passes(every, ticks) for every in (self._views, self._totals))
+        return often or ticks in self._windows.marks
 
-    def end_window(self, coupling: Coupling, window: int) -> None:
-        """See `Witness.end_window`."""
-        self.done, self.time = window, window * coupling.dt
-        self._record(coupling, self.time)
-        if self._view_every and window % self._view_every == 0:
-            self._note(coupling, self.time)
-        elif self._ledger_every and window % self._ledger_every == 0:
+    def _passes(self, every: int, ticks: int) -> bool:
+        """Whether a multiple of `every` lies between the last window's end and a time [ticks]."""
+        return bool(every) and ticks // every > self._now // every
+
+    def end_window(self, coupling: Coupling) -> None:
+        """See `Observer.end_window`."""
+        windows = self._windows
+        now, self.done, self.time = windows.now, windows.done, windows.time
+        self._record(coupling)
+        if self._passes(self._views, now) or (self._views and now in windows.marks):
+            self._note(coupling)
+        elif self._passes(self._totals, now):
             coupling.ledger.note(self.time, dict(coupling.ledger.totals))
         if self._progress:
-            self._progress.show(window, coupling.ledger.worst)
-        late = time.monotonic() - self._last_snapshot > SNAPSHOT_INTERVAL
-        if window % self._snapshot_every == 0 if self._snapshot_every else late:
-            self._save_snapshot(coupling, window)
+            self._progress.show(self.done, self.time, coupling.ledger.worst)
+        late = time.monotonic() - self._kept > SNAPSHOT_INTERVAL
+        if self._passes(self._snapshots, now) if self._snapshots else late:
+            self._keep(coupling)
+        self._now = now
 
-    def ends_early(self, coupling: Coupling, window: int) -> None:
-        """See `Witness.ends_early`."""
-        self._save_snapshot(coupling, window)
+    def ends_early(self, coupling: Coupling) -> None:
+        """See `Observer.ends_early`."""
+        self._keep(coupling)
 
-    def _save_snapshot(self, coupling: Coupling, window: int) -> None:
-        """Write a snapshot, after all rows of the recording up to it."""
+    def _keep(self, coupling: Coupling) -> None:
+        """Make a snapshot, with all rows written that the run had until then."""
         if self._recorder:
             self._recorder.flush()
-        save(coupling, self.scene, self.folder, window)
-        self._last_snapshot = time.monotonic()
+        save(coupling, self.scene, self.folder, self.logs)
+        self._kept = time.monotonic()
 
     def wants_end(self) -> bool:
-        """See `Witness.wants_end`."""
+        """See `Observer.wants_end`."""
         return self.stop()
 
-    def _record(self, coupling: Coupling, time: float) -> None:
+    def _record(self, coupling: Coupling) -> None:
         if self._recorder:
-            for name, fields in coupling.outputs.items():
-                self._recorder.add(name, time, fields)
+            for name, one in coupling.components.items():
+                instant = Instant(self._windows.time, self._windows.now, one.stable)
+                self._recorder.add(name, instant, coupling.outputs[name])
 
-    def _note(self, coupling: Coupling, time: float) -> None:
-        """Write the totals and the view of every component."""
+    def _note(self, coupling: Coupling) -> None:
+        """Ask every component for its totals and its picture."""
         totals = {}
-        for name, part in coupling.parts.items():
-            answer = part.ask("view")
+        for name, one in coupling.components.items():
+            answer = one.call("view")
             totals[name] = answer.header["totals"]
-            if self._view_every and "points" in answer.fields:
-                self._file(name).append(time, answer.fields)
-        coupling.ledger.note(time, totals)
+            if self._views and "points" in answer.fields:
+                self._file(name).append(self._windows.time, answer.fields)
+        coupling.ledger.note(self._windows.time, totals)
 
     def _file(self, name: str) -> VtkHdf:
         found = self._files.get(name)

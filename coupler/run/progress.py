@@ -11,19 +11,20 @@ LINE_INTERVAL = 5.0  # s between two lines of progress where there is no termina
 
 
 class ProgressReport:
-    """Windows done, speed, time left and residual: a bar, or lines without a terminal."""
+    """Windows done, simulated time, speed, time left and residual: a bar, or lines."""
 
-    def __init__(self, windows: int, end: float, first: int = 0) -> None:
-        self.windows, self.end, self.first = windows, end, first
+    def __init__(self, end: float, first: int = 0, time_then: float = 0.0) -> None:
+        self.end, self.first, self.time_then = end, first, time_then  # s, windows, s
         self._began = self._shown = time.monotonic()
         self._bar = self._make_bar() if shows_bar() else None
         if self._bar:
             self._bar.start()
-            self._task = self._bar.add_task("", total=windows, speed="", residual="")
+            texts = {"window": first, "speed": "", "residual": ""}
+            self._task = self._bar.add_task("", total=end, completed=time_then, **texts)  # type: ignore[arg-type]
 
     def _make_bar(self) -> Progress:
         columns = (
-            TextColumn("{task.completed}/{task.total}"),
+            TextColumn("window {task.fields[window]}, t = {task.completed:.4g}/{task.total:.4g} s"),
             BarColumn(),
             TextColumn("{task.fields[speed]}"),
             TimeRemainingColumn(),
@@ -31,18 +32,23 @@ class ProgressReport:
         )
         return Progress(*columns, refresh_per_second=4)
 
-    def show(self, window: int, residual: float) -> None:
-        """Show the windows done, the speed, the time left and the residual."""
+    def show(self, window: int, simulated: float, residual: float) -> None:
+        """Show windows done, simulated time [s], speed, time left and residual."""
         now = time.monotonic()
-        speed = (window - self.first) / max(now - self._began, 1e-9)
+        spent = max(now - self._began, 1e-9)
+        speed = (window - self.first) / spent
         if self._bar:
-            texts = {"speed": f"{speed:.3g} windows/s", "residual": f"momentum {residual:.0e}"}
-            self._bar.update(self._task, completed=window, **texts)  # type: ignore[arg-type]
-        elif now - self._shown >= LINE_INTERVAL or window in (1, self.windows):
+            texts = {
+                "window": window,
+                "speed": f"{speed:.3g} windows/s",
+                "residual": f"momentum {residual:.0e}",
+            }
+            self._bar.update(self._task, completed=simulated, **texts)  # type: ignore[arg-type]
+        elif now - self._shown >= LINE_INTERVAL or window == 1 or simulated >= self.end:
             self._shown = now
-            left = (self.windows - window) / speed
+            left = (self.end - simulated) * spent / max(simulated - self.time_then, 1e-300)
             print(
-                f"window {window}/{self.windows}, t = {window * self.end / self.windows:.4g} s, "
+                f"window {window}, t = {simulated:.4g} of {self.end:.4g} s, "
                 f"{speed:.3g} windows/s, {left:.0f} s left, momentum residual {residual:.0e}",
                 flush=True,
             )

@@ -10,8 +10,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.coupling.participant import ComponentFailed, Part
+from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.files.recording import Recording
+from quintet.coupler.files.run_files import PICTURES
 from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
 from quintet.coupler.report.pictures import comparison, side_views
 from quintet.coupler.scene.scene import Scene
@@ -44,18 +45,18 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
     """Draw the pictures of a scene, and its time series against references."""
     times = scene.file.output.pictures
     if times and list(folder.glob("*.vtkhdf")):
-        side_views(folder, folder / "scene.png", times)
+        side_views(folder, folder / PICTURES[0], times)
     if any(one.csv for one in scene.expect) and found:
         with Recording(folder / "recording.h5") as recording:
-            comparison(scene.folder, scene.expect, found, recording, folder / "comparison.png")
+            comparison(scene.folder, scene.expect, found, recording, folder / PICTURES[1])
 
 
-def timing(parts: dict[str, Part], wall: float, mapping: float) -> dict[str, Any]:
+def timing(participants: dict[str, Participant], wall: float, mapping: float) -> dict[str, Any]:
     """Wall time and its parts [s], and the sum of the peak memories of all processes [bytes]."""
     components = {}
     exchange = compile_time = 0.0
-    for name, part in parts.items():
-        one = part.timing
+    for name, participant in participants.items():
+        one = participant.timing
         components[name] = {
             "compute": one.compute,
             "cpu": one.cpu,
@@ -72,7 +73,7 @@ def timing(parts: dict[str, Part], wall: float, mapping: float) -> dict[str, Any
         "components": components,
         "exchange": exchange,
         "mapping": mapping,
-        "memory": peak_memory() + sum(part.timing.memory for part in parts.values()),
+        "memory": peak_memory() + sum(one.timing.memory for one in participants.values()),
     }
 
 

@@ -1,31 +1,34 @@
 """Snapshots on disk, from which an interrupted run goes on with the same bits.
 
-A snapshot holds the state of every component, what the coupler remembers (last outputs, what
-links and the iteration carry over from window to window, the ledger), and how long the files of
+A snapshot holds the state of every component, what the coupler remembers (the last two outputs of
+each, what its couplings carry over from window to window, the ledger), and how long the files of
 the run were. Nothing in it is pickled; it is there whole or not at all.
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
+from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.files.run_files import SNAPSHOTS
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 
 KEPT = 2  # snapshots of a run
-PATTERN = "snapshot-*.h5"
 FREE = ("transport", "endpoint", "tls", "minutes")  # may differ when a run goes on: no bit does
 
 
 def snapshots(folder: Path) -> list[Path]:
     """Snapshots of a run, the latest last."""
-    return sorted(folder.glob(PATTERN), key=window_of)
+    return sorted(folder.glob(SNAPSHOTS), key=window_of)
 
 
 def window_of(path: Path) -> int:
@@ -39,55 +42,55 @@ def remove(paths: Iterable[Path]) -> None:
         path.unlink(missing_ok=True)
 
 
-def save(coupling: Coupling, scene: Scene, folder: Path, window: int) -> Path:
+def save(
+    coupling: Coupling, scene: Scene, folder: Path, logs: Mapping[str, ConvergenceLog]
+) -> Path:
     """Write a snapshot at the end of a window, and remove all but the last few."""
-    path = folder / f"snapshot-{window}.h5"
+    path = folder / f"snapshot-{coupling.windows.done}.h5"
     part = path.with_suffix(".part")
+    participants = coupling.components
     with h5py.File(part, "w", locking=False) as file:
-        for name, component in coupling.parts.items():
-            _put(file, f"components/{name}", component.save())
-            _put(file, f"outputs/{name}", dict(coupling.outputs[name]))
-        _put(file, "memory", coupling.exchange.memory())
-        owed: dict[str, Any] = {name: {} for name in coupling.parts}
-        for (name, key), array in coupling.owed.items():
-            owed[name][key] = array
-        _put(file, "owed", owed)
-        numbers = {
-            "asked": scene.asked,
-            "dt": coupling.dt,
-            "sent": coupling.sent,
-            "sizes": [[*place, size] for place, size in coupling.sizes.items()],
-            "repetitions": coupling.repetitions,
-            "ledger": coupling.ledger.save(),
-        }
-        file["numbers"] = json.dumps(numbers)  # a dataset, as an attribute ends at 64 KiB
+        for name, one in participants.items():
+            _put(file, f"components/{name}", one.save())
+        _put(file, "windows", {name: one.window for name, one in participants.items()})
+        _put(file, "coupling", states(coupling))
+        _put(file, "ledger", coupling.ledger.save())
+        _put(file, "costs", asdict(coupling.costs))
+        _put(file, "logs", {name: log.size() for name, log in logs.items()})
+        _put(file, "asked", scene.asked)
+        _put(file, "tick", coupling.windows.tick)
     part.replace(path)
     remove(snapshots(folder)[:-KEPT])
     return path
 
 
-def restore(coupling: Coupling, path: Path) -> int:
-    """Bring a coupling that was prepared to a snapshot; return the windows done."""
-    window = window_of(path)
+def states(coupling: Coupling) -> dict[str, Any]:
+    """What a coupling and its groups carry over from window to window."""
+    groups = {k: one.save() for k, one in coupling.members.items() if isinstance(one, Group)}
+    return {"own": coupling.save(), "groups": groups}
+
+
+def restore(coupling: Coupling, path: Path) -> None:
+    """Bring a coupling whose ports are joined to a snapshot."""
     with h5py.File(path, "r", locking=False) as file:
-        numbers = _numbers(file)
-        if numbers["dt"] != coupling.dt:
+        tick = _get(file, "tick")
+        if tick != coupling.windows.tick:
             raise SceneError(
-                f"snapshot {path.name}: the window must be {numbers['dt']!r} s as before; it is "
-                f"{coupling.dt!r} s. Resume with the same window and end."
+                f"snapshot {path.name}: times must be counted in {tick!r} s as before; found "
+                f"{coupling.windows.tick!r} s. Resume with the same window and end."
             )
-        for name, part in coupling.parts.items():
-            part.window = window
-            part.ask("load", _get(file, f"components/{name}"))
-            coupling.outputs[name] = _get(file, f"outputs/{name}")
-        coupling.exchange.recall(list(_get(file, "memory")))
-        owed = _get(file, "owed")
-    coupling.owed = {(name, key): a for name, held in owed.items() for key, a in held.items()}
-    coupling.sent = numbers["sent"]
-    coupling.sizes = {(name, key): size for name, key, size in numbers["sizes"]}
-    coupling.repetitions = numbers["repetitions"]
-    coupling.ledger.load(numbers["ledger"])
-    return window
+        windows = _get(file, "windows")
+        for name, one in coupling.components.items():
+            one.load(_get(file, f"components/{name}"), windows[name])
+        state = _get(file, "coupling")
+        coupling.load(state["own"])
+        for name, saved in state["groups"].items():
+            group = coupling.members[name]
+            assert isinstance(group, Group)
+            group.load(saved)
+        coupling.ledger.load(_get(file, "ledger"))
+        for name, cost in _get(file, "costs").items():
+            setattr(coupling.costs, name, cost)
 
 
 def latest(folder: Path) -> Path:
@@ -104,7 +107,7 @@ def latest(folder: Path) -> Path:
 def scene_of(path: Path, transport: str) -> Scene:
     """Read the scene of a snapshot as it was asked for, over another transport if one is given."""
     with h5py.File(path, "r", locking=False) as file:
-        asked = _numbers(file)["asked"]
+        asked = _get(file, "asked")
     return load(**{**asked, "transport": transport or asked["transport"]})
 
 
@@ -119,18 +122,14 @@ def check_same(scene: Scene, folder: Path) -> None:
         )
 
 
-def ledger_size(path: Path) -> int:
-    """Length of the ledger's file when a snapshot was made [bytes]."""
+def file_sizes(path: Path) -> tuple[int, dict[str, int]]:
+    """Lengths of the ledger and of the convergence logs when a snapshot was made [bytes]."""
     with h5py.File(path, "r", locking=False) as file:
-        return int(_numbers(file)["ledger"]["size"])
-
-
-def _numbers(file: h5py.File) -> Any:
-    return json.loads(file["numbers"].asstr()[()])
+        return int(_get(file, "ledger")["size"]), dict(_get(file, "logs"))
 
 
 def _put(group: Any, name: str, value: Any) -> None:
-    """Write arrays in tables and lists; what is None is left out."""
+    """Write tables and lists of arrays, numbers and texts; None is left out."""
     if value is None:
         return
     if isinstance(value, dict):
@@ -138,13 +137,16 @@ def _put(group: Any, name: str, value: Any) -> None:
         for number, one in enumerate(value.values()):
             _put(made, str(number), one)
         made.attrs["keys"] = json.dumps(list(value))
-    elif isinstance(value, (list, tuple)):
+    elif isinstance(value, (list, tuple)) and any(isinstance(one, np.ndarray) for one in value):
         made = group.create_group(name)
         for number, one in enumerate(value):
             _put(made, str(number), one)
         made.attrs["count"] = len(value)
+    elif isinstance(value, np.ndarray):
+        group[name] = value
     else:
-        group[name] = np.asarray(value)
+        group[name] = json.dumps(value)  # a dataset, as an attribute ends at 64 KiB
+        group[name].attrs["json"] = True
 
 
 def _get(group: Any, name: str) -> Any:
@@ -152,8 +154,15 @@ def _get(group: Any, name: str) -> Any:
         return None
     found = group[name]
     if isinstance(found, h5py.Dataset):
+        if "json" in found.attrs:
+            return json.loads(found.asstr()[()])
         return np.asarray(found[()])
     if "keys" in found.attrs:
-        keys = json.loads(found.attrs["keys"])
+        keys = [_key(one) for one in json.loads(found.attrs["keys"])]
         return {key: _get(found, str(number)) for number, key in enumerate(keys)}
     return tuple(_get(found, str(number)) for number in range(found.attrs["count"]))
+
+
+def _key(key: Any) -> Any:
+    """A key of a table; JSON has lists where tables have tuples."""
+    return tuple(key) if isinstance(key, list) else key

@@ -3,12 +3,15 @@
 import io
 import json
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
+from quintet.coupler.coupling.plan import CouplingPlan
+from quintet.coupler.coupling.windows import auto_length
 from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Port
@@ -64,11 +67,9 @@ def print_plan(scene: Scene, console: Console) -> None:
     """Print processes, ports, windows, message sizes, memory and expected time."""
     file = scene.file
     console.print(f"{file.name}: {file.title}", style="bold")
-    windows = "auto" if file.window == "auto" else f"{round(file.end / file.window)}"
-    console.print(
-        f"{file.end:g} s in {windows} windows, {file.scheme}, over {scene.transport}; "
-        f"{_processes(scene)}"
-    )
+    console.print(f"{file.end:g} s over {scene.transport}; {_processes(scene)}")
+    for line in _windows(scene, scene.coupling):
+        console.print(line)
     table = Table(box=None, pad_edge=False)
     for head in ("component", "kind", "threads", "items", "step", "memory", "time"):
         table.add_column(head)
@@ -78,10 +79,35 @@ def print_plan(scene: Scene, console: Console) -> None:
     for one in scene.components.values():
         console.print(f"{one.name} takes {_names(one.takes)}; gives {_names(one.gives)}")
     for link in scene.links:
-        for leg in link.legs:
-            console.print(f"link {link.name}: {leg.giver} -> {leg.taker}")
+        for one_way in link.transfers:
+            console.print(f"link {link.name}: {one_way.giver} -> {one_way.taker}")
     for expected in scene.expect:
         console.print(f"expects {expected.name} within {expected.within:g} {expected.unit}")
+
+
+def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:
+    """Members, scheme and windows of a coupling and its groups; steps are estimates."""
+    exchange = scene.exchange()
+    where = f"group {plan.name}" if plan.name else "run"
+    members = ", ".join(plan.members)
+    plans = {name: one.plan() for name, one in scene.components.items()}
+    steps = {name: one.dt for name, one in plans.items() if one is not None}
+    joined = {name for ends in plan.transfers(exchange).values() for name in ends}
+    equal = plan.equal(exchange)
+    known = [steps[name] for name in joined or set(plan.members) if name in steps]
+    length, why = auto_length(known, [steps[name] for name in equal if name in steps])
+    about = f"about {length:.2g} s (estimated), {why}" if known else "as far as the members allow"
+    if plan.window == "auto":
+        windows = f"windows follow the state: {about}"
+    elif equal:
+        windows = f"windows follow the state, {plan.window:g} s at most: {about}"
+    elif plan.name:
+        windows = f"windows of {plan.window:g} s at most"
+    else:
+        windows = f"{max(1, round(scene.file.end / plan.window))} windows of {plan.window:g} s"
+    yield f"{where}: {members}; {plan.scheme}; {windows}"
+    for inner in plan.inner():
+        yield from _windows(scene, inner)
 
 
 def _processes(scene: Scene) -> str:

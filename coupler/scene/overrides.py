@@ -1,11 +1,15 @@
 """Overrides of a scene file: presets, single settings, replaced components."""
 
+import os
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.files.toml_writer import value_text
+import tomli_w
+
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import known_kinds
 from quintet.interfaces.params import unknown
 
@@ -59,7 +63,30 @@ def _may_be_made(heads: list[str]) -> bool:
 
 def assignments(settings: Mapping[str, Any]) -> list[str]:
     """Write settings by dotted path as ``PATH=VALUE``."""
-    return [f"{path}={value_text(value)}" for path, value in settings.items()]
+    return [f"{path}={value_text(value, path)}" for path, value in settings.items()]
+
+
+def value_text(value: Any, path: str = "value") -> str:
+    """Write one value as TOML on one line."""
+    try:
+        # Within two lists a table is written inline.
+        text = tomli_w.dumps({"value": [[plain(value)]]}).removeprefix("value = ")
+    except (TypeError, ValueError) as error:
+        raise SceneError(f"{path}: a setting must be a value of TOML; found {value!r}.") from error
+    # In texts a new line is escaped, so what is left of them lies between items of lists.
+    text = re.sub(r"(?<=\[)\n *|,\n *(?=\])", "", text)
+    return re.sub(r"\n *", " ", text).strip()[2:-2]
+
+
+def plain(value: Any) -> Any:
+    """Write numbers and arrays of numpy, and paths, as what TOML has."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): plain(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(one) for one in value]
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 def run_arguments(

@@ -1,7 +1,5 @@
 """Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
 
-import re
-import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -11,19 +9,26 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.coupling.exchange import Link
-from quintet.coupler.coupling.links import KINDS
+from quintet.coupler.coupling.links import known_links, maker
 from quintet.coupler.measures.expectation import Expectation, check
 from quintet.coupler.scene import variants
+from quintet.coupler.scene.groups import lay_out, refused, unknown_outputs
 from quintet.coupler.scene.overrides import put_preset, put_set, put_swap
-from quintet.coupler.scene.scene import ComponentPlan, Scene, SceneFile
+from quintet.coupler.scene.scene import (
+    NAME,
+    ComponentPlan,
+    Scene,
+    SceneFile,
+    import_folders,
+    wrong_name,
+)
 from quintet.coupler.scene.stability_table import Scope
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
-from quintet.interfaces.manifest import Manifest, find, known_kinds
+from quintet.interfaces.manifest import Manifest, find, known_kinds, look_in
 from quintet.interfaces.params import read, unknown
 
-NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component: it names files and lines
-TABLES = ("components", "links", "expect", "presets", "stand_ins", *variants.TABLES)
+TABLES = ("components", "links", "groups", "expect", "presets", "stand_ins", *variants.TABLES)
 
 
 def library() -> dict[str, Path]:
@@ -96,22 +101,28 @@ def parse(path: Path) -> dict[str, Any]:
 
 
 def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
-    sys.path[:0] = [p for p in (str(path.parent.resolve()), str(Path.cwd())) if p not in sys.path]
+    look_in(import_folders(path, table.get("components")))
     own = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, own, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
-    components = _components(table.get("components"), mistakes)
+    components = _components(table.get("components"), path.parent, mistakes)
     wrong = set(table.get("components") or ()) - set(components)  # told of already
     links = _links(_tables(table, "links", mistakes), components, wrong, mistakes)
     expect = _expect(_tables(table, "expect", mistakes), components, wrong, path.parent, mistakes)
+    coupling = None
     if file is not None:
-        components = components if wrong else _ordered(file, components, mistakes)
+        if not wrong:
+            coupling = lay_out(file, table.get("groups", {}), components, mistakes)
+        if coupling and not mistakes:
+            components = {name: components[name] for name in coupling.components()}
+            mistakes += refused(coupling, components, links)
+            mistakes += unknown_outputs(file, components)
         if file.window != "auto" and file.window > file.end:
             mistakes.append(
                 f"scene.window must not exceed scene.end ({file.end:g} s); found {file.window:g} s."
                 " Shorten it."
             )
-        mistakes += _reachable(file)
+        mistakes += _reachable(file) + wrong_name(file.name)
     series = [_tables(table, key, mistakes) for key in variants.TABLES]
     scope, check = None, None
     if file is not None and not mistakes:
@@ -123,10 +134,10 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
         series[0], series[1], make_variant, scope
     )
     mistakes += wrong_variants
-    if mistakes or file is None:
+    if mistakes or file is None or coupling is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])
     resolved = {k: v for k, v in table.items() if k not in ("presets", *variants.TABLES)}
-    made = Scene(file, path, preset, components, links, expect, resolved, file.transport)
+    made = Scene(file, path, preset, components, links, coupling, expect, resolved, file.transport)
     made.study, made.stability = study, stability
     return made
 
@@ -169,7 +180,7 @@ def _tables(table: dict[str, Any], key: str, mistakes: list[str]) -> list[dict[s
     return []
 
 
-def _components(table: Any, mistakes: list[str]) -> dict[str, ComponentPlan]:
+def _components(table: Any, folder: Path, mistakes: list[str]) -> dict[str, ComponentPlan]:
     if not isinstance(table, dict) or not table:
         mistakes.append("components: a scene needs at least one. Add [components.NAME].")
         return {}
@@ -182,12 +193,14 @@ def _components(table: Any, mistakes: list[str]) -> dict[str, ComponentPlan]:
             )
         elif not isinstance(given, dict):
             mistakes.append(f"components.{name} must be a table; found {given!r}. Give it a kind.")
-        elif one := _component(name, dict(given), mistakes):
+        elif one := _component(name, dict(given), folder, mistakes):
             found[name] = one
     return found
 
 
-def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> ComponentPlan | None:
+def _component(
+    name: str, given: dict[str, Any], folder: Path, mistakes: list[str]
+) -> ComponentPlan | None:
     where = f"components.{name}"
     kind, threads = given.pop("kind", None), given.pop("threads", 1)
     if not isinstance(kind, str):
@@ -199,7 +212,7 @@ def _component(name: str, given: dict[str, Any], mistakes: list[str]) -> Compone
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
         return None
-    params, wrong = read(manifest.params, given, where)
+    params, wrong = read(manifest.params, given, where, folder)
     if wrong:
         mistakes += wrong
         return None
@@ -236,16 +249,17 @@ def _links(
 ) -> list[Link]:
     ports = {name: (one.takes, one.gives) for name, one in components.items()}
     found: list[Link] = []
+    known = known_links()
     for number, given in enumerate(table):
         kind = str(given.get("kind", ""))
         lists = [given.get("between", []), given.get("pairs", [])]
-        if kind not in KINDS:
-            mistakes.append(unknown(f"links.{number}.kind {kind}", kind, KINDS))
+        if kind not in known:
+            mistakes.append(unknown(f"links.{number}.kind {kind}", kind, known))
         elif not all(map(_is_names, lists)):
             mistakes.append(f"links.{number}: components and ports are names; found {lists!r}.")
         elif not wrong & set(_named(lists)):
             try:
-                found.append(KINDS[kind](number, given, ports))
+                found.append(maker(kind)(number, given, ports))
             except SceneError as error:
                 mistakes += error.mistakes
     for name, count in Counter(link.name for link in found).items():
@@ -284,17 +298,3 @@ def _expect(
             mistakes += check(one, gives, folder)
             found.append(one)
     return found
-
-
-def _ordered(
-    file: SceneFile, components: dict[str, ComponentPlan], mistakes: list[str]
-) -> dict[str, ComponentPlan]:
-    if not file.order:
-        return components
-    if sorted(file.order) != sorted(components):
-        mistakes.append(
-            f"scene.order must name every component once ({', '.join(components)}); found "
-            f"{', '.join(file.order)}."
-        )
-        return components
-    return {name: components[name] for name in file.order}

@@ -1,30 +1,46 @@
 """What is simulated: a checked scene. ``coupler/read.py`` makes it from TOML."""
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from quintet.coupler.coupling.exchange import Link
-from quintet.coupler.coupling.schedule import Iteration
+from quintet.coupler.coupling.exchange import Exchange, Link
+from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import Refinement
 from quintet.interfaces.component import Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
-from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
+from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 
+NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component or group: it names files and lines
+PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")  # name of a scene: never a path
 Transport = Literal["memory", "zenoh", "mpi"]
 
 
 @parameters
-class IterationSettings:
-    """``[iteration]``: how windows are repeated."""
+class GroupSettings:
+    """``[groups.NAME]``: components with a scheme and windows of their own.
 
-    tolerance: Positive = 1e-6
-    limit: Count = 50
-    relaxation: Positive = 0.5
-    aitken: bool = True
+    Parameters
+    ----------
+    members : tuple of str
+        Components, and names of other groups, in the order in which they step.
+    scheme : {"serial", "parallel", "iterated"}
+        How the group's windows are stepped.
+    window : float, s, or "auto"
+        Between two exchanges of its members, within the window around it; auto follows the state.
+    iteration : IterationSettings
+        How its windows are repeated, under the scheme iterated.
+    """
+
+    members: tuple[str, ...]
+    scheme: Scheme = "serial"
+    window: Positive | Literal["auto"] = "auto"
+    iteration: IterationSettings = IterationSettings()
 
 
 @parameters
@@ -36,6 +52,7 @@ class OutputSettings:
     totals: NotNegative = 0.0  # s between two rows of the ledger; 0: with the particles
     snapshots: NotNegative = 0.0  # s between two, to resume from; 0: now and then, and at an end
     record: bool = True  # every exchange
+    fields: tuple[str, ...] = ()  # "component.port.field": recorded though no link reads them
 
 
 @parameters
@@ -47,8 +64,8 @@ class SceneFile:
     title: str = ""
     about: str = ""  # what it shows, and its source
     window: Positive | Literal["auto"] = "auto"  # s between two exchanges
-    scheme: Literal["serial", "parallel", "iterated"] = "serial"
-    order: tuple[str, ...] = ()  # in which components step; as they stand in the file
+    scheme: Scheme = "serial"
+    order: tuple[str, ...] = ()  # in which components and groups step; as they stand in the file
     transport: Transport = "zenoh"
     endpoint: str = ""  # where the coupler listens; a free port of the loopback
     tls: tuple[str, ...] = ()  # authority, certificate, key
@@ -84,6 +101,7 @@ class Scene:
     preset: str
     components: dict[str, ComponentPlan]  # in the order in which they step
     links: list[Link]
+    coupling: CouplingPlan
     expect: list[Expectation]
     resolved: dict[str, Any]  # the scene as it runs, for scene.toml
     transport: Transport = "zenoh"
@@ -114,10 +132,38 @@ class Scene:
 
     @property
     def import_folders(self) -> list[str]:
-        """Where components named as ``module:Class`` are looked for."""
-        return [str(self.folder.resolve()), str(Path.cwd())]
+        """See `import_folders`."""
+        return import_folders(self.path, self.resolved["components"])
 
-    def iteration(self) -> Iteration:
-        """Settings of the iterated scheme."""
-        one = self.file.iteration
-        return Iteration(one.tolerance, one.limit, one.relaxation, one.aitken)
+    def exchange(self) -> Exchange:
+        """The links of the scene, ready to be joined in a run."""
+        return Exchange(
+            self.links, {n: (one.takes, one.gives) for n, one in self.components.items()}
+        )
+
+    def asked_outputs(self) -> dict[str, set[str]]:
+        """Outputs of each component that are wanted although no link reads them."""
+        asked: dict[str, set[str]] = {name: set() for name in self.components}
+        for one in self.expect:
+            asked[one.component].add(one.field)
+        for path in self.file.output.fields:
+            name, _, key = path.partition(".")
+            asked[name].add(key)
+        return asked
+
+
+def import_folders(path: Path, components: Any) -> list[str]:
+    """Folders where components named as ``module:Class`` are looked for; none without any."""
+    tables = components.values() if isinstance(components, dict) else ()
+    kinds = [str(one.get("kind", "")) for one in tables if isinstance(one, dict)]
+    return [str(path.parent.resolve()), str(Path.cwd())] if ":" in "".join(kinds) else []
+
+
+def wrong_name(name: str) -> list[str]:
+    """Check the name of a scene, which is that of a folder as well."""
+    if PLAIN.fullmatch(name):
+        return []
+    return [
+        "scene.name must be a plain name of letters, digits, _ . and -, beginning with a letter, a "
+        f"digit or _; found {name!r}. Rename it."
+    ]

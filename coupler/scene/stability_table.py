@@ -138,6 +138,8 @@ class Limit:
         totals = self.end / SAMPLES if one.energy or one.momentum is not None else 0.0
         output = {"output.pictures": [], "output.interval": 0.0, "output.totals": totals}
         output["output.record"] = bool(one.bounds or one.expectation)
+        bounded = [f"{bounds.component}.{bounds.field}" for bounds in one.bounds]
+        output["output.fields"] = list(dict.fromkeys(bounded))
         varied = {path: value * base for path, base in self.scaled.items()}
         if isinstance(one.parameter, str):
             varied = {one.parameter: value}

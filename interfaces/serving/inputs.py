@@ -4,14 +4,29 @@ Impulses become the constant rate that has the same integral. Instants are taken
 middle of each step: between two known ends linearly, or by a cubic Hermite polynomial when
 their rate comes with them; beyond the last known end by their rate. A velocity that comes
 with a position is given as the mean over the step, so that displacements add up to rounding.
+
+Rotations go the same ways on the sphere: beyond the known end exp(ω t) q₀, between two known
+ends exp(φ(t)) q₀ with a cubic Hermite polynomial φ whose end is, of all rotation vectors that
+lead to the end, the one nearest to the mean angular velocity times the window.
 """
 
 from collections.abc import Collection, Iterable
+from typing import NamedTuple
 
 import numpy as np
 
+from quintet.interfaces import rotation
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import PortError
+
+
+class KnownEnds(NamedTuple):
+    """An instant and its rate at the beginning of a window, and at its end where it is known."""
+
+    first: Array
+    first_rate: Array | None = None
+    last: Array | None = None
+    last_rate: Array | None = None
 
 
 class Inputs:
@@ -61,29 +76,35 @@ class Inputs:
             given[key] = self._at(key, middle, window)
         for key, rate in self.rates.items():
             if key in self.start and rate in self.start:
-                moved = self._at(key, end, window) - self._at(key, begin, window)
-                given[rate] = moved / (end - begin)
+                given[rate] = self._mean_rate(key, rate, begin, end, window)
         for array in given.values():
             array.flags.writeable = False
         return given
 
-    def _at(self, key: str, time: float, window: float) -> Array:
-        first, rate = self.start[key], self.rates.get(key, "")
-        hermite = rate in self.start
+    def _mean_rate(self, key: str, rate: str, begin: float, end: float, window: float) -> Array:
+        if self.fields[key].kind != "rotation":
+            moved = self._at(key, end, window) - self._at(key, begin, window)
+            return np.asarray(moved / (end - begin))
         if key not in self.end:
-            return first + time * self.start[rate] if hermite else first.view()
-        if time in (0.0, window):  # exactly the ends, whatever rounding does between
-            return (first if time == 0.0 else self.end[key]).view()
-        s = time / window
-        straight = self.end[key] - first
-        if hermite and rate in self.end:
-            # The Hermite basis, written as a correction of the straight line between the ends.
-            bow = window * ((1.0 - s) * self.start[rate] - s * self.end[rate])
-            bow -= (1.0 - 2.0 * s) * straight
-            straight += (1.0 - s) * bow
-        straight *= s  # in place: fields may be large
-        straight += first
-        return straight
+            return self.start[rate].view()
+        near = self._turn(key, end, window) - self._turn(key, begin, window)
+        ends = self._at(key, begin, window), self._at(key, end, window)
+        return np.asarray(rotation.vector_between(*ends, near) / (end - begin))
+
+    def _at(self, key: str, time: float, window: float) -> Array:
+        return value_at(self.fields[key].kind, self._ends(key), time, window)
+
+    def value(self, key: str, time: float, window: float) -> Array:
+        """Value of an instant at a time [s] of the window."""
+        return self._at(key, time, window)
+
+    def _turn(self, key: str, time: float, window: float) -> Array:
+        return turn_at(self._ends(key), time, window)
+
+    def _ends(self, key: str) -> KnownEnds:
+        rate = self.rates.get(key, "")
+        ends = self.start.get(rate), self.end.get(key), self.end.get(rate)
+        return KnownEnds(self.start[key], *ends)
 
     def save(self) -> dict[str, Array]:
         """What must come back with a component's state."""
@@ -98,3 +119,49 @@ class Inputs:
             part, _, key = name.partition("/")
             parts[part][key] = np.array(array)
         self.start, self.end, self.rate = parts["start"], parts["end"], parts["rate"]
+
+
+def value_at(kind: str, ends: KnownEnds, time: float, window: float) -> Array:
+    """Value of an instant at a time [s] of a window, from what is known at its two ends."""
+    first, first_rate, last, last_rate = ends
+    if kind == "flag" and time < window:
+        return first.view()
+    if kind == "rotation":
+        if time in (0.0, window) and (last is not None or time == 0.0):
+            return (first if time == 0.0 or last is None else last).view()
+        turn = turn_at(ends, time, window)
+        return rotation.product(rotation.exponential(turn), first)
+    if last is None:
+        return first + time * first_rate if first_rate is not None else first.view()
+    if time in (0.0, window):  # exactly the ends, whatever rounding does between
+        return (first if time == 0.0 else last).view()
+    s = time / window
+    straight = last - first
+    if first_rate is not None and last_rate is not None:
+        straight += (1.0 - s) * _bow(straight, first_rate, last_rate, s, window)
+    straight *= s  # in place: fields may be large
+    straight += first
+    return straight
+
+
+def turn_at(ends: KnownEnds, time: float, window: float) -> Array:
+    """Rotation vector (n, 3) that leads from a quaternion to where it is at a time [s]."""
+    first, first_rate, last, last_rate = ends
+    if last is None:
+        return np.zeros((len(first), 3)) if first_rate is None else time * first_rate
+    s = time / window
+    near = np.zeros((len(first), 3))
+    if first_rate is not None:
+        near = 0.5 * window * (first_rate + (first_rate if last_rate is None else last_rate))
+    whole = rotation.vector_between(first, last, near)
+    if first_rate is None or last_rate is None:
+        return np.asarray(s * whole)
+    end_rate = rotation.rate_of_vector(whole, last_rate)
+    return np.asarray(s * (whole + (1.0 - s) * _bow(whole, first_rate, end_rate, s, window)))
+
+
+def _bow(straight: Array, first_rate: Array, last_rate: Array, s: float, window: float) -> Array:
+    """The Hermite basis, written as a correction of the straight line between the ends."""
+    bow = window * ((1.0 - s) * first_rate - s * last_rate)
+    bow -= (1.0 - 2.0 * s) * straight
+    return bow

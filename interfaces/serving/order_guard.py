@@ -21,16 +21,16 @@ LEGAL: dict[str, dict[str, str]] = {
 }
 
 
-class Guard:
+class OrderGuard:
     """Follows a component through its life; refuses what may not come next."""
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.state = "new"
         self.window = 0  # the next to be advanced
-        self._kept = -1
+        self._kept: dict[int, int] = {}  # window, by depth
 
-    def allow(self, order: str, window: int = 0) -> None:
+    def allow(self, order: str, window: int = 0, depth: int = 0) -> None:
         """Accept an order, or say what would have been legal."""
         legal = LEGAL[self.state]
         if order not in legal:
@@ -46,11 +46,11 @@ class Guard:
                 )
             self.window += 1
         elif order == "keep":
-            self._kept = self.window
+            self._kept[depth] = self.window
         elif order == "load":
             self.window = window
         elif order == "rewind":
-            if self._kept < 0:
+            if depth not in self._kept:
                 raise OrderError(f"{self.name}: rewind needs a kept state; order keep first.")
-            self.window = self._kept
+            self.window = self._kept[depth]
         self.state = legal[order]

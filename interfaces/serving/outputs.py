@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from quintet.interfaces.component import Array, Fields, Port
+from quintet.interfaces.component import Array, Fields, Port, fields_of
 from quintet.interfaces.errors import PortError
 from quintet.interfaces.sums import column_sums, moment, product, size
 
@@ -20,17 +20,30 @@ class Outputs:
     """The outputs of one component over a window.
 
     ``works`` pairs a given force with the taken velocity (and position) of the same items:
-    their products are the work and the angular impulse done through the port.
+    their products are the work and the angular impulse done through the port. Only fields that
+    are `wanted` are asked for. Where the component gives integrals over its last step, as a
+    recording does, they are added as they are.
     """
 
-    def __init__(self, gives: Iterable[Port]) -> None:
-        fields = [(f"{port.name}.{f.name}", f) for port in gives for f in port.fields]
-        self.shapes = {key: field.shape for key, field in fields}
-        self.impulses = [key for key, field in fields if field.centring == "impulse"]
+    def __init__(self, gives: Iterable[Port], integrals: bool = False) -> None:
+        self.fields = fields_of(tuple(gives))
+        self.integrals = integrals
+        self.want(self.fields)
         self.works: list[tuple[str, str, str]] = []  # force, velocity, position or ""
         self.total: dict[str, Array] = {}
         self.work: dict[str, float] = {}
         self.moment: dict[str, Array] = {}
+
+    def want(self, keys: Iterable[str]) -> None:
+        """Ask for these fields only."""
+        self.wanted = frozenset(keys)
+        unknown = self.wanted - self.fields.keys()
+        if unknown:
+            raise PortError(f"output {min(unknown)} is wanted; no port gives it.")
+        kept = [key for key in self.fields if key in self.wanted]
+        self.shapes = {key: self.fields[key].shape for key in kept}
+        self.impulses = [key for key in kept if self.fields[key].centring == "impulse"]
+        self.through = frozenset(self.impulses)  # asked for after every step
 
     def begin(self) -> None:
         """Forget the last window."""
@@ -39,7 +52,9 @@ class Outputs:
     def add(self, given: Fields, taken: Fields, dt: float) -> None:
         """Add one step."""
         for key in self.impulses:
-            part = dt * given[key]
+            if key not in given:
+                raise PortError(f"give() must give {key} after every step; it is missing.")
+            part = given[key] if self.integrals else dt * given[key]
             self.total[key] = self.total[key] + part if key in self.total else part
         for force, velocity, position in self.works:
             done = dt * product(given[force], taken[velocity])
@@ -51,18 +66,22 @@ class Outputs:
     def collect(self, given: Fields) -> dict[str, Array]:
         """Return the fields to send: instants as they are now, impulses summed over the window."""
         for key, array in given.items():
-            if key not in self.shapes or array.shape[1:] != self.shapes[key]:
-                known = self.shapes.get(key)
+            if key not in self.fields or array.shape[1:] != self.fields[key].shape:
+                known = self.fields[key].shape if key in self.fields else None
                 raise PortError(
                     f"output {key} must have shape (n, *{known}) as its port says; found "
                     f"{array.shape}. Correct give(), or the port."
                 )
         missing = [key for key in self.shapes if key not in given]
         if missing:
-            raise PortError(f"give() must give every field of its ports; {missing[0]} is missing.")
+            raise PortError(
+                f"give() must give every field that is wanted; {missing[0]} is missing."
+            )
         return {
-            key: self.total.get(key, np.zeros_like(array)) if key in self.impulses else array
-            for key, array in given.items()
+            key: self.total.get(key, np.zeros_like(given[key]))
+            if key in self.through
+            else given[key]
+            for key in self.shapes
         }
 
     def audit(self) -> Sums:
@@ -73,7 +92,7 @@ class Outputs:
         return sums | {f"{key}/moment": turn.tolist() for key, turn in self.moment.items()}
 
 
-class Handed:
+class InputAudit:
     """The instants that a component was given in a window, as sums over their items.
 
     From what it was sent the coupler can tell what they should be: of the first step, and

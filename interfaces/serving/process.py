@@ -7,19 +7,21 @@ import signal
 import sys
 import time
 import traceback
+from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import Component
+from quintet.interfaces.component import Component, Resources, make
 from quintet.interfaces.errors import LineError, QuintetError
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.lines.transport import Line
-from quintet.interfaces.manifest import Manifest, find
+from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.serve import Server, failure, serve
 
 JOINING = 600.0  # s until every other component has joined
 LINGERING = 10.0  # s
+LOOK_IN = "look for module:Class here too, after all that is installed; may be repeated"
 STARTER = "QUINTET_STARTER"  # set where a run was started by another process here: which one
 
 
@@ -34,9 +36,11 @@ def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -
     where.add_argument("--mpi", action="store_true", help="started by mpiexec; rank 0 couples")
     parser.add_argument("--tls", nargs=3, metavar=("AUTHORITY", "CERTIFICATE", "KEY"))
     parser.add_argument("--log", help="file for all that it prints")
+    parser.add_argument("--look-in", action="append", default=[], metavar="DIR", help=LOOK_IN)
     given = parser.parse_args(arguments)
     if given.log:
         redirect(given.log)
+    look_in(given.look_in)
     sys.exit(run(manifest or find(given.kind), given))
 
 
@@ -72,7 +76,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
             status = 0
     except LineError as error:
         say(f"{given.name}: the coupler: {error}")
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         traceback.print_exc()
         line.send(failure(error), {})
     if status:
@@ -90,12 +94,11 @@ def linger(line: Line) -> None:
 
 def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     """Check the parameters, then import the solver and make the component."""
-    # Before numba is imported: it reads the size of its thread pool once.
-    os.environ["NUMBA_NUM_THREADS"] = str(header["threads"])
-    params, mistakes = read(manifest.params, header["params"], manifest.kind)
+    resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
+    params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
         raise QuintetError("\n".join(mistakes))
-    return manifest.load()(params)
+    return make(manifest.load(), params, resources)
 
 
 def over_zenoh(given: argparse.Namespace) -> Line:

@@ -16,12 +16,13 @@ from quintet.interfaces.errors import OrderError, QuintetError, StepError
 from quintet.interfaces.lines.message import Message, require_finite
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.serving.inputs import Inputs
-from quintet.interfaces.serving.order_guard import Guard
-from quintet.interfaces.serving.outputs import Handed, Outputs, Sums
+from quintet.interfaces.serving.order_guard import OrderGuard
+from quintet.interfaces.serving.outputs import InputAudit, Outputs, Sums
 from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
 MOST = 1e9  # steps in a window; more would never end
+LONGEST = 1 << 16  # characters of an error's text or traceback
 PATIENCE = 3600.0  # s between two orders; the coupler's death is noticed at once
 
 
@@ -42,12 +43,15 @@ class Server:
 
     def __init__(self, component: Component, name: str) -> None:
         self.component = component
-        self.guard = Guard(name)
+        self.guard = OrderGuard(name)
         self.inputs = Inputs(component.takes)
-        self.outputs = Outputs(component.gives)
-        instants = set(self.inputs.fields) - self.inputs.impulses
-        self.handed = Handed(sorted(instants), self.inputs.rates)
-        self._kept: dict[str, Any] = {}
+        self.outputs = Outputs(component.gives, getattr(component, "gives_integrals", False))
+        fields = self.inputs.fields
+        # Turns about several axes do not add up: of rotations the first step alone is checked.
+        rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
+        self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
+        self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
+        self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
             "describe": self._describe,
             "bind": self._bind,
@@ -67,19 +71,27 @@ class Server:
         window = message.header.get("window", 0)
         if not isinstance(window, int):
             raise OrderError(f"a window has a whole number; found {window!r}.")
-        self.guard.allow(message.order, window)
+        self.guard.allow(message.order, window, depth(message))
         return self._orders[message.order](message)
 
     def _describe(self, _: Message) -> Answer:
         return {}, self.component.describe()
 
     def _bind(self, message: Message) -> Answer:
-        self.component.bind(message.fields)
-        given = set(self.outputs.shapes)
-        for force, velocity, position in message.header.get("works", []):
-            if force in given and velocity in self.inputs.fields:
+        header = message.header
+        self.component.bind(message.fields, frozenset(header.get("joined", ())))
+        if "wanted" in header:
+            self.outputs.want(header["wanted"])
+        for force, velocity, position in header.get("works", []):
+            if force in self.outputs.through and velocity in self.inputs.fields:
                 self.outputs.works.append((force, velocity, position))
-        return {"items": self.component.items(), "limit": self.component.stable_dt()}, {}
+        return {"items": self.component.items(), "stable": self.stable()}, {}
+
+    def stable(self) -> float:
+        """Largest step that the component allows now [s]."""
+        if self._stable is None:
+            self._stable = float(self.component.stable_dt())
+        return self._stable
 
     def _prime(self, message: Message) -> Answer:
         require_finite(message.fields, "as the run begins")
@@ -88,7 +100,7 @@ class Server:
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()
-        return {}, self.outputs.collect(self.component.give())
+        return {}, self.outputs.collect(self.component.give(self.outputs.wanted))
 
     def _advance(self, message: Message) -> Answer:
         header, began, spent = message.header, time.perf_counter(), time.process_time()
@@ -96,14 +108,15 @@ class Server:
         require_finite(message.fields, f"window {header['window']}, received")
         self.inputs.arrive(message.fields, header["ends"], window)
         received = {k: column_sums(v) for k, v in message.fields.items() if self._integral(k)}
-        steps, applied, given = self.advance(window)
+        steps, applied, given = self.advance(window, int(header.get("steps", 0)))
         fields = self.outputs.collect(given)
         answer = {
             "steps": steps,
+            "stable": self.stable(),
             "sent": self.outputs.audit(),
             "received": received,
             "applied": applied,
-            "handed": self.handed.audit(),
+            "inputs": self.input_audit.audit(),
             "totals": self._totals() if header.get("totals") else None,
             "busy": time.perf_counter() - began,
             "cpu": time.process_time() - spent,
@@ -113,33 +126,50 @@ class Server:
     def _integral(self, key: str) -> bool:
         return key in self.inputs.impulses
 
-    def advance(self, window: float) -> tuple[int, Sums, Fields]:
-        """Step through a window [s]; tell the steps, the impulses applied, the last outputs."""
+    def advance(self, window: float, asked: int = 0) -> tuple[int, Sums, Fields]:
+        """Step through a window [s]; tell the steps, the impulses applied, the last outputs.
+
+        With `asked` in just so many equal steps, else in the fewest that are stable.
+        """
         component, inputs, outputs = self.component, self.inputs, self.outputs
         outputs.begin()
-        self.handed.begin()
+        self.input_audit.begin()
         applied = {key: np.zeros(rate[0].size) for key, rate in inputs.rate.items() if len(rate)}
         sums = {key: np.asarray(column_sums(inputs.rate[key])) for key in applied}
         done, steps = 0.0, 0
-        given: Fields | None = None
+        given: Fields = {}
         while done < window:
-            pieces = divide(window - done, component.stable_dt())
+            pieces = divide(window - done, self.stable())
+            if asked:
+                pieces = self._pieces(asked - steps, window - done)
             dt = (window - done) / pieces
             end = window if pieces == 1 else done + dt
             taken: Fields = {}
             if steps == 0 or not inputs.constant:
                 taken = inputs.over(done, end, window)
                 component.take(taken)
-                self.handed.add(taken, dt)
+                self.input_audit.add(taken, dt)
             component.step(dt)
-            if outputs.impulses:
-                given = component.give()
+            self._stable = None
+            if pieces == 1:
+                given = component.give(outputs.wanted)
+            elif outputs.through:
+                given = component.give(outputs.through)
+            if outputs.through:
                 outputs.add(given, taken or inputs.rate, dt)
             for key in applied:
                 applied[key] += dt * sums[key]
             done, steps = end, steps + 1
-        final = given if given is not None else component.give()
-        return steps, {key: total.tolist() for key, total in applied.items()}, final
+        return steps, {key: total.tolist() for key, total in applied.items()}, given
+
+    def _pieces(self, left: int, time: float) -> int:
+        """Check that the steps which a link demands are stable."""
+        if time > left * self.stable() * (1.0 + 1e-9):
+            raise StepError(
+                f"{left} step(s) of {time / left:.6g} s are demanded by a link with equal steps; "
+                f"the largest stable one is {self.stable():.6g} s. Shorten the window."
+            )
+        return left
 
     def _totals(self) -> dict[str, Any]:
         totals = self.component.totals()
@@ -164,14 +194,15 @@ class Server:
             part, _, key = name.partition("/")
             parts[part][key] = array
         self.component.load(parts["component"])
+        self._stable = None
         self.inputs.load(parts["inputs"])
 
-    def _keep(self, _: Message) -> Answer:
-        self._kept = self.state()
+    def _keep(self, message: Message) -> Answer:
+        self._kept[depth(message)] = self.state()
         return {}, {}
 
-    def _rewind(self, _: Message) -> Answer:
-        self.restore(self._kept)
+    def _rewind(self, message: Message) -> Answer:
+        self.restore(self._kept[depth(message)])
         return {}, {}
 
     def _save(self, _: Message) -> Answer:
@@ -179,10 +210,15 @@ class Server:
 
     def _load(self, message: Message) -> Answer:
         self.restore(message.fields)
-        return {}, {}
+        return {"stable": self.stable()}, {}
 
     def _view(self, message: Message) -> Answer:
         return {"totals": self._totals()}, self.component.view()
+
+
+def depth(message: Message) -> int:
+    """How deep in groups the coupling is that keeps a state; 0 is the whole run."""
+    return int(message.header.get("depth", 0))
 
 
 def peak_memory() -> int:
@@ -194,19 +230,31 @@ def peak_memory() -> int:
 def failure(error: BaseException) -> dict[str, Any]:
     """Put an error into the header that tells the coupler of it."""
     own = isinstance(error, QuintetError)
+    said = str(error)
+    if isinstance(error, SystemExit):
+        said = f"asked Python to exit, with status {error.code!r}; raise an error instead"
     return {
         "order": "failed",
         "error": type(error).__name__,
-        "text": str(error),
-        "traceback": "" if own else "".join(traceback.format_exception(error)),
+        "text": sendable(said),
+        "traceback": "" if own else sendable("".join(traceback.format_exception(error))),
     }
+
+
+def sendable(text: str) -> str:
+    """Text that a header can hold: valid UTF-8, and of a long one its beginning and its end."""
+    text = text.encode("utf-8", "backslashreplace").decode("utf-8")
+    if len(text) <= LONGEST:
+        return text
+    left_out = len(text) - LONGEST
+    return f"{text[: LONGEST // 2]} … {left_out} characters … {text[-LONGEST // 2 :]}"
 
 
 def answer(server: Server, line: Line, message: Message) -> bool:
     """Handle one order and send the answer; tell whether to go on."""
     try:
         header, fields = server.handle(message)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         if not isinstance(error, QuintetError):
             traceback.print_exc()  # into the component's log, before the coupler looks there
         line.send(failure(error), {})

@@ -16,7 +16,7 @@ import matplotlib
 import numpy as np
 
 from quintet.coupler.coupling.body_samples import fill
-from quintet.coupler.coupling.mapping import rotation
+from quintet.interfaces.rotation import matrix
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -50,7 +50,7 @@ class Run:
         first = sum(len(arm) for arm in self.arm[:cube])
         half = self.arm[cube][:, axis] * side > 0.0
         push = self.impulse[1:, first : first + len(half)][:, half].sum(axis=1)
-        normal = side * rotation(self.turned[1:, cube])[:, :, axis]
+        normal = side * matrix(self.turned[1:, cube])[:, :, axis]
         return -(push * normal).sum(axis=1) / (np.diff(self.time) * self.area)
 
     def mean(self, faces: tuple[tuple[int, int, float], ...]) -> np.ndarray:

@@ -11,10 +11,11 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from quintet.coupler.coupling.body_samples import BOX, fill
+from quintet.coupler.coupling.body_samples import fill
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.vtkhdf import read_step, times
 from quintet.interfaces.component import Array
+from quintet.interfaces.ports import BOX
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

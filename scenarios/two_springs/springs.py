@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Component, Fields, Port
+from quintet.interfaces.component import Component, Fields, Keys, Port
 from quintet.interfaces.params import Positive, Vector, parameters
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 
@@ -45,10 +45,11 @@ class Mass(Component):
         self.velocity = self.velocity + dt * (self.push - self.pull) / self.mass
         self.position = self.position + 0.5 * dt * self.velocity
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         """Copy out the motion as it is now, and the pull on the foot over the last step."""
-        motion = {"motion.position": self.position.copy(), "motion.velocity": self.velocity.copy()}
-        return {**motion, "foot_load.force": self.pull.copy()}
+        motion = {"motion.position": self.position, "motion.velocity": self.velocity}
+        given = {**motion, "foot_load.force": self.pull}
+        return {key: given[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all that changes."""

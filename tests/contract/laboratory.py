@@ -1,19 +1,22 @@
 """Running small scenes in this process, and looking at what is left of them."""
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli_w
 
-from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Account, Ledger
-from quintet.coupler.coupling.participant import Part
+from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.schedule import Coupling
-from quintet.coupler.files.toml_writer import dumps
+from quintet.coupler.coupling.windows import Windows
 from quintet.coupler.launch.connect import connect
 from quintet.coupler.run.loop import run
+from quintet.coupler.scene.overrides import plain
 from quintet.coupler.scene.read import load
 from quintet.interfaces.component import Array, Component, Fields
 
@@ -28,6 +31,8 @@ class Trace:
     components: dict[str, Component]
     outputs: list[dict[str, Fields]] = field(default_factory=list)
     energies: list[float] = field(default_factory=list)  # J
+    ends: list[float] = field(default_factory=list)  # s, of the windows
+    stable: list[dict[str, float]] = field(default_factory=list)  # s, steps allowed
 
     def history(self, name: str, key: str) -> Array:
         """One field of a component at the start and at every window's end."""
@@ -36,7 +41,7 @@ class Trace:
     @property
     def times(self) -> Array:
         """Of these, in s."""
-        return np.arange(len(self.outputs)) * self.coupling.dt
+        return np.array(self.ends)
 
     @property
     def account(self) -> Account:
@@ -53,20 +58,28 @@ class Trace:
         totals = [c.totals() for c in self.components.values()]
         return sum(one.kinetic + one.potential + one.internal for one in totals)
 
-    # What a run loop's witness does.
+    # What a run loop's observer does.
 
-    def begin(self, coupling: Coupling, described: dict[str, Fields], windows: int) -> None:
-        self.end_window(coupling, 0)
+    def plan(self, windows: Windows) -> None:
+        pass
 
-    def due(self, window: int) -> bool:
+    def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:
+        self.end_window(coupling)
+
+    def due(self, ticks: int) -> bool:
         return False
 
-    def end_window(self, coupling: Coupling, window: int) -> None:
+    def end_window(self, coupling: Coupling) -> None:
+        self.ends.append(coupling.windows.time)
+        self.stable.append({name: one.stable for name, one in coupling.components.items()})
         self.outputs.append(dict(coupling.outputs))
         self.energies.append(self.energy())
 
     def wants_end(self) -> bool:
         return False
+
+    def ends_early(self, coupling: Coupling) -> None:
+        pass
 
 
 def scene(folder: Path, components: dict[str, Any], link: Any, **settings: Any) -> Path:
@@ -74,25 +87,26 @@ def scene(folder: Path, components: dict[str, Any], link: Any, **settings: Any) 
     links = link if isinstance(link, list) else [link]
     table = {"name": "toy", "transport": "memory", **settings}
     path = folder / "scene.toml"
-    path.write_text(dumps({**table, "components": components, "links": links}))
+    made = plain({**table, "components": components, "links": links})
+    path.write_text(tomli_w.dumps(made))
     return path
 
 
 def couple(path: Path) -> Trace:
-    """Run a scene in this process."""
+    """Run a scene in this process, all outputs wanted."""
     checked = load(str(path))
-    ports = {name: (one.takes, one.gives) for name, one in checked.components.items()}
-    exchange = Exchange(checked.links, ports)
-    parts = connect(checked, path.parent, lambda: False).parts
-    coupling = Coupling(parts, exchange, Ledger(exchange), 0.0, checked.iteration())
-    trace = Trace(coupling, {name: component_of(part) for name, part in parts.items()})
-    run(checked, parts, coupling, trace)
+    exchange = checked.exchange()
+    participants = connect(checked, path.parent, lambda: False).participants
+    coupling = assemble(checked.coupling, participants, exchange, Ledger(exchange))
+    trace = Trace(coupling, {name: component_of(one) for name, one in participants.items()})
+    asked = {name: list(exchange.gives[name]) for name in participants}
+    run(coupling, checked.file.end, trace, asked)
     return trace
 
 
-def component_of(part: Part) -> Component:
-    """Take the component out of a part that lives in this process."""
-    server = part.line.handle.args[0]  # type: ignore[attr-defined]
+def component_of(participant: Participant) -> Component:
+    """Take the component out of a participant that lives in this process."""
+    server = participant.line.handle.args[0]  # type: ignore[attr-defined]
     return server.component  # type: ignore[no-any-return]
 
 

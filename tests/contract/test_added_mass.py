@@ -64,31 +64,54 @@ def test_the_frequency_is_exact(tmp_path):
 
 def test_aitken_needs_two_repetitions(tmp_path):
     trace = _run(tmp_path, 0.01, 2.0, "iterated")
-    assert trace.coupling.repetitions / (len(trace.outputs) - 1) <= 2.1
+    assert trace.coupling.costs.repetitions / (len(trace.outputs) - 1) <= 2.1
 
 
 def test_constant_relaxation_needs_more_and_too_much_diverges(tmp_path):
-    iteration = {"aitken": False, "relaxation": 0.2}
+    iteration = {"acceleration": "constant", "relaxation": 0.2}
     steady = _run(tmp_path, 0.01, 2.0, "iterated", iteration=iteration)
     aitken = _run(tmp_path, 0.01, 2.0, "iterated")
-    assert steady.coupling.repetitions > 3 * aitken.coupling.repetitions
+    assert steady.coupling.costs.repetitions > 3 * aitken.coupling.costs.repetitions
     assert _error(steady, 2.0) == pytest.approx(_error(aitken, 2.0), rel=1e-2)
     from quintet.interfaces.errors import StepError
 
     with pytest.raises(StepError, match="repetitions must bring the components to agreement"):
-        _run(tmp_path, 0.01, 2.0, "iterated", iteration={"aitken": False, "relaxation": 0.9})
+        _run(
+            tmp_path,
+            0.01,
+            2.0,
+            "iterated",
+            iteration={"acceleration": "constant", "relaxation": 0.9},
+        )
 
 
 def test_what_an_iteration_lacks_is_applied_in_the_next_window(tmp_path):
-    loose = _run(tmp_path, 0.01, 2.0, "iterated", iteration={"tolerance": 0.05, "aitken": False})
+    loose = _run(
+        tmp_path, 0.01, 2.0, "iterated", iteration={"tolerance": 0.05, "acceleration": "constant"}
+    )
     applied = loose.account
     assert applied.momentum_residual <= 1e-12
     given = loose.history("burden", "lump.force").sum(axis=(0, 1))
-    owed = loose.coupling.owed["swing", "lump.force"].sum(axis=0)
+    owed = loose.coupling.in_transit["swing", "lump.force"].sum(axis=0)
     assert np.abs(owed).max() > 1e-6  # the iteration did stop early
     spring = loose.momentum()  # of both; the wall holds the spring's other end
     np.testing.assert_allclose(given[1:], 0.0)
     place = loose.history("swing", "swing.position")[:, 0, 0]
     middle = 0.5 * (place[1:] + place[:-1])
-    wall = -STIFFNESS * loose.coupling.dt * middle.sum()
+    wall = -STIFFNESS * loose.coupling.last_dt * middle.sum()
     assert spring[0] + owed[0] == pytest.approx(wall, rel=2e-3)
+
+
+def test_at_the_limit_of_repetitions_a_run_may_go_on_and_counts_the_windows(tmp_path):
+    iteration = {"limit": 2, "at_limit": "continue", "acceleration": "constant"}
+    trace = _run(tmp_path, 0.01, 0.5, "iterated", iteration=iteration)
+    assert trace.coupling.costs.unconverged > 0.9 * (len(trace.outputs) - 1)
+    assert trace.account.momentum_residual <= 1e-12  # what lacked was applied a window later
+
+
+def test_an_absolute_tolerance_is_met_sooner(tmp_path):
+    tight = _run(tmp_path, 0.01, 2.0, "iterated")
+    wide = {"absolute": {"swing.lump.force": 0.5}}
+    loose = _run(tmp_path, 0.01, 2.0, "iterated", iteration=wide)
+    assert loose.coupling.costs.repetitions < 0.8 * tight.coupling.costs.repetitions
+    assert loose.account.momentum_residual <= 1e-12

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from quintet.coupler.coupling.mapping import RigidMap, ShapeMap
-from quintet.coupler.coupling.participant import Part
-from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.coupling.participant import Participant
+from quintet.coupler.coupling.schedule import Coupling, Given
 from quintet.interfaces.errors import OrderError
 from quintet.interfaces.serving.inputs import Inputs
-from quintet.interfaces.serving.order_guard import Guard
+from quintet.interfaces.serving.order_guard import OrderGuard
 from quintet.interfaces.serving.serve import Server
 
 LIMIT = 1e-12
@@ -56,7 +56,7 @@ def test_an_undisturbed_run_of_balls_is_clean(tmp_path, scheme):
 
 def _change_answers(monkeypatch, name, change):
     """Let every window's answer of a component be changed on its way."""
-    finish = Part.finish
+    finish = Participant.finish
 
     def changed(part):
         message = finish(part)
@@ -64,7 +64,7 @@ def _change_answers(monkeypatch, name, change):
             message.fields = {key: change(key, array) for key, array in message.fields.items()}
         return message
 
-    monkeypatch.setattr(Part, "finish", changed)
+    monkeypatch.setattr(Participant, "finish", changed)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -139,13 +139,14 @@ def test_inputs_half_a_step_late_or_early_show(tmp_path, monkeypatch, scheme, ru
 @pytest.mark.parametrize("window", [0, 13, 28])
 def test_a_window_lost_between_two_components_shows(tmp_path, monkeypatch, scheme, window):
     """What the gust gave in one window is lost; what it gave before is applied once more."""
-    keep = Coupling.keep
+    advance = Coupling.advance_outputs
 
-    def losing(self, name, answer):
-        if name != "gust" or self.parts[name].window != window:
-            keep(self, name, answer)
+    def losing(self, given):
+        if "gust" in given.outputs and self.windows.done == window:
+            given = Given({"gust": self.outputs["gust"]}, {"gust": self.sent["gust"]})
+        advance(self, given)
 
-    monkeypatch.setattr(Coupling, "keep", losing)
+    monkeypatch.setattr(Coupling, "advance_outputs", losing)
     assert _plate(tmp_path, scheme).momentum_residual > 1e-5
 
 
@@ -153,8 +154,8 @@ def test_a_window_lost_between_two_components_shows(tmp_path, monkeypatch, schem
 def test_a_window_applied_twice_shows(tmp_path, monkeypatch, scheme):
     advance = Server.advance
 
-    def twice(self, window):
-        steps, applied, given = advance(self, window)
+    def twice(self, window, asked=0):
+        steps, applied, given = advance(self, window, asked)
         if "node_load.force" in self.inputs.fields and self.guard.window == 14:
             more, again, given = advance(self, window)
             steps += more
@@ -166,7 +167,7 @@ def test_a_window_applied_twice_shows(tmp_path, monkeypatch, scheme):
 
 
 def test_a_window_ordered_twice_is_refused():
-    guard = Guard("plate")
+    guard = OrderGuard("plate")
     for order in ("describe", "bind", "prime"):
         guard.allow(order)
     guard.allow("advance", 0)

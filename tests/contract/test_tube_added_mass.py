@@ -16,6 +16,7 @@ from toy_tubes import Channel, Membrane, added_masses
 from quintet.coupler.coupling.acceleration import make
 from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure, allowed, converged
 from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.interfaces.component import outputs_of
 
 KEY = ("membrane", "pressure.force")
 RATIOS = (1, 3, 10, 30, 100)
@@ -52,7 +53,7 @@ def drive(ratio, stretch, settings, windows=WINDOWS, one_wave=False):
     length = window(ratio)
     acceleration = make(settings, is_impulse)
     measure = ConvergenceMeasure(settings.tolerance, settings.absolute, is_impulse)
-    speed = membrane.give()["membrane.velocity"]
+    speed = outputs_of(membrane)["membrane.velocity"]
     found, repetitions, energies = {KEY: np.zeros_like(speed)}, [], [energy(both)]
     for _ in range(windows):
         guess, kept = found, [one.save() for one in both]
@@ -62,10 +63,10 @@ def drive(ratio, stretch, settings, windows=WINDOWS, one_wave=False):
                 one.load(state)
             membrane.take({"pressure.force": guess[KEY] / length})
             membrane.step(length)
-            end = membrane.give()["membrane.velocity"]
+            end = outputs_of(membrane)["membrane.velocity"]
             channel.take({"wall.velocity": 0.5 * (speed + end)})
             channel.step(length)
-            found = {KEY: length * channel.give()["pressure.force"]}
+            found = {KEY: length * outputs_of(channel)["pressure.force"]}
             residuals = measure.compare(guess, found, length)
             if converged(residuals):
                 break
@@ -141,11 +142,11 @@ def test_the_slowest_wave_has_the_frequency_of_both_masses(ratio):
     assert np.abs(membrane.q[1:]).max() < 1e-8 * abs(start.q[0])
 
 
-def _scene(folder, ratio, **settings):
+def _scene(folder, ratio, stretch=STRETCHED, **settings):
     density = ratio / float(added_masses(1, 1.0, 0.5, 1.0)[0])
     length = window(ratio)
     components = {
-        "membrane": {"kind": "toy_tubes:Membrane", "stretch": STRETCHED, "dt": length},
+        "membrane": {"kind": "toy_tubes:Membrane", "stretch": stretch, "dt": length},
         "channel": {"kind": "toy_tubes:Channel", "density": density, "dt": length},
     }
     pairs = [["membrane.membrane", "channel.wall"], ["channel.pressure", "membrane.pressure"]]
@@ -162,6 +163,18 @@ def test_over_the_coupler_energy_is_kept_and_momentum_closes(tmp_path):
     place = trace.history("membrane", "membrane.position")[:, :, 2]
     assert place[0].max() == pytest.approx(0.05, rel=0.01)
     assert place.min() < -0.01  # it swung
+
+
+@pytest.mark.parametrize("ratio", [10, 100])
+def test_over_the_coupler_quasi_newton_takes_few_repetitions(tmp_path, ratio):
+    means = {}
+    for kind in ("iqn-ils", "aitken"):
+        iteration = {"acceleration": kind, "limit": LIMIT}
+        trace = laboratory.couple(_scene(tmp_path, ratio, LINEAR, iteration=iteration))
+        means[kind] = trace.coupling.costs.repetitions / WINDOWS
+        assert trace.account.momentum_residual <= 1e-12
+    assert means["iqn-ils"] <= 4.0
+    assert means["aitken"] >= 8.0
 
 
 if __name__ == "__main__":

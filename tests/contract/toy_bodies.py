@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Array, Component, Fields, Totals
-from quintet.interfaces.params import Positive, Vector, parameters
+from quintet.interfaces.component import Array, Component, Fields, Keys, Port, Totals
+from quintet.interfaces.params import Count, Positive, Vector, parameters
 from quintet.interfaces.ports import LOAD, MOTION
 
 
@@ -51,8 +51,8 @@ class Balls(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.force = np.array(fields["load.force"])
-        self.torque = np.array(fields["load.torque"])
+        self.force = np.array(fields.get("load.force", self.force))
+        self.torque = np.array(fields.get("load.torque", self.torque))
 
     def step(self, dt: float) -> None:
         """Drift half, kick, drift half."""
@@ -61,13 +61,14 @@ class Balls(Component):
         self.spin = self.spin + dt * self.torque / self.inertia
         self.x, self.q = self.x + 0.5 * dt * self.v, turn(self.q, self.spin, 0.5 * dt)
 
-    def give(self) -> Fields:
-        return {
-            "motion.position": self.x.copy(),
-            "motion.velocity": self.v.copy(),
-            "motion.orientation": self.q.copy(),
-            "motion.angular_velocity": self.spin.copy(),
+    def give(self, wanted: Keys) -> Fields:
+        given = {
+            "motion.position": self.x,
+            "motion.velocity": self.v,
+            "motion.orientation": self.q,
+            "motion.angular_velocity": self.spin,
         }
+        return {key: given[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {
@@ -84,3 +85,54 @@ class Balls(Component):
         kinetic = 0.5 * mass * (self.v**2).sum() + 0.5 * self.inertia * (self.spin**2).sum()
         momentum = mass * self.v.sum(axis=0)
         return Totals(mass * len(self.x), momentum, turning.sum(axis=0), float(kinetic))
+
+
+BODY = Port("body", MOTION.fields)
+DRAG = Port("drag", LOAD.fields)
+
+
+class Wind(Component):
+    """Air that drags bodies towards its own velocity and spin, and hardens as it turns."""
+
+    takes = (BODY,)
+    gives = (DRAG,)
+
+    @parameters
+    class Params:
+        """How fast it blows and turns, and how hard."""
+
+        velocity: Vector = (2.0, 0.0, 0.5)  # m/s
+        spin: Vector = (0.0, 0.5, 3.0)  # rad/s
+        drag: Positive = 0.8  # N s/m
+        twist: Positive = 0.05  # N m s
+        count: Count = 2
+        dt: Positive = 0.01  # s
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.force, self.torque = np.zeros((params.count, 3)), np.zeros((params.count, 3))
+
+    def stable_dt(self) -> float:
+        return self.params.dt
+
+    def take(self, fields: Fields) -> None:
+        if "body.velocity" not in fields:
+            return
+        params = self.params
+        self.force = params.drag * (np.array(params.velocity) - fields["body.velocity"])
+        hard = 1.0 + fields["body.orientation"][:, 1:2] ** 2
+        gap = np.array(params.spin) - fields["body.angular_velocity"]
+        self.torque = params.twist * hard * gap
+
+    def step(self, dt: float) -> None:
+        pass
+
+    def give(self, wanted: Keys) -> Fields:
+        given = {"drag.force": self.force, "drag.torque": self.torque}
+        return {key: given[key].copy() for key in wanted}
+
+    def save(self) -> Fields:
+        return {"force": self.force.copy(), "torque": self.torque.copy()}
+
+    def load(self, state: Fields) -> None:
+        self.force, self.torque = np.array(state["force"]), np.array(state["torque"])

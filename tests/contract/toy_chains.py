@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Array, Component, Fields, Totals
-from quintet.interfaces.params import Count, Number, Positive, parameters
+from quintet.interfaces.component import Array, Component, Fields, Keys, Totals
+from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
 from quintet.interfaces.ports import GLUED, GLUED_LOAD, NODE_GLUE, NODE_LOAD
 
 X = np.array([1.0, 0.0, 0.0])
@@ -69,22 +69,23 @@ class Column(Component):
         corner = np.arange(4 * layers - 4, 4 * layers, dtype=float)[None]
         return {"node_glue.start": start, "node_glue.corner": corner}
 
-    def bind(self, static: Fields) -> None:
-        self.mass = self.mass + static["node_load.added_mass"].reshape(-1, 4).T
+    def bind(self, static: Fields, joined: Keys) -> None:
+        if "node_load" in joined:
+            self.mass = self.mass + static["node_load.added_mass"].reshape(-1, 4).T
 
     def stable_dt(self) -> float:
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.push = np.array(fields["node_load.force"])
+        self.push = np.array(fields.get("node_load.force", self.push))
 
     def step(self, dt: float) -> None:
         force = chain_force(self.u, self.params.stiffness) + self.push[:, 0].reshape(-1, 4).T
         self.v = self.v + dt * force / self.mass
         self.u = self.u + dt * self.v
 
-    def give(self) -> Fields:
-        return {"node_glue.velocity": self.v.T.reshape(-1, 1) * X}
+    def give(self, wanted: Keys) -> Fields:
+        return {key: self.v.T.reshape(-1, 1) * X for key in wanted}
 
     def save(self) -> Fields:
         return {"u": self.u.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -111,6 +112,8 @@ class Rods(Component):
         mass: Positive = 1.0  # kg, of an inner mass
         stiffness: Positive = 1.0  # N/m
         dt: Positive = 0.1  # s
+        stiffer: tuple[tuple[Number, Number], ...] = ()  # from a time [s] on, dt times a factor
+        hover: NotNegative = 0.0  # share by which dt swings from step to step
 
     def __init__(self, params: Params) -> None:
         self.params = params
@@ -119,32 +122,42 @@ class Rods(Component):
         self.u = np.zeros((rows, params.count))  # m
         self.v = np.zeros_like(self.u)
         self.pulled = np.zeros(rows)  # m/s, of the glued masses
+        self.time, self.steps = 0.0, 0
 
     def describe(self) -> Fields:
         places = np.array(self.params.places)
         start = np.column_stack([np.full(len(places), 19.0), places])
-        return {"glued_load.position": start, "glued_load.mass": self.mass[:, 0]}
+        return {"glued_load.position": start, "glued_load.mass": self.mass[:, 0].copy()}
 
     def stable_dt(self) -> float:
-        return self.params.dt
+        """As if the rods grew stiffer and back, and hovered about a limit."""
+        factor = 1.0
+        for time, new in self.params.stiffer:
+            factor = new if self.time >= time else factor
+        swing = 1.0 + self.params.hover * float(np.sin(2.39996 * self.steps))
+        return self.params.dt * factor * swing
 
     def take(self, fields: Fields) -> None:
-        self.pulled = np.array(fields["glued.velocity"][:, 0])
+        if "glued.velocity" in fields:
+            self.pulled = np.array(fields["glued.velocity"][:, 0])
 
     def step(self, dt: float) -> None:
         force = chain_force(self.u, self.params.stiffness)
         self.v = self.v + dt * force / self.mass
         self.v[:, 0] = self.pulled
         self.u = self.u + dt * self.v
+        self.time, self.steps = self.time + dt, self.steps + 1
 
-    def give(self) -> Fields:
-        return {"glued_load.force": chain_force(self.u, self.params.stiffness)[:, :1] * X}
+    def give(self, wanted: Keys) -> Fields:
+        return {key: chain_force(self.u, self.params.stiffness)[:, :1] * X for key in wanted}
 
     def save(self) -> Fields:
-        return {"u": self.u.copy(), "v": self.v.copy(), "pulled": self.pulled.copy()}
+        kept = {"u": self.u.copy(), "v": self.v.copy(), "pulled": self.pulled.copy()}
+        return {**kept, "clock": np.array([self.time, self.steps])}
 
     def load(self, state: Fields) -> None:
         self.u, self.v, self.pulled = (np.array(state[key]) for key in ("u", "v", "pulled"))
+        self.time, self.steps = float(state["clock"][0]), int(state["clock"][1])
 
     def totals(self) -> Totals:
         """Of all but the glued masses, which the mesh carries."""

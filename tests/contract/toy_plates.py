@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Component, Fields, Totals
+from quintet.interfaces.component import Component, Fields, Keys, Totals
 from quintet.interfaces.params import NotNegative, Positive, parameters
 from quintet.interfaces.ports import FACES, NODE_LOAD, SURFACE, SURFACE_LOAD
 
@@ -36,7 +36,7 @@ class Plate(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.push = np.array(fields["node_load.force"])
+        self.push = np.array(fields.get("node_load.force", self.push))
 
     def step(self, dt: float) -> None:
         """Störmer and Verlet: kick half, drift, kick half."""
@@ -45,8 +45,9 @@ class Plate(Component):
         self.u = self.u + dt * half
         self.v = half + 0.5 * dt * (self.push - stiffness * self.u) / mass
 
-    def give(self) -> Fields:
-        return {"faces.position": self.start + self.u, "faces.velocity": self.v.copy()}
+    def give(self, wanted: Keys) -> Fields:
+        given = {"faces.position": self.start + self.u, "faces.velocity": self.v.copy()}
+        return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         return {"u": self.u.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -96,7 +97,9 @@ class Gust(Component):
             "surface.inset": np.array([0.5 * params.spacing]),
         }
 
-    def bind(self, static: Fields) -> None:
+    def bind(self, static: Fields, joined: Keys) -> None:
+        if "surface" not in joined:
+            return
         self.area = static["surface.volume"] / self.params.spacing
         self.normal = np.array(static["surface.normal"])
         self.force = np.zeros_like(self.normal)
@@ -105,8 +108,8 @@ class Gust(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.place = np.array(fields["surface.position"])
-        self.speed = np.array(fields["surface.velocity"])
+        self.place = np.array(fields.get("surface.position", self.place))
+        self.speed = np.array(fields.get("surface.velocity", self.speed))
 
     def step(self, dt: float) -> None:
         params, middle = self.params, self.time + 0.5 * dt
@@ -115,8 +118,8 @@ class Gust(Component):
         self.force = self.area[:, None] * stress
         self.time += dt
 
-    def give(self) -> Fields:
-        return {"surface_load.force": self.force.copy()}
+    def give(self, wanted: Keys) -> Fields:
+        return {key: self.force.copy() for key in wanted}
 
     def save(self) -> Fields:
         kept = {"place": self.place, "speed": self.speed, "force": self.force}

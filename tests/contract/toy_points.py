@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Component, Field, Fields, Port, Totals
+from quintet.interfaces.component import Component, Field, Fields, Keys, Port, Totals
 from quintet.interfaces.params import Count, NotNegative, Number, Positive, Vector, parameters
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 
@@ -37,8 +37,8 @@ class Pucks(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.force = np.array(fields["breath.force"])
-        self.heating = np.array(fields["breath.heat"])
+        self.force = np.array(fields.get("breath.force", self.force))
+        self.heating = np.array(fields.get("breath.heat", self.heating))
 
     def step(self, dt: float) -> None:
         kick = dt * self.force / self.params.mass
@@ -46,8 +46,9 @@ class Pucks(Component):
         self.velocity = self.velocity + kick
         self.warmth = self.warmth + dt * self.heating
 
-    def give(self) -> Fields:
-        return {"flight.position": self.position.copy(), "flight.velocity": self.velocity.copy()}
+    def give(self, wanted: Keys) -> Fields:
+        given = {"flight.position": self.position, "flight.velocity": self.velocity}
+        return {key: given[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {key: getattr(self, key).copy() for key in self.KEPT}
@@ -88,17 +89,18 @@ class Air(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.speed = np.array(fields["flight.velocity"])
+        self.speed = np.array(fields.get("flight.velocity", self.speed))
 
     def step(self, dt: float) -> None:
         drag, lost = self.params.drag, (self.speed**2).sum()
         self.momentum = self.momentum + dt * drag * self.speed.sum(axis=0)
         self.warmth += dt * drag * float(lost) * (1.0 - self.params.share)
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         drag, share = self.params.drag, self.params.share
         heat = share * drag * (self.speed**2).sum(axis=1)
-        return {"breath.force": -drag * self.speed, "breath.heat": heat}
+        given = {"breath.force": -drag * self.speed, "breath.heat": heat}
+        return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         kept = {"speed": self.speed.copy(), "momentum": self.momentum.copy()}
@@ -140,7 +142,7 @@ class Swing(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.push = np.array(fields["lump.force"])
+        self.push = np.array(fields.get("lump.force", self.push))
 
     def step(self, dt: float) -> None:
         """Störmer and Verlet: drift half, kick, drift half."""
@@ -148,8 +150,9 @@ class Swing(Component):
         self.v = self.v + dt * (self.push - self.params.stiffness * middle) / self.params.mass
         self.x = middle + 0.5 * dt * self.v
 
-    def give(self) -> Fields:
-        return {"swing.position": self.x.copy(), "swing.velocity": self.v.copy()}
+    def give(self, wanted: Keys) -> Fields:
+        given = {"swing.position": self.x, "swing.velocity": self.v}
+        return {key: given[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {"x": self.x.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -185,7 +188,7 @@ class Burden(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.middle = np.array(fields["carried.velocity"])
+        self.middle = np.array(fields.get("carried.velocity", self.middle))
 
     def step(self, dt: float) -> None:
         """What comes holds in the middle of the step; go on as far again to its end."""
@@ -193,8 +196,8 @@ class Burden(Component):
         self.force = -self.params.mass * (end - self.v) / dt
         self.v = end
 
-    def give(self) -> Fields:
-        return {"lump.force": self.force.copy()}
+    def give(self, wanted: Keys) -> Fields:
+        return {key: self.force.copy() for key in wanted}
 
     def save(self) -> Fields:
         return {"v": self.v.copy(), "middle": self.middle.copy(), "force": self.force.copy()}

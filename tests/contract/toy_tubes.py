@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from quintet.interfaces.component import Array, Component, Fields, Port, Totals
+from quintet.interfaces.component import Array, Component, Fields, Keys, Port, Totals
 from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 
@@ -72,7 +72,8 @@ class Membrane(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.push = self.sines @ fields["pressure.force"][:, 2]
+        if "pressure.force" in fields:
+            self.push = self.sines @ fields["pressure.force"][:, 2]
 
     def _slope(self, q: Array) -> float:
         """Integral of the slope squared [m]."""
@@ -93,13 +94,12 @@ class Membrane(Component):
                 break
         self.q, self.v = self.q + dt * mean, 2.0 * mean - self.v
 
-    def give(self) -> Fields:
+    def give(self, wanted: Keys) -> Fields:
         start = np.outer(self.place, [1.0, 0.0, 0.0])
         position = start + np.outer(self.sines @ self.q, UP)
-        return {
-            "membrane.position": position,
-            "membrane.velocity": np.outer(self.sines @ self.v, UP),
-        }
+        velocity = np.outer(self.sines @ self.v, UP)
+        given = {"membrane.position": position, "membrane.velocity": velocity}
+        return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         return {"q": self.q.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -143,7 +143,8 @@ class Channel(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        self.middle = np.array(fields["wall.velocity"][:, 2])
+        if "wall.velocity" in fields:
+            self.middle = np.array(fields["wall.velocity"][:, 2])
 
     def step(self, dt: float) -> None:
         """What comes holds in the middle of the step; go on as far again to its end."""
@@ -151,8 +152,8 @@ class Channel(Component):
         self.force = -self.mass @ (end - self.v) / dt
         self.v = end
 
-    def give(self) -> Fields:
-        return {"pressure.force": np.outer(self.force, UP)}
+    def give(self, wanted: Keys) -> Fields:
+        return {key: np.outer(self.force, UP) for key in wanted}
 
     def save(self) -> Fields:
         return {"v": self.v.copy(), "middle": self.middle.copy(), "force": self.force.copy()}

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.contact.cells import BITS, number_cells
 from quintet.components.dem_bodies.contact.geometry import row_vector, sphere_plane
 from quintet.components.dem_bodies.laws import pair_constants
 from quintet.components.dem_bodies.state import (
@@ -25,9 +24,9 @@ from quintet.components.dem_bodies.state import (
 )
 from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.rotations import dot, sub
+from quintet.components.shared.search.cells import LAYER, ROW, keys_of
 
-ROW, LAYER = 1 << BITS, 1 << 2 * BITS
-# First of the cells that a range of later rows may be in, and how many follow.
+# First key, and how many follow, of each range of later rows that may be near.
 AHEAD = ((0, 1), (ROW - 1, 2), (LAYER - ROW - 1, 2), (LAYER - 1, 2), (LAYER + ROW - 1, 2))
 
 
@@ -42,18 +41,18 @@ class Touching(NamedTuple):
 
 
 class Sorted(NamedTuple):
-    """Balls in the order of their cells."""
+    """Balls in the order of the keys of their cells."""
 
-    cells: Whole  # (b,) rising
+    keys: Whole  # (b,) rising
     width: float  # m, of a cell
 
 
 @njit(**EXACT)
 def list_partners(
-    model: Model, motion: Numbers, cells: Whole, skin: float, begin: Whole, partner: Short
+    model: Model, motion: Numbers, keys: Whole, skin: float, begin: Whole, partner: Short
 ) -> int:
     """Write the partners of each row, while there is room, and where rows begin; count them."""
-    planes, rows, count, found = model.plane.shape[0], motion.shape[0], cells.shape[0], 0
+    planes, rows, count, found = model.plane.shape[0], motion.shape[0], keys.shape[0], 0
     low, high = np.zeros(5, np.int64), np.zeros(5, np.int64)
     for a in range(count):
         begin[a] = found
@@ -64,11 +63,11 @@ def list_partners(
                     partner[found] = rows + p
                 found += 1
         for k in range(5):
-            first = cells[a] + AHEAD[k][0]
+            first = keys[a] + AHEAD[k][0]
             last = first + AHEAD[k][1]
-            while low[k] < count and cells[low[k]] < first:
+            while low[k] < count and keys[low[k]] < first:
                 low[k] += 1
-            while high[k] < count and cells[high[k]] <= last:
+            while high[k] < count and keys[high[k]] <= last:
                 high[k] += 1
             for b in range(max(low[k], a + 1), high[k]):
                 d, near = sub(x, row_vector(motion, b)), radius + motion[b, RADIUS] + skin
@@ -126,7 +125,7 @@ def bodies_of_pairs(pairs: BallPairs, body: Whole) -> tuple[Whole, Whole]:
 
 def transfer_history(old: BallPairs, old_body: Whole, new: BallPairs, body: Whole) -> None:
     """Take over the history of the pairs that touch."""
-    touching = np.flatnonzero(old.history[:, 3])
+    touching = np.flatnonzero(old.history[3])
     first, second = (end[touching] for end in bodies_of_pairs(old, old_body))
     key = np.minimum(first, second) << 32 | np.maximum(first, second)
     order = np.argsort(key)
@@ -137,10 +136,10 @@ def transfer_history(old: BallPairs, old_body: Whole, new: BallPairs, body: Whol
     known = np.flatnonzero(place < len(key))
     known = known[key[place[known]] == wanted[known]]
     source = place[known]
-    new.history[known] = old.history[touching[source]]
+    new.history[:, known] = old.history[:, touching[source]]
     # The force is that on the pair's first body, which may have become its second.
     swapped = known[first[source] != new_first[known]]
-    new.history[swapped, :3] *= -1.0
+    new.history[:3, swapped] *= -1.0
     if new.rolling_moment is not None and old.rolling_moment is not None:
         new.rolling_moment[known] = old.rolling_moment[touching[source]]
         new.rolling_moment[swapped] *= -1.0
@@ -163,7 +162,7 @@ def ball_pairs(model: Model, begin: Whole, partner: Short, asked: bool) -> BallP
         partner=partner,
         constants_row=constants_row.astype(np.uint32),
         constants=constants_of_pairs(model, row, partner, some),
-        history=np.zeros((pairs, 4)),
+        history=np.zeros((4, pairs)),
         rolling_moment=np.zeros((pairs, 3)) if rolls else None,
         force=np.zeros((pairs if rolls or asked else 0, 3)),
         outgoing=np.zeros((len(towards), 6)),
@@ -181,12 +180,12 @@ def no_ball_pairs(model: Model) -> BallPairs:
 
 
 def sorted_balls(model: Model, state: State, skin: float) -> tuple[Sorted, Whole]:
-    """Return the balls' cells in rising order, and their present rows in that order."""
+    """Return the keys of the balls' cells in rising order, and their present rows in that order."""
     balls = np.flatnonzero(model.ball[:-1])
     width = 2.0 * float(model.bounding_radius[balls].max(initial=0.0)) + skin
-    cells = number_cells(state.motion, balls, width)
-    order = np.argsort(cells, kind="stable")
-    return Sorted(cells[order], width), order
+    keys = keys_of(state.motion, balls, width)
+    order = np.argsort(keys, kind="stable")
+    return Sorted(keys[order], width), order
 
 
 def list_ball_pairs(
@@ -199,12 +198,12 @@ def list_ball_pairs(
     asked: bool,
 ) -> BallPairs:
     """List anew all pairs of balls, and of balls and planes, nearer than the skin [m]."""
-    begin = np.empty(len(around.cells) + 1, np.int64)
+    begin = np.empty(len(around.keys) + 1, np.int64)
     partner = np.empty(2 * len(old.partner) + 64, np.uint32)
-    count = list_partners(model, state.motion, around.cells, skin, begin, partner)
+    count = list_partners(model, state.motion, around.keys, skin, begin, partner)
     if count > len(partner):
         partner = np.empty(count, np.uint32)
-        list_partners(model, state.motion, around.cells, skin, begin, partner)
+        list_partners(model, state.motion, around.keys, skin, begin, partner)
     new = ball_pairs(model, begin, partner[:count].copy(), asked)
     transfer_history(old, old_body, new, state.body)
     return new
@@ -212,14 +211,14 @@ def list_ball_pairs(
 
 def touching_balls(model: Model, state: State, pairs: BallPairs) -> Touching:
     """List the pairs that touched in the last step."""
-    some, ground = np.flatnonzero(pairs.history[:, 3]), len(state.body) - 1
+    some, ground = np.flatnonzero(pairs.history[3]), len(state.body) - 1
     row, partner = pairs.row[some], pairs.partner[some].astype(np.int64)
     on_ground = partner > ground
     x, other = state.motion[row], state.motion[np.minimum(partner, ground)]
     r_ij = x[:, :3] - other[:, :3]
     normal = r_ij / np.maximum(np.linalg.norm(r_ij, axis=1, keepdims=True), 1e-300)
     normal[on_ground] = model.plane[partner[on_ground] - ground - 1, :3]
-    depth = pairs.history[some, 3] ** -2
+    depth = pairs.history[3, some] ** -2
     bodies = state.body[np.column_stack([row, np.minimum(partner, ground)])]
     point = x[:, :3] - (x[:, RADIUS] - 0.5 * depth)[:, None] * normal
     return Touching(bodies, point, normal, pairs.force[some], depth)
@@ -227,7 +226,7 @@ def touching_balls(model: Model, state: State, pairs: BallPairs) -> Touching:
 
 def deepest_pair(state: State, pairs: BallPairs) -> tuple[int, int]:
     """Find the bodies of the pair that is deepest for its radius; a plane is beyond all bodies."""
-    radius, inverse_root = state.motion[:, RADIUS], pairs.history[:, 3]
+    radius, inverse_root = state.motion[:, RADIUS], pairs.history[3]
     other = radius[np.minimum(pairs.partner, len(radius) - 1)]  # the ground has none
     low = np.minimum(radius[pairs.row], np.where(other > 0.0, other, np.inf))
     k = int(np.argmin(np.where(inverse_root > 0.0, inverse_root * np.sqrt(low), np.inf)))

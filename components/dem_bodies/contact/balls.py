@@ -6,33 +6,58 @@ them at once; only what is read from rows and added to them goes pair by pair.
 
 import math
 
-import numpy as np
 from numba import njit
 
+from quintet.components.dem_bodies.contact.batch import (
+    BATCH,
+    BEFORE,
+    CONSTANTS,
+    DEPTH,
+    END_OMEGA_I,
+    END_OMEGA_J,
+    END_V_IJ,
+    ENERGY,
+    FORCE,
+    INVERSE_ROOT,
+    LEAST_GAP,
+    MOST_DEPTH,
+    MOST_STIFFNESS,
+    OMEGA_I,
+    OMEGA_J,
+    OPENING,
+    QUARTER,
+    R_IJ,
+    RADII,
+    RADIUS_I,
+    ROOT,
+    TANGENTIAL,
+    TORQUE_I,
+    TORQUE_J,
+    V_IJ,
+    WEIGHT,
+    column,
+    load_constants,
+    load_history,
+    load_pairs,
+    scatter_forces,
+    set_column,
+    store_history,
+)
 from quintet.components.dem_bodies.contact.geometry import (
     FAR,
-    row_vector,
     set_row_vector,
-    set_vector,
-    vector,
 )
 from quintet.components.dem_bodies.contact.rolling_resistance import rolling_moments
 from quintet.components.dem_bodies.laws import LEAST, contact_force, damping_weight
 from quintet.components.dem_bodies.state import (
     BLOCK,
-    COLUMNS,
     DEEPEST,
     DEEPEST_PAIR,
     ELASTIC_ENERGY,
-    END_OMEGA,
-    END_VELOCITY,
     GROUND_LOAD,
-    OMEGA,
-    RADIUS,
     SMALLEST_GAP,
     STIFFEST,
     SUMS,
-    VELOCITY,
     BallPairs,
     Model,
     Numbers,
@@ -41,73 +66,6 @@ from quintet.components.dem_bodies.state import (
 )
 from quintet.components.shared.numba_options import INNER
 from quintet.components.shared.rotations import Vector, axpy, cross, dot, scaled, sub
-
-BATCH = 48  # pairs that are computed at once; all their numbers fit in the nearest cache
-# A batch has columns, one for each number of the pairs: r_ij, which becomes the normal; velocities
-# of i over j, which become those of the point of contact; angular velocities, which become
-# torques; the elastic tangential force; the force.
-R_IJ, V_IJ, END_V_IJ, OMEGA_I, OMEGA_J = 0, 3 * BATCH, 6 * BATCH, 9 * BATCH, 12 * BATCH
-END_OMEGA_I, END_OMEGA_J, TANGENTIAL, FORCE = 15 * BATCH, 18 * BATCH, 21 * BATCH, 24 * BATCH
-TORQUE_I, TORQUE_J = OMEGA_I, OMEGA_J
-CONSTANTS, BEFORE, RADII, RADIUS_I = 27 * BATCH, 34 * BATCH, 35 * BATCH, 36 * BATCH
-DEPTH, ROOT, QUARTER, INVERSE_ROOT, WEIGHT, OPENING = range(37 * BATCH, 43 * BATCH, BATCH)
-# Extremes and sums of each place in the batch over a block.
-LEAST_GAP, MOST_DEPTH, MOST_STIFFNESS, ENERGY = range(43 * BATCH, 47 * BATCH, BATCH)
-NUMBERS = 47
-NONE = 0xFFFFFFFF  # no row of constants
-
-
-@njit(**INNER)
-def column(batch: Numbers, first: int) -> Vector:
-    """Return three numbers of a pair."""
-    return batch[first], batch[first + BATCH], batch[first + 2 * BATCH]
-
-
-@njit(**INNER)
-def set_column(batch: Numbers, first: int, a: Vector) -> None:
-    """Write three numbers of a pair."""
-    batch[first], batch[first + BATCH], batch[first + 2 * BATCH] = a
-
-
-@njit(**INNER)
-def load_pairs(
-    row: Short, partner: Short, plane: Numbers, motion: Numbers, history: Numbers, batch: Numbers
-) -> None:
-    """Read the motion of both rows and the history of pairs; both arrays are flat."""
-    rows = motion.shape[0] // COLUMNS
-    ground = np.uint32(rows - 1)
-    for c in range(row.shape[0]):
-        b = partner[c]
-        i, j = COLUMNS * row[c], COLUMNS * min(b, ground)
-        x, radius = vector(motion, i), motion[i + RADIUS]
-        if b <= ground:
-            d = sub(x, vector(motion, j))
-        else:
-            n = row_vector(plane, b - rows)
-            # Who is below the plane is as deep as can be.
-            d = scaled(max(dot(n, x) - plane[b - rows, 3], 1e-9 * radius), n)
-        set_column(batch, R_IJ + c, d)
-        batch[RADIUS_I + c] = radius
-        batch[RADII + c] = radius + motion[j + RADIUS]  # the ground has none
-        v_j, end_v_j = vector(motion, j + VELOCITY), vector(motion, j + END_VELOCITY)
-        set_column(batch, V_IJ + c, sub(vector(motion, i + VELOCITY), v_j))
-        set_column(batch, END_V_IJ + c, sub(vector(motion, i + END_VELOCITY), end_v_j))
-        set_column(batch, OMEGA_I + c, vector(motion, i + OMEGA))
-        set_column(batch, OMEGA_J + c, vector(motion, j + OMEGA))
-        set_column(batch, END_OMEGA_I + c, vector(motion, i + END_OMEGA))
-        set_column(batch, END_OMEGA_J + c, vector(motion, j + END_OMEGA))
-        set_column(batch, TANGENTIAL + c, vector(history, 4 * c))
-        batch[BEFORE + c] = history[4 * c + 3]
-
-
-@njit(**INNER)
-def load_constants(constants_row: Short, constants: Numbers, batch: Numbers, loaded: Short) -> None:
-    """Read the constants of pairs: mostly those of the pair before in this place."""
-    for c in range(constants_row.shape[0]):
-        if loaded[c] != constants_row[c]:
-            loaded[c] = constants_row[c]
-            for number in range(7):
-                batch[CONSTANTS + number * BATCH + c] = constants[constants_row[c], number]
 
 
 @njit(**INNER)
@@ -142,6 +100,11 @@ def pair_kinematics(count: int, batch: Numbers) -> None:
 @njit(**INNER)
 def first_step_weights(count: int, batch: Numbers, dt: float) -> None:
     """Weight of the damping of the pairs that begin to touch."""
+    begins = False
+    for c in range(count):
+        begins |= (batch[BEFORE + c] == 0.0) & (batch[DEPTH + c] > 0.0)
+    if not begins:
+        return
     for c in range(count):
         if batch[BEFORE + c] == 0.0 and batch[DEPTH + c] > 0.0:
             weight = damping_weight(0.0, batch[DEPTH + c], -batch[OPENING + c], dt)
@@ -178,49 +141,6 @@ def pair_forces(count: int, batch: Numbers, dt: float) -> None:
 
 
 @njit(**INNER)
-def add_load(loads: Numbers, k: int, force: Vector, torque: Vector) -> None:
-    """Add a force and a torque to the six numbers from k on."""
-    loads[k] += force[0]
-    loads[k + 1] += force[1]
-    loads[k + 2] += force[2]
-    loads[k + 3] += torque[0]
-    loads[k + 4] += torque[1]
-    loads[k + 5] += torque[2]
-
-
-@njit(**INNER)
-def scatter_forces(
-    row: Short, partner: Short, state: State, loads: Numbers, history: Numbers, outgoing: Numbers,
-    sums: Numbers, batch: Numbers, block: int, slot: int,
-) -> int:  # fmt: skip
-    """Add the forces of the pairs to their rows, and keep those for later blocks.
-
-    `slot` is where the first of these is kept; return where the next one is.
-    """
-    rows = state.motion.shape[0]
-    end = min((block + 1) * BLOCK, rows)
-    for c in range(row.shape[0]):
-        a, b = row[c], partner[c]
-        force, torque = column(batch, FORCE + c), column(batch, TORQUE_I + c)
-        back, other = scaled(-1.0, force), column(batch, TORQUE_J + c)
-        add_load(loads, 6 * a, force, torque)
-        if b < end:
-            add_load(loads, 6 * b, back, other)
-        elif b < rows:
-            set_row_vector(outgoing, slot, 0, back)
-            set_row_vector(outgoing, slot, 3, other)
-            slot += 1
-        else:  # the ground's torque is about the origin
-            turn = sub(cross(force, row_vector(state.motion, a)), torque)
-            for d in range(3):
-                sums[block, GROUND_LOAD + d] += back[d]
-                sums[block, GROUND_LOAD + 3 + d] += turn[d]
-        set_vector(history, 4 * c, column(batch, TANGENTIAL + c))
-        history[4 * c + 3] = batch[BEFORE + c]
-    return slot
-
-
-@njit(**INNER)
 def begin_block(state: State, sums: Numbers, batch: Numbers, block: int) -> None:
     """No load and no sum yet."""
     state.contact_load[block * BLOCK : (block + 1) * BLOCK] = 0.0
@@ -241,13 +161,6 @@ def end_block(sums: Numbers, batch: Numbers, block: int, pair: int) -> None:
     sums[block, STIFFEST], sums[block, ELASTIC_ENERGY] = stiffest, energy
     if deepest > 0.0:
         sums[block, DEEPEST_PAIR] = pair
-
-
-@njit(**INNER)
-def batch_of(pairs: BallPairs) -> tuple[Numbers, Short]:
-    """Make room for a batch, if there are pairs: its numbers, and whose constants it has."""
-    count = pairs.partner.shape[0]
-    return np.zeros(NUMBERS * BATCH if count > 0 else 0), np.full(BATCH, NONE, np.uint32)
 
 
 @njit(**INNER)
@@ -272,27 +185,27 @@ def ball_loads(
         As `batch_of` makes them.
     dt : float, s
     """
-    begin, count = pairs.begin, pairs.begin.shape[0] - 1
-    # Flat, so that compilers know how far apart rows are.
-    motion, history = state.motion.reshape(state.motion.size), pairs.history.reshape(-1)
-    loads = state.contact_load.reshape(state.contact_load.size)
+    # Flat, so that compilers know how far apart rows are; and none is sliced in the loop, where
+    # references to it would be counted.
+    motion, history = state.motion.reshape(-1), pairs.history.reshape(-1)
+    loads, plane, outgoing = state.contact_load.reshape(-1), model.plane, pairs.outgoing
+    row, partner, constants_row = pairs.row, pairs.partner, pairs.constants_row
+    constants, force, count = pairs.constants, pairs.force, pairs.begin.shape[0] - 1
     begin_block(state, sums, batch, block)
-    start, end = begin[min(block * BLOCK, count)], begin[min((block + 1) * BLOCK, count)]
-    slot = pairs.outgoing_begin[block]
+    start = pairs.begin[min(block * BLOCK, count)]
+    end, slot = pairs.begin[min((block + 1) * BLOCK, count)], pairs.outgoing_begin[block]
     for k in range(start, end, BATCH):
-        to = min(k + BATCH, end)
-        row, partner, kept = pairs.row[k:to], pairs.partner[k:to], history[4 * k : 4 * to]
-        load_pairs(row, partner, model.plane, motion, kept, batch)
-        load_constants(pairs.constants_row[k:to], pairs.constants, batch, loaded)
-        pair_kinematics(to - k, batch)
-        first_step_weights(to - k, batch, dt)
-        pair_forces(to - k, batch, dt)
-        slot = scatter_forces(
-            row, partner, state, loads, kept, pairs.outgoing, sums, batch, block, slot
-        )
-        if pairs.force.shape[0] > 0:
-            for c in range(to - k):
-                set_row_vector(pairs.force, k + c, 0, column(batch, FORCE + c))
+        n = min(BATCH, end - k)
+        load_pairs(k, n, row, partner, plane, motion, batch)
+        load_history(k, n, history, batch)
+        load_constants(k, n, constants_row, constants, batch, loaded)
+        pair_kinematics(n, batch)
+        first_step_weights(n, batch, dt)
+        pair_forces(n, batch, dt)
+        slot = scatter_forces(k, n, row, partner, motion, loads, outgoing, sums, batch, block, slot)
+        store_history(k, n, history, batch)
+        for c in range(n if force.shape[0] > 0 else 0):
+            set_row_vector(force, k + c, 0, column(batch, FORCE + c))
     end_block(sums, batch, block, start)
     if rolling_moment is not None:
         rolling_moments(block, model, state, pairs, rolling_moment, sums, dt)

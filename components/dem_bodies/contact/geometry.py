@@ -4,7 +4,7 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.state import Numbers
+from quintet.components.dem_bodies.state import Model, Numbers, State
 from quintet.components.shared.numba_options import INNER
 from quintet.components.shared.rotations import (
     Matrix,
@@ -135,6 +135,46 @@ def sphere_box(
     x, y, z = to_body(r, d[0], d[1], d[2])
     x, y, z = clamped(x, half[0]), clamped(y, half[1]), clamped(z, half[2])
     return sphere_sphere(centre, axpy(1.0, to_world(r, x, y, z), middle), radius, edge_radius)
+
+
+@njit(**INNER)
+def nearest_in_polygon(
+    corner: Numbers, first: int, last: int, x: float, z: float
+) -> tuple[float, float]:
+    """Point (x, z) m of a convex polygon that is nearest to one; corners are rows [first, last)."""
+    inside, nearest2, px, pz = True, FAR, x, z
+    for k in range(first, last):
+        to = k + 1 if k + 1 < last else first
+        ax, az = corner[k, 0], corner[k, 2]
+        ux, uz = corner[to, 0] - ax, corner[to, 2] - az
+        dx, dz = x - ax, z - az
+        inside = inside and ux * dz - uz * dx >= 0.0
+        share = min(max((ux * dx + uz * dz) / (ux * ux + uz * uz), 0.0), 1.0)
+        dx, dz = dx - share * ux, dz - share * uz
+        if dx * dx + dz * dz < nearest2:
+            nearest2, px, pz = dx * dx + dz * dz, ax + share * ux, az + share * uz
+    return (x, z) if inside else (px, pz)
+
+
+@njit(**INNER)
+def sphere_body(model: Model, state: State, s: int, j: int) -> Gap:
+    """Sphere s and body j, a rounded box; or a polygon in two dimensions, whose corners are round.
+
+    A polygon is what a circle of the edge radius sweeps that moves through its inner corners.
+    """
+    centre, radius, rounded = (
+        row_vector(state.centre, s),
+        model.sphere_radius[s],
+        model.edge_radius[j],
+    )
+    middle, r = row_vector(state.motion, j), rotation_matrix(state.axes, j)
+    if not model.polygon[j]:
+        return sphere_box(centre, radius, middle, r, row_vector(model.half_extent, j), rounded)
+    d = sub(centre, middle)
+    x, y, z = to_body(r, d[0], d[1], d[2])
+    first, last = model.sphere_begin[j], model.sphere_begin[j + 1]
+    x, z = nearest_in_polygon(model.sphere_centre, first, last, x, z)
+    return sphere_sphere(centre, axpy(1.0, to_world(r, x, y, z), middle), radius, rounded)
 
 
 @njit(**INNER)

@@ -7,9 +7,8 @@ from numba import njit
 from quintet.components.dem_bodies.contact.geometry import (
     Gap,
     edge_edge,
-    rotation_matrix,
     row_vector,
-    sphere_box,
+    sphere_body,
     sphere_plane,
     sphere_sphere,
 )
@@ -92,9 +91,7 @@ def detect_contacts(model: Model, state: State, pairs: BodyPairs, ahead: int) ->
         s, j = ends[k, 0], ends[k, 1]
         i, r = row[s], size[s]
         both, q = material[i] * kinds + material[j], edge_radius[j]
-        middle, half, low = row_vector(state.motion, j), row_vector(model.half_extent, j), min(r, q)
-        axes = rotation_matrix(state.axes, j)
-        found = sphere_box(row_vector(centre, s), r, middle, axes, half, q)
+        found, low = sphere_body(model, state, s, j), min(r, q)
         count = add_contact(
             report, history, touching, geometry, count, k, ahead, i, j, both, found, r, low
         )

@@ -89,7 +89,7 @@ def rolling_moments(
         b = pairs.partner[k]
         leaves = (block + 1) * BLOCK <= b < rows
         slot += leaves
-        if pairs.history[k, 3] == 0.0:
+        if pairs.history[3, k] == 0.0:
             rolling_moment[k] = 0.0
             continue
         i, j = pairs.row[k], min(b, ground)
@@ -97,7 +97,7 @@ def rolling_moments(
         if arm == 0.0:
             continue
         n, c = contact_normal(model, motion, i, b), pairs.constants[pairs.constants_row[k]]
-        stiffness = ROLLING_STIFFNESS * 1.5 * c[0] / pairs.history[k, 3] * arm * arm
+        stiffness = ROLLING_STIFFNESS * 1.5 * c[0] / pairs.history[3, k] * arm * arm
         inverse = inverse_rolling_inertia(model, i) + inverse_rolling_inertia(model, j)
         damping = 2.0 * ROLLING_DAMPING * math.sqrt(stiffness / inverse)
         limit = arm * max(0.0, dot(row_vector(pairs.force, k), n))

@@ -12,12 +12,10 @@ from quintet.components.dem_bodies.contact.ball_search import (
     list_ball_pairs,
     sorted_balls,
 )
-from quintet.components.dem_bodies.contact.cells import BITS, cell_of, number_cells
 from quintet.components.dem_bodies.contact.geometry import (
-    rotation_matrix,
     row_vector,
     segment_distance,
-    sphere_box,
+    sphere_body,
     sphere_plane,
 )
 from quintet.components.dem_bodies.state import (
@@ -38,6 +36,7 @@ from quintet.components.dem_bodies.state import (
 )
 from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.components.shared.rotations import dot, sub
+from quintet.components.shared.search.cells import LAYER, ROW, keys_of, number_along, row_of_keys
 
 
 @njit(**INNER)
@@ -60,12 +59,9 @@ def edge_distance(ends: Whole, centre: Numbers, e: int, f: int) -> float:
 def list_spheres_of_box(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
-    """List the spheres of body i that are near the box j."""
-    r, o = rotation_matrix(state.axes, j), row_vector(state.motion, j)
-    half, q = row_vector(model.half_extent, j), model.edge_radius[j]
+    """List the spheres of body i that are near the box or polygon j."""
     for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
-        centre, radius = row_vector(state.centre, s), model.sphere_radius[s]
-        if sphere_box(centre, radius, o, r, half, q)[0] < skin:
+        if sphere_body(model, state, s, j)[0] < skin:
             count = add_key(keys, count, SPHERE_BOX, s, j)
     return count
 
@@ -120,48 +116,47 @@ def list_if_near(
 
 @njit(**INNER)
 def list_balls(
-    model: Model, state: State, i: int, cells: Whole, width: float, skin: float, keys: Whole,
+    model: Model, state: State, i: int, cell_keys: Whole, width: float, skin: float, keys: Whole,
     count: int,
 ) -> int:  # fmt: skip
     """List what row i is near of balls, which are sorted by cells (b,) of a width [m]."""
     x, far = row_vector(state.motion, i), model.bounding_radius[i] + 0.5 * width + 0.5 * skin
-    z_low, z_high = cell_of(x[2] - far, width), cell_of(x[2] + far, width)
-    y_low, y_high = cell_of(x[1] - far, width), cell_of(x[1] + far, width)
-    if (z_high - z_low + 1) * (y_high - y_low + 1) > cells.shape[0]:
+    z_low, z_high = number_along(x[2] - far, width), number_along(x[2] + far, width)
+    x_low, x_high = number_along(x[0] - far, width), number_along(x[0] + far, width)
+    y_low, y_high = number_along(x[1] - far, width), number_along(x[1] + far, width)
+    if (z_high - z_low + 1) * (y_high - y_low + 1) > cell_keys.shape[0]:
         # Around a body that is large beside the balls are more rows of cells than balls.
-        for b in range(cells.shape[0]):
+        for b in range(cell_keys.shape[0]):
             count = list_if_near(model, state, i, b, skin, keys, count)
         return count
     for z in range(z_low, z_high + 1):
         for y in range(y_low, y_high + 1):
-            row = (z << 2 * BITS) + (y << BITS)
-            last = np.searchsorted(cells, row + cell_of(x[0] + far, width), side="right")
-            for b in range(np.searchsorted(cells, row + cell_of(x[0] - far, width)), last):
+            row = z * LAYER + y * ROW
+            for b in range(*row_of_keys(cell_keys, row + x_low, row + x_high)):
                 count = list_if_near(model, state, i, b, skin, keys, count)
     return count
 
 
 @njit(**EXACT)
 def list_keys(
-    model: Model, state: State, cells: Whole, order: Whole, ball_cells: Whole, width: float,
+    model: Model, state: State, cell_keys: Whole, order: Whole, ball_cell_keys: Whole, width: float,
     skin: float, keys: Whole,
 ) -> int:  # fmt: skip
     """Write the keys of all pairs nearer than the skin [m]; return their number.
 
-    `cells` (o,) is sorted, `order` (o,) are the rows in that order; `ball_cells` (b,) are those
-    of the balls, and `width` [m] that of their cells. If there is not room for all keys, only
-    their number is right.
+    `cell_keys` (o,) is sorted, `order` (o,) are the rows in that order; `ball_cell_keys` (b,)
+    are those of the balls, and `width` [m] that of their cells. If there is not room for all
+    keys, only their number is right.
     """
     count = 0
     for a in range(order.shape[0]):
         i = order[a]
         count = list_planes(model, state, i, skin, keys, count)
-        count = list_balls(model, state, i, ball_cells, width, skin, keys, count)
+        count = list_balls(model, state, i, ball_cell_keys, width, skin, keys, count)
         for z in range(-1, 2):
             for y in range(-1, 2):
-                row = cells[a] + (z << 2 * BITS) + (y << BITS)
-                last = np.searchsorted(cells, row + 1, side="right")
-                for b in range(np.searchsorted(cells, row - 1), last):
+                key = cell_keys[a] + z * LAYER + y * ROW
+                for b in range(*row_of_keys(cell_keys, key - 1, key + 1)):
                     if order[b] > i:
                         count = list_if_near(model, state, i, order[b], skin, keys, count)
     return count
@@ -204,9 +199,9 @@ def list_body_pairs(
 ) -> BodyPairs:
     """List anew all pairs nearer than the skin [m] that are not of balls and planes alone."""
     width = 2.0 * float(model.bounding_radius[model.others].max(initial=0.0)) + skin
-    cells = number_cells(state.motion, model.others, width)
-    order = np.argsort(cells, kind="stable")
-    given = (model, state, cells[order], model.others[order], around.cells, around.width, skin)
+    cell_keys = keys_of(state.motion, model.others, width)
+    order = np.argsort(cell_keys, kind="stable")
+    given = (model, state, cell_keys[order], model.others[order], around.keys, around.width, skin)
     keys = np.empty(2 * len(old.key) + 64, np.int64)
     count = list_keys(*given, keys)
     if count > len(keys):

@@ -39,7 +39,7 @@ def count_contacts(
 def count_ball_contacts(row: Short, partner: Short, history: Numbers, count: Whole) -> int:
     """Add the contacts of balls to `count` (n,); return the largest of any row."""
     for k in range(row.shape[0]):
-        if history[k, 3] > 0.0:
+        if history[3, k] > 0.0:
             count[row[k]] += 1
             if partner[k] < count.shape[0]:
                 count[partner[k]] += 1

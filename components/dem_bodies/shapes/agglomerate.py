@@ -18,6 +18,7 @@ corners empty.
 
 import math
 from functools import lru_cache
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -72,8 +73,8 @@ def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate
     require_few(file, dim, radius, len(centres))
     if not len(centres):
         raise ValueError(
-            f"file {file}: the shape must have room for a sphere within; at sphere_radius "
-            f"{radius:g} m it has none. Make sphere_radius smaller."
+            f"file {Path(file).name}: the shape must have room for a sphere within; at "
+            f"sphere_radius {radius:g} m it has none. Make sphere_radius smaller."
         )
     return Agglomerate(shape.volume, shape.inertia, centres - shape.centre, radius, size)
 
@@ -82,15 +83,15 @@ def require_few(file: str, dim: int, radius: float, count: int) -> None:
     """Refuse more spheres than are of use to a body."""
     if count > MOST:
         raise ValueError(
-            f"file {file}: an agglomerate must have at most {MOST} spheres; dim {dim} and "
-            f"sphere_radius {radius:g} m give more. Make dim smaller."
+            f"file {Path(file).name}: an agglomerate must have at most {MOST} spheres; dim {dim} "
+            f"and sphere_radius {radius:g} m give more. Make dim smaller."
         )
 
 
 def require_fit(file: str, scale: float, size: Array, dim: int, radius: float) -> None:
     """Refuse spheres that do not fit into the shape, or leave gaps between them."""
     edges = " x ".join(f"{edge:.4g}" for edge in size)
-    found = f"found {radius:g} m for {file} of {edges} m at scale {scale:g}."
+    found = f"found {radius:g} m for {Path(file).name} of {edges} m at scale {scale:g}."
     if 2.0 * radius > size.min() * (1.0 + 1e-9):
         raise ValueError(
             "sphere_radius must be at most half the shape's shortest edge, "

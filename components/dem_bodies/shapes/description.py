@@ -4,6 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from quintet.components.dem_bodies.shapes.placement import cover, edge_radius
+from quintet.components.dem_bodies.shapes.planar import check_polygon
 
 if TYPE_CHECKING:
     from quintet.components.dem_bodies.params import Body
@@ -13,6 +14,8 @@ SIZES = {  # what describes a body of each shape
     "sphere": ("diameter",),
     "spheres": ("centres", "radii"),
     "agglomerate": ("agglomerate",),
+    "disc": ("diameter",),
+    "polygon": ("corners",),
 }
 
 
@@ -46,10 +49,13 @@ def check_shape(where: str, body: "Body") -> None:
             f"{where}: a {body.shape} is described by {' and '.join(wanted)} alone; "
             f"found {', '.join(found) or 'none'}. Give {' and '.join(wanted)}."
         )
-    if body.edge_radius is not None and body.shape != "box":
+    if body.edge_radius is not None and body.shape not in ("box", "polygon"):
         raise ValueError(
-            f"{where}.edge_radius is for boxes; found it on a {body.shape}. Leave it out."
+            f"{where}.edge_radius is for boxes and polygons; found it on a {body.shape}. Leave it "
+            "out."
         )
+    if body.corners is not None:
+        check_polygon(where, body, edge_radius(body))
     if body.size is not None and not edge_radius(body) < 0.5 * min(body.size):
         raise ValueError(
             f"{where}.edge_radius must be less than half the smallest edge, "

@@ -4,7 +4,6 @@ Surfaces are read by trimesh (STL, OBJ, PLY and others); voxels are an array in 
 axes x, y, z, what is not zero being solid. Nothing is imported unless a scene names a file.
 """
 
-import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,21 +24,9 @@ class Shape(NamedTuple):
     inertia: Array  # (3, 3) m5, about it, at unit density
 
 
-def located(name: str) -> Path:
-    """Find a file as scenes name it: from the working folder, or beside the scene."""
-    # The scene's folder is on the path, so that components beside the scene are found.
-    for folder in (".", *sys.path):
-        if (Path(folder) / name).is_file():
-            return Path(folder) / name
-    raise ValueError(
-        f"file {name} must be in the working folder or beside the scene; it is not. Put it there, "
-        "or correct its name."
-    )
-
-
-def read(name: str, scale: float) -> Shape:
+def read(file: str, scale: float) -> Shape:
     """Read a shape; one unit of length in the file, or one voxel, stands for `scale` [m]."""
-    path = located(name)
+    path = Path(file)
     return voxels(path, scale) if path.suffix == ".npy" else surface(path, scale)
 
 

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.lattice import lattice_points
+from quintet.components.shared.polygons import in_space
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
@@ -34,15 +36,19 @@ def copies(body: "Body") -> "Iterator[Body]":
     numbers = lattice_points([np.arange(n) for n in lattice.number], x_fastest=False)
     places = np.array(body.position) + numbers * np.array(lattice.spacing)  # (n, 3) m
     random = np.random.default_rng(lattice.seed)
-    places += lattice.scatter * random.uniform(-1.0, 1.0, places.shape)
+    scattered = random.uniform(-1.0, 1.0, places.shape)
+    if body.shape in planar.SHAPES:
+        scattered[:, 1] = 0.0
+    places += lattice.scatter * scattered
     for x, y, z in places.tolist():
         yield replace(body, position=(x, y, z), copies=None)
 
 
 def edge_radius(body: "Body") -> float:
-    """Radius of a box's edges [m]."""
-    assert body.size is not None
-    return ROUNDED * min(body.size) if body.edge_radius is None else body.edge_radius
+    """Radius of the edges of a box, or of the corners of a polygon [m]."""
+    if body.edge_radius is not None:
+        return body.edge_radius
+    return ROUNDED * (planar.shortest_edge(body) if body.size is None else min(body.size))
 
 
 def cover(body: "Body") -> Agglomerate | None:
@@ -61,9 +67,16 @@ def rotation_matrix(orientation: tuple[float, float, float, float]) -> Array:
 
 
 def contact_spheres(body: "Body") -> Spheres:
-    """Contact spheres of a body that is not a box, in body axes about its centre of mass."""
+    """Contact spheres of a body that is not a box, in body axes about its centre of mass.
+
+    Those of a polygon sit in its corners, in order.
+    """
     if body.diameter is not None:
         return np.zeros((1, 3)), np.array([0.5 * body.diameter])
+    if body.corners is not None:
+        radius = edge_radius(body)
+        centres = in_space(planar.inner_corners(planar.corners(body), radius))
+        return centres, np.full(len(centres), radius)
     one = cover(body)
     if one is not None:
         return one.centres, np.full(len(one.centres), one.radius)
@@ -143,6 +156,12 @@ def body_gap(a: "Body", b: "Body") -> float:
         centres, radii = world_spheres(other)
         return float((box_distance(box, centres) - radii).min())
     (c, r), (d, s) = world_spheres(a), world_spheres(b)
+    if a.corners is not None and b.corners is not None:
+        return planar.polygon_gap(c[:, [0, 2]], d[:, [0, 2]]) - float(r[0] + s[0])
+    if a.corners is not None:
+        return float((planar.polygon_distance(c[:, [0, 2]], d[:, [0, 2]]) - r[0] - s).min())
+    if b.corners is not None:
+        return float((planar.polygon_distance(d[:, [0, 2]], c[:, [0, 2]]) - s[0] - r).min())
     return float((np.linalg.norm(c[:, None] - d, axis=2) - r[:, None] - s).min())
 
 

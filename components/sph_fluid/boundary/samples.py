@@ -29,7 +29,8 @@ class Samples:
     def join(self, state: State, static: Fields, density: float) -> None:
         """Make room for the samples that links bring, of a density [kg/m3]."""
         state.add_samples(len(static["surface.volume"]), density)
-        self.body, self.volume = static["surface.body"], static["surface.volume"]
+        self.body = np.array(static["surface.body"])
+        self.volume = np.array(static["surface.volume"])
         self.placed = False
         self.find(state)
 

@@ -97,7 +97,7 @@ def relative_volume(samples: Samples, count: int, params: SphFluidParams) -> Arr
     Where the spacing does not divide a body, its samples stand closer, or less close, than the
     fluid's particles; as heavy as those they would displace more, or less, than the body does.
     """
-    share = samples.volume / params.spacing**3
+    share = samples.volume / params.spacing**params.dimensions
     if np.abs(share - 1.0).max(initial=0.0) < EVEN:
         return np.zeros(0)
     found = np.ones(count)

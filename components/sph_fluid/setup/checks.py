@@ -174,6 +174,11 @@ def check_methods(params: "SphFluidParams") -> None:
             "boundary.lubrication_films knows no planes of symmetry; found films and symmetry "
             f"{edge.symmetry}. Leave one out."
         )
+    if params.dimensions == 2 and edge.lubrication_films:
+        raise ValueError(
+            "boundary.lubrication_films needs three dimensions, in which water flows into a film "
+            "from its rim; found dimensions 2. Set dimensions to 3, or leave films out."
+        )
     if edge.potential_stiffness is not None and edge.method == "dbc":
         raise ValueError(
             "boundary.potential_stiffness belongs to boundary.method potential, or mdbc with links "

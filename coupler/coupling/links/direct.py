@@ -4,13 +4,37 @@ For resolved particles in a flow (pose one way, force, torque and heat back), fo
 between bodies, and for components of a user's own.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from quintet.coupler.coupling.exchange import Leg, Ports, Works, misfits
-from quintet.interfaces.component import Array, Fields, Port
+from quintet.coupler.coupling.exchange import (
+    Binding,
+    Demands,
+    Ends,
+    Link,
+    Mapped,
+    Ports,
+    Transfer,
+    Works,
+    misfits,
+)
+from quintet.coupler.coupling.links.keys import is_stand_in, only
+from quintet.interfaces.component import Array, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
+
+
+def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
+    """Make the link of a scene's table: ``pairs`` of ports, the giver's first."""
+    only(number, given, ("kind", "name", "pairs"))
+    pairs = given.get("pairs")
+    if not isinstance(pairs, list) or not all(isinstance(p, list) and len(p) == 2 for p in pairs):
+        raise SceneError(
+            f"links.{number}.pairs must be pairs of ports, the giver first, as in "
+            f'[["a.motion", "b.foot"]]; found {pairs!r}.'
+        )
+    names = dict.fromkeys(str(path).split(".")[0] for pair in pairs for path in pair)
+    return join(str(given.get("name", "-".join(names))), pairs, ports)
 
 
 def join(name: str, pairs: Any, ports: Mapping[str, Ports]) -> "Direct":
@@ -18,6 +42,8 @@ def join(name: str, pairs: Any, ports: Mapping[str, Ports]) -> "Direct":
     mistakes: list[str] = []
     joined = []
     for giver, taker in pairs:
+        if is_stand_in(ports.get(taker.partition(".")[0])):
+            continue
         given = _port(name, giver, ports, 1, mistakes)
         taken = _port(name, taker, ports, 0, mistakes)
         if given and taken:
@@ -52,52 +78,59 @@ class Direct:
     def __init__(self, name: str, joined: list[tuple[str, Port, str, Port]]) -> None:
         self.name = name
         self.joined = joined
-        self.memory = None
         self.partner = {b: p.name for _, _, b, p in joined if p.items == "partner"}
-        self.works: dict[str, Works] = {}
-        self.legs = []
+        works: dict[str, Works] = {}
+        transfers = []
         for giver, given, taker, taken in joined:
-            names = [(f"{given.name}.{f.name}", f"{taken.name}.{f.name}") for f in taken.fields]
-            pushed = [f"{given.name}.{f.name}" for f in given.fields if f.unit == "N"]
-            self._note_work(giver, taker, pushed)
-            self.legs.append(
-                Leg(
+            for one in given.fields:
+                if pair := self._velocity(taker, giver, one, taken=True):
+                    works.setdefault(giver, []).append((f"{given.name}.{one.name}", *pair))
+            on = [(f"{taken.name}.{f.name}", self._velocity(taker, giver, f)) for f in taken.fields]
+            transfers.append(
+                Transfer(
                     giver,
                     taker,
-                    _passing(names),
+                    reads=tuple(f"{given.name}.{f.name}" for f in taken.fields),
+                    fills=tuple(f"{taken.name}.{f.name}" for f in taken.fields),
                     sums=tuple(
                         (f"{given.name}.{f.name}", f"{taken.name}.{f.name}")
                         for f in taken.fields
                         if f.centring == "impulse"
                     ),
-                    works_on=self._works_on(giver, taker, taken),
+                    works_on=tuple((key, *pair) for key, pair in on if pair),
                 )
             )
+        self.works = works
+        self.transfers = tuple(transfers)
 
-    def _note_work(self, giver: str, taker: str, pushed: list[str]) -> None:
-        """Pair a force that is given with the velocity that came the other way."""
-        for back_giver, _, back_taker, port in self.joined:
-            fields = {field.name: field for field in port.fields}
-            if (back_giver, back_taker) == (taker, giver) and "velocity" in fields:
-                place = f"{port.name}.position" if "position" in fields else ""
-                if place and fields["position"].shape != (3,):
-                    place = ""
-                works = [(force, f"{port.name}.velocity", place) for force in pushed]
-                self.works.setdefault(giver, []).extend(works)
+    def _velocity(
+        self, mover: str, pusher: str, force: Field, taken: bool = False
+    ) -> tuple[str, str] | None:
+        """Key of the velocity with which a force works, and of what that is the rate, or "".
 
-    def _works_on(self, giver: str, taker: str, taken: Port) -> tuple[tuple[str, str, str], ...]:
-        for back_giver, port, back_taker, _ in self.joined:
-            fields = {field.name for field in port.fields}
-            if (back_giver, back_taker) == (taker, giver) and "velocity" in fields:
-                place = f"{port.name}.position" if "position" in fields else ""
-                return tuple(
-                    (f"{taken.name}.{f.name}", f"{port.name}.velocity", place)
-                    for f in taken.fields
-                    if f.unit == "N"
-                )
-        return ()
+        Looked for among the ports that lead from who is moved to who pushes: as the pusher takes
+        it, or as the mover gives it. On the taking side only a position (3,) is named, from which
+        the moment about the origin follows.
+        """
+        if not force.works_with:
+            return None
+        for giver, given, taker, taking in self.joined:
+            fields = {one.name: one for one in taking.fields}
+            if (giver, taker) != (mover, pusher) or force.works_with not in fields:
+                continue
+            port = taking if taken else given
+            whole = [one for one in port.fields if one.rate == force.works_with]
+            if taken:
+                whole = [one for one in whole if one.shape == (3,) and force.unit == "N"]
+            place = f"{port.name}.{whole[0].name}" if whole else ""
+            return f"{port.name}.{force.works_with}", place
+        return None
 
-    def describe(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
+    def demands(self) -> Demands:
+        """Nothing: any steps, any scheme."""
+        return Demands()
+
+    def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Pass on the static fields that the taking port asks for."""
         passed: dict[str, dict[str, Array]] = {}
         for giver, given, taker, taken in self.joined:
@@ -105,11 +138,14 @@ class Direct:
                 array = described[giver].get(f"{given.name}.{field.name}")
                 if array is not None:
                     passed.setdefault(taker, {})[f"{taken.name}.{field.name}"] = array
-        return passed
+        return Binding(passed, tuple(_passing(one) for one in self.transfers))
 
 
-def _passing(names: list[tuple[str, str]]) -> Any:
-    def carry(given: Fields) -> dict[str, Array]:
+def _passing(transfer: Transfer) -> Callable[[Ends, Ends], Mapped]:
+    names = tuple(zip(transfer.reads, transfer.fills, strict=True))
+
+    def maps(_: Ends, end: Ends) -> Mapped:
+        given = end[transfer.giver]
         return {taken: given[key] for key, taken in names}
 
-    return carry
+    return maps

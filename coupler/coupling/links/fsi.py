@@ -1,4 +1,4 @@
-"""Fluid and structure: surface samples move with bodies or faces, and carry forces back.
+"""Fluid and structure: surface samples move with bodies or faces, whose loads they map back.
 
 The fluid takes samples and gives a force on each; it never learns what moves them. The body
 gives its shape or its faces; it never learns how finely they are sampled. `contact` says what
@@ -7,16 +7,30 @@ potential, of a fluid whose port asks for it.
 """
 
 from collections.abc import Mapping
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from quintet.coupler.coupling.body_samples import fill, mirrors
-from quintet.coupler.coupling.exchange import Leg, Ports, Works, requires
-from quintet.coupler.coupling.mapping import RigidMap, ShapeMap, sample_faces
+from quintet.coupler.coupling.exchange import (
+    Binding,
+    Demands,
+    Ends,
+    Link,
+    Mapped,
+    Ports,
+    Transfer,
+    Works,
+    requires,
+)
+from quintet.coupler.coupling.links.keys import between
+from quintet.coupler.coupling.mapping import RigidMap, sample_faces
+from quintet.coupler.coupling.rigid_samples import asked_sampling, body_widths, sample_bodies
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
     CONTACT,
+    DIMENSIONS,
     FACES,
     LOAD,
     MIRRORED_SURFACE,
@@ -26,17 +40,30 @@ from quintet.interfaces.ports import (
     SURFACE_LOAD,
 )
 
+CONTACTS = ("walls", "potential")  # as at the fluid's walls, or by a contact potential
 WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
 
+def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
+    """Make the link of a scene's table: ``between``, and which ``contact`` it asks for."""
+    name, pair = between(number, given, ports, "contact")
+    contact = given.get("contact", CONTACTS[0])
+    if contact not in CONTACTS:
+        raise SceneError(
+            f"links.{number}.contact must be one of {', '.join(CONTACTS)}, as at the fluid's walls "
+            f"or by a contact potential; found {contact!r}. Correct it, or leave it out for walls."
+        )
+    return join(name, pair, ports, contact == "potential")
+
+
 def join(
-    name: str, between: tuple[str, str], ports: Mapping[str, Ports], potential: bool = False
+    name: str, pair: tuple[str, str], ports: Mapping[str, Ports], potential: bool = False
 ) -> "RigidFsi | FaceFsi":
     """Match two components: one samples a surface, the other moves bodies or faces.
 
     With `potential` the fluid is asked to press on the samples by a contact potential.
     """
-    first, second = between
+    first, second = pair
     for fluid, body in ((first, second), (second, first)):
         takes = {port.name for port in ports[fluid][0]}
         gives = {port.name for port in ports[body][1]}
@@ -52,16 +79,32 @@ def join(
             raise SceneError(f"link {name}: {'; '.join(lacks)}. Correct the ports.")
         surface = next(port for port in ports[fluid][0] if port.name == SURFACE.name)
         mirrored = any(field.name == "mirror" for field in surface.fields)
+        moving = next(port for port in ports[body][1] if port.name == motion.name)
+        _same_dimensions(name, {fluid: surface, body: moving})
         contact = _contact(name, fluid, surface, potential)
-        found = (RigidFsi if rigid else FaceFsi)(name, fluid, body, mirrored, contact)
-        found.legs = found.legs if loaded else found.legs[:1]
-        return found
+        kind = RigidFsi if rigid else FaceFsi
+        return kind(name, fluid, body, mirrored, contact, loaded)
     raise SceneError(
         f"link {name}: fsi needs a component that takes surface and gives surface_load, and one "
         f"that gives motion and takes load, or gives faces and takes node_load; {first} takes "
         f"{_names(ports[first][0])} and gives {_names(ports[first][1])}, {second} takes "
         f"{_names(ports[second][0])} and gives {_names(ports[second][1])}. Link others."
     )
+
+
+def _same_dimensions(name: str, ports: Mapping[str, Port]) -> None:
+    """Refuse a fluid of two dimensions beside bodies of three, and the reverse."""
+    planar = [
+        one
+        for one, port in ports.items()
+        if any(field.name == DIMENSIONS.name for field in (*port.static, *port.states))
+    ]
+    if len(planar) == 1:
+        (solid,) = set(ports) - set(planar)
+        raise SceneError(
+            f"link {name}: both sides must have two dimensions or both three; {planar[0]} has two, "
+            f"{solid} has three. Set dimensions = 2 in both, or 3 in both."
+        )
 
 
 def _contact(name: str, fluid: str, surface: Port, potential: bool) -> float | None:
@@ -90,59 +133,60 @@ class RigidFsi:
     """Samples ride on rigid bodies; their forces become a force and a torque on each."""
 
     def __init__(
-        self, name: str, fluid: str, body: str, mirrored: bool = False, contact: float | None = None
+        self,
+        name: str,
+        fluid: str,
+        body: str,
+        mirrored: bool = False,
+        contact: float | None = None,
+        loaded: bool = True,
     ) -> None:
         self.name, self.fluid, self.body = name, fluid, body
         self.mirrored, self.contact = mirrored, contact
-        self.map: RigidMap
-        self.mirror: RigidMap  # of the samples' mirror points, where the fluid takes them
-        # Arms (n, 3) m and centres (bodies, 3) m in the world, at the last two times known.
-        self.memory: tuple[tuple[Array, Array], ...] = ()
         self.partner = {fluid: SURFACE.name}
         self.works: dict[str, Works] = {fluid: [WORK]}
-        self.legs = [
-            Leg(body, fluid, self._move),
-            Leg(
-                fluid,
-                body,
-                self._load,
-                sums=(("surface_load.force", "load.force"),),
-                works_on=(
-                    ("load.force", "motion.velocity", "motion.position"),
-                    ("load.torque", "motion.angular_velocity", ""),
-                ),
-                moment=self._moment,
+        poses = tuple(f"motion.{one.name}" for one in MOTION.fields)
+        move = Transfer(body, fluid, reads=poses, fills=_sampled(mirrored))
+        load = Transfer(
+            fluid,
+            body,
+            reads=("surface_load.force",),
+            fills=("load.force", "load.torque"),
+            needs=poses,
+            sums=(("surface_load.force", "load.force"),),
+            works_on=(
+                ("load.force", "motion.velocity", "motion.position"),
+                ("load.torque", "motion.angular_velocity", "motion.orientation"),
             ),
-        ]
+        )
+        self.transfers = (move, load) if loaded else (move,)
 
-    def describe(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
+    def demands(self) -> Demands:
+        """Nothing: any steps, any scheme."""
+        return Demands()
+
+    def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Sample every body at the fluid's spacing."""
-        stated = described[self.fluid]
-        spacing, depth = float(stated["surface.spacing"][0]), float(stated["surface.depth"][0])
-        inset = float(stated.get("surface.inset", [0.5 * spacing])[0])
-        shapes, sizes = described[self.body]["motion.shape"], described[self.body]["motion.size"]
-        self._check(sizes, max(spacing, 2.0 * inset))
-        pairs = zip(shapes, sizes, strict=True)
-        parts = [fill(int(shape), size, spacing, depth, inset) for shape, size in pairs]
-        owner = np.repeat(np.arange(len(parts)), [len(arm) for arm, _, _ in parts])
-        self.map = RigidMap(np.concatenate([arm for arm, _, _ in parts]), owner, len(parts))
-        if self.mirrored:
-            images = [
-                mirrors(int(shape), size, arm, normal)
-                for shape, size, (arm, normal, _) in zip(shapes, sizes, parts, strict=True)
-            ]
-            self.mirror = RigidMap(np.concatenate(images), owner, len(parts))
-        return {
+        asked, bodies = asked_sampling(described[self.fluid]), described[self.body]
+        self._check(body_widths(bodies, asked.planar), asked.least)
+        found = sample_bodies(bodies, asked, self.mirrored)
+        samples = RigidMap(found.arm, found.body, len(bodies["motion.shape"]))
+        mirror = None
+        if found.image is not None:
+            mirror = RigidMap(found.image, found.body, samples.bodies)
+        static = {
             self.fluid: {
-                "surface.normal": np.concatenate([normal for _, normal, _ in parts]),
-                "surface.volume": np.concatenate([volume for _, _, volume in parts]),
-                "surface.body": owner.astype(np.float64),
-                **_marks(self.contact, len(owner)),
+                "surface.normal": found.normal,
+                "surface.volume": found.volume,
+                "surface.body": found.body.astype(np.float64),
+                **_marks(self.contact, len(found.body)),
             }
         }
+        count = len(self.transfers)
+        maps = (partial(self._move, samples, mirror), partial(self._load, samples))
+        return Binding(static, maps[:count], (None, self._moment)[:count])
 
-    def _check(self, sizes: Array, least: float) -> None:
-        widths = sizes.min(axis=1)
+    def _check(self, widths: Array, least: float) -> None:
         for body in np.flatnonzero(widths < least)[:1]:
             raise LinkError(
                 f"link {self.name}: a body must be at least {least:g} m across, a spacing of "
@@ -151,67 +195,80 @@ class RigidFsi:
                 f"of {self.fluid}, or leave the body out."
             )
 
-    def _move(self, given: Fields) -> dict[str, Array]:
-        centre, turn = given["motion.position"], given["motion.orientation"]
-        spin, velocity = given["motion.angular_velocity"], given["motion.velocity"]
-        arms = self.map.arms(turn)
-        self.memory = (*self.memory[-1:], (arms, centre))
-        body = self.map.body
-        moved = {
-            "surface.position": centre[body] + arms,
-            "surface.velocity": velocity[body] + np.cross(spin[body], arms),
-        }
-        if self.mirrored:
-            moved["surface.mirror"] = centre[body] + self.mirror.arms(turn)
+    def _move(self, samples: RigidMap, mirror: RigidMap | None, _: Ends, end: Ends) -> Mapped:
+        given = end[self.body]
+        pose = (given[f"motion.{one.name}"] for one in MOTION.fields)
+        position, velocity = samples.gather(*pose)
+        moved = {"surface.position": position, "surface.velocity": velocity}
+        if mirror is not None:
+            arms = mirror.arms(given["motion.orientation"])
+            moved["surface.mirror"] = given["motion.position"][samples.body] + arms
         return moved
 
-    def _load(self, given: Fields) -> dict[str, Array]:
-        if not self.memory:  # before the first window nothing has moved, and nothing was pushed
-            rest = np.zeros((self.map.bodies, 3))
-            return {"load.force": rest, "load.torque": rest}
-        # An impulse was gathered along the way between the last two poses: use their middle.
-        arms = 0.5 * (self.memory[0][0] + self.memory[-1][0])
-        force, torque = self.map.spread(given["surface_load.force"], arms)
+    def _load(self, samples: RigidMap, start: Ends, end: Ends) -> Mapped:
+        # An impulse was gathered along the way between the two poses: use their middle.
+        turns = [one[self.body]["motion.orientation"] for one in (start, end)]
+        arms = 0.5 * (samples.arms(turns[0]) + samples.arms(turns[1]))
+        force, torque = samples.spread(end[self.fluid]["surface_load.force"], arms)
         return {"load.force": force, "load.torque": torque}
 
-    def _moment(self, brought: Fields) -> Array:
-        if not self.memory:
-            return np.zeros(3)
-        centre = 0.5 * (self.memory[0][1] + self.memory[-1][1])
-        turn = np.cross(centre, brought["load.force"]) + brought["load.torque"]
+    def _moment(self, start: Ends, end: Ends, mapped: Fields) -> Array:
+        centre = 0.5 * (start[self.body]["motion.position"] + end[self.body]["motion.position"])
+        turn = np.cross(centre, mapped["load.force"]) + mapped["load.torque"]
         return np.asarray(turn.sum(axis=0))
 
 
 class FaceFsi:
-    """Samples ride on the faces of a mesh; their forces go to its nodes."""
+    """Samples lie on the faces of a mesh; their forces go to its nodes."""
 
     def __init__(
-        self, name: str, fluid: str, body: str, mirrored: bool = False, contact: float | None = None
+        self,
+        name: str,
+        fluid: str,
+        body: str,
+        mirrored: bool = False,
+        contact: float | None = None,
+        loaded: bool = True,
     ) -> None:
         self.name, self.fluid, self.body = name, fluid, body
         self.mirrored, self.contact = mirrored, contact
-        self.map: ShapeMap
-        self.memory = None
         self.partner = {fluid: SURFACE.name}
         self.works: dict[str, Works] = {fluid: [WORK]}
-        self.legs = [
-            Leg(body, fluid, self._move),
-            Leg(
-                fluid,
-                body,
-                self._load,
-                sums=(("surface_load.force", "node_load.force"),),
-                works_on=(("node_load.force", "faces.velocity", "faces.position"),),
-            ),
-        ]
+        faces = ("faces.position", "faces.velocity")
+        move = Transfer(body, fluid, reads=faces, fills=_sampled(mirrored))
+        load = Transfer(
+            fluid,
+            body,
+            reads=("surface_load.force",),
+            fills=("node_load.force",),
+            sums=(("surface_load.force", "node_load.force"),),
+            works_on=(("node_load.force", "faces.velocity", "faces.position"),),
+        )
+        self.transfers = (move, load) if loaded else (move,)
 
-    def describe(self, described: Mapping[str, Fields]) -> dict[str, dict[str, Array]]:
+    def demands(self) -> Demands:
+        """Nothing: any steps, any scheme."""
+        return Demands()
+
+    def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Sample every face at the fluid's spacing."""
         spacing = float(described[self.fluid]["surface.spacing"][0])
         mesh = described[self.body]
-        position = mesh["faces.start"]
-        self.map, area, normal = sample_faces(position, mesh["faces.corner"], spacing)
-        return {
+        shape, area, normal = sample_faces(mesh["faces.start"], mesh["faces.corner"], spacing)
+
+        def move(_: Ends, end: Ends) -> Mapped:
+            moved = {
+                "surface.position": shape.gather(end[self.body]["faces.position"]),
+                "surface.velocity": shape.gather(end[self.body]["faces.velocity"]),
+            }
+            if self.mirrored:  # samples lie on the faces, each its own image
+                moved["surface.mirror"] = moved["surface.position"]
+            return moved
+
+        def load(_: Ends, end: Ends) -> Mapped:
+            return {"node_load.force": shape.spread(end[self.fluid]["surface_load.force"])}
+
+        static = {
             self.fluid: {
                 "surface.normal": normal,
                 "surface.volume": area * spacing,
@@ -219,15 +276,10 @@ class FaceFsi:
                 **_marks(self.contact, len(area)),
             }
         }
+        return Binding(static, (move, load)[: len(self.transfers)])
 
-    def _move(self, given: Fields) -> dict[str, Array]:
-        moved = {
-            "surface.position": self.map.gather(given["faces.position"]),
-            "surface.velocity": self.map.gather(given["faces.velocity"]),
-        }
-        if self.mirrored:  # samples lie on the faces, each its own image
-            moved["surface.mirror"] = moved["surface.position"]
-        return moved
 
-    def _load(self, given: Fields) -> dict[str, Array]:
-        return {"node_load.force": self.map.spread(given["surface_load.force"])}
+def _sampled(mirrored: bool) -> tuple[str, ...]:
+    """Inputs of a fluid whose surface samples are moved."""
+    moved = ("surface.position", "surface.velocity")
+    return (*moved, "surface.mirror") if mirrored else moved

@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.component import Resources
 from quintet.interfaces.params import read
 
 GLASS = {"youngs_modulus": 4.8e10, "poissons_ratio": 0.2, "restitution": 1.0, "friction": 0.0}
@@ -34,6 +35,21 @@ def box(position, size=(0.15, 0.15, 0.15), **given):
     return plain | {"position": position} | given
 
 
+def disc(position, diameter=0.2, **given):
+    plain = {"shape": "disc", "diameter": diameter, "density": 1000.0, "material": "a"}
+    return plain | {"position": position} | given
+
+
+def polygon(position, corners, **given):
+    plain = {"shape": "polygon", "corners": corners, "density": 800.0, "material": "a"}
+    return plain | {"position": position} | given
+
+
+def rectangle(position, width=0.15, height=0.15, **given):
+    x, z = 0.5 * width, 0.5 * height
+    return polygon(position, [[-x, -z], [x, -z], [x, z], [-x, z]], **given)
+
+
 def params(bodies, materials=None, **given):
     scene = {"bodies": bodies, "materials": {"a": material()} if materials is None else materials}
     found, mistakes = read(DemBodiesParams, scene | given, "bodies")
@@ -46,8 +62,8 @@ def mistakes(bodies, **given):
     return read(DemBodiesParams, scene, "bodies")[1]
 
 
-def build(bodies, materials=None, **given):
-    return DemBodies(params(bodies, materials, **given))
+def build(bodies, materials=None, threads=1, **given):
+    return DemBodies(params(bodies, materials, **given), Resources(threads))
 
 
 def run(component, end, watch=None, dt=None):

@@ -5,11 +5,14 @@ import pytest
 import trimesh
 from dem_scenes import FLOOR, NOTHING, build, material, mistakes, run
 
+from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.shapes.agglomerate import agglomerate
 from quintet.components.dem_bodies.shapes.mesh_files import voxels
 from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
 from quintet.coupler.coupling.body_samples import fill
+from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import LinkError
+from quintet.interfaces.params import read
 
 EDGE = 0.15  # m
 
@@ -105,7 +108,7 @@ def test_spheres_touch_a_ball_on_every_side(files):
 
 
 def test_spheres_of_one_body_never_touch(files):
-    """They overlap by a fifth; a free body yet keeps its momentum, spin and energy."""
+    """They overlap by a fifth; a free body yet keeps its momentum, rotation and energy."""
     free = build(
         [body(files / "l.obj", radius=0.0125, angular_velocity=[3.0, 2.0, 1.0])], gravity=NOTHING
     )
@@ -122,7 +125,7 @@ def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
     bodies += [body(files / "cube.stl", scale=1e-3, position=[0.16, 0.0, 0.0755])]
     pile = build(bodies, stuff, planes=[FLOOR], contact_forces=True, impact_speed=0.5)
     run(pile, 0.3)
-    given = pile.give()
+    given = outputs_of(pile)
     assert given["motion.position"][1, 2] == pytest.approx(0.075, abs=2e-4)
     assert np.abs(given["motion.velocity"]).max() < 1e-4
     np.testing.assert_allclose(given["contact.force"][:2, 2], 9.81 * pile.mass, rtol=1e-3)
@@ -149,7 +152,7 @@ def test_what_is_wrong_with_a_file_is_told(files):
     np.save(files / "flat.npy", np.ones((3, 3)))
     np.save(files / "none.npy", np.zeros((3, 3, 3)))
     wrong = {
-        "bodies[0]: file none.stl must be in the working folder or beside": body("none.stl"),
+        "bodies: file none.stl must lie beside the scene; in its folder": body("none.stl"),
         "must be a closed surface": body(files / "open.stl"),
         "found 3 edges of 11 triangles without a partner": body(files / "open.stl"),
         "text.stl must be a surface of triangles (STL, OBJ, PLY)": body(files / "text.stl"),
@@ -163,11 +166,24 @@ def test_what_is_wrong_with_a_file_is_told(files):
         "Make dim 6000 or larger, or sphere_radius larger, or correct": body(files / "cube.stl"),
         "must have at most 2000 spheres; dim 40": body(files / "l.npy", 40, scale=0.05),
         "must have room for a sphere within": body(files / "pyramid.ply", 3, 0.3),
-        "is described by agglomerate alone; found agglomerate, diameter": body("x", diameter=1.0),
+        "is described by agglomerate alone; found agglomerate, diameter": body(
+            files / "ball.ply", diameter=1.0
+        ),
         "bodies.0.agglomerate.dim should be greater than or equal to 2": body("x", 1),
     }  # fmt: skip
     for sentence, given in wrong.items():
         assert sentence in " ".join(mistakes([given])), (sentence, mistakes([given]))
+
+
+def test_a_file_is_looked_for_in_the_scenes_folder_only(files, monkeypatch):
+    elsewhere = files / "elsewhere"
+    elsewhere.mkdir()
+    scene = {"bodies": [body("ball.ply")], "materials": {"a": material()}}
+    found, wrong = read(DemBodiesParams, scene, "bodies", files)
+    assert not wrong and found.bodies[0].agglomerate.file == str(files / "ball.ply")
+    monkeypatch.chdir(files)
+    monkeypatch.syspath_prepend(files)
+    assert "must lie beside the scene" in read(DemBodiesParams, scene, "bodies", elsewhere)[1][0]
 
 
 def test_bodies_that_start_in_one_another_are_refused(files):

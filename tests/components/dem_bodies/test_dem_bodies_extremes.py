@@ -1,6 +1,7 @@
 """Stiff, fast, crowded and lost bodies: stable, or ended with a reason."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from dem_scenes import FLOOR, NOTHING, about, box, build, energy, material, run,
 from quintet.components.dem_bodies.contact.materials import DURATION
 from quintet.components.dem_bodies.laws import DAMPING
 from quintet.components.dem_bodies.state import DEEPEST, DEEPEST_PAIR
+from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import StepError
 
 STIFF = [3.0e9, 6.5e10, 2.1e11]  # Pa: plastic, glass, steel
@@ -81,7 +83,7 @@ def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(turned):
     cube = build([body], stuff, gravity=NOTHING, planes=[FLOOR], impact_speed=20.0)
     energies = [energy(cube)]
     run(cube, 2e-3, lambda _: energies.append(energy(cube)))
-    assert cube.give()["motion.velocity"][0, 2] == pytest.approx(12.0, rel=5e-2)
+    assert outputs_of(cube)["motion.velocity"][0, 2] == pytest.approx(12.0, rel=5e-2)
     assert np.diff(energies).max() <= 0.0
 
 
@@ -134,8 +136,8 @@ def test_many_dampers_on_one_body_are_stable():
     stuff = {"a": material(youngs_modulus=1e7, restitution=0.05)}
     body = build([slab], stuff, planes=[FLOOR], impact_speed=0.5, contact_forces=True)
     run(body, 0.3)
-    assert body.give()["contact.force"][0, 2] == pytest.approx(9.81 * body.mass[0], rel=1e-6)
-    assert np.abs(body.give()["motion.velocity"]).max() < 1e-9
+    assert outputs_of(body)["contact.force"][0, 2] == pytest.approx(9.81 * body.mass[0], rel=1e-6)
+    assert np.abs(outputs_of(body)["motion.velocity"]).max() < 1e-9
 
 
 def test_damped_balls_in_a_heap_come_to_rest():
@@ -148,7 +150,7 @@ def test_damped_balls_in_a_heap_come_to_rest():
     stuff = {"a": material(youngs_modulus=2e6, restitution=0.05, friction=0.3)}
     heap = build([ball], stuff, planes=planes, impact_speed=0.5)
     run(heap, 0.4)
-    assert np.median(np.linalg.norm(heap.give()["motion.velocity"], axis=1)) < 1e-5
+    assert np.median(np.linalg.norm(outputs_of(heap)["motion.velocity"], axis=1)) < 1e-5
 
 
 def test_a_damped_stack_of_cubes_stands_still():
@@ -156,7 +158,47 @@ def test_a_damped_stack_of_cubes_stands_still():
     stuff = {"a": material(youngs_modulus=3e9, restitution=0.05, friction=0.4)}
     stack = build(bodies, stuff, planes=[FLOOR], impact_speed=0.1)
     run(stack, 0.3)
-    assert np.abs(stack.give()["motion.velocity"]).max() < 1e-6
+    assert np.abs(outputs_of(stack)["motion.velocity"]).max() < 1e-6
+
+
+def flight(size, **given):
+    """Steps and lists of a box that tumbles for 0.2 s above the floor, and seconds they take."""
+    turning = {"velocity": [0.3, 0.0, 0.0], "angular_velocity": [1.0, 2.0, 0.5]}
+    high = box([0.0, 0.0, 0.6 * np.linalg.norm(size) + 0.2], size, **turning, **given)
+    began = time.perf_counter()
+    scene = build([high], planes=[FLOOR])
+    lists, steps, renew = [], [], scene._list
+    scene._list = lambda: (lists.append(1), renew())
+    run(scene, 0.2, steps.append)
+    return len(steps), len(lists), time.perf_counter() - began
+
+
+@pytest.mark.parametrize("sharp", [1e-2, 1e-4, 1e-6])
+def test_a_sharp_box_flies_in_no_more_steps_than_a_round_one(sharp):
+    """Lists follow the size of the box, not the radius of its edges."""
+    steps, lists, _ = flight((0.1, 0.1, 0.1))
+    found = flight((0.1, 0.1, 0.1), edge_radius=0.1 * sharp)
+    assert found[0] <= 1.1 * steps and found[1] <= lists
+
+
+@pytest.mark.parametrize("thin", [100, 500, 1000])
+def test_a_thin_plate_flies_in_no_more_steps_than_a_thick_one(thin):
+    """Of the same mass. Its listing scans no cells where nothing is."""
+    steps, lists, _ = flight((5.0, 5.0, 0.5))
+    found = flight((5.0, 5.0, 5.0 / thin), density=80.0 * thin)
+    assert found[0] <= 1.2 * steps and found[1] <= 1.2 * lists
+    assert found[2] < 5.0
+
+
+def test_a_plate_of_a_thousandth_of_its_length_comes_to_lie_under_balls():
+    plate = box([0.0, 0.0, 0.0006], (1.0, 1.0, 0.001), density=2000.0)
+    balls = [sphere([x, y, 0.0112], density=100.0) for x in (-0.4, 0.4) for y in (-0.4, 0.4)]
+    stuff = {"a": material(youngs_modulus=2e11, restitution=0.2)}
+    given = {"planes": [FLOOR], "contact_forces": True, "impact_speed": 0.05}
+    scene = build([plate, *balls], stuff, **given)
+    run(scene, 0.1)
+    weight = 9.81 * scene.mass.sum()
+    assert outputs_of(scene)["contact.force"][-1, 2] == pytest.approx(-weight, rel=1e-3)
 
 
 def test_a_body_that_leaves_disturbs_nobody():
@@ -166,13 +208,15 @@ def test_a_body_that_leaves_disturbs_nobody():
     for others in ([], [sphere([9.0, 0.0, 0.5], 0.1, velocity=[1e5, 0.0, 1e5])]):
         scene = build([stays, *others], planes=[FLOOR])
         run(scene, 0.1, dt=1e-4)
-        found.append({key: array[0].copy() for key, array in scene.give().items()})
+        found.append({key: array[0].copy() for key, array in outputs_of(scene).items()})
     for key in found[0]:
         np.testing.assert_array_equal(found[0][key], found[1][key], err_msg=key)
-    assert scene.give()["motion.position"][1, 0] == pytest.approx(1e4 + 9.0)
+    assert outputs_of(scene)["motion.position"][1, 0] == pytest.approx(1e4 + 9.0)
 
 
 def test_a_body_that_falls_out_of_the_scene_falls_on():
     ball = build([sphere([0.0, 0.0, 0.0], 0.1)])
     run(ball, 2.0)
-    assert ball.give()["motion.position"][0, 2] == pytest.approx(-0.5 * 9.81 * 2.0**2, rel=1e-9)
+    assert outputs_of(ball)["motion.position"][0, 2] == pytest.approx(
+        -0.5 * 9.81 * 2.0**2, rel=1e-9
+    )

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from dem_scenes import FLOOR, about, box, build, energy, material, run, sphere, three_cubes
 
+from quintet.interfaces.component import outputs_of
+
 G = 9.81
 
 
@@ -24,18 +26,18 @@ def test_block_rests_on_a_slope_without_creep():
     μ = 0.45
     cube = resting(0.9 * math.atan(μ), μ)
     run(cube, 0.5)
-    start = cube.give()["motion.position"][0]
+    start = outputs_of(cube)["motion.position"][0]
     run(cube, 2.0)
-    assert np.abs(cube.give()["motion.position"][0] - start).max() < 1e-6
+    assert np.abs(outputs_of(cube)["motion.position"][0] - start).max() < 1e-6
 
 
 def test_block_slides_on_a_steep_slope():
     μ, angle = 0.3, math.radians(30.0)
     cube = resting(angle, μ)
     run(cube, 0.1)
-    start = cube.give()["motion.velocity"][0, 0]
+    start = outputs_of(cube)["motion.velocity"][0, 0]
     run(cube, 0.4)
-    found = (cube.give()["motion.velocity"][0, 0] - start) / 0.4
+    found = (outputs_of(cube)["motion.velocity"][0, 0] - start) / 0.4
     assert found == pytest.approx(G * (math.sin(angle) - μ * math.cos(angle)), rel=5e-3)
 
 
@@ -47,11 +49,13 @@ def test_sliding_sphere_comes_to_roll():
     )  # fmt: skip
     rolling = 2.0 * v0 / (7.0 * μ * G)
     run(ball, 0.5 * rolling)
-    assert ball.give()["motion.velocity"][0, 0] == pytest.approx(v0 - μ * G * rolling / 2, rel=2e-3)
+    assert outputs_of(ball)["motion.velocity"][0, 0] == pytest.approx(
+        v0 - μ * G * rolling / 2, rel=2e-3
+    )
     run(ball, 0.5 * rolling)
-    assert ball.give()["motion.velocity"][0, 0] == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
+    assert outputs_of(ball)["motion.velocity"][0, 0] == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
     run(ball, 0.1)
-    given = ball.give()
+    given = outputs_of(ball)
     assert given["motion.velocity"][0, 0] == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
     assert given["motion.angular_velocity"][0, 1] * 0.05 == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
 
@@ -64,16 +68,16 @@ def test_sphere_rolls_down_a_slope():
         gravity=slope(angle), planes=[FLOOR], impact_speed=0.2,
     )  # fmt: skip
     run(ball, 0.3)
-    found = ball.give()["motion.velocity"][0, 0] / 0.3
+    found = outputs_of(ball)["motion.velocity"][0, 0] / 0.3
     assert found == pytest.approx(5.0 / 7.0 * G * math.sin(angle), rel=5e-3)
 
 
 def test_stacked_cubes_stand_still():
     cubes = three_cubes()
     run(cubes, 0.1)
-    start = cubes.give()
+    start = outputs_of(cubes)
     run(cubes, 0.9)
-    end = cubes.give()
+    end = outputs_of(cubes)
     assert np.abs(end["motion.position"] - start["motion.position"]).max() < 1e-7
     assert np.abs(end["motion.orientation"] - start["motion.orientation"]).max() < 1e-6
     assert np.abs(end["motion.velocity"]).max() < 1e-6
@@ -86,7 +90,7 @@ def test_cubes_stacked_crosswise_stand_still():
     stuff = {"a": material(youngs_modulus=1e8, friction=0.4)}
     cubes = build(bodies, stuff, planes=[FLOOR], impact_speed=0.5)
     run(cubes, 0.5)
-    given = cubes.give()
+    given = outputs_of(cubes)
     np.testing.assert_allclose(given["motion.position"][:, 2], [0.075, 0.225], atol=5e-4)
     assert np.abs(given["motion.velocity"]).max() < 1e-5
 
@@ -128,4 +132,4 @@ def test_friction_follows_the_pair():
     )
     run(cube, 0.2)
     expected = 0.2 * G * (math.sin(0.3) - 0.1 * math.cos(0.3))
-    assert cube.give()["motion.velocity"][0, 0] == pytest.approx(expected, rel=1e-2)
+    assert outputs_of(cube)["motion.velocity"][0, 0] == pytest.approx(expected, rel=1e-2)

@@ -21,6 +21,7 @@ from scipy.integrate import solve_ivp
 
 from quintet.components.dem_bodies.contact.materials import damping_ratio, restitution
 from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
+from quintet.interfaces.component import outputs_of
 
 LIMESTONE = {"youngs_modulus": 2.0e10, "poissons_ratio": 0.25, "restitution": 1.0, "friction": 0.0}
 
@@ -47,14 +48,14 @@ def test_elastic_impact_of_two_spheres_is_hertz(stuff, density, force, depth, du
     spheres = pair(stuff, density)
 
     def watch(_):
-        x = spheres.give()["motion.position"][:, 0]
+        x = outputs_of(spheres)["motion.position"][:, 0]
         pushes.append(abs(spheres.state.contact_load[0, 0]))
         depths.append(0.02 - (x[1] - x[0]))
 
     run(spheres, 1.2 * duration, watch, duration / 400)
     assert max(pushes) == pytest.approx(force, rel=2e-3)
     assert max(depths) == pytest.approx(depth, rel=2e-3)
-    speed = spheres.give()["motion.velocity"][1, 0]
+    speed = outputs_of(spheres)["motion.velocity"][1, 0]
     assert speed == pytest.approx(10.0, rel=1e-4)
 
 
@@ -107,7 +108,7 @@ def test_restitution_is_realised(e, other):
     spheres = build(bodies, {"a": stuff}, gravity=NOTHING, impact_speed=speed, planes=planes)
     run(spheres, 5e-5)
     assert spheres.state.report[DEEPEST_PAIR] == -1  # apart again
-    assert spheres.give()["motion.velocity"][0, 2] / 3.9 == pytest.approx(e, rel=5e-3)
+    assert outputs_of(spheres)["motion.velocity"][0, 2] / 3.9 == pytest.approx(e, rel=5e-3)
 
 
 @pytest.mark.parametrize("first", range(10))
@@ -118,7 +119,7 @@ def test_restitution_does_not_depend_on_when_a_step_meets_the_contact(first):
     dt = ball.stable_dt()
     ball.state.position[0, 2] += 0.1 * first * dt * 3.9
     run(ball, 5e-5, dt=dt)
-    assert ball.give()["motion.velocity"][0, 2] == pytest.approx(0.2 * 3.9, rel=3e-3)
+    assert outputs_of(ball)["motion.velocity"][0, 2] == pytest.approx(0.2 * 3.9, rel=3e-3)
 
 
 def test_restitution_holds_for_a_corner_that_strikes_off_centre():
@@ -133,7 +134,7 @@ def test_restitution_holds_for_a_corner_that_strikes_off_centre():
         cube.step(cube.stable_dt())
     arm = cube.state.centre[lowest] - cube.state.position[0]
     arm[2] -= cube.model.sphere_radius[lowest]
-    motion = cube.give()
+    motion = outputs_of(cube)
     spun = np.cross(motion["motion.angular_velocity"][0], arm)
     assert motion["motion.velocity"][0, 2] < 0.3  # the corner is thrown back, the cube turns
     assert motion["motion.velocity"][0, 2] + spun[2] == pytest.approx(0.6, rel=2e-2)
@@ -145,8 +146,8 @@ def test_box_that_falls_flat_bounces_about_as_asked():
     stuff = {"a": STEEL | {"friction": 0.0, "restitution": 0.6}}
     flat = build([box([0.0, 0.0, 0.075 + 1e-6], velocity=[0.0, 0.0, -1.0])], stuff, **given)
     run(flat, 2e-3)
-    assert flat.give()["motion.velocity"][0, 2] == pytest.approx(0.6, rel=0.05)
-    assert np.abs(flat.give()["motion.angular_velocity"]).max() < 1e-9
+    assert outputs_of(flat)["motion.velocity"][0, 2] == pytest.approx(0.6, rel=0.05)
+    assert np.abs(outputs_of(flat)["motion.angular_velocity"]).max() < 1e-9
 
 
 @pytest.mark.parametrize("angle", [5.0, 15.0, 25.0])
@@ -159,11 +160,11 @@ def test_gross_sliding_in_an_oblique_impact(angle):
     body = sphere([0.0, 0.0, radius + 1e-8], 5e-3, density=4000.0, velocity=[vt, 0.0, -vn])
     ball = build([body], {"a": stuff}, gravity=NOTHING, impact_speed=3.9, planes=[FLOOR])
     run(ball, 1.2e-4, dt=2e-7)
-    given = ball.give()
+    given = outputs_of(ball)
     assert given["motion.velocity"][0, 2] == pytest.approx(e * vn, rel=5e-3)
     assert given["motion.velocity"][0, 0] == pytest.approx(vt - μ * (1 + e) * vn, rel=5e-3)
-    spin = 5.0 * μ * (1.0 + e) * vn / (2.0 * radius)
-    assert given["motion.angular_velocity"][0, 1] == pytest.approx(spin, rel=5e-3)
+    ω = 5.0 * μ * (1.0 + e) * vn / (2.0 * radius)
+    assert given["motion.angular_velocity"][0, 1] == pytest.approx(ω, rel=5e-3)
 
 
 def test_collision_conserves_momentum_and_angular_momentum():

@@ -7,12 +7,14 @@ from dem_scenes import FLOOR, box, build, energy, material, mistakes, run, spher
 from quintet.components.dem_bodies import MANIFEST
 from quintet.components.dem_bodies.bench import lattice
 from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.diagnostics import deepest_pair
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.state import DEEPEST, DEEPEST_PAIR
+from quintet.components.dem_bodies.state import DEEPEST
+from quintet.interfaces.component import outputs_of
 from quintet.interfaces.params import read
 
 
-def crowd(seed=0, count=9000, others=(), **given):
+def crowd(seed=0, count=9000, others=(), threads=1, **given):
     """Spheres on a loose lattice in random order and motion, above a corner."""
     random = np.random.default_rng(seed)
     size = int(np.ceil(count ** (1 / 3)))
@@ -25,7 +27,14 @@ def crowd(seed=0, count=9000, others=(), **given):
     normals = np.eye(3).tolist()
     stuff = {"a": material(youngs_modulus=5e6, friction=0.5, **given)}
     planes = [FLOOR | {"normal": n} for n in normals]
-    return build([*bodies, *others], stuff, planes=planes, impact_speed=2.0, contact_forces=True)
+    return build(
+        [*bodies, *others],
+        stuff,
+        planes=planes,
+        impact_speed=2.0,
+        contact_forces=True,
+        threads=threads,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -41,21 +50,19 @@ def assert_same_bits(one, other):
         np.testing.assert_array_equal(array, other.save()[name], err_msg=name)
 
 
-def test_threads_change_no_bit(mixed, monkeypatch):
-    monkeypatch.setenv("NUMBA_NUM_THREADS", "2")
-    shared = crowd()
+def test_threads_change_no_bit(mixed):
+    shared = crowd(threads=2)
     assert shared.team.size == 2 and mixed.team.size == 1
     run(shared, 4e-3, dt=2e-5)
     assert_same_bits(mixed, shared)
 
 
-def test_threads_change_no_bit_of_what_resists_rolling_beside_a_box(monkeypatch):
+def test_threads_change_no_bit_of_what_resists_rolling_beside_a_box():
     """Blocks of rows then wait for the box before they are kicked."""
     above = box([0.1, 0.1, 0.263], (0.2, 0.2, 0.1), velocity=[0.0, 0.0, -2.0])
     scenes = []
-    for threads in ("1", "2"):
-        monkeypatch.setenv("NUMBA_NUM_THREADS", threads)
-        scenes.append(crowd(others=(above,), rolling_friction=0.2))
+    for threads in (1, 2):
+        scenes.append(crowd(threads=threads, others=(above,), rolling_friction=0.2))
         run(scenes[-1], 1.2e-3, dt=2e-5)
     assert [scene.team.size for scene in scenes] == [1, 2]
     assert len(scenes[0].others.key) > 10 and np.abs(scenes[0].balls.rolling_moment).max() > 0.0
@@ -74,7 +81,7 @@ def test_energy_and_contacts_of_many_are_as_summed_one_by_one(mixed):
     np.testing.assert_allclose(
         forces[mixed.state.body], mixed.state.contact_load[:, :3], atol=1e-12 * scale
     )
-    x = mixed.give()["motion.position"]
+    x = outputs_of(mixed)["motion.position"]
     distance = np.linalg.norm(x[i[j < m]] - x[j[j < m]], axis=1)
     np.testing.assert_allclose(found["depth"][j < m], 0.01 - distance, atol=1e-12)
 
@@ -83,7 +90,7 @@ def test_deepest_of_many_is_the_one_that_is_told(mixed):
     found, report = mixed.contact_points(), mixed.state.report
     k = int(np.argmax(found["depth"]))
     assert report[DEEPEST] == pytest.approx(found["depth"][k] / 0.005, rel=1e-6)
-    i, j = mixed._pair(int(report[DEEPEST_PAIR]))
+    i, j = deepest_pair(mixed.state, mixed.balls, mixed.others)
     assert [i, min(j, mixed.count)] == found["bodies"][k].tolist()
 
 
@@ -91,7 +98,7 @@ def test_all_that_touch_are_listed(mixed):
     """Against a search of its own, by a tree."""
     from scipy.spatial import KDTree
 
-    x = mixed.give()["motion.position"]
+    x = outputs_of(mixed)["motion.position"]
     expected = {tuple(sorted(pair)) for pair in KDTree(x).query_pairs(0.01 * (1.0 - 1e-9))}
     found = mixed.contact_points()["bodies"]
     assert {tuple(sorted(pair)) for pair in found[found[:, 1] < mixed.count].tolist()} == expected
@@ -121,7 +128,7 @@ def test_listing_anew_changes_no_contact():
                 scene.state.listed_centre[:] = 1e9
             scene.step(2e-5)
         assert energy(scene) + scene.accumulated.dissipated == pytest.approx(start, rel=1e-6)
-        ends.append(scene.give()["motion.position"])
+        ends.append(outputs_of(scene)["motion.position"])
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
 
 
@@ -148,10 +155,10 @@ def test_rows_that_change_places_keep_their_contacts_with_boxes():
         moving.step(dt)
         orders.add(tuple(moving.state.body.tolist()))
     assert len(orders) > 1
-    passed = moving.give()["motion.position"] - [0.0, 2.0 * steps * dt, 0.0]
-    np.testing.assert_allclose(passed, still.give()["motion.position"], atol=1e-7)
-    assert still.give()["motion.velocity"][0, 0] < 0.19  # friction slowed the box
-    turned = [scene.give()["motion.angular_velocity"] for scene in (still, moving)]
+    passed = outputs_of(moving)["motion.position"] - [0.0, 2.0 * steps * dt, 0.0]
+    np.testing.assert_allclose(passed, outputs_of(still)["motion.position"], atol=1e-7)
+    assert outputs_of(still)["motion.velocity"][0, 0] < 0.19  # friction slowed the box
+    turned = [outputs_of(scene)["motion.angular_velocity"] for scene in (still, moving)]
     np.testing.assert_allclose(*turned, atol=1e-5)
 
 
@@ -177,7 +184,7 @@ def test_spheres_and_a_box_stand_on_each_other():
     run(pile, 1.0)
     weight = 9.81 * pile.mass.sum()
     assert pile.state.contact_load[-1, 2] == pytest.approx(-weight, rel=1e-3)
-    assert pile.give()["motion.position"][0, 2] == pytest.approx(0.26, abs=1e-3)
+    assert outputs_of(pile)["motion.position"][0, 2] == pytest.approx(0.26, abs=1e-3)
 
 
 def test_restitution_follows_the_pair():
@@ -191,7 +198,7 @@ def test_restitution_follows_the_pair():
         body = sphere([0.0, 0.0, 0.0101], velocity=[0.0, 0.0, -1.0])
         ball = build([body], stuff, pairs=pairs, **given)
         run(ball, 1e-3)
-        assert ball.give()["motion.velocity"][0, 2] == pytest.approx(expected, rel=5e-3)
+        assert outputs_of(ball)["motion.velocity"][0, 2] == pytest.approx(expected, rel=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -221,6 +228,6 @@ def test_benchmark_touches_its_six_neighbours():
     scene = DemBodies(params)
     for _ in range(20):
         scene.step(scene.stable_dt())
-    assert np.count_nonzero(scene.balls.history[:, 3]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
+    assert np.count_nonzero(scene.balls.history[3]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
     with pytest.raises(ValueError, match=r"contact_forces must be true.*found false\. Set it"):
         scene.contact_points()

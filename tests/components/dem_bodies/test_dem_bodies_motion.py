@@ -9,6 +9,7 @@ from dem_scenes import FLOOR, NOTHING, box, build, energy, material, run, sphere
 from scipy.integrate import solve_ivp
 
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
+from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import StepError
 
 SIZE = (0.1, 0.2, 0.3)
@@ -30,17 +31,19 @@ def test_free_box_turns_by_eulers_equations():
         body = free_box()
         run(body, 2.0, dt=dt)
         axes = body.state.axes[0].reshape(3, 3)
-        errors.append(np.abs(axes.T @ body.give()["motion.angular_velocity"][0] - expected).max())
+        errors.append(
+            np.abs(axes.T @ outputs_of(body)["motion.angular_velocity"][0] - expected).max()
+        )
     assert errors[1] < 2e-3
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
 
 
 def test_free_box_keeps_angular_momentum_and_energy():
     body = free_box()
-    start, spin = body.totals(), body.state.angular_momentum.copy()
+    start, momentum = body.totals(), body.state.angular_momentum.copy()
     drifts = []
     run(body, 5.0, lambda _: drifts.append(body.totals().kinetic / start.kinetic - 1.0), dt=1e-3)
-    assert (body.state.angular_momentum == spin).all()
+    assert (body.state.angular_momentum == momentum).all()
     assert np.abs(drifts).max() < 2e-5
     assert abs(np.mean(drifts[-1000:])) < 1e-5
     np.testing.assert_allclose(body.totals().momentum, start.momentum, rtol=1e-14)
@@ -53,8 +56,8 @@ def test_load_acts_as_an_impulse():
     body.take({"load.force": force, "load.torque": torque})
     run(body, 0.5, dt=1e-3)
     np.testing.assert_allclose(body.totals().momentum, 0.5 * force[0], rtol=1e-12)
-    spin = body.state.angular_momentum[body.state.row[0]]
-    np.testing.assert_allclose(spin, 0.5 * torque[0], rtol=1e-12, atol=1e-15)
+    momentum = body.state.angular_momentum[body.state.row[0]]
+    np.testing.assert_allclose(momentum, 0.5 * torque[0], rtol=1e-12, atol=1e-15)
     assert body.accumulated.given == pytest.approx(body.totals().kinetic, rel=1e-12)
     body.take({})
     before = body.totals().momentum
@@ -80,16 +83,18 @@ def test_contact_forces_are_what_changes_momentum():
     bodies = [box([0.0, 0.0, 0.0751]), box([0.03, 0.0, 0.2252], angular_velocity=[0.0, 2.0, 0.0])]
     scene = build(bodies, planes=[FLOOR], contact_forces=True)
     force, torque, time = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
-    start, spin = scene.give(), scene.state.angular_momentum.copy()
+    start, momentum = outputs_of(scene), scene.state.angular_momentum.copy()
     while time < 0.2:
         dt = scene.stable_dt()
         scene.step(dt)
-        given, time = scene.give(), time + dt
+        given, time = outputs_of(scene), time + dt
         force, torque = force + dt * given["contact.force"], torque + dt * given["contact.torque"]
     gained = scene.mass[:, None] * (given["motion.velocity"] - start["motion.velocity"])
     gained[:, 2] += 9.81 * time * scene.mass
     np.testing.assert_allclose(force[:2], gained, atol=1e-12 * np.abs(gained).max())
-    np.testing.assert_allclose(torque[:2], (scene.state.angular_momentum - spin)[:2], atol=1e-12)
+    np.testing.assert_allclose(
+        torque[:2], (scene.state.angular_momentum - momentum)[:2], atol=1e-12
+    )
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-12 * np.abs(force).max())
     assert force[0, 2] > 0.0 > force[2, 2]
 
@@ -123,7 +128,7 @@ def test_two_half_steps_are_one_to_second_order():
             run(ball, 2e-3, dt=5e-5)
             for _ in range(pieces):
                 ball.step(dt / pieces)
-            given = ball.give()
+            given = outputs_of(ball)
             found.append(np.append(given["motion.velocity"][0], given["motion.position"][0]))
         differences.append(np.abs(found[0] - found[1]).max())
     assert differences[0] / differences[1] > 6.0
@@ -153,7 +158,7 @@ def test_clump_of_one_sphere_is_that_sphere_and_moves_alike():
     for body in (clump, sphere([0.0, 0.0, 0.06], 0.1)):
         scene = build([body | {"velocity": [1.0, 0.0, 0.0]}], planes=[FLOOR])
         run(scene, 0.1, dt=1e-5)
-        found.append((scene.mass[0], scene.give()["motion.velocity"][0]))
+        found.append((scene.mass[0], outputs_of(scene)["motion.velocity"][0]))
     assert found[0][0] == pytest.approx(found[1][0], rel=1e-2)
     np.testing.assert_allclose(found[0][1], found[1][1], rtol=2e-2, atol=1e-3)
 
@@ -205,13 +210,13 @@ def test_rewinding_gives_the_same_bits():
 
 def test_outputs_are_copies_and_views_have_faces():
     scene = three_cubes()
-    scene.give()["motion.position"][:] = 0.0
-    assert scene.give()["motion.position"][0, 0] == 5.275
+    outputs_of(scene)["motion.position"][:] = 0.0
+    assert outputs_of(scene)["motion.position"][0, 0] == 5.275
     view = scene.view()
     assert view["points"].shape == (24, 3) and view["cells"].shape == (18, 4)
     corners = view["points"][view["cells"]]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
-    middle = scene.give()["motion.position"].repeat(6, axis=0)
+    middle = outputs_of(scene)["motion.position"].repeat(6, axis=0)
     assert ((corners.mean(axis=1) - middle) * normals).sum(axis=1).min() > 0.0
     np.testing.assert_array_equal(scene.describe()["motion.shape"], [1.0, 1.0, 1.0])
 

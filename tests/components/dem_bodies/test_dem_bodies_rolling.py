@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from dem_scenes import FLOOR, build, energy, material, run, sphere
 
+from quintet.interfaces.component import outputs_of
+
 G, RADIUS = 9.81, 0.05
 
 
@@ -23,31 +25,31 @@ def test_rolling_sphere_stops_after_the_exact_distance_and_stays():
     start = energy(ball)
     time = 1.4 * speed / (μ_r * G)  # it decelerates by 5/7 μ_r g
     run(ball, 1.1 * time)
-    distance = ball.give()["motion.position"][0, 0]
+    distance = outputs_of(ball)["motion.position"][0, 0]
     assert distance == pytest.approx(0.7 * speed**2 / (μ_r * G), rel=5e-3)
     assert energy(ball) + ball.accumulated.dissipated == pytest.approx(start, rel=1e-6)
     run(ball, 0.5)  # its spring swings to rest
-    end = ball.give()["motion.position"][0, 0]
+    end = outputs_of(ball)["motion.position"][0, 0]
     run(ball, 0.2)
-    assert ball.give()["motion.position"][0, 0] == pytest.approx(end, abs=1e-7)
+    assert outputs_of(ball)["motion.position"][0, 0] == pytest.approx(end, abs=1e-7)
     assert end == pytest.approx(distance, abs=1e-4)
 
 
 def test_sphere_rests_on_a_slope_below_the_rolling_angle():
     ball = rolling(0.1, angle=math.atan(0.09))
     run(ball, 1.2)  # the sudden weight makes the spring yield once, then it swings to rest
-    start = ball.give()["motion.position"][0]
+    start = outputs_of(ball)["motion.position"][0]
     run(ball, 0.5)
-    assert np.abs(ball.give()["motion.position"][0] - start).max() < 1e-6
+    assert np.abs(outputs_of(ball)["motion.position"][0] - start).max() < 1e-6
 
 
 def test_sphere_rolls_down_a_slope_above_the_rolling_angle():
     angle, μ_r = math.atan(0.2), 0.1
     ball = rolling(μ_r, angle=angle)
     run(ball, 0.2)
-    before = ball.give()["motion.velocity"][0, 0]
+    before = outputs_of(ball)["motion.velocity"][0, 0]
     run(ball, 0.3)
-    found = (ball.give()["motion.velocity"][0, 0] - before) / 0.3
+    found = (outputs_of(ball)["motion.velocity"][0, 0] - before) / 0.3
     exact = 5.0 / 7.0 * G * (math.sin(angle) - μ_r * math.cos(angle))
     assert found == pytest.approx(exact, rel=5e-3)
 

@@ -9,8 +9,9 @@ import pytest
 from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Fields, outputs_of
 
+JOINED = frozenset({"surface", "surface_load"})
 SPACING = 0.02
 NOTHING = (0.0, 0.0, 0.0)
 
@@ -60,7 +61,7 @@ def plate() -> Callable[..., Fields]:
         normal = np.tile([0.0, 0.0, 1.0], (len(position), 1))
         volume = np.full(len(position), share * SPACING**3)
         static = {"surface.normal": normal, "surface.volume": volume}
-        fluid.bind(static | {"surface.body": np.zeros(len(position))})
+        fluid.bind(static | {"surface.body": np.zeros(len(position))}, JOINED)
         return fields
 
     return join
@@ -75,7 +76,7 @@ def struck() -> Callable[..., tuple[Any, Any]]:
         fluid.step(1e-4)
         before = fluid.totals().momentum
         fluid.step(0.7e-4)
-        impulse = 0.7e-4 * fluid.give()["surface_load.force"]
+        impulse = 0.7e-4 * outputs_of(fluid)["surface_load.force"]
         return impulse, fluid.totals().momentum - before
 
     return strike

@@ -24,7 +24,7 @@ from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.laws import PairLaw
 from quintet.components.sph_fluid.pairs.constants import NO_REPULSION, pair_law
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Fields, outputs_of
 from quintet.interfaces.errors import PortError
 from quintet.interfaces.params import read
 from quintet.interfaces.ports import CONTACT
@@ -32,6 +32,7 @@ from quintet.interfaces.ports import CONTACT
 Make = Callable[..., SphFluid]
 Join = Callable[..., Fields]
 Strike = Callable[..., tuple[Any, Any]]
+JOINED = frozenset({"surface", "surface_load"})
 SPACING = 0.02  # m, of the fixtures too
 EDGE = 8 * SPACING
 
@@ -82,7 +83,7 @@ def test_force_on_a_plate_is_that_of_the_lattices(
     )  # above samples, from z = 0
     fluid.take(plate(fluid, height=-1.3 * SPACING, speed=0.0))
     fluid.step(1e-9)
-    force = fluid.give()["surface_load.force"].reshape(7, 7, 3)[3, 3]
+    force = outputs_of(fluid)["surface_load.force"].reshape(7, 7, 3)[3, 3]
     # One layer of samples: less than a thick wall by what the layers below it would push.
     expected = 3e3 * (lattice_pressure(1.3, fluid.params) - lattice_pressure(2.3, fluid.params))
     assert force[2] / SPACING**2 == pytest.approx(-expected, rel=1e-6)
@@ -114,7 +115,9 @@ def test_energy_is_the_work_of_the_plate(drop: Make, plate: Join, exponent: int)
         fluid.take(fields)
         dt = fluid.stable_dt()
         fluid.step(dt)
-        work -= dt * float((fluid.give()["surface_load.force"] * fields["surface.velocity"]).sum())
+        work -= dt * float(
+            (outputs_of(fluid)["surface_load.force"] * fields["surface.velocity"]).sum()
+        )
         fields["surface.position"] += dt * fields["surface.velocity"]
         now = fluid.totals()
         energies.append(now.kinetic + now.internal - work)
@@ -230,4 +233,4 @@ def test_the_contact_of_some_samples_alone_is_refused() -> None:
     static = {"volume": np.full(2, SPACING**3), "body": np.zeros(2), "contact": np.ones(1)}
     sentence = "contact must be said of all 2 samples or of none; found 1. Let every link"
     with pytest.raises(PortError, match=sentence):
-        one.bind({f"surface.{key}": array for key, array in static.items()})
+        one.bind({f"surface.{key}": array for key, array in static.items()}, JOINED)

@@ -9,6 +9,7 @@ from quintet.components.sph_fluid.boundary.lubrication import write_fluid_share
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.coupler.coupling.body_samples import BOX, fill, mirrors
 
+JOINED = frozenset({"surface", "surface_load"})
 SPACING = 0.01  # m
 SIZE = np.array([0.03, 0.06, 0.06])  # m, of each of two blocks side by side
 LONG, WIDE, HIGH = 0.14, 0.1, 0.11  # m, of the water
@@ -45,7 +46,7 @@ def pair(width: float, **given: object) -> SphFluid:
     image, count = mirrors(BOX, SIZE, arm, normal), len(arm)
     static = {"normal": np.tile(normal, (2, 1)), "volume": np.tile(volume, 2)}
     static["body"] = np.repeat([0.0, 1.0], count)
-    fluid.bind({f"surface.{key}": value for key, value in static.items()})
+    fluid.bind({f"surface.{key}": value for key, value in static.items()}, JOINED)
     centres = np.array([[0.045, 0.05, 0.05], [0.075 + width, 0.05, 0.05]])
     place, mirror = (np.concatenate(centres[:, None] + one) for one in (arm, image))
     moves = {"position": place, "velocity": np.zeros_like(place), "mirror": mirror}

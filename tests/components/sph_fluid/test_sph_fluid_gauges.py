@@ -10,6 +10,7 @@ from fluid_params import fluid_params, nested
 
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import outputs_of
 from quintet.interfaces.params import read
 
 SPACING = 0.02
@@ -36,13 +37,13 @@ def test_pressure_of_still_water_is_read_exactly(point):
     place, motion = fluid.state.position_density, fluid.state.velocity_pressure
     place[rows, :3] += SPACING * shake[: fluid.state.fluid]
     motion[rows, 3] = (5000.0 - 9810.0 * place[rows, 2]) / place[rows, 3] ** 2
-    found = fluid.give()["pressure_gauge.pressure"]
+    found = outputs_of(fluid)["pressure_gauge.pressure"]
     assert found == pytest.approx([5000.0 - 9810.0 * point[2]], rel=1e-11)
 
 
 def test_hydrostatic_pressure_is_read_on_the_floor_at_the_start():
     fluid = walled(gauges__pressure_gauges=((0.1, 0.1, 0.0), (0.0, 0.0, 0.0), (0.1, 0.1, 0.08)))
-    found = fluid.give()["pressure_gauge.pressure"]
+    found = outputs_of(fluid)["pressure_gauge.pressure"]
     assert found == pytest.approx([9810.0 * 0.16, 9810.0 * 0.16, 9810.0 * 0.08], rel=1e-9)
 
 
@@ -55,7 +56,7 @@ def test_a_gauge_on_a_face_that_is_half_wet_reads_its_share(top, share):
     )
     rows = slice(fluid.state.fluid)
     fluid.state.velocity_pressure[rows, 3] = 5000.0 / fluid.state.position_density[rows, 3] ** 2
-    found = fluid.give()["pressure_gauge.pressure"]
+    found = outputs_of(fluid)["pressure_gauge.pressure"]
     assert found == pytest.approx([5000.0 * share], rel=0.01)
 
 
@@ -67,7 +68,7 @@ def test_a_dry_gauge_reads_zero_and_one_that_a_drop_strikes_its_share():
     share = (
         SPACING**3 / (math.pi * (1.5 * SPACING) ** 3) * 1000.0 / fluid.state.position_density[0, 3]
     )
-    found = fluid.give()["pressure_gauge.pressure"]
+    found = outputs_of(fluid)["pressure_gauge.pressure"]
     assert found == pytest.approx([70.0 * share / 0.85, 0.0], rel=1e-3)
 
 
@@ -75,7 +76,7 @@ def test_pressure_is_not_read_below_where_it_is_cut():
     # Carried on to above the surface, that of still water is below zero.
     for tension in (False, True):
         fluid = fluid_with(negative_pressure=tension, gauges__pressure_gauges=((0.1, 0.1, 0.18),))
-        found = fluid.give()["pressure_gauge.pressure"][0]
+        found = outputs_of(fluid)["pressure_gauge.pressure"][0]
         assert -196.3 < found < -50.0 if tension else found == 0.0
 
 
@@ -88,7 +89,7 @@ def test_level_of_still_water_is_within_a_tenth_of_a_spacing_unless_it_is_shallo
         "boundary.walls": (BOX[0], (0.2, 0.2, 0.3)),
         "gauges.level_gauges": spots,
     }
-    found = fluid_with(**given).give()["level_gauge.height"]
+    found = outputs_of(fluid_with(**given))["level_gauge.height"]
     assert found[:5] == pytest.approx(np.full(5, height), abs=within * SPACING)
     assert found[5] == 0.0  # dry: the floor
 
@@ -98,25 +99,25 @@ def test_level_is_the_highest_and_passes_over_drops():
     spots = ((0.1, 0.1), (0.17, 0.1))
     fluid = fluid_with(fluid=boxes, gauges__level_gauges=spots)
     fluid.state.position_density[0, :3] = [0.1, 0.1, 0.8]
-    assert fluid.give()["level_gauge.height"] == pytest.approx([0.5, 0.5], abs=0.1 * SPACING)
+    assert outputs_of(fluid)["level_gauge.height"] == pytest.approx([0.5, 0.5], abs=0.1 * SPACING)
     high = fluid.state.position_density[:, 2] > 0.35
     fluid.state.position_density[high, 0] += 1.0
-    assert fluid.give()["level_gauge.height"] == pytest.approx([0.16, 0.16], abs=0.1 * SPACING)
+    assert outputs_of(fluid)["level_gauge.height"] == pytest.approx([0.16, 0.16], abs=0.1 * SPACING)
 
 
 def test_level_follows_a_slope():
     fluid = fluid_with(gauges__level_gauges=((0.1, 0.1), (0.06, 0.1), (0.14, 0.1)))
     fluid.state.position_density[:, 2] += 0.1 * (fluid.state.position_density[:, 0] - 0.1)
     exact = [0.16, 0.156, 0.164]
-    assert fluid.give()["level_gauge.height"] == pytest.approx(exact, abs=0.1 * SPACING)
+    assert outputs_of(fluid)["level_gauge.height"] == pytest.approx(exact, abs=0.1 * SPACING)
 
 
 @pytest.mark.parametrize(("axis", "end"), [("x", 0.2), ("y", 0.2), ("z", 0.16)])
 def test_front_of_a_box_is_its_face(axis, end):
     fluid = fluid_with(gauges__front_gauge=axis, gravity=(0.0, 0.0, 0.0))
-    assert fluid.give()["front_gauge.position"] == pytest.approx([end])
+    assert outputs_of(fluid)["front_gauge.position"] == pytest.approx([end])
     fluid.step(1e-6)
-    assert fluid.give()["front_gauge.position"] == pytest.approx([end], abs=1e-6)
+    assert outputs_of(fluid)["front_gauge.position"] == pytest.approx([end], abs=1e-6)
 
 
 @pytest.mark.parametrize(("drops", "front"), [(0, 0.2), (1, 0.2), (3, 0.2), (200, 0.3)])
@@ -127,14 +128,14 @@ def test_front_leaves_out_spray_but_not_bulk(drops, front):
     ]
     fluid.state.position_density[ahead, 0] += 0.1
     fluid.step(1e-9)
-    assert fluid.give()["front_gauge.position"] == pytest.approx([front], abs=1e-6)
+    assert outputs_of(fluid)["front_gauge.position"] == pytest.approx([front], abs=1e-6)
 
 
 def test_motion_gauge_agrees_with_the_totals():
     fluid = fluid_with(gauges__motion_gauge=True)
     for _ in range(5):
         fluid.step(fluid.stable_dt())
-    found, totals = fluid.give(), fluid.totals()
+    found, totals = outputs_of(fluid), fluid.totals()
     points, velocity = fluid.view()["points"], fluid.view()["velocity"]
     assert found["motion_gauge.kinetic"] == pytest.approx([totals.kinetic])
     assert found["motion_gauge.potential"] == pytest.approx([totals.potential])
@@ -149,11 +150,11 @@ def test_gauges_do_not_depend_on_what_was_before_a_repeated_window():
         gauges__level_gauges=((0.1, 0.1),),
         gauges__pressure_gauges=((0.1, 0.1, 0.1),),
     )
-    kept, first = fluid.save(), fluid.give()
+    kept, first = fluid.save(), outputs_of(fluid)
     for _ in range(3):
         fluid.step(fluid.stable_dt())
     fluid.load(kept)
-    again = fluid.give()
+    again = outputs_of(fluid)
     assert all(np.array_equal(first[key], again[key]) for key in first)
 
 
@@ -175,9 +176,10 @@ OFF = """
 import sys
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import outputs_of
 box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
 fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
-assert list(fluid.give()) == ["surface_load.force"]
+assert list(outputs_of(fluid)) == ["surface_load.force"]
 assert not [name for name in sys.modules if name.endswith(("gauges", "gauge_kernels"))]
 """
 
@@ -213,5 +215,5 @@ def test_gauges_read_nothing_that_is_not_finite():
         gauges__front_gauge="x",
         gauges__motion_gauge=True,
     )
-    given = fluid.give()
+    given = outputs_of(fluid)
     assert all(math.isfinite(value) for array in given.values() for value in array.ravel())

@@ -8,7 +8,9 @@ from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.boundary import lubrication
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import outputs_of
 
+JOINED = frozenset({"surface", "surface_load"})
 DEPTH, WIDTH, EDGE, SPACING = 0.2, 0.4, 0.1, 0.025
 LOW, HIGH = 0.5 * (WIDTH - EDGE), 0.5 * (WIDTH + EDGE)
 AROUND = (
@@ -48,7 +50,7 @@ def standing(gaps, heights=(0.5 * EDGE,), fluid=AROUND):
         "surface.volume": np.full(len(arm) * len(centres), SPACING**3),
         "surface.body": np.repeat(np.arange(len(centres)), len(arm)).astype(float),
     }
-    one.bind(static)
+    one.bind(static, JOINED)
     position = np.concatenate([centre + arm for centre in centres])
     moves = {"surface.position": position, "surface.velocity": np.zeros_like(position)}
     one.take({**moves, "surface.mirror": np.concatenate([c + image for c in centres])})
@@ -60,7 +62,7 @@ def mean_force(one, steps):
     for number in range(steps):
         one.step(one.stable_dt())
         if number >= steps // 2:
-            found.append(one.give()["surface_load.force"].reshape(-1, 64, 3).sum(axis=1))
+            found.append(outputs_of(one)["surface_load.force"].reshape(-1, 64, 3).sum(axis=1))
     return np.mean(found, axis=0)
 
 

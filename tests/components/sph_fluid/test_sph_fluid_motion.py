@@ -9,7 +9,7 @@ from fluid_params import fluid_params
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Fields, outputs_of
 from quintet.interfaces.errors import OrderError, QuintetError, StepError
 
 Make = Callable[..., SphFluid]
@@ -96,7 +96,7 @@ def test_surface_takes_what_the_fluid_loses(drop: Make, plate: Join) -> None:
     for _ in range(30):
         dt = fluid.stable_dt()
         fluid.step(dt)
-        force = fluid.give()["surface_load.force"]
+        force = outputs_of(fluid)["surface_load.force"]
         given += dt * force.sum(axis=0)
         size += dt * np.abs(force).sum()
     gained = fluid.totals().momentum - before
@@ -112,7 +112,7 @@ def test_one_step_gives_and_takes_the_same_impulse(drop: Make, plate: Join, shar
     fluid.step(2e-4)
     before = fluid.totals().momentum
     fluid.step(0.7e-4)
-    impulse = 0.7e-4 * fluid.give()["surface_load.force"]
+    impulse = 0.7e-4 * outputs_of(fluid)["surface_load.force"]
     gained = fluid.totals().momentum - before
     assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())
 
@@ -121,7 +121,7 @@ def test_resting_surface_far_away_feels_no_force(drop: Make, plate: Join) -> Non
     fluid = drop()
     fluid.take(plate(fluid, height=-1.0, speed=0.0))
     run(fluid, 0.01)
-    assert not fluid.give()["surface_load.force"].any()
+    assert not outputs_of(fluid)["surface_load.force"].any()
 
 
 def test_surface_that_comes_from_afar_is_met(drop: Make, plate: Join) -> None:
@@ -132,7 +132,7 @@ def test_surface_that_comes_from_afar_is_met(drop: Make, plate: Join) -> None:
         fluid.take(fields | {"surface.position": fields["surface.position"] + rise})
         fluid.step(0.25e-3)
         fluid.take(fields | {"surface.position": fields["surface.position"] + rise})
-        if fluid.give()["surface_load.force"].any():
+        if outputs_of(fluid)["surface_load.force"].any():
             break
     assert 75 <= k <= 77  # the kernels of the lowest particles end at -0.05 m
 

@@ -9,7 +9,9 @@ from fluid_params import fluid_params
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.kernels import write_pressure
 from quintet.coupler.coupling.body_samples import BOX, SPHERE, fill, mirrors
+from quintet.interfaces.component import outputs_of
 
+JOINED = frozenset({"surface", "surface_load"})
 SPACING, EDGE, SIDE = 0.03, 0.15, 0.27  # m: of particles, body, tank
 LOW, HIGH = 0.5 * (SIDE - EDGE), 0.5 * (SIDE + EDGE)
 WEIGHT = 9810.0  # N/m3
@@ -40,7 +42,7 @@ def sunk(shape: int, cells: int = 5, **given: object) -> SphFluid:
     depth = float(stated["surface.depth"][0])
     arm, normal, volume = fill(shape, size, EDGE / cells, depth)
     body = np.zeros(len(arm))
-    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body})
+    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body}, JOINED)
     moved = {"position": arm, "mirror": mirrors(shape, size, arm, normal)}
     placed = {f"surface.{key}": points + 0.5 * SIDE for key, points in moved.items()}
     fluid.take(placed | {"surface.velocity": np.zeros_like(arm)})
@@ -56,7 +58,7 @@ def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
         time += dt
         if time > begin:
             spent += dt
-            impulse += dt * fluid.give()["surface_load.force"].sum(axis=0)
+            impulse += dt * outputs_of(fluid)["surface_load.force"].sum(axis=0)
     return impulse / spent
 
 
@@ -116,7 +118,7 @@ def test_the_potential_pushes_a_box_up_by_the_weight_of_its_water(
     size = np.full(3, edge * spacing)
     arm, normal, volume = fill(BOX, size, spacing, 2.0 * fluid.params.smoothing_length)
     body = np.zeros(len(arm))
-    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body})
+    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body}, JOINED)
     middle = spacing * np.array([0.5 * side, 0.5 * side, below + 0.5 * edge])
     # What it is given where it is placed at first is not kept.
     for place in (middle + 2.0 * spacing, middle):

@@ -8,6 +8,7 @@ from fluid_params import fluid_params
 
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import outputs_of
 
 
 def test_staggered_rows_are_lattice_rows_that_end_at_walls_as_others_do() -> None:
@@ -59,7 +60,7 @@ def test_staggered_water_stays_still(smoothing: float) -> None:
         fluid.step(dt)
         time += dt
         if time > 0.5:
-            read = fluid.give()
+            read = outputs_of(fluid)
             speeds.append(read["motion_gauge.speed"])
             pressures.append(read["pressure_gauge.pressure"])
     assert np.max(speeds) < 0.01 * math.sqrt(9.81 * 0.3)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Fields, outputs_of
 
 Make = Callable[..., SphFluid]
 Join = Callable[..., Fields]
@@ -26,7 +26,8 @@ fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
 position, velocity = saved.pop("position"), saved.pop("velocity")
 rows = len(position)
 volume, body = np.full(rows, 0.02**3), np.zeros(rows)
-fluid.bind({"surface.normal": velocity, "surface.volume": volume, "surface.body": body})
+joined = {"surface.normal": velocity, "surface.volume": volume, "surface.body": body}
+fluid.bind(joined, {"surface"})
 fluid.load(saved)
 for _ in range(25):
     fluid.take({"surface.position": position, "surface.velocity": velocity})
@@ -69,7 +70,7 @@ box, mdbc = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12)), Boundary(method="mdbc")
 fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), boundary=mdbc))
 one = np.array([[0.06, 0.06, -0.01]])
 static = {"normal": one, "volume": np.full(1, 8e-6), "body": np.zeros(1), "contact": np.zeros(1)}
-fluid.bind({f"surface.{key}": array for key, array in static.items()})
+fluid.bind({f"surface.{key}": array for key, array in static.items()}, {"surface"})
 moved = {"position": one, "velocity": 0.0 * one, "mirror": one + (0.0, 0.0, 0.02)}
 fluid.take({f"surface.{key}": array for key, array in moved.items()})
 fluid.step(fluid.stable_dt())
@@ -134,7 +135,7 @@ def test_what_goes_out_is_a_copy(drop: Make, plate: Join) -> None:
     fluid.take(plate(fluid))
     fluid.step(1e-4)
     kept = {name: array.copy() for name, array in fluid.save().items()}
-    for fields in (fluid.give(), fluid.view(), fluid.save()):
+    for fields in (outputs_of(fluid), fluid.view(), fluid.save()):
         for array in fields.values():
             array[...] = 7
     assert all(np.array_equal(kept[name], array) for name, array in fluid.save().items())
@@ -148,7 +149,7 @@ def test_samples_keep_the_order_of_their_port(drop: Make, plate: Join) -> None:
     assert np.array_equal(
         fluid.state.position_density[fluid.samples.row, :3], fields["surface.position"]
     )
-    assert len(fluid.give()["surface_load.force"]) == len(fields["surface.position"])
+    assert len(outputs_of(fluid)["surface_load.force"]) == len(fields["surface.position"])
 
 
 def test_particles_are_shown_in_the_order_of_their_birth(pool: Make) -> None:

@@ -15,7 +15,7 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.setup.geometry import Box
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Fields, outputs_of
 from quintet.interfaces.errors import StepError
 
 SPACING, DEPTH = 0.02, 0.2
@@ -23,6 +23,8 @@ FULL = ((0.0, 0.0, 0.0), (0.2, 0.1, 2.0 * DEPTH))  # m
 THIN = ((0.0, 0.0, 0.0), (0.08, 0.1, DEPTH))  # m
 CALM = {"boundary.method": "mdbc", "density_diffusion": 0.1, "negative_pressure": True}
 EVERY = CALM | {"viscosity.kinematic": 1e-4, "xsph": 0.3, "shepard_every": 10}
+
+JOINED = frozenset({"surface", "surface_load"})
 
 
 def params(**given: Any) -> SphFluidParams:
@@ -97,7 +99,7 @@ def test_gauges_on_the_plane_read_what_they_do_in_the_whole() -> None:
     half = params(gauges__pressure_gauges=points, gauges__level_gauges=spots)
     one, other = SphFluid(half), SphFluid(whole(half))
     side_by_side(one, other, 0.02)
-    mine, theirs = one.give(), other.give()
+    mine, theirs = outputs_of(one), outputs_of(other)
     for name, least in (("pressure_gauge.pressure", 100.0), ("level_gauge.height", 0.5 * DEPTH)):
         assert np.abs(theirs[name]).min() > least
         np.testing.assert_allclose(mine[name], theirs[name], rtol=1e-9)
@@ -121,7 +123,7 @@ def test_water_presses_on_half_a_box_as_on_the_whole(dimensions: int) -> None:
     assert side_by_side(one, other, 0.1) < 1e-11
     x, _, z = one.view()["points"].T
     assert ((x > 0.06) & (z < 0.05)).any()  # some water is beside the box
-    mine, theirs = (fluid.give()["pressure_gauge.pressure"] for fluid in (one, other))
+    mine, theirs = (outputs_of(fluid)["pressure_gauge.pressure"] for fluid in (one, other))
     assert theirs.min() > 100.0
     np.testing.assert_allclose(mine, theirs, rtol=1e-9)
 
@@ -226,7 +228,9 @@ def cut(half: bool) -> SphFluid:
     # Samples of fewer kilograms than particles: those of images are as light.
     volume = np.full(len(points), 0.8 * SPACING**3)
     normal = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": 0.0 * volume})
+    fluid.bind(
+        {"surface.normal": normal, "surface.volume": volume, "surface.body": 0.0 * volume}, JOINED
+    )
     fluid.take(moving(points))
     return fluid
 
@@ -244,7 +248,10 @@ def test_half_a_body_feels_what_that_half_of_the_whole_does() -> None:
         one.step(2e-4)
         other.step(2e-4)
     rows = other.state.position_density[other.samples.row, 0] > 0.0
-    mine, theirs = one.give()["surface_load.force"], other.give()["surface_load.force"][rows]
+    mine, theirs = (
+        outputs_of(one)["surface_load.force"],
+        outputs_of(other)["surface_load.force"][rows],
+    )
     assert np.abs(theirs).max() > 0.01
     np.testing.assert_allclose(mine, theirs, atol=1e-10)
 

@@ -9,6 +9,7 @@ from test_sph_fluid_laws import lattice, law, near
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.laws import KinematicViscosity
+from quintet.interfaces.component import outputs_of
 
 SPACING, NU = 0.05, 0.3
 LAWS = {
@@ -65,7 +66,7 @@ def test_surface_takes_the_momentum_that_friction_takes(
     force, before = np.zeros(3), fluid.totals().momentum
     for _ in range(10):
         fluid.step(1e-4)
-        force += 1e-4 * fluid.give()["surface_load.force"].sum(axis=0)
+        force += 1e-4 * outputs_of(fluid)["surface_load.force"].sum(axis=0)
     gained = fluid.totals().momentum - before
     assert gained[0] > 1e-5
     assert force == pytest.approx(-gained, abs=1e-12 * np.abs(gained).max())

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.body_samples import BOX, SPHERE, fill, mirrors
+from quintet.coupler.coupling.body_samples import fill, mirrors
 from quintet.interfaces.errors import LinkError
+from quintet.interfaces.ports import BOX, SPHERE
 
 DEEP = 1e9
 

@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.exchange import Exchange, Leg, misfits, requires
+from quintet.coupler.coupling.exchange import (
+    Binding,
+    Demands,
+    Exchange,
+    Transfer,
+    misfits,
+    requires,
+)
 from quintet.coupler.coupling.links.fsi import join as join_fsi
 from quintet.coupler.coupling.links.glue import join as join_glue
 from quintet.interfaces.component import Field, Port
@@ -42,6 +49,13 @@ def _at_rest(count, x):
     }
 
 
+def _inputs(exchange, taker, outputs, ahead=()):
+    """What all links bring to a component; `ahead` have done the window already."""
+    numbers = [n for n, one in enumerate(exchange.transfers) if one.taker == taker]
+    brought = [exchange.deliver(number, outputs, outputs) for number in numbers]
+    return exchange.merge(taker, [(one, one.transfer.giver in ahead) for one in brought])
+
+
 @pytest.fixture(params=[("water", "small", "large"), ("small", "large", "water")])
 def two_links(request):
     """Two components of bodies in one fluid; ports in the order in which they step."""
@@ -56,13 +70,14 @@ def two_links(request):
         "small": _at_rest(2, 1.0),
         "large": _at_rest(1, 5.0),
     }
+    exchange.count_rows(outputs)
     return exchange, static, outputs
 
 
 def test_rows_of_several_links_stand_one_after_another(two_links):
     exchange, static, outputs = two_links
     assert static["water"]["surface.volume"].shape == (16 + 27,)
-    carried = exchange.inputs("water", outputs, ())
+    carried = _inputs(exchange, "water", outputs)
     velocity = carried.fields["surface.velocity"]
     np.testing.assert_array_equal(velocity[:16], 1.0)
     np.testing.assert_array_equal(velocity[16:], 5.0)
@@ -72,22 +87,22 @@ def test_forces_go_back_to_whom_they_belong(two_links):
     exchange, _, outputs = two_links
     force = np.arange(43.0)[:, None] * np.ones(3)
     outputs["water"]["surface_load.force"] = force
-    # Whoever is asked first, even before the fluid was sent anything.
+    # Whoever is asked first.
     for _ in range(2):
-        small = exchange.inputs("small", outputs, ()).fields["load.force"]
-        large = exchange.inputs("large", outputs, ()).fields["load.force"]
-        exchange.inputs("water", outputs, ())
+        small = _inputs(exchange, "small", outputs).fields["load.force"]
+        large = _inputs(exchange, "large", outputs).fields["load.force"]
+        _inputs(exchange, "water", outputs)
     np.testing.assert_allclose(small, [force[:8].sum(axis=0), force[8:16].sum(axis=0)], rtol=1e-14)
     np.testing.assert_allclose(large, [force[16:].sum(axis=0)], rtol=1e-14)
 
 
 def test_ends_are_known_when_all_links_bring_them(two_links):
     exchange, _, outputs = two_links
-    assert "surface.position" in exchange.inputs("water", outputs, ("small", "large")).ends
-    half = exchange.inputs("water", outputs, ("small",))
+    assert "surface.position" in _inputs(exchange, "water", outputs, ("small", "large")).ends
+    half = _inputs(exchange, "water", outputs, ("small",))
     assert "surface.position" not in half.ends
     assert "surface.position" in half.mixed
-    assert exchange.inputs("water", outputs, ()).mixed == []
+    assert _inputs(exchange, "water", outputs).mixed == []
 
 
 def test_forces_on_own_items_add_up():
@@ -117,31 +132,38 @@ def test_forces_on_own_items_add_up():
         "a": {"surface_load.force": np.full((4, 3), 1.0)},
         "b": {"surface_load.force": np.full((16, 3), 1.0)},
         "rods": {"glued_load.force": np.full((1, 3), 100.0)},
-        "plate": {},
+        "plate": {"faces.position": square, "faces.velocity": np.zeros((4, 3))},
     }
-    load = exchange.inputs("plate", outputs, ()).fields["node_load.force"]
+    exchange.count_rows(outputs)
+    load = _inputs(exchange, "plate", outputs).fields["node_load.force"]
     np.testing.assert_allclose(load, (4 + 16 + 200) / 4.0, rtol=1e-14)
 
 
 class _Values:
     """A link that brings a value, which cannot be added up."""
 
-    name, works, partner, memory = "values", {}, {}, None
+    name, works, partner = "values", {}, {}
 
     def __init__(self, giver):
-        self.legs = [Leg(giver, "taker", lambda given: {"port.value": given["port.value"]})]
+        self.transfers = (Transfer(giver, "taker", reads=("port.value",), fills=("port.value",)),)
 
-    def describe(self, described):
-        return {}
+    def demands(self):
+        return Demands()
+
+    def bind(self, described):
+        giver = self.transfers[0].giver
+        return Binding({}, (lambda _, end: {"port.value": end[giver]["port.value"]},))
 
 
 def test_values_of_several_links_cannot_be_added():
     port = Port("port", (Field("value", (), "K"),))
     ports = {"a": ((), (port,)), "b": ((), (port,)), "taker": ((port,), ())}
     exchange = Exchange([_Values("a"), _Values("b")], ports)
+    exchange.bind({name: {} for name in ports})
     outputs = {name: {"port.value": np.ones(2)} for name in ("a", "b")}
+    exchange.count_rows(outputs)
     with pytest.raises(LinkError, match="only forces of several links can be added up"):
-        exchange.inputs("taker", outputs, ())
+        _inputs(exchange, "taker", outputs)
 
 
 def test_ports_that_do_not_fit_are_named():
@@ -170,7 +192,8 @@ def test_two_plates_in_one_fluid_get_their_own_forces_from_the_start(first):
     moving = {"faces.position": square, "faces.velocity": square}
     force = {"surface_load.force": np.array([[4.0, 0.0, 0.0], [0.0, 8.0, 0.0]])}
     outputs = {"left": moving, "right": moving, "water": force}
+    exchange.count_rows(outputs)
     for name in dict.fromkeys([first, "left", "right"]):
-        load = exchange.inputs(name, outputs, ()).fields["node_load.force"]
+        load = _inputs(exchange, name, outputs).fields["node_load.force"]
         own = [1.0, 0.0, 0.0] if name == "left" else [0.0, 2.0, 0.0]
         np.testing.assert_allclose(load, np.tile(own, (4, 1)), rtol=1e-14)

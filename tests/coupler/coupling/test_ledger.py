@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from quintet.coupler.coupling.exchange import Exchange
-from quintet.coupler.coupling.ledger import Account, Ledger, mean_rate
-from quintet.coupler.coupling.links import KINDS
-from quintet.coupler.coupling.motion_audit import Motion
+from quintet.coupler.coupling.ledger import Account, Ledger
+from quintet.coupler.coupling.links import maker
+from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.interfaces.component import Port
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 from quintet.interfaces.serving.inputs import Inputs
-from quintet.interfaces.serving.outputs import Handed
+from quintet.interfaces.serving.outputs import InputAudit
 
 MOVED = Port("moved", (POSITION, VELOCITY))
 PUSHED = Port("pushed", (FORCE,))
@@ -22,7 +22,7 @@ PORTS = {"a": ((PUSHED,), (MOVED,)), "b": ((MOVED,), (PUSHED,))}
 
 def _exchange():
     pairs = [["a.moved", "b.moved"], ["b.pushed", "a.pushed"]]
-    return Exchange([KINDS["direct"](0, {"name": "rope", "pairs": pairs}, PORTS)], PORTS)
+    return Exchange([maker("direct")(0, {"name": "rope", "pairs": pairs}, PORTS)], PORTS)
 
 
 def test_a_difference_is_booked_under_its_unit_and_the_worst_one_stays():
@@ -39,33 +39,34 @@ def test_a_difference_is_booked_under_its_unit_and_the_worst_one_stays():
 
 def test_all_that_was_given_is_applied_or_on_its_way():
     ledger = Ledger(_exchange())
+    back = 1  # number of the transfer that brings the force
+    late = {back}
     force = np.array([[1.0, 2.0, 3.0], [-4.0, 0.0, 1.0]])
     sums = {"pushed.force": force.sum(axis=0).tolist()}
     header = {"sent": {**sums, "pushed.force/size": [np.abs(force).sum()]}}
     fields = {"pushed.force": force}
-    ledger.given("b", header, fields, {"b": fields})
-    late = {"is_late": lambda giver, taker: True, "owed": {}}
-    ledger.settle(**late)
+    ledger.given("b", header, fields)
+    ledger.given_for(back, fields)
+    ledger.close_window(late, {})
     assert ledger.worst == 0.0
-    ledger.given("b", header, fields, {"b": fields})
+    ledger.given("b", header, fields)
+    ledger.given_for(back, fields)
     ledger.applied("a", fields, {"received": sums, "applied": sums})
-    ledger.settle(**late)
+    ledger.close_window(late, {})
     assert ledger.worst == 0.0
-    owed = {("a", "pushed.force"): force}
-    ledger.settle(lambda giver, taker: False, owed)
+    in_transit = {("a", "pushed.force"): force}
+    ledger.close_window((), in_transit)
     assert ledger.worst == 0.0
-    ledger.settle(lambda giver, taker: False, {})
+    ledger.close_window((), {})
     assert ledger.worst == pytest.approx(4.0 / 22.0)
 
 
 def test_a_hermite_path_is_found_anew_from_its_sums():
     """What the serving loop hands out of a cubic path is what the ledger works out for itself."""
     random, window = np.random.default_rng(1), 0.7
-    inputs, handed = (
-        Inputs([MOVED]),
-        Handed(["moved.position"], {"moved.position": "moved.velocity"}),
-    )
-    motion = Motion(_exchange())
+    inputs = Inputs([MOVED])
+    handed = InputAudit(["moved.position"], {"moved.position": "moved.velocity"})
+    motion = MotionAudit(_exchange())
     for number in range(4):
         fields = {f"moved.{key}": random.normal(size=(5, 3)) for key in ("position", "velocity")}
         ends = list(fields) if number else []
@@ -82,21 +83,23 @@ def test_a_hermite_path_is_found_anew_from_its_sums():
 
 
 def test_mean_rates_are_those_of_the_displacement_where_it_is_known():
-    before = {"x": np.zeros((1, 3)), "v": np.ones((1, 3))}
-    after = {"x": np.full((1, 3), 4.0), "v": np.full((1, 3), 5.0)}
-    np.testing.assert_array_equal(mean_rate(before, after, "v", "x", 2.0), 2.0)
-    np.testing.assert_array_equal(mean_rate(before, after, "v", "", 2.0), 3.0)
-    np.testing.assert_array_equal(mean_rate(before, after, "v", "integral", 2.0), 2.5)
+    x, v = "moved.position", "moved.velocity"
+    before = {x: np.zeros((1, 3)), v: np.ones((1, 3))}
+    after = {x: np.full((1, 3), 4.0), v: np.full((1, 3), 5.0)}
+    ledger = Ledger(_exchange())
+    for place, mean in ((x, 2.0), ("", 3.0), ("integral", 2.5)):
+        found = ledger._mean_rate("a", before, after, (v, place), 2.0)
+        np.testing.assert_array_equal(found, mean)
 
 
 def test_work_that_only_one_side_counts_is_no_residual():
     pairs = [["a.moved", "b.moved"]]
     ports = {"a": ((), (MOVED,)), "b": ((MOVED,), (PUSHED,))}
-    exchange = Exchange([KINDS["direct"](0, {"name": "rope", "pairs": pairs}, ports)], ports)
+    exchange = Exchange([maker("direct")(0, {"name": "rope", "pairs": pairs}, ports)], ports)
     exchange.links[0].works = {"b": [("pushed.force", "moved.velocity", "")]}
     ledger = Ledger(exchange)
     fields = {"pushed.force": np.ones((1, 3))}
-    ledger.given("b", {"sent": {"pushed.force/work": [3.0]}}, fields, {"b": fields})
+    ledger.given("b", {"sent": {"pushed.force/work": [3.0]}}, fields)
     account = ledger.accounts["rope"]
     assert account.work_given == 3.0
     assert account.energy_residual == 0.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from quintet.coupler.coupling.exchange import Exchange
-from quintet.coupler.coupling.links import KINDS
+from quintet.coupler.coupling.links import maker
 from quintet.coupler.coupling.links.direct import join as join_direct
 from quintet.coupler.coupling.links.fsi import FaceFsi, RigidFsi
 from quintet.coupler.coupling.links.fsi import join as join_fsi
@@ -15,6 +15,8 @@ from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
     CONTACT,
+    DIMENSIONS,
+    DISC,
     FACES,
     FORCE,
     GLUED,
@@ -24,6 +26,8 @@ from quintet.interfaces.ports import (
     MOTION,
     NODE_GLUE,
     NODE_LOAD,
+    PLANAR_MOTION,
+    POLYGON,
     POSITION,
     SURFACE,
     SURFACE_LOAD,
@@ -40,6 +44,7 @@ PORTS = {
     "puck": ((Port("push", (FORCE, WARMTH)),), (Port("pose", (POSITION, VELOCITY)),)),
     "air": ((Port("flight", (VELOCITY,)),), (Port("drag", (FORCE, WARMTH)),)),
 }
+STILL = np.array([[1.0, 0.0, 0.0, 0.0]])
 TURN = np.array([[np.cos(0.4), 0.0, 0.0, np.sin(0.4)]])
 
 
@@ -48,7 +53,7 @@ def test_fsi_finds_who_is_who_in_either_order():
         found = join_fsi("link", pair, PORTS)
         assert isinstance(found, RigidFsi) and (found.fluid, found.body) == ("water", "cubes")
     assert isinstance(join_fsi("link", ("plate", "water"), PORTS), FaceFsi)
-    assert len(join_fsi("link", ("water", "path"), PORTS).legs) == 1  # it takes no load
+    assert len(join_fsi("link", ("water", "path"), PORTS).transfers) == 1  # it takes no load
 
 
 CHOOSING = replace(SURFACE, static=(*SURFACE.static, CONTACT))
@@ -57,7 +62,7 @@ SINGLE = {"motion.shape": np.ones(1), "motion.size": np.full((1, 3), 0.3)}
 
 def test_bodies_of_links_one_after_the_other_are_numbered_on():
     bodies = {"path": 2, "cubes": 3}
-    links = [KINDS["fsi"](n, {"between": ["water", name]}, PORTS) for n, name in enumerate(bodies)]
+    links = [maker("fsi")(n, {"between": ["water", name]}, PORTS) for n, name in enumerate(bodies)]
     said = {
         name: {
             "motion.shape": np.ones(count),
@@ -74,9 +79,9 @@ def test_bodies_of_links_one_after_the_other_are_numbered_on():
 @pytest.mark.parametrize(("given", "mark"), [({}, 0.0), ({"contact": "potential"}, 1.0)])
 def test_fsi_tells_the_fluid_which_contact_a_link_asks_for(given, mark):
     ports = {**PORTS, "water": ((CHOOSING,), (SURFACE_LOAD,))}
-    link = KINDS["fsi"](0, {"kind": "fsi", "between": ["water", "cubes"], **given}, ports)
+    link = maker("fsi")(0, {"kind": "fsi", "between": ["water", "cubes"], **given}, ports)
     stated = {"surface.spacing": np.array([0.1]), "surface.depth": np.array([0.3])}
-    (static,) = link.describe({"water": stated, "cubes": SINGLE}).values()
+    (static,) = link.bind({"water": stated, "cubes": SINGLE}).static.values()
     assert static["surface.contact"].tolist() == [mark] * 27
 
 
@@ -87,15 +92,15 @@ def test_fsi_says_which_contacts_there_are_and_who_has_none():
         "Correct it, or leave it out for walls."
     )
     with pytest.raises(SceneError, match=wrong):
-        KINDS["fsi"](3, {**given, "contact": "potentials"}, PORTS)
+        maker("fsi")(3, {**given, "contact": "potentials"}, PORTS)
     alone = (
         "link water-cubes: contact potential needs a fluid that lets links choose.*port surface of "
         "water does not say contact. Remove contact, or choose a boundary of water that does"
     )
     with pytest.raises(SceneError, match=alone):
-        KINDS["fsi"](3, {**given, "contact": "potential"}, PORTS)
+        maker("fsi")(3, {**given, "contact": "potential"}, PORTS)
     with pytest.raises(SceneError, match="contact"):
-        KINDS["glue"](3, {"between": ["rods", "plate"], "contact": "potential"}, PORTS)
+        maker("glue")(3, {"between": ["rods", "plate"], "contact": "potential"}, PORTS)
 
 
 @pytest.mark.parametrize("shape", [0.0, 1.0])
@@ -108,13 +113,66 @@ def test_fsi_refuses_bodies_smaller_than_a_spacing(shape, surface, inset, least)
     water = {"surface.spacing": 0.1, "surface.depth": 0.3, "surface.inset": 0.1 * inset}
     stated = {key: np.array([value]) for key, value in water.items()}
     with pytest.raises(LinkError) as refused:
-        link.describe({"water": stated, "cubes": body})
+        link.bind({"water": stated, "cubes": body})
     for words in (
         f"at least {least:g} m across",
         "body 1 of cubes is 0.09 m",
         "Refine the spacing",
     ):
         assert words in str(refused.value)
+
+
+PLANAR = {
+    **PORTS,
+    "flume": ((replace(SURFACE, states=(*SURFACE.states, DIMENSIONS)),), (SURFACE_LOAD,)),
+    "discs": ((LOAD,), (PLANAR_MOTION,)),
+}
+
+
+@pytest.mark.parametrize("pair", [("flume", "cubes"), ("water", "discs"), ("flume", "plate")])
+def test_fsi_refuses_two_dimensions_beside_three_before_anything_starts(pair):
+    with pytest.raises(SceneError, match=r"link a: both sides must have two dimensions or both"):
+        join_fsi("a", pair, PLANAR)
+    flat = next(name for name in pair if name in ("flume", "discs"))
+    with pytest.raises(SceneError, match=f"{flat} has two, .* has three. Set dimensions = 2 in"):
+        join_fsi("a", pair[::-1], PLANAR)
+
+
+FLAT = {
+    "motion.shape": np.array([DISC, POLYGON], float),
+    "motion.size": np.array([[0.4, 1.0, 0.4], [0.3, 1.0, 0.2]]),
+    "motion.mass": np.ones(2),
+    "motion.dimensions": np.array([2.0]),
+    "motion.corners": np.array([0.0, 4.0]),
+    "motion.corner": np.array(
+        [[-0.15, 0.0, -0.1], [0.15, 0.0, -0.1], [0.15, 0.0, 0.1], [-0.15, 0.0, 0.1]]
+    ),
+}
+
+
+def _asked(**more):
+    asked = {"spacing": 0.05, "depth": 1.0, "dimensions": 2.0, **more}
+    return {f"surface.{name}": np.array([value]) for name, value in asked.items()}
+
+
+def test_bodies_of_two_dimensions_are_sampled_in_one_row_for_one_metre():
+    bound = join_fsi("link", ("flume", "discs"), PLANAR).bind({"flume": _asked(), "discs": FLAT})
+    static = bound.static["flume"]
+    area = np.bincount(static["surface.body"].astype(int), static["surface.volume"])
+    np.testing.assert_allclose(area, [np.pi * 0.04, 0.06], rtol=1e-12)
+    pose = {name: np.repeat(value, 2, axis=0) for name, value in _pose(1.0, STILL).items()}
+    moved = bound.maps[0]({}, {"discs": pose})
+    assert not moved["surface.position"][:, 1].any()
+
+
+def test_what_a_fluid_says_and_what_bodies_are_must_agree():
+    link = join_fsi("link", ("flume", "discs"), PLANAR)
+    with pytest.raises(LinkError, match=r"must be 0 \(sphere\) or 1 \(box\).*found 3"):
+        link.bind({"flume": _asked(dimensions=3.0), "discs": FLAT})
+    with pytest.raises(LinkError, match=r"must be 3 \(disc\) or 4 \(polygon\).*found 1"):
+        link.bind({"flume": _asked(), "discs": SINGLE})
+    with pytest.raises(LinkError, match=r"at least 0\.25 m across.*body 1 of discs is 0\.2 m"):
+        link.bind({"flume": _asked(spacing=0.25), "discs": FLAT})
 
 
 def test_fsi_says_what_does_not_fit():
@@ -136,7 +194,7 @@ def test_glue_finds_who_is_who_in_either_order():
 
 def _cube_in_water():
     link = join_fsi("link", ("water", "cubes"), PORTS)
-    static = link.describe(
+    bound = link.bind(
         {
             "water": {"surface.spacing": np.array([0.1]), "surface.depth": np.array([1.0])},
             "cubes": {
@@ -146,7 +204,20 @@ def _cube_in_water():
             },
         }
     )
-    return link, static["water"]
+    return bound
+
+
+def _move(bound, pose):
+    """Samples of a cube in a pose."""
+    return bound.maps[0]({}, {"cubes": pose})
+
+
+def _load(bound, force, first, second):
+    """Load of a cube that moved from a pose to another, and its moment about the origin."""
+    start = {"cubes": first}
+    end = {"cubes": second, "water": {"surface_load.force": force}}
+    load = bound.maps[1](start, end)
+    return load, bound.moment[1](start, end, load)
 
 
 def _pose(x, turn):
@@ -159,34 +230,49 @@ def _pose(x, turn):
 
 
 def test_a_rigid_body_is_sampled_as_the_fluid_asks():
-    _, static = _cube_in_water()
+    static = _cube_in_water().static["water"]
     assert static["surface.volume"].sum() == pytest.approx(0.4**3, rel=1e-13)
     assert static["surface.normal"].shape == (64, 3)
 
 
 def test_loads_are_zero_before_anything_moved():
-    link, _ = _cube_in_water()
-    load = link.legs[1].carry({"surface_load.force": np.ones((64, 3))})
+    """Forces follow from motion: a fluid that gave none yet loads nothing."""
+    bound = _cube_in_water()
+    load, moment = _load(bound, np.zeros((64, 3)), _pose(1.0, TURN), _pose(1.0, TURN))
     np.testing.assert_array_equal(load["load.force"], np.zeros((1, 3)))
-    np.testing.assert_array_equal(link.legs[1].moment(load), np.zeros(3))
+    np.testing.assert_array_equal(load["load.torque"], np.zeros((1, 3)))
+    np.testing.assert_array_equal(moment, np.zeros(3))
+
+
+def test_carrying_the_same_pose_twice_changes_nothing():
+    """A link remembers nothing: what it makes of two poses does not depend on earlier ones."""
+    bound = _cube_in_water()
+    force = np.random.default_rng(3).normal(size=(64, 3))
+    poses = _pose(1.0, STILL), _pose(1.2, TURN)
+    samples, (load, moment) = _move(bound, poses[1]), _load(bound, force, *poses)
+    for pose in (_pose(7.0, STILL), poses[1]):
+        _move(bound, pose)
+        _load(bound, force, pose, pose)
+    again, (same_load, same_moment) = _move(bound, poses[1]), _load(bound, force, *poses)
+    for first, second in ((samples, again), (load, same_load)):
+        assert all(first[key].tobytes() == second[key].tobytes() for key in first)
+    assert moment.tobytes() == same_moment.tobytes()
 
 
 def test_loads_act_at_the_middle_of_the_way():
     """Force and moment about the origin are those of forces halfway between the two poses."""
-    link, _ = _cube_in_water()
-    still = np.array([[1.0, 0.0, 0.0, 0.0]])
-    first = link.legs[0].carry(_pose(1.0, still))["surface.position"]
-    second = link.legs[0].carry(_pose(1.2, TURN))["surface.position"]
+    bound = _cube_in_water()
+    poses = _pose(1.0, STILL), _pose(1.2, TURN)
+    first, second = (_move(bound, pose)["surface.position"] for pose in poses)
     force = np.random.default_rng(2).normal(size=(64, 3))
-    load = link.legs[1].carry({"surface_load.force": force})
+    load, turned = _load(bound, force, *poses)
     moment = np.cross(0.5 * (first + second), force).sum(axis=0)
     np.testing.assert_allclose(load["load.force"][0], force.sum(axis=0), atol=1e-13)
-    np.testing.assert_allclose(link.legs[1].moment(load), moment, atol=1e-12)
+    np.testing.assert_allclose(turned, moment, atol=1e-12)
 
 
 def test_samples_of_a_turning_body_move_with_it():
-    link, _ = _cube_in_water()
-    moved = link.legs[0].carry(_pose(1.0, TURN))
+    moved = _move(_cube_in_water(), _pose(1.0, TURN))
     arm = moved["surface.position"] - [1.0, 0.0, 0.0]
     turned = np.array([1.0, 2.0, 3.0]) + np.cross([0.0, 0.0, 5.0], arm)
     np.testing.assert_allclose(moved["surface.velocity"], turned, atol=1e-14)
@@ -199,17 +285,19 @@ def test_a_body_smaller_than_the_spacing_is_refused():
         "cubes": {"motion.shape": np.ones(1), "motion.size": np.full((1, 3), 0.05)},
     }
     with pytest.raises(LinkError, match=r"body 0 of cubes is 0\.05 m"):
-        link.describe(described)
+        link.bind(described)
 
 
 def test_direct_passes_only_what_is_taken():
     pairs = [["puck.pose", "air.flight"], ["air.drag", "puck.push"]]
     link = join_direct("drag", pairs, PORTS)
     pose = {"pose.position": np.zeros((2, 3)), "pose.velocity": np.ones((2, 3))}
-    assert set(link.legs[0].carry(pose)) == {"flight.velocity"}
-    assert link.legs[1].sums == (("drag.force", "push.force"), ("drag.heat", "push.heat"))
+    carry, _ = link.bind({"puck": {}, "air": {}}).maps
+    assert set(carry({}, {"puck": pose})) == {"flight.velocity"}
+    assert link.transfers[0].reads == ("pose.velocity",)
+    assert link.transfers[1].sums == (("drag.force", "push.force"), ("drag.heat", "push.heat"))
     assert link.works == {"air": [("drag.force", "flight.velocity", "")]}
-    assert link.legs[1].works_on == (("push.force", "pose.velocity", "pose.position"),)
+    assert link.transfers[1].works_on == (("push.force", "pose.velocity", "pose.position"),)
 
 
 def test_direct_names_ports_that_are_not_there():
@@ -233,4 +321,4 @@ def test_direct_names_ports_that_are_not_there():
 )
 def test_tables_of_links_are_checked(table, rule):
     with pytest.raises(SceneError, match=rule):
-        KINDS[table["kind"]](0, table, PORTS)
+        maker(table["kind"])(0, table, PORTS)

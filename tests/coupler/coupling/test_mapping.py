@@ -8,10 +8,10 @@ from quintet.coupler.coupling.mapping import (
     ShapeMap,
     bilinear,
     project,
-    rotation,
     sample_faces,
     sum_by,
 )
+from quintet.interfaces.rotation import matrix
 
 RANDOM = np.random.default_rng(5)
 
@@ -45,10 +45,10 @@ def _rigid(samples=200, bodies=4):
 
 def test_rotation_matrices_are_orthogonal_and_turn_by_the_right_hand():
     _, quaternion = _rigid()
-    matrices = rotation(quaternion)
+    matrices = matrix(quaternion)
     unit = np.broadcast_to(np.eye(3), matrices.shape)
     np.testing.assert_allclose(matrices @ matrices.transpose(0, 2, 1), unit, atol=1e-14)
-    quarter = rotation(_turned([0, 0, 1], 0.5 * np.pi)[None])[0]
+    quarter = matrix(_turned([0, 0, 1], 0.5 * np.pi)[None])[0]
     np.testing.assert_allclose(quarter @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-15)
 
 

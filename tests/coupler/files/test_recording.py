@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from quintet.coupler.files.recording import Recorder, Recording
+from quintet.coupler.files.recording import Instant, Recorder, Recording
 from quintet.interfaces.errors import PortError, SceneError
 from quintet.interfaces.ports import LOAD, MOTION, SURFACE_LOAD
 
@@ -26,8 +26,10 @@ def _record(path, rows, n=3):
         recorder.component("cubes", (MOTION, LOAD), {"motion.mass": np.arange(n) + 0.5})
         recorder.component("water", (SURFACE_LOAD,), {})
         for k in range(rows):
-            recorder.add("cubes", 0.1 * k, _row(k, n))
-            recorder.add("water", 0.1 * k, {"surface_load.force": np.full((5, 3), float(k))})
+            recorder.add("cubes", Instant(0.1 * k, k), _row(k, n))
+            recorder.add(
+                "water", Instant(0.1 * k, k), {"surface_load.force": np.full((5, 3), float(k))}
+            )
 
 
 @pytest.mark.parametrize("rows", [0, 1, 63, 64, 65, 200])
@@ -60,7 +62,7 @@ def test_recording_keeps_the_bits_of_numbers_that_compare_oddly(tmp_path):
     odd = np.array([[-0.0, np.nan, -np.inf], [5e-324, np.nextafter(1, 2), -np.nan]])
     with Recorder(tmp_path / "o.h5", "", "") as recorder:
         recorder.component("water", (SURFACE_LOAD,), {})
-        recorder.add("water", 0.0, {"surface_load.force": odd})
+        recorder.add("water", Instant(0.0, 0), {"surface_load.force": odd})
     with Recording(tmp_path / "o.h5") as recording:
         assert recording.row("water", 0)["surface_load.force"].tobytes() == odd.tobytes()
 
@@ -71,8 +73,8 @@ def test_recording_holds_rows_larger_than_a_batch_and_items_that_are_none(tmp_pa
         recorder.component("water", (SURFACE_LOAD,), {})
         recorder.component("dust", (SURFACE_LOAD,), {})
         for k in range(2):
-            recorder.add("water", float(k), {"surface_load.force": big + k})
-            recorder.add("dust", float(k), {"surface_load.force": big[:0]})
+            recorder.add("water", Instant(float(k), k), {"surface_load.force": big + k})
+            recorder.add("dust", Instant(float(k), k), {"surface_load.force": big[:0]})
     with Recording(tmp_path / "big.h5") as recording:
         assert np.array_equal(recording.row("water", 1)["surface_load.force"], big + 1)
         assert recording.row("dust", 1)["surface_load.force"].shape == (0, 3)
@@ -82,7 +84,7 @@ def test_recording_does_not_keep_the_arrays_it_is_given(tmp_path):
     force = np.ones((2, 3))
     with Recorder(tmp_path / "k.h5", "", "") as recorder:
         recorder.component("water", (SURFACE_LOAD,), {})
-        recorder.add("water", 0.0, {"surface_load.force": force})
+        recorder.add("water", Instant(0.0, 0), {"surface_load.force": force})
         force[:] = 7.0
     with Recording(tmp_path / "k.h5") as recording:
         assert (recording.row("water", 0)["surface_load.force"] == 1.0).all()
@@ -91,14 +93,14 @@ def test_recording_does_not_keep_the_arrays_it_is_given(tmp_path):
 def test_a_killed_run_leaves_all_flushed_rows(tmp_path):
     script = f"""
 import os, signal, numpy as np
-from quintet.coupler.files.recording import Recorder
+from quintet.coupler.files.recording import Instant, Recorder
 from quintet.interfaces.ports import SURFACE_LOAD
 recorder = Recorder({str(tmp_path / "recording.h5")!r}, "", "")
 recorder.component("water", (SURFACE_LOAD,), {{}})
 for k in range(70):
-    recorder.add("water", k, {{"surface_load.force": np.full((4, 3), k)}})
+    recorder.add("water", Instant(k, k), {{"surface_load.force": np.full((4, 3), k)}})
 recorder.flush()
-recorder.add("water", 70, {{"surface_load.force": np.zeros((4, 3))}})
+recorder.add("water", Instant(70, 70), {{"surface_load.force": np.zeros((4, 3))}})
 os.kill(os.getpid(), signal.SIGKILL)
 """
     killed = subprocess.run([sys.executable, "-c", script], env=os.environ, check=False)
@@ -112,14 +114,14 @@ def test_a_row_that_differs_in_names_or_shape_from_the_first_is_refused(tmp_path
     with Recorder(tmp_path / "w.h5", "", "") as recorder:
         recorder.component("cubes", (MOTION,), {})
         with pytest.raises(PortError, match=r"Did you mean motion\.velocity"):
-            recorder.add("cubes", 0.0, {"motion.velocty": np.zeros((1, 3))})
+            recorder.add("cubes", Instant(0.0, 0), {"motion.velocty": np.zeros((1, 3))})
         with pytest.raises(PortError, match=r"must have shape \(n, \*\(3,\)\)"):
-            recorder.add("cubes", 0.0, {"motion.velocity": np.zeros((1, 2))})
-        recorder.add("cubes", 0.0, {"motion.velocity": np.zeros((4, 3))})
+            recorder.add("cubes", Instant(0.0, 0), {"motion.velocity": np.zeros((1, 2))})
+        recorder.add("cubes", Instant(0.0, 0), {"motion.velocity": np.zeros((4, 3))})
         with pytest.raises(PortError, match="must keep its shape"):
-            recorder.add("cubes", 0.1, {"motion.velocity": np.zeros((1, 3))})
+            recorder.add("cubes", Instant(0.1, 1), {"motion.velocity": np.zeros((1, 3))})
         with pytest.raises(PortError, match="must have the fields of the first"):
-            recorder.add("cubes", 0.1, {})
+            recorder.add("cubes", Instant(0.1, 1), {})
     with Recording(tmp_path / "w.h5") as recording:
         assert len(recording.times("cubes")) == 1
 

@@ -23,14 +23,14 @@ from quintet.coupler.launch.connect import connect
 from quintet.coupler.scene.read import load
 folder, count = Path(sys.argv[1]), int(sys.argv[2])
 connection = connect(load(str(folder / "scene.toml")), folder, lambda: False)
-part = connection.parts["echo"]
-part.ask("describe")
-part.ask("bind", {}, works=[])
+part = connection.participants["echo"]
+part.call("describe")
+part.bind({}, works=[], joined=["passed", "returned"], wanted=["returned.value"])
 value = np.zeros(part.give()["returned.value"].shape)
-part.ask("prime", {"passed.value": value})
+part.call("prime", {"passed.value": value})
 for window in range(count):
     value[:] = window + 1.0
-    part.start(window, 1.0, {"passed.value": value}, ["passed.value"], False)
+    part.start(1.0, {"passed.value": value}, ["passed.value"])
     if window == count // 2:
         time.sleep(8.0)  # the answer lies there for longer than a silent component may take
     found = part.finish().fields["returned.value"]

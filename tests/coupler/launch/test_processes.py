@@ -121,11 +121,11 @@ def test_ending_leaves_no_process_and_no_file(watched, tmp_path):
     assert not watch.alive() and not left.exists()
 
 
-def test_a_component_gets_its_threads_and_its_folders(monkeypatch, tmp_path):
+def test_a_component_gets_its_threads_and_the_import_path_without_where_we_are(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", f"/elsewhere{os.pathsep}")
-    made = environment(3, ["/scene", "/scene", "/here"])
+    made = environment(3)
     assert made["NUMBA_NUM_THREADS"] == made["OMP_NUM_THREADS"] == "3"
-    assert made["PYTHONPATH"].split(os.pathsep) == ["/scene", "/here", "/elsewhere"]
+    assert made["PYTHONPATH"] == "/elsewhere"
 
 
 def test_a_log_is_quoted_from_its_end(tmp_path):

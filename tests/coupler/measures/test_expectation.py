@@ -5,7 +5,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from quintet.coupler.files.recording import Recorder, Recording
+from quintet.coupler.files.recording import Instant, Recorder, Recording
 from quintet.coupler.measures.expectation import (
     Expectation,
     check,
@@ -29,7 +29,7 @@ def recording(tmp_path):
             t = k * END / WINDOWS
             row = {"motion.position": np.array([[0.0, 0.0, 0.0], [1.0 + t, 0.0, np.sin(t)]])}
             row["load.force"] = np.full((2, 1), min(k, 1) * END / WINDOWS) * [[3.0, 0.0, 4.0]]
-            recorder.add("cubes", t, row)
+            recorder.add("cubes", Instant(t, k), row)
     with Recording(tmp_path / "recording.h5") as found:
         yield found
 
@@ -145,7 +145,7 @@ def test_a_run_that_finished_no_window_meets_nothing(tmp_path, rows):
     with Recorder(tmp_path / "recording.h5", "", "") as recorder:
         recorder.component("cubes", (MOTION,), {})
         for _ in range(rows):
-            recorder.add("cubes", 0.0, {"motion.position": np.zeros((2, 3))})
+            recorder.add("cubes", Instant(0.0, 0), {"motion.position": np.zeros((2, 3))})
     with Recording(tmp_path) as found:
         outcome = evaluate(_expectation(measure="max", value=0.0), found, tmp_path)
     assert outcome.value is None and not outcome.met

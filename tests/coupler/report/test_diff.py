@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quintet.coupler.files.recording import Recorder
+from quintet.coupler.files.recording import Instant, Recorder
 from quintet.coupler.report.diff import compare, sentence
 from quintet.interfaces.ports import MOTION, SURFACE_LOAD
 
@@ -14,7 +14,7 @@ ROWS = 150
 
 def _record(path, change=None, rows=ROWS, names=("cubes", "water"), n=4, mass=1.0, port=MOTION):
     """Record two components; `change` edits the fields of a component at a row."""
-    with Recorder(path, str(path), "") as recorder:
+    with Recorder(path, str(path), "", 0.01) as recorder:
         for name in names:
             static = {"motion.mass": np.full(n, mass)} if name == "cubes" else {}
             recorder.component(name, (port if name == "cubes" else SURFACE_LOAD,), static)
@@ -27,7 +27,7 @@ def _record(path, change=None, rows=ROWS, names=("cubes", "water"), n=4, mass=1.
             if change is not None:
                 change(k, fields)
             for name in names:
-                recorder.add(name, 0.01 * k, fields[name])
+                recorder.add(name, Instant(0.01 * k, k), fields[name])
     return path
 
 
@@ -94,7 +94,7 @@ def test_different_numbers_of_items_are_named(tmp_path):
     for path, n in ((a, 3), (b, 4)):
         with Recorder(path, "", "") as recorder:
             recorder.component("water", (SURFACE_LOAD,), {})
-            recorder.add("water", 0.0, {"surface_load.force": np.zeros((n, 3))})
+            recorder.add("water", Instant(0.0, 0), {"surface_load.force": np.zeros((n, 3))})
     found = compare(a, b)
     assert found is not None and found.kind == "items"
     assert "(3, 3) against shape (4, 3)" in sentence(found)
@@ -106,7 +106,7 @@ def test_windows_at_different_times_differ(tmp_path, original):
     import h5py
 
     with h5py.File(b, "r+") as file:
-        file["components/water/times"][7] = 0.5
+        file["components/water/ticks"][7] = 50
     found = compare(original, b)
     assert found is not None and (found.kind, found.window) == ("time", 7)
     assert "at 0.07 s against 0.5 s" in sentence(found)

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from quintet.coupler.files.recording import Recorder, Recording
+from quintet.coupler.files.recording import Instant, Recorder, Recording
 from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.measures.expectation import Expectation, evaluate
 from quintet.coupler.report.pictures import comparison, side_views
@@ -83,7 +83,8 @@ def test_comparison_draws_a_panel_for_each_reference_curve(tmp_path):
     with Recorder(tmp_path / "recording.h5", "", "") as recorder:
         recorder.component("cubes", (MOTION,), {})
         for k in range(50):
-            recorder.add("cubes", 0.02 * k, {"motion.position": np.array([[0.02 * k, 0.0, 0.0]])})
+            row = {"motion.position": np.array([[0.02 * k, 0.0, 0.0]])}
+            recorder.add("cubes", Instant(0.02 * k, k), row)
     (tmp_path / "ref.csv").write_text("t,x\n0,0\n0.5,0.52\n0.9,0.9\n")
     common = dict(component="cubes", field="motion.position", axis=0, unit="m", source="s")
     ones = [

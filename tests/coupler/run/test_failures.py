@@ -82,13 +82,33 @@ def test_a_failing_component_in_memory_is_reported_alike(tmp_path):
 
 
 @pytest.mark.zenoh
-def test_a_component_killed_before_it_joined_is_reported(tmp_path):
+def test_a_component_killed_before_it_joined_is_reported(tmp_path, monkeypatch):
     scene = write_scene(tmp_path, "zenoh")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     (tmp_path / "sitecustomize.py").write_text(
-        "import os, sys\nif 'pong' in sys.argv[-3:]: os._exit(7)\n"
+        "import os, sys\nif 'pong' in sys.argv: os._exit(7)\n"
     )
     run = Started(scene)
     assert run.wait() == 3
     assert "pong failed in window 0: did not join: process" in run.err
     assert "ended by itself with status 7" in run.err
+    check_end(run)
+
+
+SAID = {
+    "sys.exit": "SystemExit: asked Python to exit, with status 0; raise an error instead",
+    "long": "ArithmeticError: asked to say much and more ",
+    "odd": r"ArithmeticError: asked to say \udcff",
+}
+
+
+@pytest.mark.parametrize("transport", ["memory", *OVER])
+@pytest.mark.parametrize("by", SAID)
+def test_an_end_that_python_asks_for_and_odd_texts_keep_their_cause(tmp_path, transport, by):
+    run, _ = failing(tmp_path, transport, by)
+    assert run.wait() == 3
+    fault = run.results["fault"]
+    assert fault["component"] == "pong" and fault["cause"].startswith(SAID[by])
+    if by == "long":
+        assert fault["cause"].endswith("and more to the end")
     check_end(run)

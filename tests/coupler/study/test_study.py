@@ -23,7 +23,7 @@ PLAIN = """
 label = "as it is"
 settings = {}
 """
-STEPS = (0.02, 0.01, 0.005)
+STEPS = (1 / 64, 1 / 128, 1 / 256)  # lengths that windows which follow the state can have
 
 
 def refinements(*steps):
@@ -31,7 +31,7 @@ def refinements(*steps):
 
 
 def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
-    status, found = found_by("study", write(tmp_path, refinements(*STEPS)))
+    status, found = found_by("study", write(tmp_path, refinements(*STEPS), within=1e-3))
     assert status == 0
     # Leap-frog turns by 2 asin(ω dt / 2) a step: its phase is wrong by ω³ dt² / 24 per second.
     for row, step in zip(found["rows"], STEPS, strict=True):
@@ -45,9 +45,9 @@ def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
     assert found["orders"]["end"] == pytest.approx(2.0, abs=0.05)
     assert found["richardson"]["end"] == pytest.approx(2.0, abs=0.05)
     assert [row["met"] for row in found["rows"]] == [False, False, True]
-    assert found["recommended"]["label"] == "0.005"
+    assert found["recommended"]["label"] == "0.00390625"
     said = capsys.readouterr().out
-    assert "recommended: 0.005, the cheapest that meets all expectations" in said
+    assert "recommended: 0.00390625, the cheapest that meets all expectations" in said
     assert "order of end: 2.0" in said and "not met" in said
 
 
@@ -173,7 +173,7 @@ def test_an_interrupted_study_keeps_and_tells_the_refinements_that_ran(tmp_path,
 
 
 def test_a_study_keeps_what_was_done_of_the_same_scene_alone(tmp_path, capsys):
-    path = write(tmp_path, refinements(0.02, 0.01))
+    path = write(tmp_path, refinements(*STEPS[:2]))
     _, before = found_by("study", path)
     write(tmp_path, refinements(*STEPS))
     capsys.readouterr()
@@ -181,7 +181,7 @@ def test_a_study_keeps_what_was_done_of_the_same_scene_alone(tmp_path, capsys):
     said = capsys.readouterr().out
     assert status == 0 and found["rows"][:2] == before["rows"]
     assert [f"{step}: kept" in said for step in STEPS] == [True, True, False]
-    failed = tmp_path / "all" / "0.01" / "results.json"
+    failed = tmp_path / "all" / str(STEPS[1]) / "results.json"
     failed.write_text(json.dumps(json.loads(failed.read_text()) | {"status": "failed"}))
     found_by("study", path, "--keep")
     said = capsys.readouterr().out
@@ -197,4 +197,5 @@ def test_a_window_is_never_longer_than_the_step_it_is_made_from(tmp_path):
         "run", path, "--set", "components.spring.step=0.03", "--out", tmp_path / "o"
     ) in (0, 1)
     results = json.loads((tmp_path / "o" / "results.json").read_text())
-    assert results["windows"] == results["timing"]["components"]["spring"]["steps"] == 34
+    assert results["windows"] == results["timing"]["components"]["spring"]["steps"]
+    assert 34 <= results["windows"] <= 34 * 8 / 7  # at most an eighth of the step is lost

@@ -39,7 +39,7 @@ class Spring(Component):
     def pull(self):
         return -self.params.stiffness / self.params.mass * self.position
 
-    def give(self):
+    def give(self, wanted):
         fields = {"position": self.position.copy(), "velocity": self.velocity.copy()}
         return {f"motion.{name}": field for name, field in fields.items()}
 

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import time
 from typing import Literal
 
@@ -23,7 +24,9 @@ class Toy(Component):
         pause: float = 0.0  # s, of every step
         substeps: Count = 1  # of a window of 1 ms
         fails_at: int = -1
-        fails_by: Literal["raise", "exit", "kill", "stop", "nan"] = "raise"
+        fails_by: Literal["raise", "long", "odd", "sys.exit", "exit", "kill", "stop", "nan"] = (
+            "raise"
+        )
         moment: str = ""  # file for the time of the failure
 
     takes = (Port("in", NUMBER),)
@@ -58,6 +61,12 @@ class Toy(Component):
         match self.params.fails_by:
             case "raise":
                 raise ArithmeticError("asked to raise")
+            case "long":
+                raise ArithmeticError("asked to say much " + 200_000 * "and more " + "to the end")
+            case "odd":
+                raise ArithmeticError("asked to say \udcff")
+            case "sys.exit":
+                sys.exit(0)
             case "exit":
                 os._exit(0)
             case "kill":
@@ -67,7 +76,7 @@ class Toy(Component):
             case "nan":
                 self.value = np.full_like(self.value, np.nan)
 
-    def give(self):
+    def give(self, wanted):
         return {"out.number": self.value.copy(), "out.push": self.push.copy()}
 
     def save(self):

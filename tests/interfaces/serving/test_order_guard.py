@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from quintet.interfaces.errors import OrderError
-from quintet.interfaces.serving.order_guard import LEGAL, Guard
+from quintet.interfaces.serving.order_guard import LEGAL, OrderGuard
 
 ORDERS = sorted({order for orders in LEGAL.values() for order in orders} | {"go", "", "advance2"})
 WAYS = {
@@ -17,7 +17,7 @@ WAYS = {
 
 
 def guard(state):
-    made = Guard("water")
+    made = OrderGuard("water")
     for order in WAYS[state]:
         made.allow(order)
     assert made.state == state

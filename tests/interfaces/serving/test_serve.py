@@ -45,7 +45,7 @@ class Spring(Component):
         self.x = self.x + dt * self.v
         self.times.append(dt)
 
-    def give(self):
+    def give(self, wanted):
         return {"push.force": -self.force, "motion.position": self.x.copy()}
 
     def save(self):
@@ -217,7 +217,7 @@ def test_numbers_that_are_not_finite_are_refused_on_arrival():
 )
 def test_outputs_that_do_not_fit_their_ports_are_refused(given, words):
     server = served([1.0])
-    server.component.give = lambda: given
+    server.component.give = lambda wanted: given
     with pytest.raises(PortError, match=words):
         server.handle(Message({"order": "give"}))
 
@@ -244,7 +244,7 @@ def test_an_error_goes_back_over_the_line_with_its_traceback(capsys):
 
 def test_a_port_without_items_is_served():
     server = served([WINDOW])
-    server.component.give = lambda: {
+    server.component.give = lambda wanted: {
         "push.force": np.zeros((0, 3)),
         "motion.position": np.zeros((N, 3)),
     }

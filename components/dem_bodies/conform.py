@@ -1,0 +1,58 @@
+"""What the laws of the contract are tried on: two bodies without weight that hover over a floor."""
+
+from typing import Any
+
+import numpy as np
+
+from quintet.interfaces.manifest import ConformCase
+
+WOOD = {"youngs_modulus": 1e7, "poissons_ratio": 0.3, "restitution": 0.5, "friction": 0.4}
+BOX = {"shape": "box", "size": [0.1, 0.1, 0.1], "density": 500.0, "material": "wood"}
+BALL = {"shape": "sphere", "diameter": 0.1, "density": 500.0, "material": "wood"}
+WEDGE = {
+    "shape": "polygon",
+    "corners": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]],
+    "density": 500.0,
+    "material": "wood",
+    "position": [1.0, 2.0, 3.0],
+}
+WHEEL = {**BALL, "shape": "disc", "position": [1.0, 2.0, 3.12]}
+NONE = np.zeros((2, 3))
+
+
+def cases() -> tuple[ConformCase, ...]:
+    """Boxes and spheres; contact forces wanted; two spheres that collide; two dimensions."""
+    boxes, balls = _above_floor(BOX, 3.2), _above_floor(BALL, 3.15)
+    strike = {**balls, "contact_forces": True, "planes": []}
+    first, second = (dict(one) for one in balls["bodies"])
+    strike["bodies"] = [
+        {**first, "velocity": [0.0, 0.0, 2.0], "angular_velocity": [3.0, 0.0, 0.0]},
+        {**second, "position": [1.0, 2.0, 3.1001]},
+    ]
+    plane = {**boxes, "dimensions": 2, "bodies": [WEDGE, WHEEL]}
+    return (
+        _case("boxes", boxes),
+        _case("boxes, contact forces", {**boxes, "contact_forces": True}),
+        _case("spheres", balls),
+        _case("spheres that collide", strike, still=False, smooth=False),
+        _case("two dimensions", plane, forces=()),  # the plane takes the loads across it
+    )
+
+
+def _above_floor(body: dict[str, Any], height: float) -> dict[str, Any]:
+    floor = {"point": [0.0, 0.0, 2.9], "normal": [0.0, 0.0, 1.0], "material": "wood"}
+    return {
+        "gravity": [0.0, 0.0, 0.0],
+        "materials": {"wood": WOOD},
+        "bodies": [{**body, "position": [1.0, 2.0, z]} for z in (3.0, height)],
+        "planes": [floor],
+    }
+
+
+def _case(name: str, params: dict[str, Any], **more: Any) -> ConformCase:
+    loads: dict[str, Any] = {
+        "rest": {"load.force": NONE, "load.torque": NONE},
+        "scale": {"load.force": 1.0, "load.torque": 0.1},
+        "forces": ("load.force",),
+    }
+    return ConformCase(name, params, dt=1e-4, **(loads | more))

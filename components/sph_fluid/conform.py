@@ -1,0 +1,54 @@
+"""What the laws of the contract are tried on: a drop without weight, two samples at its side."""
+
+from typing import Any
+
+import numpy as np
+
+from quintet.interfaces.component import Fields
+from quintet.interfaces.manifest import ConformCase
+
+DROP = {
+    "spacing": 0.05,
+    "sound_speed": 20.0,
+    "gravity": [0.0, 0.0, 0.0],
+    "fluid": [[[0.0, 0.0, 0.0], [0.2, 0.2, 0.2]]],
+}
+MIRRORED = {
+    "boundary": {"method": "mdbc", "lubrication_films": True},
+    "density_diffusion": 0.1,
+    "negative_pressure": True,
+}
+GAUGES = {"motion_gauge": True, "front_gauge": "x", "pressure_gauges": [[0.1, 0.1, 0.1]]}
+PLACES = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])  # (2, 3) m, of the samples
+
+
+def cases() -> tuple[ConformCase, ...]:
+    """Walls of either kind, both integrators, gauges, two dimensions."""
+    twice = {**DROP, "integration": "symplectic"}
+    slab = {**DROP, "dimensions": 2, "fluid": [[[0.0, 0.0, 0.0], [0.2, 1.0, 0.2]]]}
+    return (
+        _case("drop", DROP),
+        _case("drop, mirrored walls and films", {**DROP, **MIRRORED}, mirror=True),
+        _case("drop, symplectic, with gauges", {**twice, "gauges": GAUGES}),
+        _case("drop in two dimensions", slab, volume=2.5e-3),
+    )
+
+
+def _case(
+    name: str, params: dict[str, Any], mirror: bool = False, volume: float = 1.25e-4
+) -> ConformCase:
+    static: Fields = {
+        "surface.normal": np.tile([0.0, 0.0, 1.0], (2, 1)),
+        "surface.volume": np.full(2, volume),
+        "surface.body": np.arange(2.0) if mirror else np.zeros(2),
+    }
+    rest = {"surface.position": PLACES, "surface.velocity": np.zeros((2, 3))}
+    return ConformCase(
+        name,
+        params,
+        static=static,
+        rest=rest | ({"surface.mirror": PLACES} if mirror else {}),
+        scale={"surface.velocity": 1.0},
+        dt=1e-4,
+        forces=("surface_load.force",),
+    )

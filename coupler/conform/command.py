@@ -1,0 +1,95 @@
+"""``quintet conform``: one line for each law, and the status by which a script knows."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.conform.cases import manifest_of, of_file, of_kind, of_scene, trials
+from quintet.coupler.conform.check import Finding, try_all
+from quintet.coupler.conform.laws import name_of
+from quintet.coupler.conform.trial import Trial
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.manifest import ConformCase, Manifest
+
+SLOW = 1.0  # s; what takes longer says so
+
+
+def run_conform(given: argparse.Namespace) -> int:
+    """Try the laws on a kind; 0 if all that apply are kept, else 1."""
+    manifest, cases, folder = choose(given)
+    found: dict[str, list[Finding]] = {}
+    with trials(manifest, cases, folder) as ready:
+        for trial in ready:
+            print(f"{manifest.kind}, {trial.case.name}", flush=True)
+            found[trial.case.name] = report(trial)
+    all_found = [one for findings in found.values() for one in findings]
+    counts = {status: sum(one.status == status for one in all_found) for status in STATUSES}
+    print(f"{manifest.kind} {summary(counts)}")
+    if counts["failed"] > 1:
+        print("Begin with the first that failed: others may follow from it.")
+    if given.json:
+        entries = [{"case": k, "laws": [_entry(one) for one in v]} for k, v in found.items()]
+        result = {"kind": manifest.kind, "conforms": not counts["failed"], "cases": entries}
+        given.json.write_text(json.dumps(result, indent=2))
+    return 1 if counts["failed"] else 0
+
+
+STATUSES = ("passed", "failed", "does not apply")
+
+
+def choose(given: argparse.Namespace) -> tuple[Manifest, tuple[ConformCase, ...], Path | None]:
+    """What is tried: a kind's own cases, parameters of a file, or a component of a scene."""
+    if bool(given.scene) != bool(given.component) or (given.scene and given.params):
+        raise SceneError("conform needs --scene with --component, or --params, or neither.")
+    if not given.scene:
+        if (given.preset or given.settings) or not given.kind:
+            raise SceneError("conform needs a KIND; --preset and --set belong to --scene.")
+        manifest = manifest_of(given.kind)
+        if given.params:
+            return manifest, (of_file(given.params),), given.params.resolve().parent
+        return manifest, of_kind(manifest, given.case), None
+    manifest, case, folder = of_scene(given.scene, given.component, given.preset, given.settings)
+    if given.kind and given.kind != manifest.kind:
+        raise SceneError(
+            f"conform: {given.component} of {given.scene} is of kind {manifest.kind}; found "
+            f"{given.kind}. Leave the kind out."
+        )
+    return manifest, (case,), folder
+
+
+def report(trial: Trial) -> list[Finding]:
+    """Try all laws and print a line for each; in a terminal, the one that is being tried too."""
+    found, live = [], sys.stdout.isatty()
+    for law, finding in try_all(trial):
+        if finding is None:
+            if live:
+                print(f"  {'...':<16}{name_of(law)}", end="\r", flush=True)
+            continue
+        print(line(finding), flush=True)
+        found.append(finding)
+    return found
+
+
+def line(finding: Finding) -> str:
+    """One finding."""
+    took = f" ({finding.seconds:.1f} s)" if finding.seconds >= SLOW else ""
+    said = f": {finding.said}" if finding.said else ""
+    return f"  {finding.status:<16}{finding.law}{said}{took}"
+
+
+def summary(counts: dict[str, int]) -> str:
+    """How many laws were kept, broken, and did not apply."""
+    verdict = "conforms" if not counts["failed"] else "does not conform"
+    passed, failed, others = counts.values()
+    return f"{verdict}; {passed} passed, {failed} failed, {others} do not apply"
+
+
+def _entry(finding: Finding) -> dict[str, Any]:
+    return {
+        "law": finding.law,
+        "status": finding.status,
+        "said": finding.said,
+        "seconds": round(finding.seconds, 3),
+    }

@@ -1,0 +1,234 @@
+"""A group: components with a scheme and windows of their own, stepped together as one member.
+
+Within a window of the coupling around it a group steps through its own windows. What comes from
+beyond it is interpolated between the ends of the outer window, as a component's inputs are over
+its steps; impulses that go beyond it are summed.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.exchange import Exchange, WindowInputs
+from quintet.coupler.coupling.ledger import Ledger
+from quintet.coupler.coupling.participant import Participant
+from quintet.coupler.coupling.plan import CouplingPlan
+from quintet.coupler.coupling.schedule import (
+    Costs,
+    Coupling,
+    Given,
+    Member,
+    Single,
+    Sums,
+    Window,
+)
+from quintet.coupler.coupling.schemes import advance
+from quintet.coupler.coupling.windows import Windows
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.serving.inputs import Inputs
+
+
+class Group:
+    """A coupling that is a member of another one."""
+
+    def __init__(self, inner: Coupling) -> None:
+        self.inner: Coupling | None = inner
+        self.coupling = inner
+        self.components: Mapping[str, Participant] = inner.components
+        self.inputs = {  # from beyond the group
+            name: Inputs(inner.exchange.ports[name][0]) for name in self.components
+        }
+        self._dt = 0.0  # s, the outer window
+        self._taken: set[str] = set()  # components that take something from beyond it
+        self._kept: dict[int, dict[str, Any]] = {}
+        inner.outside = self._outside
+
+    def stable(self) -> float:
+        """See `Member.stable`: its own longest window, or what its members allow."""
+        window = self.coupling.plan.window
+        return self.coupling.allowed() if window == "auto" else window
+
+    def start(self, coupling: Coupling, window: Window, inputs: dict[str, WindowInputs]) -> None:
+        """See `Member.start`."""
+        self._dt, self._taken = window.dt, set(inputs)
+        for name, one in inputs.items():
+            self.inputs[name].arrive(one.fields, one.ends, window.dt)
+        self._begin(coupling.windows, window)
+
+    def _begin(self, outer: Windows, window: Window) -> None:
+        """Lay the group's windows into one of the coupling around it."""
+        mine, plan = self.coupling.windows, self.coupling.plan
+        if plan.follows(self.coupling.exchange):
+            mine.tick, mine.end, mine.follows = outer.tick, window.ticks, plan.window == "auto"
+            mine.follows = mine.follows or bool(self.coupling.equal)
+            mine.length = float("inf") if plan.window == "auto" else plan.window
+            mine.begin()
+            return
+        assert plan.window != "auto"
+        mine.divide(window.dt, plan.window)
+
+    def _outside(self, name: str) -> WindowInputs | None:
+        """What a component gets from beyond the group in the group's present window."""
+        if name not in self._taken:
+            return None
+        mine, inputs = self.coupling.windows, self.inputs[name]
+        begin, end = mine.time, mine.time_after
+        found = WindowInputs()
+        for key, rate in inputs.rate.items():
+            found.fields[key] = rate * (end - begin)
+        for key in inputs.start:
+            known = key in inputs.end
+            found.fields[key] = inputs.value(key, end if known else begin, self._dt)
+            if known:
+                found.ends.append(key)
+        return found
+
+    def finish(self, coupling: Coupling, window: Window) -> Given:
+        """See `Member.finish`: step through the group's windows."""
+        total: dict[str, dict[str, Array]] = {}
+        sent: dict[str, dict[str, Any]] = {}
+        windows = self.coupling.windows
+        while not windows.finished:
+            advance(self.coupling, lambda now: window.totals and now >= windows.end)
+            for name in self.components:
+                self._add(total.setdefault(name, {}), name)
+                _add_sums(sent.setdefault(name, {}), self.coupling.sent[name])
+        return Given({name: fields for name, fields in total.items()}, sent)
+
+    def _add(self, total: dict[str, Array], name: str) -> None:
+        gives = self.coupling.exchange.gives[name]
+        for key, array in self.coupling.outputs[name].items():
+            summed = gives[key].centring == "impulse" and key in total
+            total[key] = total[key] + array if summed else array
+
+    def book(self, coupling: Coupling, window: Window) -> None:
+        """See `Member.book`: its own windows have done so."""
+
+    def keep(self, depth: int) -> None:
+        """See `Member.keep`."""
+        books = {"ledger": self.coupling.ledger.save(), "log": self._log_sizes()}
+        self._kept[depth] = {**self.save(), **books}
+        for one in self.components.values():
+            one.order_keep(depth)
+
+    def rewind(self, depth: int) -> None:
+        """See `Member.rewind`: the books of its own windows come back too."""
+        self.load(self._kept[depth])
+        self.coupling.ledger.load(self._kept[depth]["ledger"])
+        for log, size in self._kept[depth]["log"]:
+            log.cut(size)
+        for one in self.components.values():
+            one.order_rewind(depth)
+
+    def _log_sizes(self) -> list[tuple[ConvergenceLog, int]]:
+        """Logs of the group and of those in it, and their lengths [bytes]."""
+        log = self.coupling.log
+        sizes = [(log, log.size())] if log else []
+        for one in self.coupling.members.values():
+            sizes += one._log_sizes() if isinstance(one, Group) else []
+        return sizes
+
+    def confirm(self) -> None:
+        """See `Member.confirm`."""
+        for one in self.components.values():
+            one.receive()
+
+    def save(self) -> dict[str, Any]:
+        """What outlives a window, for a snapshot and for windows that are repeated."""
+        inner = [one for one in self.coupling.members.values() if isinstance(one, Group)]
+        return {
+            "coupling": self.coupling.save(),
+            "inputs": {name: one.save() for name, one in self.inputs.items()},
+            "groups": [one.save() for one in inner],
+        }
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to what was saved."""
+        self.coupling.load(state["coupling"])
+        for name, inputs in self.inputs.items():
+            inputs.load(state["inputs"][name])
+        inner = [one for one in self.coupling.members.values() if isinstance(one, Group)]
+        for one, saved in zip(inner, state["groups"], strict=True):
+            one.load(saved)
+
+
+def assemble(
+    plan: CouplingPlan,
+    participants: Mapping[str, Participant],
+    exchange: Exchange,
+    ledger: Ledger,
+    logs: Mapping[str, ConvergenceLog] | None = None,
+    costs: Costs | None = None,
+    depth: int = 0,
+) -> Coupling:
+    """Make the coupling of a plan, with its groups; `logs` are those of convergence, by name."""
+    costs, logs = costs or Costs(), logs or {}
+    members: dict[str, Member] = {}
+    for name, inner in plan.members.items():
+        if inner is None:
+            members[name] = Single(participants[name])
+        else:
+            made = assemble(inner, participants, exchange, ledger, logs, costs, depth + 1)
+            members[name] = Group(made)
+    return Coupling(plan, members, exchange, ledger, depth, costs, logs.get(plan.name))
+
+
+def join_ports(
+    coupling: Coupling, described: Mapping[str, Fields], asked: Mapping[str, Iterable[str]]
+) -> None:
+    """Join all ports and hand out what holds at the start.
+
+    Parameters
+    ----------
+    described : mapping
+        Static fields that each component told.
+    asked : mapping
+        Outputs of each component that somebody wants who is no component.
+    """
+    exchange, participants = coupling.exchange, coupling.components
+    static = exchange.bind(described)
+    for name, one in participants.items():
+        wanted = exchange.wanted(name, asked.get(name, ()))
+        header = {"works": exchange.works(name), "joined": exchange.joined(name), "wanted": wanted}
+        one.bind(static[name], **header)
+    # Motion is known at once; forces, which follow from it, are zero before the first window.
+    outputs = {name: one.give() for name, one in participants.items()}
+    exchange.count_rows(outputs)
+    _begin(coupling, outputs)
+    for name, one in participants.items():
+        numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == name]
+        instants = _instants(exchange, name, numbers, outputs)
+        one.call("prime", instants)
+        coupling.ledger.primed(name, instants)
+
+
+def _instants(
+    exchange: Exchange, name: str, numbers: Iterable[int], outputs: Mapping[str, Fields]
+) -> dict[str, Array]:
+    deliveries = [(exchange.deliver(number, outputs, outputs), False) for number in numbers]
+    fields = exchange.merge(name, deliveries).fields
+    return {k: v for k, v in fields.items() if not exchange.is_impulse(name, k)}
+
+
+def _begin(coupling: Coupling, outputs: Mapping[str, Fields]) -> None:
+    """Give a coupling, and its groups, the outputs at the start."""
+    for name in coupling.components:
+        coupling.outputs[name] = coupling.previous[name] = outputs[name]
+        coupling.sent[name] = {}
+    exchange = coupling.exchange
+    for member, one in coupling.members.items():
+        if not isinstance(one, Group):
+            continue
+        _begin(one.coupling, outputs)
+        for name in one.components:
+            numbers = [
+                number
+                for number, (_, taker) in coupling.transfers.items()
+                if taker == member and exchange.transfers[number].taker == name
+            ]
+            one.inputs[name].arrive(_instants(exchange, name, numbers, outputs), (), 1.0)
+
+
+def _add_sums(total: dict[str, Any], sums: Sums) -> None:
+    for key, one in sums.items():
+        total[key] = [a + b for a, b in zip(total[key], one, strict=True)] if key in total else one

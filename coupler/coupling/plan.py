@@ -1,0 +1,131 @@
+"""The plan of a coupling: its members, scheme and window, and what its links allow of these."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, Union
+
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.iteration_settings import IterationSettings
+
+Scheme = Literal["serial", "parallel", "iterated"]
+
+
+@dataclass(frozen=True, slots=True)
+class CouplingPlan:
+    """A coupling as a scene has it: of the whole run, or of a group.
+
+    Parameters
+    ----------
+    name : str
+        Of the group; "" of the whole run.
+    members : mapping
+        Components (None) and groups (their own plans), in the order in which they step.
+    scheme : str
+        How windows are stepped.
+    window : float, s, or "auto"
+        Length of a window.
+    iteration : IterationSettings
+        How windows are repeated, under the scheme iterated.
+    """
+
+    name: str
+    members: Mapping[str, Union["CouplingPlan", None]]
+    scheme: Scheme = "serial"
+    window: float | Literal["auto"] = "auto"
+    iteration: IterationSettings = field(default_factory=IterationSettings)
+
+    def components(self) -> Iterator[str]:
+        """Names of all components, also of those in groups."""
+        for name, inner in self.members.items():
+            if inner is None:
+                yield name
+            else:
+                yield from inner.components()
+
+    def member_of(self, component: str) -> str | None:
+        """Name of the member in which a component is."""
+        for name, inner in self.members.items():
+            if name == component if inner is None else component in inner.components():
+                return name
+        return None
+
+    def transfers(self, exchange: Exchange) -> dict[int, tuple[str, str]]:
+        """Transfers between components of different members, and these: giver, taker."""
+        found = {}
+        for number, one in enumerate(exchange.transfers):
+            giver, taker = self.member_of(one.giver), self.member_of(one.taker)
+            if giver is not None and taker is not None and giver != taker:
+                found[number] = giver, taker
+        return found
+
+    def equal(self, exchange: Exchange) -> set[str]:
+        """Components that must step once in every window of this coupling."""
+        found = set()
+        for number in self.transfers(exchange):
+            if exchange.links[exchange.link_of[number]].demands().equal_steps:
+                one = exchange.transfers[number]
+                found |= {one.giver, one.taker}
+        return found
+
+    def inner(self) -> list["CouplingPlan"]:
+        """Plans of its groups."""
+        return [one for one in self.members.values() if one is not None]
+
+    def iterated(self) -> Iterator[str]:
+        """Names of the couplings that repeat windows: this one, and groups in it."""
+        if self.scheme == "iterated":
+            yield self.name
+        for one in self.inner():
+            yield from one.iterated()
+
+    def follows(self, exchange: Exchange) -> bool:
+        """Whether its windows, or those of a group in it, follow the state."""
+        own = self.window == "auto" or bool(self.equal(exchange))
+        return own or any(one.follows(exchange) for one in self.inner())
+
+
+def mistakes(plan: CouplingPlan, exchange: Exchange) -> list[str]:
+    """Say what the links of a coupling, or of its groups, do not allow."""
+    where = f"groups.{plan.name}" if plan.name else "scene"
+    found = [*_refused_schemes(plan, exchange, where), *_mixed_inputs(plan, exchange, where)]
+    for inner in plan.inner():
+        found += mistakes(inner, exchange)
+    return list(dict.fromkeys(found))
+
+
+def _refused_schemes(plan: CouplingPlan, exchange: Exchange, where: str) -> Iterator[str]:
+    for number, ends in plan.transfers(exchange).items():
+        link = exchange.links[exchange.link_of[number]]
+        demands, transfer = link.demands(), exchange.transfers[number]
+        if plan.scheme not in demands.schemes:
+            yield (
+                f"{where}.scheme must be {' or '.join(demands.schemes)} for link {link.name}; "
+                f"found {plan.scheme}: {demands.reason}. Change the scheme, or put the two in a "
+                "group of their own."
+            )
+        if demands.equal_steps and {transfer.giver, transfer.taker} != set(ends):
+            yield (
+                f"link {link.name}: both sides must make equal steps; one of them is in a group. "
+                "Put both in the same group."
+            )
+
+
+def _mixed_inputs(plan: CouplingPlan, exchange: Exchange, where: str) -> Iterator[str]:
+    """Inputs of which some rows come from before, and some from after their taker."""
+    if plan.scheme != "serial":
+        return
+    order = list(plan.members)
+    sides: dict[tuple[str, str], set[bool]] = {}
+    for number, (giver, taker) in plan.transfers(exchange).items():
+        transfer = exchange.transfers[number]
+        for key in transfer.fills:
+            if not exchange.is_impulse(transfer.taker, key):
+                before = order.index(giver) < order.index(taker)
+                sides.setdefault((transfer.taker, key), set()).add(before)
+    for (component, key), found in sides.items():
+        if len(found) > 1:
+            yield (
+                f"{where}: what {component} takes in {key.partition('.')[0]} must all come from "
+                "components that step before it, or all from ones after it; it comes from both. "
+                "Change the order, or use scheme parallel or iterated."
+            )

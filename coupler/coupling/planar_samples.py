@@ -1,0 +1,207 @@
+"""Filling a rigid body of two dimensions with samples: discs and convex polygons, 1 m deep.
+
+Arrays of points in the plane are (n, 2) m, x and z; what crosses a link is (n, 3), with y 0.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from quintet.coupler.coupling.body_samples import box_lattice
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import LinkError
+from quintet.interfaces.ports import DISC, POLYGON
+
+NEARLY = 1e-9  # of a body's size: what is less makes no difference
+HALVINGS = 60  # of the bracket around the largest circle in a polygon
+
+Samples = tuple[Array, Array, Array]  # arm (n, 3) m, outward normal (n, 3), volume (n,) m3
+
+
+def fill(
+    shape: int,
+    size: Array,
+    corner: Array,
+    spacing: float,
+    depth: float,
+    inset: float | None = None,
+) -> Samples:
+    """Sample one body by a row of points in its plane, to a depth below its surface.
+
+    Parameters
+    ----------
+    shape : int
+        3 disc, 4 polygon.
+    size : (3,) float array, m
+        Of a disc its diameter, 1 m, its diameter.
+    corner : (k, 3) float array, m
+        Corners of a convex polygon, from x to z; (0, 3) of a disc.
+    spacing, depth : float, m
+        Distance of samples; how far below the outermost they reach (deeper ones act on nothing).
+    inset : float, m
+        How far below the surface the outermost samples lie; half a spacing if not given.
+
+    Returns
+    -------
+    arm (n, 3) m from the centre, outward normal (n, 3), volume (n,) m3 of 1 m depth
+    """
+    less = 0.0 if inset is None else inset - 0.5 * spacing
+    if shape == DISC:
+        return _disc(0.5 * size[0] - less, spacing, depth)
+    if shape == POLYGON:
+        outline = offset_inward(corner[:, [0, 2]], less)
+        axes = _right_angles(outline)
+        if axes is None:
+            return _layers(outline, spacing, depth)
+        return _rectangle(outline, axes, spacing, depth)
+    raise LinkError(
+        f"a body's shape must be {DISC} (disc) or {POLYGON} (polygon) to be sampled in two "
+        f"dimensions; found {shape}. Give it one of these shapes, or leave it out of the link."
+    )
+
+
+def width(shape: int, size: Array, corner: Array) -> float:
+    """Diameter [m] of the largest circle in a body."""
+    return 2.0 * inradius(corner[:, [0, 2]]) if shape == POLYGON else float(size[0])
+
+
+def mirrors(shape: int, size: Array, corner: Array, arm: Array, normal: Array) -> Array:
+    """Images (n, 3) m of samples that `fill` made, mirrored in the body's surface."""
+    if shape == DISC:
+        below = 0.5 * size[0] - np.linalg.norm(arm, axis=1)
+        return np.asarray(arm + 2.0 * below[:, None] * normal)
+    away, level = half_planes(corner[:, [0, 2]])
+    below = level - arm[:, [0, 2]] @ away.T  # (n, k) m, under each edge
+    nearest = below.min(axis=1)
+    # Where two edges are equally near the normal goes out between them, and meets both further off.
+    along = normal[:, [0, 2]] @ away.T
+    near = below <= (nearest + NEARLY * np.abs(level).max())[:, None]
+    steepest = np.where(near, along, -np.inf).max(axis=1)
+    return np.asarray(arm + 2.0 * (nearest / steepest)[:, None] * normal)
+
+
+def half_planes(corner: Array) -> tuple[Array, Array]:
+    """Outward normals (k, 2) and levels (k,) m of a convex polygon's edges: inside n·x < level."""
+    along = np.roll(corner, -1, axis=0) - corner
+    away = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    away = away / np.linalg.norm(away, axis=1, keepdims=True)
+    return away, np.einsum("kd,kd->k", away, corner)
+
+
+def area(corner: Array) -> float:
+    """Area [m2] of a polygon that goes round from x to z."""
+    x, z = corner.T
+    return 0.5 * float((x * np.roll(z, -1) - np.roll(x, -1) * z).sum())
+
+
+def offset_inward(corner: Array, distance: float) -> Array:
+    """Corners (k, 2) m of the polygon whose edges lie so far further in; (0, 2): nothing is left.
+
+    Outwards, where the distance is negative, each corner stays between its two edges.
+    """
+    if distance == 0.0:
+        return corner
+    away, level = half_planes(corner)
+    level = level - distance
+    if distance < 0.0:
+        before = np.roll(np.arange(len(corner)), 1)
+        pairs = zip(away[before], away, level[before], level, strict=True)
+        return np.array([np.linalg.solve([n, m], [a, b]) for n, m, a, b in pairs])
+    for n, a in zip(away, level, strict=True):
+        corner = _clip(corner, corner @ n - a)
+    apart = np.linalg.norm(corner - np.roll(corner, 1, axis=0), axis=1)
+    return np.asarray(corner[apart > NEARLY * np.abs(level).max()])
+
+
+def _clip(corner: Array, above: Array) -> Array:
+    """Cut off what lies above a line, given how far above it each corner is (k,) m."""
+    kept = []
+    for k in range(len(corner)):
+        a, b = above[k - 1], above[k]
+        if (a < 0.0) != (b < 0.0):
+            kept.append(corner[k - 1] + a / (a - b) * (corner[k] - corner[k - 1]))
+        if b < 0.0:
+            kept.append(corner[k])
+    return np.array(kept).reshape(-1, 2)
+
+
+def inradius(corner: Array) -> float:
+    """Radius [m] of the largest circle in a convex polygon, by halving."""
+    low, high = 0.0, math.sqrt(area(corner))  # a circle's radius is less than √(area)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if len(offset_inward(corner, middle)) else (low, middle)
+    return low
+
+
+def _right_angles(corner: Array) -> Array | None:
+    """Axes (2, 2) along the edges of a rectangle; None for any other polygon."""
+    away, _ = half_planes(corner)
+    turns = np.einsum("kd,kd->k", away, np.roll(away, -1, axis=0))
+    return away[:2] if len(corner) == 4 and np.abs(turns).max() < NEARLY else None
+
+
+def _rectangle(corner: Array, axes: Array, spacing: float, depth: float) -> Samples:
+    """Lattice of a rectangle, whose cells divide its edges."""
+    (x, z), centre = np.ptp(corner @ axes.T, axis=0), corner.mean(axis=0)
+    points, normal, volume = box_lattice(np.array([x, 1.0, z]), spacing, depth, planar=True)
+    return _in_space(points[:, [0, 2]] @ axes + centre), _in_space(normal[:, [0, 2]] @ axes), volume
+
+
+def _layers(corner: Array, spacing: float, depth: float) -> Samples:
+    """Layers of equal thickness one inside the other, their samples spread along each edge."""
+    middle = inradius(corner)
+    count = max(1, round(middle / spacing))
+    thickness = middle / count
+    points, normals, volumes = [], [], []
+    for k in range(count):
+        below = (k + 0.5) * thickness
+        if below >= depth:
+            break
+        outer, inner = (offset_inward(corner, (k + end) * thickness) for end in (0, 1))
+        ring = area(outer) - (area(inner) if len(inner) and k + 1 < count else 0.0)
+        found, normal = _along_edges(offset_inward(corner, below), spacing)
+        points.append(found)
+        normals.append(normal)
+        volumes.append(np.full(len(found), ring / len(found)))
+    place, normal = np.concatenate(points), np.concatenate(normals)
+    return _in_space(place), _in_space(normal), np.concatenate(volumes)
+
+
+def _along_edges(corner: Array, spacing: float) -> tuple[Array, Array]:
+    """Points (n, 2) m evenly on the edges of a polygon, none at corners, and their normals."""
+    away, _ = half_planes(corner)
+    points, normals = [], []
+    for k, start in enumerate(corner):
+        along = corner[(k + 1) % len(corner)] - start
+        count = max(1, round(float(np.hypot(*along)) / spacing))
+        points.append(start + (np.arange(count)[:, None] + 0.5) / count * along)
+        normals.append(np.tile(away[k], (count, 1)))
+    return np.concatenate(points), np.concatenate(normals)
+
+
+def _disc(radius: float, spacing: float, depth: float) -> Samples:
+    """Rings one inside the other; each has as many samples as it holds squares of the spacing."""
+    edges = [*np.arange(radius, 0.0, -spacing).tolist(), 0.0]
+    points, volumes = [], []
+    for k, (outer, inner) in enumerate(pairwise(edges)):
+        middle, ring = 0.5 * (outer + inner), math.pi * (outer**2 - inner**2)
+        if radius - middle >= depth:
+            break
+        count = max(1, round(ring / spacing**2))
+        if count == 1 and inner == 0.0:
+            middle = 0.0
+        angle = 2.0 * math.pi * (np.arange(count) + 0.5 * (k % 2)) / count
+        points.append(middle * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+        volumes.append(np.full(count, ring / count))
+    place = np.concatenate(points)
+    distance = np.linalg.norm(place, axis=1)
+    normal = place / np.maximum(distance, 1e-12 * radius)[:, None]
+    normal[~normal.any(axis=1)] = (0.0, 1.0)
+    return _in_space(place), _in_space(normal), np.concatenate(volumes)
+
+
+def _in_space(plane: Array) -> Array:
+    """Vectors (n, 3) of vectors (n, 2) in the plane of x and z."""
+    return np.insert(plane, 1, 0.0, axis=1)

@@ -1,0 +1,124 @@
+"""Who steps with whom: the coupling of a scene's components, and the groups in it."""
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+from quintet.coupler.coupling import plan
+from quintet.coupler.coupling.exchange import Exchange, Link
+from quintet.coupler.coupling.iteration_settings import unknown_fields
+from quintet.coupler.coupling.plan import CouplingPlan
+from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
+from quintet.interfaces.params import read, unknown
+
+
+def lay_out(
+    file: SceneFile, groups: Any, components: dict[str, ComponentPlan], mistakes: list[str]
+) -> CouplingPlan | None:
+    """Lay out who steps with whom: the run, and the groups in it."""
+    settings = _groups(groups, components, mistakes)
+    members = [name for one in settings.values() for name in one.members]
+    for name, count in Counter(members).items():
+        if count > 1:
+            mistakes.append(f"groups: {name} is in {count} of them. Leave it in one.")
+    for name, one in settings.items():
+        known = [*components, *(other for other in settings if other != name)]
+        for member in one.members:
+            if member not in known:
+                place = f"groups.{name}.members: {member}"
+                mistakes.append(unknown(place, member, known))
+    if mistakes:
+        return None
+    first = {member: name for name, one in settings.items() for member in one.members}
+    own: dict[str, None] = {}  # components and groups that step with the run, in order
+    for name in components:
+        top = name
+        while top in first:
+            top = first[top]
+        own[top] = None
+    order = list(file.order) or list(own)
+    if sorted(order) != sorted(own):
+        mistakes.append(
+            f"scene.order must name every component and group once ({', '.join(own)}); found "
+            f"{', '.join(order)}."
+        )
+        return None
+
+    def made(name: str) -> CouplingPlan | None:
+        if name not in settings:
+            return None
+        one = settings[name]
+        inside = {member: made(member) for member in one.members}
+        return CouplingPlan(name, inside, one.scheme, one.window, one.iteration)
+
+    inside = {name: made(name) for name in order}
+    return CouplingPlan("", inside, file.scheme, file.window, file.iteration)
+
+
+def _groups(
+    table: Any, components: dict[str, ComponentPlan], mistakes: list[str]
+) -> dict[str, GroupSettings]:
+    if not isinstance(table, dict) or not all(isinstance(one, dict) for one in table.values()):
+        mistakes.append(f"groups must be tables; found {table!r}. Write [groups.NAME].")
+        return {}
+    found = {}
+    for name, given in table.items():
+        one, wrong = read(GroupSettings, given, f"groups.{name}")
+        mistakes += wrong
+        if not NAME.fullmatch(name) or name in components:
+            mistakes.append(
+                f"groups: a name must be letters, digits, _ or -, and no component's; found "
+                f"{name!r}. Rename it."
+            )
+        if one is not None:
+            found[name] = one
+    _refuse_circles(found, mistakes)
+    return found
+
+
+def _refuse_circles(groups: dict[str, GroupSettings], mistakes: list[str]) -> None:
+    """Refuse groups that are in themselves."""
+    for name in groups:
+        seen, inside = set(), list(groups[name].members)
+        while inside:
+            member = inside.pop()
+            if member == name:
+                mistakes.append(f"groups.{name}.members: it is in itself. Take it out.")
+                return
+            if member in groups and member not in seen:
+                seen.add(member)
+                inside += groups[member].members
+
+
+def refused(
+    coupling: CouplingPlan, components: dict[str, ComponentPlan], links: list[Link]
+) -> list[str]:
+    """What the links do not allow of schemes, orders and groups; fields that nobody takes."""
+    ports = {name: (one.takes, one.gives) for name, one in components.items()}
+    wrong = plan.mistakes(coupling, Exchange(links, ports))
+    takes = {name: one.takes for name, one in components.items()}
+
+    def below(one: CouplingPlan) -> Iterator[CouplingPlan]:
+        yield one
+        for inner in one.inner():
+            yield from below(inner)
+
+    for one in below(coupling):
+        where = f"groups.{one.name}.iteration" if one.name else "iteration"
+        wrong += unknown_fields(one.iteration, takes, where)
+    return wrong
+
+
+def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> list[str]:
+    """Refuse outputs to be recorded that no component gives."""
+    known = [
+        f"{name}.{port.name}.{one.name}"
+        for name, component in components.items()
+        for port in component.gives
+        for one in port.fields
+    ]
+    return [
+        unknown(f"output.fields: {path}", path, known)
+        for path in file.output.fields
+        if path not in known
+    ]

@@ -1,0 +1,137 @@
+"""Bodies of two dimensions filled with samples: their area, their spacing, their skin."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from quintet.coupler.coupling.planar_samples import fill, inradius, mirrors, offset_inward, width
+from quintet.interfaces.errors import LinkError
+from quintet.interfaces.ports import BOX, DISC, POLYGON
+
+DEEP = 1e9
+NONE = np.zeros((0, 3))
+UNKNOWN = np.full(3, np.nan)  # the size of a polygon is not looked at
+
+
+def ring(count, radius=0.5, turn=0.0):
+    """Corners (n, 3) m of a regular polygon."""
+    angle = 2.0 * math.pi * np.arange(count) / count + turn
+    return radius * np.stack([np.cos(angle), np.zeros(count), np.sin(angle)], axis=1)
+
+
+def turned(corner, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return corner @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+SQUARE = np.array([[-0.2, 0.0, -0.2], [0.2, 0.0, -0.2], [0.2, 0.0, 0.2], [-0.2, 0.0, 0.2]])
+OBLONG = SQUARE * [1.0, 1.0, 0.75]
+WEDGE = np.array([[-0.3, 0.0, -0.2], [0.5, 0.0, -0.2], [-0.2, 0.0, 0.4]])
+PLATE = np.array([[-0.5, 0.0, -0.03], [0.5, 0.0, -0.03], [0.52, 0.0, 0.03], [-0.48, 0.0, 0.03]])
+SHAPES = {
+    "square": (SQUARE, 0.16),
+    "turned oblong": (turned(OBLONG, 0.4) + np.array([0.1, 0.0, 0.2]), 0.12),
+    "triangle": (WEDGE, 0.24),
+    "hexagon": (ring(6), 1.5 * math.sqrt(3.0) * 0.25),
+    "thin plate": (PLATE, 0.06),
+}
+DISC_SIZE = np.array([0.6, 1.0, 0.6])
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("spacing", [0.05, 0.043, 0.02])
+def test_volumes_of_a_polygon_add_up_to_its_area_on_one_metre(name, spacing):
+    corner, area = SHAPES[name]
+    arm, normal, volume = fill(POLYGON, UNKNOWN, corner, spacing, DEEP)
+    assert volume.sum() == pytest.approx(area, rel=1e-9)
+    # No sample stands for much less than a square of the spacing, nor for much more.
+    assert volume.min() > 0.3 * spacing**2 and volume.max() < 1.9 * spacing**2
+    assert not arm[:, 1].any() and not normal[:, 1].any()
+    np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=1e-14)
+
+
+@pytest.mark.parametrize("spacing", [0.05, 0.043, 0.02])
+def test_volumes_of_a_disc_add_up_to_its_area_on_one_metre(spacing):
+    arm, normal, volume = fill(DISC, DISC_SIZE, NONE, spacing, DEEP)
+    assert volume.sum() == pytest.approx(math.pi * 0.09, rel=1e-13)
+    outermost = np.linalg.norm(arm, axis=1).max()
+    assert outermost == pytest.approx(0.3 - 0.5 * spacing, rel=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=1e-14)
+    apart = np.linalg.norm(arm[:, None] - arm[None], axis=2) + 9.0 * np.eye(len(arm))
+    assert apart.min() > 0.6 * spacing
+    assert np.abs(volume[: len(volume) // 2] / spacing**2 - 1.0).max() < 0.05
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 2.0])
+def test_a_rectangle_keeps_the_lattice_of_the_fluid(angle):
+    arm, _, volume = fill(POLYGON, UNKNOWN, turned(OBLONG, angle), 0.1, DEEP)
+    np.testing.assert_allclose(volume, 0.01, rtol=1e-9)
+    x, z = np.meshgrid([-0.15, -0.05, 0.05, 0.15], [-0.1, 0.0, 0.1])
+    lattice = turned(np.stack([x.ravel(), 0.0 * x.ravel(), z.ravel()], axis=1), angle)
+    away = np.linalg.norm(arm[:, None] - lattice[None], axis=2)
+    assert len(arm) == 12 and away.min(axis=1).max() < 1e-12 and away.min(axis=0).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["triangle", "hexagon"])
+def test_the_outermost_layer_lies_half_a_spacing_deep(name):
+    corner, _ = SHAPES[name]
+    spacing = inradius(corner[:, [0, 2]]) / 5.0
+    arm, normal, _ = fill(POLYGON, UNKNOWN, corner, spacing, DEEP)
+    below = 0.5 * np.linalg.norm(mirrors(POLYGON, UNKNOWN, corner, arm, normal) - arm, axis=1)
+    assert below.min() == pytest.approx(0.5 * spacing, rel=1e-9)
+
+
+@pytest.mark.parametrize("shape", [DISC, POLYGON])
+def test_only_a_skin_of_the_depth_is_filled(shape):
+    corner = ring(6) if shape == POLYGON else NONE
+    given = (shape, DISC_SIZE, corner, 0.02)
+    arm, _, volume = fill(*given, 0.06)
+    whole, _, all_volumes = fill(*given, DEEP)
+    assert 0 < len(arm) < len(whole)
+    np.testing.assert_array_equal(arm, whole[: len(arm)])
+    np.testing.assert_array_equal(volume, all_volumes[: len(arm)])
+
+
+@pytest.mark.parametrize(("inset", "outermost"), [(0.0, 0.3), (0.03, 0.27)])
+def test_the_outermost_samples_lie_where_the_fluid_wants_them(inset, outermost):
+    arm, *_ = fill(DISC, DISC_SIZE, NONE, 0.02, DEEP, inset)
+    assert np.linalg.norm(arm, axis=1).max() == pytest.approx(outermost, rel=1e-12)
+    arm, *_ = fill(POLYGON, UNKNOWN, SQUARE * 1.5, 0.02, DEEP, inset)
+    assert np.abs(arm).max() == pytest.approx(outermost, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_mirror_points_lie_as_far_outside_a_polygon(name):
+    corner, _ = SHAPES[name]
+    arm, normal, _ = fill(POLYGON, UNKNOWN, corner, 0.05, 0.08)
+    image = mirrors(POLYGON, UNKNOWN, corner, arm, normal)
+    middle, closed = 0.5 * (arm + image), np.vstack([corner, corner[:1]])
+    for one in middle:  # on the outline: the area is that of the triangles which it spans
+        spans = [np.cross(a - one, b - one)[1] for a, b in pairwise(closed)]
+        assert np.abs(spans).min() < 1e-9
+        assert max(spans) < 1e-9  # none looks from outside
+    assert (np.einsum("nd,nd->n", image - arm, normal) > 0.0).all()
+
+
+def test_mirror_points_lie_as_far_outside_a_disc():
+    arm, normal, _ = fill(DISC, DISC_SIZE, NONE, 0.05, 0.1)
+    image = mirrors(DISC, DISC_SIZE, NONE, arm, normal)
+    np.testing.assert_allclose(np.linalg.norm(0.5 * (arm + image), axis=1), 0.3, rtol=1e-12)
+
+
+def test_offsets_and_widths_are_those_of_the_outline():
+    square = SQUARE[:, [0, 2]]
+    np.testing.assert_allclose(np.abs(offset_inward(square, 0.05)), 0.15, rtol=1e-12)
+    np.testing.assert_allclose(np.abs(offset_inward(square, -0.05)), 0.25, rtol=1e-12)
+    assert len(offset_inward(square, 0.21)) == 0
+    assert width(POLYGON, UNKNOWN, turned(OBLONG, 0.7)) == pytest.approx(0.3, rel=1e-9)
+    assert width(DISC, DISC_SIZE, NONE) == 0.6
+    # The triangle of sides 3, 4 and 5 has a circle of radius 1 in it.
+    assert inradius(np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]])) == pytest.approx(1.0)
+
+
+def test_a_shape_of_three_dimensions_is_refused():
+    with pytest.raises(LinkError, match=r"must be 3 \(disc\) or 4 \(polygon\).*found 1"):
+        fill(BOX, np.ones(3), NONE, 0.1, DEEP)

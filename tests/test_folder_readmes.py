@@ -1,0 +1,205 @@
+"""The texts in the folders name what is there, and their examples run."""
+
+import ast
+import re
+import shlex
+import tomllib
+from dataclasses import fields
+from functools import cache
+from pathlib import Path
+
+import pytest
+from test_layers import FLOORS
+
+from quintet.coupler import cli
+from quintet.coupler.conform.check import try_all
+from quintet.coupler.conform.trial import Trial
+from quintet.coupler.coupling.exchange import Binding, Demands, Transfer
+from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.report.show import results
+from quintet.coupler.run.run_scene import run_scene
+from quintet.coupler.scene.read import load
+from quintet.coupler.scene.scene import GroupSettings, OutputSettings, SceneFile
+from quintet.coupler.scene.stability_table import LimitTable
+from quintet.coupler.scene.study_table import RefinementTable
+from quintet.interfaces.component import Component, Field, Port, Resources
+from quintet.interfaces.manifest import BenchCase, ConformCase, Manifest, Plan, find
+from quintet.interfaces.params import read
+
+ROOT = Path(__file__).resolve().parents[1]
+FOLDERS = ("interfaces", "components", "coupler", "scenarios")
+TEXTS = [ROOT / "README.md", *(ROOT / folder / "README.md" for folder in FOLDERS)]
+TEXTS += sorted(ROOT.glob("scenarios/*/README.md")) + sorted(ROOT.glob(".github/*.md"))
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"(?:[\w.-]+/)+[\w-]+\.(?:py|toml|md|csv|png)")
+NAMED = re.compile(r"((?:\w+/)+\w+\.py):([A-Za-z_]\w*(?:\.\w+)?)")
+
+
+def where(path):
+    return str(path.relative_to(ROOT))
+
+
+def blocks(text, kind):
+    return [inside for language, inside in FENCE.findall(text) if language == kind]
+
+
+def quoted(path):
+    """Yield what stands between backquotes in the running text."""
+    return re.findall(r"`([^`\n]+)`", FENCE.sub("", path.read_text()))
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=where)
+def test_links_lead_to_files(path):
+    for link, part in re.findall(r"\]\(([^)#]*)#?([^)]*)\)", FENCE.sub("", path.read_text())):
+        if not link.startswith("https://"):
+            assert (path.parent / link).exists(), link
+            assert not part or part in anchors(path.parent / link if link else path), part
+
+
+@cache
+def anchors(path):
+    """Parts of a text that links may lead to: its headings, as they are written in addresses."""
+    heads = re.findall(r"^#+ (.+)$", FENCE.sub("", path.read_text()), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+@cache
+def defined(path):
+    """Names that a module defines, also those within its classes."""
+    names = set()
+    for node in ast.parse((ROOT / path).read_text()).body:
+        owner = getattr(node, "name", "")
+        names |= set(bound(node))
+        if isinstance(node, ast.ClassDef):
+            names |= {f"{owner}.{name}" for inner in node.body for name in bound(inner)}
+    return names
+
+
+def bound(node):
+    """Yield the names that a statement binds."""
+    if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+        yield node.name
+    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+    for target in targets:
+        yield from (one.id for one in ast.walk(target or ast.Pass()) if isinstance(one, ast.Name))
+
+
+@pytest.mark.parametrize("path", [ROOT / "README.md", *(ROOT / f / "README.md" for f in FOLDERS)])
+def test_files_and_functions_that_are_named_are_there(path):
+    for text in quoted(path):
+        for file, name in NAMED.findall(text):
+            assert name in defined(file), text
+        if FILE.fullmatch(text) and text.split("/")[0] in (p.name for p in ROOT.iterdir()):
+            assert (ROOT / text).exists(), text
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=where)
+def test_commands_are_those_of_the_command_line(path):
+    for line in "".join(blocks(path.read_text(), "sh")).replace("\\\n", "").splitlines():
+        for command in line.split("&&"):
+            words = shlex.split(command, comments=True)
+            names = [Path(word).name for word in words]
+            if "quintet" in names and "pip" not in names:
+                rest = words[names.index("quintet") + 1 :]
+                cli.parser().parse_args([word for word in rest if word != "&"])
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=where)
+def test_examples_of_scenes_can_be_read(path):
+    for block in blocks(path.read_text(), "toml"):
+        tomllib.loads(block)
+
+
+CONTRACT = [Field, Port, Resources, Manifest, Plan, BenchCase, ConformCase]
+SCENE = [SceneFile, OutputSettings, GroupSettings, IterationSettings, Expectation]
+SCENE += [RefinementTable, LimitTable]
+TOLD = {
+    "interfaces/README.md": CONTRACT,
+    "coupler/README.md": [Transfer, Demands, Binding],
+    "scenarios/README.md": SCENE,
+}
+
+
+@pytest.mark.parametrize(
+    ("readme", "kind"), [(readme, kind) for readme, kinds in TOLD.items() for kind in kinds]
+)
+def test_every_part_of_contract_links_and_scenes_is_told(readme, kind):
+    text = (ROOT / readme).read_text()
+    names = [one.name.rstrip("_") for one in fields(kind)]
+    assert [name for name in names if not is_told(text, name)] == []
+
+
+def test_every_call_of_the_contract_is_told():
+    text = (ROOT / "interfaces/README.md").read_text()
+    calls = [name for name in vars(Component) if not name.startswith("_")]
+    assert [one for one in calls if not is_told(text, one)] == ["takes", "gives"]  # as words
+
+
+def is_told(text, name):
+    """Whether a text has a name between backquotes, or as a key of an example in TOML."""
+    return re.search(rf"[`\[]{name}[(`\].]|^\[*{name}(?: =|\])", text, re.MULTILINE)
+
+
+FILES = re.compile(r"`([\w/]+\.(?:py|toml))`:\n\n```\w+\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """Unpack the files of a text, and offer the entry points that they declare."""
+
+    def unpack(readme):
+        for name, inside in FILES.findall((ROOT / readme).read_text()):
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text(inside)
+        project = tomllib.loads((tmp_path / "pyproject.toml").read_text())["project"]
+        told = tmp_path / f"{project['name']}-{project['version']}.dist-info"
+        told.mkdir()
+        (told / "METADATA").write_text(f"Name: {project['name']}\nVersion: {project['version']}\n")
+        lines = []
+        for group, points in project["entry-points"].items():
+            lines += [f"[{group}]", *(f"{key} = {value}" for key, value in points.items())]
+        (told / "entry_points.txt").write_text("\n".join(lines))
+        monkeypatch.syspath_prepend(tmp_path)
+        return tmp_path
+
+    return unpack
+
+
+def test_the_example_of_a_solver_is_installed_measured_and_runs(installed):
+    folder = installed("interfaces/README.md")
+    manifest = find("mooring")
+    (case,) = manifest.cases()
+    assert not read(manifest.params, case.params, case.name)[1]
+    (case,) = manifest.conform_cases()
+    findings = [one for _, one in try_all(Trial(manifest, case, folder)) if one is not None]
+    assert [one.said for one in findings if one.status == "failed"] == []
+    assert run_scene(load(str(folder / "scene.toml")), folder / "run")[1] == 0
+    assert results(folder / "run")["ledger"]["links"][0]["momentum_residual"] < 1e-13
+
+
+def test_the_example_of_a_link_is_installed_and_conserves_momentum(installed):
+    folder = installed("coupler/README.md")
+    scene = load(str(folder / "scene.toml"))
+    assert run_scene(scene, folder / "run")[1] == 0
+    (link,) = results(folder / "run")["ledger"]["links"]
+    assert max(link["momentum_residual"], link["angular_residual"]) < 1e-13
+    assert link["energy_residual"] < 1e-6
+
+
+def test_the_floors_of_the_coupler_are_told_as_they_are():
+    table = (ROOT / "coupler/README.md").read_text().partition("A run, from")[0]
+    rows = re.findall(r"^\| \d \| (`coupler.+?) \|", table, re.MULTILINE)  # the top one first
+    assert [set(re.findall(r"`coupler/(\w+)", row)) for row in rows[::-1]] == FLOORS["coupler"]
+
+
+def test_questions_of_newcomers_are_answered_within_two_hops():
+    linked = re.findall(r"\]\(([^)#]+\.md)\)", (ROOT / "README.md").read_text())
+    texts = [(ROOT / path).read_text() for path in ("README.md", *dict.fromkeys(linked))]
+    for words in (
+        "the progress bar",
+        "torque becomes an angular velocity",
+        "add a term to the pair law",
+        "Adding a link",
+    ):
+        assert any(words in text for text in texts), words
