@@ -50,7 +50,8 @@ def parser() -> argparse.ArgumentParser:
     _scene(one)
     one = command("run", run, "run a scene, compare it with what it must reproduce")
     _scene(one, nargs="?")
-    one.add_argument("--out", type=Path, help="folder of the run (default: runs/SCENE)")
+    one.add_argument("--out", type=Path, help=OUT)
+    one.add_argument("--force", action="store_true", help=FORCE)
     one.add_argument("--resume", type=Path, metavar="DIR", help=RESUME)
     one.add_argument("--elsewhere", action="append", default=[], metavar="NAME", help=ELSEWHERE)
     one.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
@@ -92,6 +93,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 KEEP = "keep runs that an earlier study completed in DIR, of the same scene on the same machine"
+OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"
+FORCE = "replace a former one in that folder: only the files that it wrote"
 RESUME = "go on with an interrupted or failed run, from its last snapshot"
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 PARAMS = "its parameters in TOML, in place of cases; a table conform in it has what it takes"
@@ -109,6 +112,7 @@ def _scene(one: argparse.ArgumentParser, **more: Any) -> None:
 def _report(one: argparse.ArgumentParser, folder: str) -> None:
     one.add_argument("--json", type=Path, metavar="FILE", help="what was found, for programs")
     one.add_argument("--out", type=Path, metavar="DIR", help=f"of all runs (default: {folder})")
+    one.add_argument("--force", action="store_true", help=FORCE)
 
 
 SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME=module:Class"
@@ -141,19 +145,22 @@ def check(given: argparse.Namespace) -> int:
 
 def run(given: argparse.Namespace) -> int:
     """Run a scene, from the start or from a snapshot."""
-    scene, folder, snapshot = _resumed(given) if given.resume else _begun(given)
+    scene, out, snapshot = _resumed(given) if given.resume else _begun(given)
     scene.elsewhere = set(given.elsewhere)
     unknown = scene.elsewhere - set(scene.components)
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
     # Start-up: only this command needs it.
     from quintet.coupler.report import show as report
-    from quintet.coupler.run.run_scene import run_scene
+    from quintet.coupler.run.run_scene import resume_scene, run_scene
 
     if given.inside_mpi:
-        return _run_rank(scene, folder, snapshot)
-    status = run_scene(scene, folder, snapshot)
-    if (folder / report.NAME).is_file():
+        return _run_rank(scene, out or Path(), snapshot)
+    if snapshot and out:
+        folder, status = out, resume_scene(scene, out, snapshot)
+    else:
+        folder, status = run_scene(scene, out, given.force)
+    if status != BAD and (folder / report.NAME).is_file():
         report.show(folder)
         print(f"left in {os.path.relpath(folder)}", flush=True)
     return status
@@ -171,25 +178,25 @@ def _run_rank(scene: "Scene", folder: Path, snapshot: Path | None) -> int:
     return status
 
 
-def _begun(given: argparse.Namespace) -> tuple["Scene", Path, None]:
-    """Read the scene of a new run; return it with the folder of the run."""
+def _begun(given: argparse.Namespace) -> tuple["Scene", Path | None, None]:
+    """Read the scene of a new run; return it with the folder that is given for the run."""
     if given.scene is None:
         raise SceneError("run needs a scene, or --resume DIR. Give one.")
-    # Start-up: only this command needs it.
-    from quintet.coupler.run.run_scene import run_folder
-
-    scene = _load(given)
-    return scene, run_folder(scene, given.out), None
+    return _load(given), given.out, None
 
 
 def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
     """Read the scene of a run to be resumed, as it was run or as it is given now."""
     # Start-up: only this command needs it.
     from quintet.coupler.run import snapshots
+    from quintet.coupler.run.folder import check_ours
 
     if given.out:
         raise SceneError("--resume goes on in the folder of the run. Remove --out.")
+    if given.force:
+        raise SceneError("--resume replaces nothing. Remove --force.")
     folder = given.resume.resolve()
+    check_ours(folder, "run")
     snapshot = snapshots.latest(folder)
     scene = _load(given) if given.scene else snapshots.scene_of(snapshot, given.transport)
     snapshots.check_same(scene, folder)

@@ -174,14 +174,14 @@ def test_the_example_of_a_solver_is_installed_measured_and_runs(installed):
     (case,) = manifest.conform_cases()
     findings = [one for _, one in try_all(Trial(manifest, case, folder)) if one is not None]
     assert [one.said for one in findings if one.status == "failed"] == []
-    assert run_scene(load(str(folder / "scene.toml")), folder / "run") == 0
+    assert run_scene(load(str(folder / "scene.toml")), folder / "run")[1] == 0
     assert results(folder / "run")["ledger"]["links"][0]["momentum_residual"] < 1e-13
 
 
 def test_the_example_of_a_link_is_installed_and_conserves_momentum(installed):
     folder = installed("coupler/README.md")
     scene = load(str(folder / "scene.toml"))
-    assert run_scene(scene, folder / "run") == 0
+    assert run_scene(scene, folder / "run")[1] == 0
     (link,) = results(folder / "run")["ledger"]["links"]
     assert max(link["momentum_residual"], link["angular_residual"]) < 1e-13
     assert link["energy_residual"] < 1e-6

@@ -29,6 +29,7 @@ from quintet.components.dem_bodies.state import (
     State,
     Whole,
 )
+from quintet.components.shared.polygons import area_moments
 
 SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
 THIN = 0.1  # of a box's longest edge: what is thinner is listed as if it were not
@@ -81,7 +82,7 @@ def planar_inertia(body: Body) -> tuple[float, Numbers]:
     if body.diameter is not None:
         area, moment = np.pi / 4.0 * body.diameter**2, np.pi / 32.0 * body.diameter**4
     else:
-        area, _, moment = planar.area_moments(planar.corners(body))
+        area, _, moment = area_moments(planar.corners(body))
     return area, moment * np.eye(3)
 
 

@@ -21,12 +21,15 @@ def echo() -> tuple[ConformCase, ...]:
 
 
 def prescribed() -> tuple[ConformCase, ...]:
-    """At rest, on a path, and with the loads on it."""
+    """At rest, on a path, with the loads on it, and in two dimensions."""
     load = {"load.force": np.zeros((1, 3)), "load.torque": np.zeros((1, 3))}
     moved = {**TURNING, "amplitude": [0.0, 0.0, 0.1], "frequency": 2.0}
+    wedge = {"shape": "polygon", "corners": [[0.0, 0.0], [0.2, 0.0], [0.0, 0.1]]}
+    plane = [{**BODY, "shape": "disc"}, {**wedge, "position": [2.0, 0.0, 1.0]}]
     return (
         ConformCase("at rest", {"bodies": [BODY]}),
         ConformCase("moving", {"bodies": [moved]}, still=False),
+        ConformCase("two dimensions", {"bodies": plane}),
         ConformCase(
             "at rest, loads measured",
             {"bodies": [BODY], "measure_loads": True},

@@ -7,8 +7,9 @@ from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.params import Count, Number, Positive, PositiveVector, Vector, parameters
-from quintet.interfaces.ports import LOAD, MOTION, from_json
+from quintet.interfaces.ports import LOAD, MOTION, PLANAR_MOTION, from_json
 
+PLANAR = ("disc", "polygon")
 PASSED = Port("passed", (Field("value", (3,), "m"),))
 RETURNED = Port("returned", (Field("value", (3,), "m"),))
 # Loads on bodies that do not yield, as they came: the force of water on a fixed block.
@@ -37,9 +38,12 @@ class PrescribedBody:
 
     Parameters
     ----------
-    shape : "box" or "sphere"
+    shape : "box" or "sphere"; in two dimensions "disc" or "polygon"
     size : three float, m, > 0
-        Edges; of a sphere its diameter three times.
+        Edges; of a sphere its diameter three times, of a disc with 1 m between them. Of all shapes
+        but polygons.
+    corners : three or more times two float, m
+        x and z of a convex polygon's corners from its position on, in order round it.
     position : three float, m
         Of the centre at the start.
     velocity : three float, m/s, by default 0
@@ -52,8 +56,9 @@ class PrescribedBody:
         Both of the sine.
     """
 
-    shape: Literal["box", "sphere"]
-    size: PositiveVector
+    shape: Literal["box", "sphere", "disc", "polygon"]
+    size: PositiveVector | None = None
+    corners: tuple[tuple[Number, Number], ...] | None = None
     position: Vector
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Vector = (0.0, 0.0, 0.0)
@@ -80,6 +85,42 @@ class PrescribedParams:
     def __post_init__(self) -> None:
         if not self.bodies:
             raise ValueError("bodies: at least one is needed; found none. Add one.")
+        for k, body in enumerate(self.bodies):
+            check_body(f"bodies[{k}]", body, self.planar)
+
+    @property
+    def planar(self) -> bool:
+        """Whether they have two dimensions, as the first of them."""
+        return self.bodies[0].shape in PLANAR
+
+
+def check_body(where: str, body: PrescribedBody, planar: bool) -> None:
+    """Refuse a body whose description is incomplete, or that is not of the others' dimensions."""
+    if (body.shape in PLANAR) != planar:
+        raise ValueError(
+            f"{where}.shape must have two dimensions ({', '.join(PLANAR)}) as that of all others, "
+            f"or none of theirs; found {body.shape}. Put it in a component of its own."
+        )
+    known = {"size": body.size, "corners": body.corners}
+    wanted = "corners" if body.shape == "polygon" else "size"
+    found = [name for name, value in known.items() if value is not None]
+    if found != [wanted]:
+        raise ValueError(
+            f"{where}: a {body.shape} is described by {wanted} alone; found "
+            f"{' and '.join(found) or 'none'}. Give {wanted}."
+        )
+    if body.corners is not None:
+        # Polygons are left out of scenes that have none.
+        from quintet.components.shared.polygons import require_convex
+
+        require_convex(f"{where}.corners", body.corners)
+    across, normal = body.angular_velocity[::2], (body.velocity[1], body.amplitude[1])
+    if planar and any((*across, *normal)):
+        raise ValueError(
+            f"{where} must move in the plane of x and z, in two dimensions; found velocity "
+            f"{body.velocity}, amplitude {body.amplitude}, angular_velocity "
+            f"{body.angular_velocity}. Set what leaves it to 0."
+        )
 
 
 @parameters
@@ -102,7 +143,8 @@ class EchoParams:
 
 def prescribed_ports(params: PrescribedParams) -> Ports:
     """It gives motion; if asked to it takes loads, and gives them again."""
-    return ((LOAD,), (MOTION, MEASURED_LOAD)) if params.measure_loads else ((), (MOTION,))
+    motion = PLANAR_MOTION if params.planar else MOTION
+    return ((LOAD,), (motion, MEASURED_LOAD)) if params.measure_loads else ((), (motion,))
 
 
 def echo_ports(params: EchoParams) -> Ports:

@@ -4,11 +4,17 @@ import math
 
 import numpy as np
 
-from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
+from quintet.components.stand_ins.params import (
+    PrescribedBody,
+    PrescribedParams,
+    prescribed_ports,
+)
 from quintet.interfaces.component import Array, Component, Fields, Keys
+from quintet.interfaces.ports import BOX, DISC, POLYGON, SPHERE
 
 LOADS = ("force", "torque")
-SHAPES = {"sphere": 0.0, "box": 1.0}  # as ports.MOTION gives them
+NONE = np.zeros((0, 2))
+SHAPES = {"sphere": SPHERE, "box": BOX, "disc": DISC, "polygon": POLYGON}
 
 
 class Prescribed(Component):
@@ -18,8 +24,11 @@ class Prescribed(Component):
         self.takes, self.gives = prescribed_ports(params)
         self.loads = {f"measured_load.{key}": np.zeros((len(params.bodies), 3)) for key in LOADS}
         bodies = params.bodies
-        self.shape = np.array([SHAPES[one.shape] for one in bodies])
-        self.size = np.array([one.size for one in bodies])  # (n, 3) m
+        self.planar = params.planar
+        self.shape = np.array([float(SHAPES[one.shape]) for one in bodies])
+        self.corners = [corners_of(one) for one in bodies]
+        sizes = zip(bodies, self.corners, strict=True)
+        self.size = np.array([size_of(one, corner) for one, corner in sizes])  # (n, 3) m
         self.mass = np.array([one.mass for one in bodies])  # (n,) kg
         self.origin = np.array([one.position for one in bodies])  # (n, 3) m
         self.velocity = np.array([one.velocity for one in bodies])  # (n, 3) m/s
@@ -31,8 +40,12 @@ class Prescribed(Component):
         self.time = 0.0  # s
 
     def describe(self) -> Fields:
-        """State shapes, sizes and masses."""
+        """State shapes, sizes and masses; in two dimensions corners."""
         told = {"shape": self.shape, "size": self.size, "mass": self.mass}
+        if self.planar:
+            told["dimensions"] = np.array([2.0])
+            told["corners"] = np.array([float(len(one)) for one in self.corners])
+            told["corner"] = np.insert(np.concatenate(self.corners), 1, 0.0, axis=1)
         return {f"motion.{name}": array.copy() for name, array in told.items()}
 
     def stable_dt(self) -> float:
@@ -76,6 +89,25 @@ class Prescribed(Component):
     def items(self) -> int:
         """Count the bodies."""
         return len(self.mass)
+
+
+def corners_of(body: PrescribedBody) -> Array:
+    """Corners (k, 2) m, x and z, of a polygon, going round from x to z; none of other shapes."""
+    if body.corners is None:
+        return NONE
+    # Polygons are left out of scenes that have none.
+    from quintet.components.shared.polygons import in_order
+
+    return in_order(body.corners)
+
+
+def size_of(body: PrescribedBody, corner: Array) -> Array:
+    """Size (3,) m as `ports.MOTION` and `ports.PLANAR_MOTION` give it; corners (k, 2) m."""
+    if body.size is None:
+        x, z = np.ptp(corner, axis=0)
+        return np.array([x, 1.0, z])
+    x, y, z = body.size
+    return np.array([x, 1.0 if body.shape == "disc" else y, z])
 
 
 def steady_rotation(angular_velocity: Array, time: float) -> Array:

@@ -21,7 +21,6 @@ from quintet.coupler.bench.raw_transport import round_trip
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.launch.connect import connect
 from quintet.coupler.launch.mpi_job import begin_rank, end_rank, run_under_mpi
-from quintet.coupler.run.simulate import make_folder
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
 
@@ -64,7 +63,7 @@ def measure(transport: str, items: int, windows: int, folder: Path) -> dict[str,
     path.write_text(SCENE.format(transport=transport, items=items))
     (folder / "windows").write_text(str(windows))
     scene = load(str(path))
-    make_folder(scene, folder / "run")
+    (folder / "run" / "log").mkdir(parents=True)
     if transport == "mpi":
         os.environ[FOLDER] = str(folder)
         run_under_mpi(["bench", "exchange"], scene, folder / "run")

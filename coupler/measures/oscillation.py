@@ -16,6 +16,7 @@ from quintet.interfaces.component import Array
 GRID = 8  # values of ω on the grid for each cycle over the whole curve
 SHORT = 0.9  # of a cycle that the curve must hold
 FEWEST = 4  # values in the shortest cycle looked for
+MOST = 2000  # values that the grid looks at: of a longer curve, means of neighbours
 ITERATIONS = 100
 TOLERANCE = 1e-10
 
@@ -36,9 +37,10 @@ def fit(curve: Curve) -> Harmonic:
     span = float(times[-1])
     if len(times) < 2 * FEWEST or not np.ptp(values) > 0.0:
         return NONE
-    cycles = np.arange(GRID, GRID * (len(times) // FEWEST) + 1) / GRID
+    some = _thinned(times), _thinned(values)
+    cycles = np.arange(GRID, GRID * (len(some[0]) // FEWEST) + 1) / GRID
     omegas = 2.0 * math.pi * cycles / span
-    omega = float(min(omegas, key=lambda one: _misfit(times, values, one, 0.0)))
+    omega = float(min(omegas, key=lambda one: _misfit(*some, one, 0.0)))
     decay = 0.0
     for _ in range(ITERATIONS):
         change = _newton(times, values, omega, decay)
@@ -48,6 +50,13 @@ def fit(curve: Curve) -> Harmonic:
         if max(map(abs, change)) < TOLERANCE * omega:
             return Harmonic(2.0 * math.pi / omega, decay)
     return NONE
+
+
+def _thinned(values: Array) -> Array:
+    """Means (m,) of as many neighbours (n,) as leave no more than MOST of them."""
+    each = -(-len(values) // MOST)
+    whole = len(values) // each
+    return np.asarray(values[: each * whole].reshape(whole, each).mean(axis=1))
 
 
 def _columns(times: Array, omega: float, decay: float) -> Array:

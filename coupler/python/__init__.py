@@ -36,6 +36,7 @@ def run(
     swap: Mapping[str, str] | None = None,
     transport: str = "",
     out: str | PathLike[str] | None = None,
+    force: bool = False,
 ) -> "Run":
     """Run a scene to its end and compare it with its expectations.
 
@@ -52,7 +53,10 @@ def run(
     transport : {"memory", "zenoh", "mpi"}
         That of the scene if not given.
     out : path
-        Folder of the run; ``runs/NAME`` if not given.
+        Folder of the run, new or empty; ``runs/NAME``, or the next number that is free, if not
+        given.
+    force : bool
+        Replace a former run in that folder: only the files that it wrote.
 
     Returns
     -------
@@ -67,11 +71,10 @@ def run(
         A component or a line failed.
     """
     # Components import this package, and none needs the coupler: it is loaded on use.
-    from quintet.coupler.run.run_scene import run_folder, run_scene
+    from quintet.coupler.run.run_scene import run_scene
 
     made = _scene(scene, preset, settings, swap, transport)
-    folder = run_folder(made, Path(out) if out else None)
-    return _finished(folder, run_scene(made, folder))
+    return _finished(*run_scene(made, Path(out) if out else None, force))
 
 
 def resume(folder: str | PathLike[str], *, transport: str = "") -> "Run":
@@ -96,12 +99,14 @@ def resume(folder: str | PathLike[str], *, transport: str = "") -> "Run":
         A component or a line failed.
     """
     # Components import this package, and none needs the coupler: it is loaded on use.
-    from quintet.coupler.run.run_scene import run_scene
+    from quintet.coupler.run.folder import check_ours
+    from quintet.coupler.run.run_scene import resume_scene
     from quintet.coupler.run.snapshots import latest, scene_of
 
     place = Path(folder).resolve()
+    check_ours(place, "run")
     snapshot = latest(place)
-    return _finished(place, run_scene(scene_of(snapshot, transport), place, snapshot))
+    return _finished(place, resume_scene(scene_of(snapshot, transport), place, snapshot))
 
 
 def check(

@@ -13,6 +13,7 @@ from rich import box
 from rich.console import Console
 
 from quintet.coupler.files.recording import NAME, Recording
+from quintet.coupler.files.run_files import PICTURES
 from quintet.coupler.report import show
 from quintet.coupler.scene.read import parse
 from quintet.interfaces.component import Array, Field
@@ -156,7 +157,7 @@ class Run:
     @property
     def pictures(self) -> dict[str, Path]:
         """Pictures by name: scene, comparison."""
-        return {path.stem: path for path in sorted(self.folder.glob("*.png"), reverse=True)}
+        return {path.stem: path for path in map(self.folder.joinpath, PICTURES) if path.is_file()}
 
     def __str__(self) -> str:
         screen = Console(file=io.StringIO(), width=WIDTH)

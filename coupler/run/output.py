@@ -9,6 +9,7 @@ from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows, in_ticks
 from quintet.coupler.files.recording import NAME, Instant, Recorder
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
+from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.snapshots import save
@@ -60,6 +61,7 @@ class OutputWriter:
     def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:
         """See `Observer.begin`."""
         self.begun = True
+        discard_former(self.folder)  # all checks are passed
         self.done, self._now = self._windows.done, self._windows.now
         self.time = self._began = self._windows.time
         if self.scene.file.output.record:

@@ -12,6 +12,7 @@ from typing import Any
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.files.recording import Recording
+from quintet.coupler.files.run_files import PICTURES
 from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
 from quintet.coupler.report.pictures import comparison, side_views
 from quintet.coupler.scene.scene import Scene
@@ -44,10 +45,10 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
     """Draw the pictures of a scene, and its time series against references."""
     times = scene.file.output.pictures
     if times and list(folder.glob("*.vtkhdf")):
-        side_views(folder, folder / "scene.png", times)
+        side_views(folder, folder / PICTURES[0], times)
     if any(one.csv for one in scene.expect) and found:
         with Recording(folder / "recording.h5") as recording:
-            comparison(scene.folder, scene.expect, found, recording, folder / "comparison.png")
+            comparison(scene.folder, scene.expect, found, recording, folder / PICTURES[1])
 
 
 def timing(participants: dict[str, Participant], wall: float, mapping: float) -> dict[str, Any]:

@@ -2,21 +2,46 @@
 
 from pathlib import Path
 
-from quintet.coupler.launch.mpi_job import run_under_mpi
+from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
+from quintet.coupler.run import results
+from quintet.coupler.run.folder import begin, files_of, go_on
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
+from quintet.interfaces.errors import QuintetError
 
 
-def run_folder(scene: Scene, out: Path | None) -> Path:
-    """Return the folder of a run: as given, or ``runs/NAME``."""
-    return (out or Path("runs") / scene.file.name).resolve()
+def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tuple[Path, int]:
+    """Run a scene from its start; return the folder of the run and the exit status.
+
+    Parameters
+    ----------
+    out : path or None
+        A new or empty folder; ``runs/NAME``, or the next number that is free, if not given.
+    force : bool
+        Replace a former run in the folder: only what it wrote, once the new one has begun.
+    """
+    if scene.transport == "mpi":
+        find_launcher()  # before a former run is touched
+    with begin("run", scene.file.name, files_of(scene), out, force) as place:
+        try:
+            make_folder(scene, place.path)
+            status = _run(scene, place.path, None)
+        except QuintetError:
+            place.undo()
+            raise
+        if status == results.BAD and place.replaces:
+            place.undo()
+    return place.path, status
 
 
-def run_scene(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
-    """Run a scene from its start or from a snapshot; return the exit status."""
-    if snapshot is None:
-        make_folder(scene, folder)
+def resume_scene(scene: Scene, folder: Path, snapshot: Path) -> int:
+    """Continue a run from one of its snapshots; return the exit status."""
+    with go_on(folder, "run"):
+        return _run(scene, folder, snapshot)
+
+
+def _run(scene: Scene, folder: Path, snapshot: Path | None) -> int:
     if scene.transport == "mpi":
         target = ["--resume", str(folder)] if snapshot else ["--out", str(folder)]
         return run_under_mpi(["run", *run_arguments(**scene.asked), *target], scene, folder)

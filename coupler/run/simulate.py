@@ -15,6 +15,7 @@ from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs
+from quintet.coupler.files.run_files import LEDGER, SCENE
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.run import results, snapshots
@@ -25,22 +26,13 @@ from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import LinkError, SceneError
 
-RUN_FILES = (
-    "results.json",
-    "recording.h5",
-    "ledger.csv",
-    "scene.toml",
-    "scene.png",
-    "comparison.png",
-)
-
 
 def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     """Run a scene in a prepared folder, or from a snapshot in it; return the exit status."""
     clock, stop = results.Clock(), StopRequest()
     exchange = scene.exchange()
     size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
-    ledger = Ledger(exchange, folder / "ledger.csv", size)
+    ledger = Ledger(exchange, folder / LEDGER, size)
     logs = {
         name: ConvergenceLog(folder / log_file(name), lengths.get(name, 0))
         for name in scene.coupling.iterated()
@@ -80,17 +72,9 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
 
 
 def make_folder(scene: Scene, folder: Path) -> None:
-    """Prepare the folder of a run; only files of an earlier run are removed."""
+    """Prepare the folder of a run: its logs, and the scene as it runs."""
     (folder / "log").mkdir(parents=True, exist_ok=True)
-    for path in [
-        *(folder / name for name in RUN_FILES),
-        *folder.glob("*.vtkhdf"),
-        *folder.glob("convergence*.csv"),
-        *folder.glob("log/*"),
-        *snapshots.snapshots(folder),
-    ]:
-        path.unlink(missing_ok=True)
-    (folder / "scene.toml").write_text(tomli_w.dumps(scene.resolved), encoding="utf-8")
+    (folder / SCENE).write_text(tomli_w.dumps(scene.resolved), encoding="utf-8")
 
 
 def outcome_of(end: RunEnd) -> dict[str, Any]:

@@ -17,18 +17,18 @@ import numpy as np
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.files.run_files import SNAPSHOTS
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 
 KEPT = 2  # snapshots of a run
-PATTERN = "snapshot-*.h5"
 FREE = ("transport", "endpoint", "tls", "minutes")  # may differ when a run goes on: no bit does
 
 
 def snapshots(folder: Path) -> list[Path]:
     """Snapshots of a run, the latest last."""
-    return sorted(folder.glob(PATTERN), key=window_of)
+    return sorted(folder.glob(SNAPSHOTS), key=window_of)
 
 
 def window_of(path: Path) -> int:

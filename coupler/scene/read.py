@@ -14,7 +14,14 @@ from quintet.coupler.measures.expectation import Expectation, check
 from quintet.coupler.scene import variants
 from quintet.coupler.scene.groups import lay_out, refused, unknown_outputs
 from quintet.coupler.scene.overrides import put_preset, put_set, put_swap
-from quintet.coupler.scene.scene import NAME, ComponentPlan, Scene, SceneFile, import_folders
+from quintet.coupler.scene.scene import (
+    NAME,
+    ComponentPlan,
+    Scene,
+    SceneFile,
+    import_folders,
+    wrong_name,
+)
 from quintet.coupler.scene.stability_table import Scope
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
@@ -115,7 +122,7 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
                 f"scene.window must not exceed scene.end ({file.end:g} s); found {file.window:g} s."
                 " Shorten it."
             )
-        mistakes += _reachable(file)
+        mistakes += _reachable(file) + wrong_name(file.name)
     series = [_tables(table, key, mistakes) for key in variants.TABLES]
     scope, check = None, None
     if file is not None and not mistakes:

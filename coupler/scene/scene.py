@@ -17,6 +17,7 @@ from quintet.interfaces.manifest import Manifest, Plan
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component or group: it names files and lines
+PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")  # name of a scene: never a path
 Transport = Literal["memory", "zenoh", "mpi"]
 
 
@@ -156,3 +157,13 @@ def import_folders(path: Path, components: Any) -> list[str]:
     tables = components.values() if isinstance(components, dict) else ()
     kinds = [str(one.get("kind", "")) for one in tables if isinstance(one, dict)]
     return [str(path.parent.resolve()), str(Path.cwd())] if ":" in "".join(kinds) else []
+
+
+def wrong_name(name: str) -> list[str]:
+    """Check the name of a scene, which is that of a folder as well."""
+    if PLAIN.fullmatch(name):
+        return []
+    return [
+        "scene.name must be a plain name of letters, digits, _ . and -, beginning with a letter, a "
+        f"digit or _; found {name!r}. Rename it."
+    ]

@@ -14,15 +14,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from quintet.coupler.files.run_files import RUN_LOG as LOG
 from quintet.coupler.launch.processes import PYTHON, tail
 from quintet.coupler.report.show import NAME, results
+from quintet.coupler.run.folder import begin, discard_former
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import assignments, run_arguments
 from quintet.interfaces.serving.process import STARTER
 
 GRACE = 10.0  # s for a run to end after SIGTERM
 FOREVER = float("inf")
-LOG = "run.log"  # in the folder of the run: what it printed
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,17 +36,19 @@ class ChildRun:
     swaps: list[str]
     transport: str
     stop: StopRequest
+    force: bool = False  # replace former runs
 
     @classmethod
     def of(cls, given: argparse.Namespace, stop: StopRequest, transport: str = "") -> "ChildRun":
         """Take scene and overrides from the command line; its transport takes precedence."""
         asked = (given.scene, given.preset, given.settings, given.swap)
-        return cls(*asked, given.transport or transport, stop)
+        again = given.force or getattr(given, "keep", False)
+        return cls(*asked, given.transport or transport, stop, again)
 
     def run(self, settings: dict[str, Any], folder: Path, seconds: float = FOREVER) -> Any:
         """Run with these settings; return the results, of status stalled if it timed out."""
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / NAME).unlink(missing_ok=True)
+        with begin("run", folder.name, [LOG], folder, self.force):
+            discard_former(folder)  # the scene and all its variants were checked
         with open(folder / LOG, "wb") as log:
             process = subprocess.Popen(
                 self._command(settings, folder),
@@ -67,7 +70,7 @@ class ChildRun:
         overrides = [*self.settings, *assignments(settings)]
         asked = run_arguments(self.scene, self.preset, overrides, self.swaps, self.transport)
         python = [*PYTHON, "-m", "quintet.coupler.cli"]
-        return [*python, "run", *asked, "--out", str(folder)]
+        return [*python, "run", *asked, "--out", str(folder), "--force"]
 
     def _await(self, process: "subprocess.Popen[bytes]", seconds: float) -> bool:
         """Wait for the process to end; return whether it timed out."""

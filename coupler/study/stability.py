@@ -15,8 +15,10 @@ from rich.table import Table
 from quintet.coupler.report.show import console
 from quintet.coupler.report.work_precision import three_digits
 from quintet.coupler.run import results
+from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import load
+from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import folder_name
 from quintet.coupler.study.bisection import bisect, middle
@@ -73,7 +75,14 @@ def run_stability(given: argparse.Namespace) -> int:
         raise SceneError(
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
         )
-    folder = (given.out or Path("runs") / f"{scene.file.name}-stability").resolve()
+    name = scene.file.name
+    with begin_series("stability", name, (NAME,), given.out, given.force) as place:
+        discard_former(place.path)
+        return _find_all(given, scene, place.path)
+
+
+def _find_all(given: argparse.Namespace, scene: Scene, folder: Path) -> int:
+    """Find every limit in a folder; return the exit status."""
     stop, limits, interrupted = StopRequest(), [], False
     with stop.listening():
         for limit in scene.stability:
@@ -86,7 +95,6 @@ def run_stability(given: argparse.Namespace) -> int:
                     interrupted = not find_limit(search)
                     limits.append(summary(search, limit.predicted(number)))
     found = {"scene": scene.file.name, "limits": limits, "machine": results.machine()}
-    folder.mkdir(parents=True, exist_ok=True)
     for path in (folder / NAME, given.json):
         if path:
             path.write_text(json.dumps(found, indent=2))

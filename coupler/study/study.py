@@ -13,9 +13,11 @@ from quintet.coupler.measures.convergence import least_squares, richardson
 from quintet.coupler.report import show
 from quintet.coupler.report.work_precision import draw, table
 from quintet.coupler.run import results
+from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import assignments
 from quintet.coupler.scene.read import load, parse
+from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.child_run import ChildRun
 from quintet.interfaces.errors import SceneError
@@ -29,7 +31,15 @@ def run_study(given: argparse.Namespace) -> int:
     scene = load(given.scene, given.preset, given.settings, given.swap, given.transport)
     if not scene.study:
         raise SceneError(f"{scene.path.name}: there is no [[study]]. Add one for every refinement.")
-    folder = (given.out or Path("runs") / f"{scene.file.name}-study").resolve()
+    files = (NAME, PICTURE)
+    with begin_series("study", scene.file.name, files, given.out, given.force, given.keep) as place:
+        place.check_runs(one.folder for one in scene.study)
+        discard_former(place.path)
+        return _run_all(given, scene, place.path)
+
+
+def _run_all(given: argparse.Namespace, scene: Scene, folder: Path) -> int:
+    """Run all refinements in a folder; return the exit status."""
     stop, rows = StopRequest(), []
     child = ChildRun.of(given, stop)
     with stop.listening():
@@ -42,7 +52,6 @@ def run_study(given: argparse.Namespace) -> int:
             if rows[-1]["status"] == "interrupted" or stop():
                 break
     found = conclude(scene.file.name, rows)
-    folder.mkdir(parents=True, exist_ok=True)
     for path in (folder / NAME, given.json):
         if path:
             path.write_text(json.dumps(found, indent=2))

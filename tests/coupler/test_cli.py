@@ -54,7 +54,8 @@ def test_check_prints_the_plan_and_starts_nothing(tmp_path, capsys):
     assert status("check", write_scene(tmp_path, "zenoh", end=0.02)) == 0
     said = " ".join(capsys.readouterr().out.split())
     for words in (
-        "0.02 s in 20 windows, serial, over zenoh; 3 processes, the coupler one of them",
+        "0.02 s over zenoh; 3 processes, the coupler one of them",
+        "run: ping, pong; serial; 20 windows of 0.001 s",
         "ping takes in (number [m], push [N, impulse]); gives out (number [m], push [N, impulse])",
         "link ping-pong: ping -> pong",
         "link ping-pong: pong -> ping",
@@ -103,7 +104,9 @@ def test_a_run_can_be_run_again_from_the_scene_that_it_left(ran, tmp_path):
 
 def test_a_second_run_into_a_folder_replaces_the_first_and_nothing_else(ran, tmp_path):
     (ran / "notes.txt").write_text("mine")
-    assert status("run", tmp_path / "scene.toml", "--out", ran, "--set", "end=0.005") == 0
+    assert (
+        status("run", tmp_path / "scene.toml", "--out", ran, "--force", "--set", "end=0.005") == 0
+    )
     assert (ran / "notes.txt").read_text() == "mine"
     assert json.loads((ran / "results.json").read_text())["windows"] == 5
 

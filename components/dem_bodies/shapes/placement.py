@@ -10,6 +10,7 @@ from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.lattice import lattice_points
+from quintet.components.shared.polygons import in_space
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def contact_spheres(body: "Body") -> Spheres:
         return np.zeros((1, 3)), np.array([0.5 * body.diameter])
     if body.corners is not None:
         radius = edge_radius(body)
-        centres = planar.in_space(planar.inner_corners(planar.corners(body), radius))
+        centres = in_space(planar.inner_corners(planar.corners(body), radius))
         return centres, np.full(len(centres), radius)
     one = cover(body)
     if one is not None:

@@ -4,50 +4,35 @@ Arrays of corners are (k, 2) m, x and z, and go round from x to z.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quintet.components.shared.polygons import (
+    area_moments,
+    edges,
+    in_order,
+    in_space,
+    require_convex,
+)
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
     from quintet.components.dem_bodies.params import Body, DemBodiesParams
 
 SHAPES = ("disc", "polygon")
-STRAIGHT = 1e-9  # sine of the turn at a corner that counts as none
-
-
-class Area(NamedTuple):
-    """Moments of a polygon's area."""
-
-    area: float  # m2
-    centre: Array  # (2,) m
-    moment: float  # m4, ∫ r² dA about the centre
-
-
-def area_moments(corner: Array) -> Area:
-    """Area, its centre and its polar moment about that, by the triangles at the first corner."""
-    a, b = corner[1:-1] - corner[0], corner[2:] - corner[0]
-    parts = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])  # m2
-    area = float(parts.sum())
-    centre = parts @ (a + b) / (3.0 * area)
-    squares = ((a * a).sum(axis=1) + (a * b).sum(axis=1) + (b * b).sum(axis=1)) / 6.0
-    moment = float(parts @ squares) - area * float(centre @ centre)
-    return Area(area, corner[0] + centre, moment)
 
 
 def corners(body: "Body") -> Array:
     """Corners (k, 2) m of a polygon about its centre of mass."""
     assert body.corners is not None
-    found = np.array(body.corners)
-    if _turns(found).sum() < 0.0:
-        found = found[::-1].copy()
+    found = in_order(body.corners)
     return np.asarray(found - area_moments(found).centre)
 
 
 def inner_corners(corner: Array, radius: float) -> Array:
     """Corners (k, 2) m of the polygon at which a circle of a radius [m] is swept round."""
-    along = _edges(corner)
+    along = edges(corner)
     length = np.linalg.norm(along, axis=1)
     away = np.stack([along[:, 1], -along[:, 0]], axis=1) / length[:, None]
     level = (away * corner).sum(axis=1) - radius
@@ -57,7 +42,7 @@ def inner_corners(corner: Array, radius: float) -> Array:
 
 def shortest_edge(body: "Body") -> float:
     """Length [m] of a polygon's shortest edge."""
-    return float(np.linalg.norm(_edges(np.array(body.corners)), axis=1).min())
+    return float(np.linalg.norm(edges(np.array(body.corners)), axis=1).min())
 
 
 def describe(bodies: "Sequence[Body]") -> dict[str, Array]:
@@ -76,14 +61,9 @@ def triangles(count: int) -> Array:
     return np.stack([np.zeros_like(last), last - 1, last], axis=1)
 
 
-def in_space(plane: Array) -> Array:
-    """Points (n, 3) m of points (n, 2) m in the plane of x and z."""
-    return np.insert(plane, 1, 0.0, axis=1)
-
-
 def polygon_distance(corner: Array, points: Array) -> Array:
     """Signed distances (n,) m of points (n, 2) m from a convex polygon."""
-    along, from_corner = _edges(corner), points[:, None] - corner
+    along, from_corner = edges(corner), points[:, None] - corner
     length2 = (along * along).sum(axis=1)
     share = np.clip((from_corner * along).sum(axis=2) / length2, 0.0, 1.0)
     far = np.linalg.norm(from_corner - share[:, :, None] * along, axis=2).min(axis=1)
@@ -101,53 +81,23 @@ def polygon_gap(a: Array, b: Array) -> float:
 
 def _separation(a: Array, b: Array) -> float:
     """How far [m] b is beyond that edge of a which it is furthest beyond."""
-    along = _edges(a)
+    along = edges(a)
     away = np.stack([along[:, 1], -along[:, 0]], axis=1)
     away = away / np.linalg.norm(away, axis=1, keepdims=True)
     return float((b @ away.T - (away * a).sum(axis=1)).min(axis=0).max())
 
 
-def _edges(corner: Array) -> Array:
-    return np.asarray(np.roll(corner, -1, axis=0) - corner)
-
-
-def _turns(corner: Array) -> Array:
-    """Sine of the turn (k,) at each corner times both edges' lengths [m2]; positive: x to z."""
-    along = _edges(corner)
-    before = np.roll(along, 1, axis=0)
-    return np.asarray(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0])
-
-
 def check_polygon(where: str, body: "Body", radius: float) -> None:
     """Refuse corners that are not those of a convex polygon, or too round for it."""
-    given = np.array(body.corners)
-    if len(given) < 3 or not _convex(given):
-        raise ValueError(
-            f"{where}.corners must go once round a convex polygon, x and z of three corners or "
-            f"more, none of them straight; found {body.corners}. Put them in order, or make "
-            "several bodies of it."
-        )
+    assert body.corners is not None
+    require_convex(f"{where}.corners", body.corners)
     corner = corners(body)
-    kept = (_edges(inner_corners(corner, radius)) * _edges(corner)).sum(axis=1) > 0.0
+    kept = (edges(inner_corners(corner, radius)) * edges(corner)).sum(axis=1) > 0.0
     if not kept.all():
         raise ValueError(
             f"{where}.edge_radius must leave something of each edge; found {radius:.6g} m. Make it "
             "smaller."
         )
-
-
-def _convex(corner: Array) -> bool:
-    length = np.linalg.norm(_edges(corner), axis=1)
-    if not length.all():
-        return False
-    turns = _turns(corner) / (length * np.roll(length, 1))
-    if turns.sum() < 0.0:
-        turns = -turns
-    # Round once: what turns twice has each corner right, but their angles add up to more.
-    angle = np.arcsin(np.clip(turns, 0.0, 1.0))
-    back = (_edges(corner) * np.roll(_edges(corner), 1, axis=0)).sum(axis=1) < 0.0
-    whole = np.where(back, np.pi - angle, angle).sum()
-    return bool((turns > STRAIGHT).all() and abs(whole - 2.0 * np.pi) < 1e-6)
 
 
 def check_plane(params: "DemBodiesParams") -> None:

@@ -8,6 +8,7 @@ from quintet.components.dem_bodies.build import CORNERS, Solid
 from quintet.components.dem_bodies.params import Body
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.state import State
+from quintet.components.shared.polygons import in_space
 from quintet.interfaces.component import Array, Fields
 
 # Corners around each face of a box, seen from outside.
@@ -27,7 +28,7 @@ def view(bodies: Sequence[Body], solids: Sequence[Solid], state: State) -> Field
             corners = CORNERS * 0.5 * np.array(body.size)
             faces.append(FACES + len(owners))
         elif body.corners is not None:
-            corners = planar.in_space(planar.corners(body))
+            corners = in_space(planar.corners(body))
             faces.append(planar.triangles(len(corners)) + len(owners))
         axes = state.axes[a].reshape(3, 3)
         points.append(state.position[a] + corners @ axes.T)

@@ -43,3 +43,9 @@ def test_relative_distance_is_over_the_size_of_the_reference():
     target = Curve(np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.0, 2.0]))
     assert distance(line, target, relative=False) == pytest.approx(math.sqrt(1.0 / 3.0))
     assert distance(line, target, relative=True) == pytest.approx(1.0 / 3.0)
+
+
+def test_a_long_curve_is_fitted_as_well():
+    found = fit(oscillation(0.0, 20.0, 100_000))
+    assert found.period == pytest.approx(PERIOD, rel=1e-8)
+    assert found.decay == pytest.approx(DECAY, abs=1e-7)

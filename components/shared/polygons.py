@@ -1,0 +1,79 @@
+"""Convex polygons in the plane of x and z: their moments, and whether they are convex.
+
+Arrays of corners are (k, 2) m and go round from x to z.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.interfaces.component import Array
+
+STRAIGHT = 1e-9  # sine of the turn at a corner that counts as none
+
+
+class Area(NamedTuple):
+    """Moments of a polygon's area."""
+
+    area: float  # m2
+    centre: Array  # (2,) m
+    moment: float  # m4, ∫ r² dA about the centre
+
+
+def area_moments(corner: Array) -> Area:
+    """Area, its centre and its polar moment about that, by the triangles at the first corner."""
+    a, b = corner[1:-1] - corner[0], corner[2:] - corner[0]
+    parts = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])  # m2
+    area = float(parts.sum())
+    centre = parts @ (a + b) / (3.0 * area)
+    squares = ((a * a).sum(axis=1) + (a * b).sum(axis=1) + (b * b).sum(axis=1)) / 6.0
+    moment = float(parts @ squares) - area * float(centre @ centre)
+    return Area(area, corner[0] + centre, moment)
+
+
+def in_order(corners: Sequence[tuple[float, float]]) -> Array:
+    """Corners of a polygon that may go round either way, from x to z."""
+    found = np.array(corners)
+    return found[::-1].copy() if turns(found).sum() < 0.0 else found
+
+
+def in_space(plane: Array) -> Array:
+    """Points (n, 3) m of points (n, 2) m in the plane of x and z."""
+    return np.insert(plane, 1, 0.0, axis=1)
+
+
+def edges(corner: Array) -> Array:
+    """Vectors (k, 2) m from each corner to the next."""
+    return np.asarray(np.roll(corner, -1, axis=0) - corner)
+
+
+def turns(corner: Array) -> Array:
+    """Sine of the turn (k,) at each corner times both edges' lengths [m2]; positive: x to z."""
+    along = edges(corner)
+    before = np.roll(along, 1, axis=0)
+    return np.asarray(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0])
+
+
+def require_convex(where: str, corners: Sequence[tuple[float, float]]) -> None:
+    """Refuse corners that do not go once round a convex polygon, either way."""
+    if len(corners) < 3 or not _convex(np.array(corners)):
+        raise ValueError(
+            f"{where} must go once round a convex polygon, x and z of three corners or more, none "
+            f"of them straight; found {corners}. Put them in order, or make several bodies of it."
+        )
+
+
+def _convex(corner: Array) -> bool:
+    along = edges(corner)
+    length = np.linalg.norm(along, axis=1)
+    if not length.all():
+        return False
+    sine = turns(corner) / (length * np.roll(length, 1))
+    if sine.sum() < 0.0:
+        sine = -sine
+    # Round once: of a star each corner is right, but its turns add up to more.
+    angle = np.arcsin(np.clip(sine, 0.0, 1.0))
+    back = (along * np.roll(along, 1, axis=0)).sum(axis=1) < 0.0
+    whole = np.where(back, np.pi - angle, angle).sum()
+    return bool((sine > STRAIGHT).all() and abs(whole - 2.0 * np.pi) < 1e-6)

@@ -1,0 +1,67 @@
+"""All files that a run leaves, and the marker by which its folder is known as a run's."""
+
+import json
+import secrets
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from quintet.coupler.files.recording import NAME as RECORDING
+from quintet.interfaces.errors import SceneError
+
+FORMAT = 1
+MARKER, LOCK = "quintet-run.json", "quintet-run.lock"
+RESULTS, LEDGER, SCENE = "results.json", "ledger.csv", "scene.toml"
+RUN_LOG = "run.log"  # what a run printed that a study started
+PICTURES = ("scene.png", "comparison.png")
+RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES)  # of every run
+SNAPSHOTS = "snapshot-*.h5"
+
+
+@dataclass(frozen=True, slots=True)
+class Marker:
+    """What the folder of a run says of it."""
+
+    run: str  # of this run alone
+    kind: str  # run, study or stability
+    scene: str
+    files: tuple[str, ...]  # that the run may write, but for snapshots; from the folder on
+    format: int = FORMAT
+
+
+def new_marker(kind: str, scene: str, files: Iterable[str]) -> Marker:
+    """Make the marker of a run that begins."""
+    return Marker(secrets.token_hex(8), kind, scene, tuple(sorted(set(files))))
+
+
+def write_marker(folder: Path, marker: Marker) -> None:
+    """Write the marker; it is there whole or not at all."""
+    part = (folder / MARKER).with_suffix(".part")
+    part.write_text(json.dumps(asdict(marker), indent=2), encoding="utf-8")
+    part.replace(folder / MARKER)
+
+
+def read_marker(folder: Path) -> Marker | None:
+    """Read the marker of a folder; None where it has none."""
+    try:
+        found = json.loads((folder / MARKER).read_text(encoding="utf-8"))
+        if found["format"] != FORMAT:
+            raise SceneError(
+                f"{folder}: {MARKER} must be of format {FORMAT}; found {found['format']!r}. Name "
+                "another folder, or use the version of quintet that ran there."
+            )
+        return Marker(**{**found, "files": tuple(map(str, found["files"]))})
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SceneError(
+            f"{folder}: {MARKER} cannot be read ({error}). Name another folder."
+        ) from error
+
+
+def left(folder: Path, marker: Marker) -> list[Path]:
+    """Files of a run that are there, but for what its study logs; the marker's last."""
+    plain = [Path(name) for name in marker.files if name != RUN_LOG]
+    within = [folder / one for one in plain if not one.is_absolute() and ".." not in one.parts]
+    found = [*within, *folder.glob(SNAPSHOTS)] if marker.kind == "run" else within
+    return [path for path in [*found, folder / MARKER] if path.is_file() or path.is_symlink()]

@@ -1,0 +1,1 @@
+"""A square floats in two dimensions: scene, exact by Archimedes and by linear theory."""

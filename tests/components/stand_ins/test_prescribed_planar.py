@@ -1,0 +1,55 @@
+"""Bodies on given paths in two dimensions: what they say of themselves, and mistakes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
+from quintet.components.stand_ins.prescribed import Prescribed
+from quintet.coupler.coupling.rigid_samples import asked_sampling, sample_bodies
+from quintet.interfaces.params import read
+from quintet.interfaces.ports import DISC, PLANAR_MOTION, POLYGON
+
+DISC_BODY = {"shape": "disc", "size": [0.2, 1.0, 0.2], "position": [0.0, 0.0, 0.0]}
+WEDGE = {
+    "shape": "polygon",
+    "corners": [[0.0, 0.0], [0.0, 0.2], [0.3, 0.0]],  # the other way round: it is turned
+    "position": [1.0, 0.0, 0.0],
+}
+BOX = {"shape": "box", "size": [0.1, 0.1, 0.1], "position": [2.0, 0.0, 0.0]}
+
+
+def told(*bodies):
+    return read(PrescribedParams, {"bodies": list(bodies)}, "paddle")
+
+
+def test_discs_and_polygons_are_sampled_as_they_describe_themselves():
+    params, mistakes = told(DISC_BODY, WEDGE)
+    assert not mistakes and prescribed_ports(params)[1] == (PLANAR_MOTION,)
+    said = Prescribed(params).describe()
+    assert said["motion.shape"].tolist() == [DISC, POLYGON]
+    assert said["motion.size"].tolist() == [[0.2, 1.0, 0.2], [0.3, 1.0, 0.2]]
+    one = {"spacing": 0.02, "depth": 1.0, "dimensions": 2.0}
+    asked = asked_sampling({f"surface.{name}": np.array([value]) for name, value in one.items()})
+    found = sample_bodies(said, asked, mirrored=True)
+    area = np.bincount(found.body, found.volume)
+    np.testing.assert_allclose(area, [math.pi * 0.01, 0.03], rtol=1e-9)
+    wedge = found.arm[found.body == 1]  # about its position, a corner, not its centre of mass
+    assert wedge[:, 0].min() > 0.0 and wedge[:, 2].min() > 0.0
+
+
+@pytest.mark.parametrize(
+    ("bodies", "sentence"),
+    [
+        ((DISC_BODY, BOX), "bodies[1].shape must have two dimensions (disc, polygon) as that of"),
+        ((BOX, WEDGE), "bodies[1].shape must have two dimensions (disc, polygon) as that of"),
+        (({**WEDGE, "size": [1.0, 1.0, 1.0]},), "a polygon is described by corners alone"),
+        (({**BOX, "size": None},), "a box is described by size alone; found none"),
+        (({**WEDGE, "corners": [[0, 0], [1, 0]]},), "must go once round a convex polygon"),
+        (({**DISC_BODY, "velocity": [0, 1, 0]},), "must move in the plane of x and z"),
+        (({**DISC_BODY, "angular_velocity": [1, 0, 0]},), "must move in the plane of x and z"),
+    ],
+)
+def test_mistakes_are_told(bodies, sentence):
+    assert sentence in " ".join(told(*bodies)[1])
