@@ -54,7 +54,8 @@ def test_check_prints_the_plan_and_starts_nothing(tmp_path, capsys):
     assert status("check", write_scene(tmp_path, "zenoh", end=0.02)) == 0
     said = " ".join(capsys.readouterr().out.split())
     for words in (
-        "0.02 s in 20 windows, serial, over zenoh; 3 processes, the coupler one of them",
+        "0.02 s over zenoh; 3 processes, the coupler one of them",
+        "run: ping, pong; serial; 20 windows of 0.001 s",
         "ping takes in (number [m], push [N, impulse]); gives out (number [m], push [N, impulse])",
         "link ping-pong: ping -> pong",
         "link ping-pong: pong -> ping",

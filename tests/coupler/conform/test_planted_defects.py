@@ -1,7 +1,9 @@
 """A planted defect is found by the law that it breaks, and none is found where none is."""
 
 import pytest
-from toy_defects import PLANTED
+import toy_defects  # noqa: F401  (it plants)
+import toy_late_defects  # noqa: F401
+from toy_planting import PLANTED
 from toy_sound import Sound
 
 from quintet.coupler.conform.check import try_all

@@ -135,7 +135,7 @@ def test_mistakes_of_a_scene_are_raised_and_nothing_is_started(scene):
 
 def test_a_plan_tells_what_a_run_will_need(scene):
     plan = quintet.check(scene(), settings={"end": 0.05}, transport="zenoh")
-    assert "0.05 s in 50 windows" in str(plan) and "3 processes" in str(plan)
+    assert "serial; 50 windows of 0.001 s" in str(plan) and "3 processes" in str(plan)
     assert plan.scene.components["ping"].kind == "toys:Toy"
 
 
