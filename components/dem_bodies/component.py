@@ -7,7 +7,8 @@ import numpy as np
 
 from quintet.components.dem_bodies import build, kernels
 from quintet.components.dem_bodies import state as rows
-from quintet.components.dem_bodies.contact import ball_search, search
+from quintet.components.dem_bodies.contact import search
+from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, no_ball_pairs
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.diagnostics import ALLOWED_DEPTH, contact_points, failure
 from quintet.components.dem_bodies.integration.step_limit import (
@@ -73,7 +74,7 @@ class DemBodies(Component):
         self.model = build.model(params, bodies, solids)
         self.state = build.state(bodies, number, solids)
         self.sums = np.zeros((rows.blocks_of(len(solids) + 1), rows.SUMS))
-        self.balls = ball_search.no_ball_pairs(self.model)
+        self.balls = no_ball_pairs(self.model)
         self.others = rows.body_pairs(0)
         self.loaded = False  # whether any body has a load
         self.accumulated = Accumulated()
@@ -241,7 +242,7 @@ class DemBodies(Component):
         self.others = search.body_pairs_of(kept.key, kept)
         begin, partner = np.array(state["balls.begin"]), state["balls.partner"].astype(np.uint32)
         asked = self.params.contact_forces
-        self.balls = ball_search.ball_pairs(self.model, begin, partner, asked)
+        self.balls = ball_pairs(self.model, begin, partner, asked)
         for name in SAVED[2:]:
             array = getattr(self.balls, name)
             if array is not None:

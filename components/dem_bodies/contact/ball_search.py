@@ -9,10 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, bodies_of, transfer_history
 from quintet.components.dem_bodies.contact.geometry import row_vector, sphere_plane
-from quintet.components.dem_bodies.laws import pair_constants
 from quintet.components.dem_bodies.state import (
-    BLOCK,
     RADIUS,
     BallPairs,
     Model,
@@ -20,7 +19,6 @@ from quintet.components.dem_bodies.state import (
     Short,
     State,
     Whole,
-    blocks_of,
 )
 from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.rotations import dot, sub
@@ -79,106 +77,6 @@ def list_partners(
     return found
 
 
-@njit(**EXACT)
-def kinds_of_pairs(model: Model, row: Short, partner: Short) -> Whole:
-    """Number of the kind of each pair, by the kinds of its balls, or of a ball and a plane."""
-    rows, kinds = model.kind.shape[0], max(model.kind.max() + 1, model.material_pairs.shape[0])
-    numbers = np.empty(partner.shape[0], np.int64)
-    for k in range(partner.shape[0]):
-        i, b = model.kind[row[k]], partner[k]
-        if b < rows:
-            j = model.kind[b]
-            numbers[k] = min(i, j) * kinds + max(i, j)
-        else:
-            numbers[k] = kinds * (kinds + i) + model.plane_material[b - rows]
-    return numbers
-
-
-@njit(**EXACT)
-def constants_of_pairs(model: Model, row: Short, partner: Short, some: Whole) -> Numbers:
-    """Constants of some of the pairs: a plane is a ball without end."""
-    rows = model.kind.shape[0]
-    table = np.empty((some.shape[0], 7))
-    for s in range(some.shape[0]):
-        k = some[s]
-        i, b = row[k], partner[k]
-        radius, inverse, a = model.bounding_radius[i], model.inverse_mass[i], model.material[i]
-        if b < rows:
-            other = model.material[b]
-            radius = 1.0 / (1.0 / radius + 1.0 / model.bounding_radius[b])
-            inverse += model.inverse_mass[b]
-        else:
-            other = model.plane_material[b - rows]
-        both = model.material_pairs[a, other]
-        table[s] = pair_constants(both[0], both[1], both[2], both[3], radius, 1.0 / inverse)
-    return table
-
-
-def bodies_of_pairs(pairs: BallPairs, body: Whole) -> tuple[Whole, Whole]:
-    """Body of each pair, and its partner: another body, or beyond all bodies a plane."""
-    first = body[pairs.row]
-    partner = pairs.partner.astype(np.int64)
-    near = partner < len(body)
-    partner[near] = body[partner[near]]
-    return first, partner
-
-
-def transfer_history(old: BallPairs, old_body: Whole, new: BallPairs, body: Whole) -> None:
-    """Take over the history of the pairs that touch."""
-    touching = np.flatnonzero(old.history[3])
-    first, second = (end[touching] for end in bodies_of_pairs(old, old_body))
-    key = np.minimum(first, second) << 32 | np.maximum(first, second)
-    order = np.argsort(key)
-    key, touching, first = key[order], touching[order], first[order]
-    new_first, new_second = bodies_of_pairs(new, body)
-    wanted = np.minimum(new_first, new_second) << 32 | np.maximum(new_first, new_second)
-    place = np.searchsorted(key, wanted)
-    known = np.flatnonzero(place < len(key))
-    known = known[key[place[known]] == wanted[known]]
-    source = place[known]
-    new.history[:, known] = old.history[:, touching[source]]
-    # The force is that on the pair's first body, which may have become its second.
-    swapped = known[first[source] != new_first[known]]
-    new.history[:3, swapped] *= -1.0
-    if new.rolling_moment is not None and old.rolling_moment is not None:
-        new.rolling_moment[known] = old.rolling_moment[touching[source]]
-        new.rolling_moment[swapped] *= -1.0
-
-
-def ball_pairs(model: Model, begin: Whole, partner: Short, asked: bool) -> BallPairs:
-    """Pairs of given partners, without history; whether their forces are `asked` for."""
-    rows, pairs = len(model.kind), len(partner)
-    row = np.repeat(np.arange(len(begin) - 1, dtype=np.uint32), np.diff(begin))
-    kinds = kinds_of_pairs(model, row, partner)
-    _, some, constants_row = np.unique(kinds, return_index=True, return_inverse=True)
-    leaves = (partner < rows) & (partner // BLOCK > row // BLOCK)
-    towards, blocks = partner[leaves], np.arange(blocks_of(rows) + 1)
-    earliest, source = blocks[:-1].copy(), row[leaves] // BLOCK
-    np.minimum.at(earliest, towards // BLOCK, source)
-    rolls = bool(model.material_pairs[:, :, 4].any() and model.ball.any())
-    return BallPairs(
-        begin=begin,
-        row=row,
-        partner=partner,
-        constants_row=constants_row.astype(np.uint32),
-        constants=constants_of_pairs(model, row, partner, some),
-        history=np.zeros((4, pairs)),
-        rolling_moment=np.zeros((pairs, 3)) if rolls else None,
-        force=np.zeros((pairs if rolls or asked else 0, 3)),
-        outgoing=np.zeros((len(towards), 6)),
-        outgoing_begin=np.searchsorted(source, blocks),
-        incoming_begin=np.concatenate([[0], np.cumsum(np.bincount(towards, minlength=rows))]),
-        incoming=np.argsort(towards, kind="stable").astype(np.uint32),
-        earliest=earliest,
-    )
-
-
-def no_ball_pairs(model: Model) -> BallPairs:
-    """Pairs of balls before any are listed."""
-    begin = np.zeros(np.count_nonzero(model.ball) + 1, np.int64)
-    return ball_pairs(model, begin, np.zeros(0, np.uint32), False)
-
-
 def sorted_balls(model: Model, state: State, skin: float) -> tuple[Sorted, Whole]:
     """Return the keys of the balls' cells in rising order, and their present rows in that order."""
     balls = np.flatnonzero(model.ball[:-1])
@@ -230,5 +128,5 @@ def deepest_pair(state: State, pairs: BallPairs) -> tuple[int, int]:
     other = radius[np.minimum(pairs.partner, len(radius) - 1)]  # the ground has none
     low = np.minimum(radius[pairs.row], np.where(other > 0.0, other, np.inf))
     k = int(np.argmin(np.where(inverse_root > 0.0, inverse_root * np.sqrt(low), np.inf)))
-    first, second = bodies_of_pairs(pairs, state.body)
-    return int(first[k]), int(second[k])
+    first, second = bodies_of(pairs.row[k], pairs.partner[k], state.body)
+    return int(first), int(second)

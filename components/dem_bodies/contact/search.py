@@ -186,6 +186,8 @@ def body_pairs_of(keys: Whole, old: BodyPairs) -> BodyPairs:
 
 def with_sorted_rows(old: BodyPairs, order: Whole) -> BodyPairs:
     """Keep the history of pairs with balls, whose present rows (b,) are put in a new order."""
+    if not len(old.key):
+        return old
     key, mask = old.key.copy(), (1 << FIRST) - 1
     first = key >> FIRST & mask
     ball = np.flatnonzero((key >> KIND < EDGE_EDGE) & (first < len(order)))
@@ -198,6 +200,8 @@ def list_body_pairs(
     model: Model, state: State, around: Sorted, old: BodyPairs, skin: float
 ) -> BodyPairs:
     """List anew all pairs nearer than the skin [m] that are not of balls and planes alone."""
+    if not len(model.others):
+        return old
     width = 2.0 * float(model.bounding_radius[model.others].max(initial=0.0)) + skin
     cell_keys = keys_of(state.motion, model.others, width)
     order = np.argsort(cell_keys, kind="stable")
@@ -216,8 +220,9 @@ def list_pairs(
     """Sort the rows, and list anew all pairs nearer than the skin [m]."""
     body = state.body.copy()
     around, order = sorted_balls(model, state, skin)
-    sort_rows(model, state, order)
-    balls = list_ball_pairs(model, state, around, balls, body, skin, asked)
+    if len(order):
+        sort_rows(model, state, order)
+        balls = list_ball_pairs(model, state, around, balls, body, skin, asked)
     contacts = list_body_pairs(model, state, around, with_sorted_rows(contacts, order), skin)
     set_listed_centres(model, state)
     return balls, contacts
