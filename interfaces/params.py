@@ -110,7 +110,8 @@ def _without_old(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str,
         for one in mistakes
         if (new := _renamed(params, [str(part) for part in one["loc"]]))
     }
-    return [one for one in mistakes if one["loc"] not in there]
+    gone = ("missing", "missing_argument")
+    return [one for one in mistakes if one["loc"] not in there or one["type"] not in gone]
 
 
 def _renamed(params: type, names: list[str]) -> str:
