@@ -1,4 +1,4 @@
-"""What a scene asks for beyond the plain fluid, made.
+"""The parts of a fluid that its parameters ask for, made.
 
 All imports are made where they are asked for: a scene imports, and compiles, nothing of what it
 leaves out. Here alone they are not at the top.

@@ -4,10 +4,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, types
-from numba.extending import overload
+from numba import njit
 from numpy.typing import NDArray
 
+from quintet.components.shared.float_bits import bits_of, number_of
 from quintet.components.shared.numba_options import EXACT, FAST
 from quintet.components.shared.packing import (
     empty_rows,
@@ -54,30 +54,6 @@ class BoundaryRows(NamedTuple):
     velocity: Numbers  # (n, 4) m/s, as kinematic viscosity sees it, and a column unused
     volume: Numbers  # (n,) 1, over that of a particle of the fluid
     mask: Numbers  # (n,) 1 where the contact potential acts, 0 elsewhere
-
-
-# Numbers from 0 on are in the order of their bits, and the compiler makes vectors of the greatest
-# of integers, but not of that of floats: with it the loop would be half as fast.
-def bits_of(number):  # type: ignore[no-untyped-def]
-    """Bits of a number, as an integer as wide."""
-
-
-def number_of(bits):  # type: ignore[no-untyped-def]
-    """Number that has these bits."""
-
-
-@overload(bits_of, inline="always")
-def _bits_of(number):  # type: ignore[no-untyped-def]
-    if number == types.float32:
-        return lambda number: np.float32(number).view(np.int32)
-    return lambda number: np.float64(number).view(np.int64)
-
-
-@overload(number_of, inline="always")
-def _number_of(bits):  # type: ignore[no-untyped-def]
-    if bits == types.int32:
-        return lambda bits: np.int32(bits).view(np.float32)
-    return lambda bits: np.int64(bits).view(np.float64)
 
 
 @njit(**FAST)

@@ -57,16 +57,43 @@ class NeighbourLists:
         return Lists(self.begin, self.middle, self.end, self.list)
 
 
+class Searched(NamedTuple):
+    """The points that are searched, of both groups, sorted by cell."""
+
+    points: Points  # (3, n) m
+    split: int  # how many are of the first group
+    start_one: Whole  # (cells + 2,) where each cell of the first group starts
+    start_two: Whole  # (cells + 2,) and of the second
+    grid: Grid
+
+
 @njit(**FAST)
 def search(
-    first: int, last: int, split: int, query_points: Points, points: Points, cell: Whole,
-    start_one: Whole, start_two: Whole, grid: Grid, reach2: float, per_row: int, begin_of: Whole,
-    middle_of: Whole, end_of: Whole, found: NDArray[np.int32],
+    first: int, last: int, query_points: Points, cell: Whole, searched: Searched, reach2: float,
+    per_row: int, lists: Lists,
 ) -> bool:  # fmt: skip
-    """List the neighbours of query_points [first, last); return whether they had room.
+    """List the neighbours of some points.
 
-    In `found` they have room for `per_row` each, taken together.
+    Parameters
+    ----------
+    first, last : int
+        Rows of the points that look.
+    query_points, cell : (m, 3) float array, m, and (m,) int array
+        All points that look, the first group before the second, and their cells.
+    searched : Searched
+    reach2 : float, m2
+    per_row : int
+        Neighbours that each row has room for, taken together.
+    lists : Lists
+        Written.
+
+    Returns
+    -------
+    bool
+        Whether there was room.
     """
+    points, split, start_one, start_two, grid = searched
+    begin_of, middle_of, end_of, found = lists
     nx, ny, nz = grid.nx, grid.ny, grid.nz
     k, limit = first * per_row, last * per_row
     for i in range(first, last):
@@ -134,13 +161,13 @@ def neighbours_within(
     cell = np.concatenate([cell_one, cell_two])
     rows = len(cell)
     start = points if query_points is None else np.concatenate([points[:split], query_points])
-    cells = (cell, start_one, start_two, grid)
-    where = (split, start, np.ascontiguousarray(points.T), *cells, reach * reach)
+    searched = Searched(np.ascontiguousarray(points.T), split, start_one, start_two, grid)
     begin, middle, end = (np.empty(rows, np.int64) for _ in range(3))
     if room is None or len(room) > MOST * rows:
         room = np.empty(0, np.int32)
     while True:
         per_row = len(room) // rows
-        if all(team.run(search, rows, *where, per_row, begin, middle, end, room)):
+        lists = Lists(begin, middle, end, room)
+        if all(team.run(search, rows, start, cell, searched, reach * reach, per_row, lists)):
             return NeighbourLists(room, begin, middle, end)
         room = np.empty(rows * max(FEWEST, 2 * per_row), np.int32)

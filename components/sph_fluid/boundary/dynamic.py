@@ -26,16 +26,16 @@ class DynamicBoundary:
         self.samples, self.mask = samples, np.zeros(0)
 
     def start(self, state: State) -> None:
-        """Walls have their densities."""
+        """Nothing to do: walls have their densities."""
 
     def join(self, state: State, static: Fields) -> None:
-        """Samples have theirs."""
+        """Nothing to do: samples have their densities."""
 
     def place(self, state: State, fields: Fields) -> None:
-        """Samples are where they are."""
+        """Nothing to do: samples look from where they are."""
 
     def load(self, state: State) -> None:
-        """All is in the state."""
+        """Nothing to do: all is in the state."""
 
     def rows_with_density_rate(self, state: State) -> int:
         """All rows."""
@@ -50,15 +50,15 @@ class DynamicBoundary:
         return None, self.samples.row
 
     def resize(self, state: State, symmetry: SymmetryPlanes) -> None:
-        """Nothing is kept beside the state."""
+        """Nothing to do: nothing is kept beside the state."""
 
     def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
-        """Densities were advanced."""
+        """Nothing to do: densities were advanced."""
 
     def apparent_velocity(self, state: State, lists: Lists, team: Team) -> Array:
         """Velocities as they are."""
         return state.velocity_pressure
 
     def energy(self, state: State, lists: Lists, team: Team) -> float:
-        """None but the fluid's."""
+        """None: it stores no energy but that of its density."""
         return 0.0

@@ -21,6 +21,8 @@ the body itself this is p. So the film presses with its own pressure on that par
 particles leave, as many of them as there are in the gap, and nothing is pressed twice.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -91,9 +93,9 @@ def advance(
     pressure, share, before = state.film[films.sample].T.copy()
     known = before > 0.0
     stored = np.where(known, share * before, 0.0)
-    arrays = (films.rim, films.begin, films.near, width, mobility, foot, outside, stored)
+    places = FilmPlaces(films.rim, films.begin, films.near, width, foot, outside, stored, mobility)
     x, y, z = weight.tolist()
-    solve_reynolds(*arrays, spacing**2 / dt, (x, y, z), SWEEPS, pressure, share)
+    solve_reynolds(places, spacing**2 / dt, (x, y, z), SWEEPS, pressure, share)
     state.film[:] = 0.0
     state.film[films.sample] = np.stack([pressure, share, width], axis=1)
     wet = np.empty(len(gap))
@@ -106,25 +108,29 @@ def advance(
     np.add.at(state.force, films.facing[bodies], -force[bodies])
 
 
+class FilmPlaces(NamedTuple):
+    """Places of films, one for each sample that faces another surface."""
+
+    rim: Array  # (m,) whether it has the pressure outside
+    begin: Whole  # (m + 1,) where its neighbours in the film stand in `near`
+    near: Whole
+    width: Array  # (m,) m
+    position: Array  # (m, 3) m
+    outside: Array  # (m,) Pa
+    stored: Array  # (m,) m, water per area at the step's beginning
+    mobility: Array  # (m,) m4 s/kg, K = w³/(12μ), bounded
+
+
 @njit(**FAST)
 def solve_reynolds(
-    rim: Array, begin: Whole, near: Whole, width: Array, mobility: Array, position: Array,
-    outside: Array, stored: Array, cell: float, weight: tuple[float, float, float],
-    sweeps: int, pressure: Array, share: Array,
+    places: FilmPlaces, cell: float, weight: tuple[float, float, float], sweeps: int,
+    pressure: Array, share: Array,
 ) -> None:  # fmt: skip
     """Write pressure and full share of films at a step's end, by Gauss and Seidel.
 
     Parameters
     ----------
-    rim : (m,) bool array
-        Which places of films have the pressure outside.
-    begin, near : (m + 1,), (any,) int arrays
-        Neighbours of each in its film.
-    width, position, outside : (m,), (m, 3), (m,) float arrays, m, m, Pa
-    mobility : (m,) float array, m4 s/kg
-        K = w³/(12μ), bounded.
-    stored : (m,) float array, m
-        Water per area at the step's beginning.
+    places : FilmPlaces
     cell : float, m2/s
         Area of a sample over the step.
     weight : three floats, N/m3
@@ -137,6 +143,7 @@ def solve_reynolds(
     ----------
     Elrod, ASME J. Lubr. Technol. 103 (1981) 350.
     """
+    rim, begin, near, width, position, outside, stored, mobility = places
     for i in range(rim.shape[0]):
         if rim[i]:
             pressure[i] = outside[i]

@@ -25,7 +25,7 @@ class PotentialBoundary:
         self.stable_dt = self.stiffness.write(state, rows)
 
     def join(self, state: State, static: Fields) -> None:
-        """Samples are stiff once they are placed."""
+        """Nothing to do: samples are stiff once they are placed."""
 
     def place(self, state: State, fields: Fields) -> None:
         """Set the stiffness of samples where they are."""
@@ -51,10 +51,10 @@ class PotentialBoundary:
         return state.reference[row], state.fluid + np.arange(len(row))
 
     def resize(self, state: State, symmetry: SymmetryPlanes) -> None:
-        """The potential acts at every row."""
+        """Nothing to do: the potential acts at every row."""
 
     def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
-        """Stiffness stands in place of pressure."""
+        """Nothing to do: stiffness stands in place of pressure."""
 
     def apparent_velocity(self, state: State, lists: Lists, team: Team) -> Array:
         """Velocities as they are."""

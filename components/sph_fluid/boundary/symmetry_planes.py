@@ -50,19 +50,19 @@ class NoSymmetry:
         return neighbours_within(reach, points, state.fluid, team, query_points, room)
 
     def write_images(self, state: State) -> None:
-        """There are none."""
+        """Nothing to do: there are no images."""
 
     def write_vectors(self, vectors: Array, rows: int) -> None:
-        """There are none."""
+        """Nothing to do: there are no images."""
 
     def write_values(self, values: NDArray[np.floating], rows: int) -> None:
-        """There are none."""
+        """Nothing to do: there are no images."""
 
     def reflect_crossed(self, state: State) -> None:
-        """There is no plane to pass."""
+        """Nothing to do: there is no plane to pass."""
 
     def require_before(self, samples: Array) -> None:
-        """There is no plane to be behind."""
+        """Nothing to do: there is no plane to be behind."""
 
     def all_images(self, points: Array) -> Array:
         """Return the points alone."""

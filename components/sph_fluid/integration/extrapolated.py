@@ -11,6 +11,7 @@ from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.integration.method import (
     Moved,
+    Rows,
     StepTask,
     failed,
     shift2,
@@ -19,7 +20,7 @@ from quintet.components.sph_fluid.integration.method import (
 from quintet.components.sph_fluid.laws import Constants
 from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.state import State
 
 # How many steps ahead of its last value the rate of density is taken, by extrapolation. One makes
 # sound waves neutral to second order in ω dt; a little more damps them, up to ω dt = 0.5.
@@ -39,21 +40,34 @@ class Extrapolated:
         dt, last = task.dt, state.last_dt
         # At most twice as far as the last step: extrapolating from a tiny step would magnify noise.
         ahead = AHEAD * min(dt / last, 2.0) if last > 0.0 else 0.0
-        arrays = (
-            task.rate, state.reference, state.position_density, state.velocity_pressure,
-            state.previous_density_rate,
-        )  # fmt: skip
         numbers = (state.fluid, dt, ahead, self.furthest, self.constants)
-        return team.run(advance, task.rows, *numbers, *arrays)
+        return team.run(advance, task.rows, *numbers, Rows.of(state, task.rate))
 
 
 @njit(**EXACT)
 def advance(
     first: int, last: int, split: int, dt: float, ahead: float, furthest: float,
-    constants: Constants, rate: Array, reference: Array, position: Array, velocity: Array,
-    previous: Array,
+    constants: Constants, rows: Rows,
 ) -> tuple[float, int]:  # fmt: skip
-    """Advance rows [first, last); return the greatest shift² since the list, and failures."""
+    """Advance rows by a step.
+
+    Parameters
+    ----------
+    first, last : int
+        Rows to advance, of which the first `split` of all are fluid.
+    dt : float, s
+    ahead : float, 1
+        Steps from the last rate of density to the one that is taken.
+    furthest : float, m
+        That a particle may move.
+    constants, rows
+
+    Returns
+    -------
+    float, int
+        Greatest shift² [m2] since the lists were made; failures.
+    """
+    position, velocity, rate, previous, _, reference = rows
     moved, failures = 0.0, 0
     for i in range(first, last):
         density_rate = rate[i, 3] + ahead * (rate[i, 3] - previous[i])

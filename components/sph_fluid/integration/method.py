@@ -13,6 +13,25 @@ from quintet.components.sph_fluid.state import Array, State
 Moved = list[tuple[float, int]]  # of each share of the rows: greatest shift² [m2], and failures
 
 
+class Rows(NamedTuple):
+    """Rows of a state as kernels advance them."""
+
+    position: Array  # (n, 4) m, m, m, kg/m3: x, y, z, ρ
+    velocity: Array  # (n, 4) m/s, m/s, m/s, Pa m6/kg2: u, v, w, p/ρ²
+    rate: Array  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s), of the last pass over pairs
+    previous_density_rate: Array  # (n,) kg/(m3 s)
+    acceleration: Array  # (fluid, 3) m/s2, at the last step's end; (0, 3) if it is not wanted
+    reference: Array  # (n, 3) m, where the neighbour lists were made
+
+    @classmethod
+    def of(cls, state: State, rate: Array) -> "Rows":
+        """Rows of a state, and their rates (n, 4)."""
+        return cls(
+            state.position_density, state.velocity_pressure, rate, state.previous_density_rate,
+            state.acceleration, state.reference,
+        )  # fmt: skip
+
+
 class StepTask(NamedTuple):
     """One step of one fluid."""
 

@@ -16,6 +16,7 @@ from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.integration.method import (
     Moved,
+    Rows,
     StepTask,
     failed,
     shift2,
@@ -24,7 +25,7 @@ from quintet.components.sph_fluid.integration.method import (
 from quintet.components.sph_fluid.laws import Constants
 from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.state import State
 
 
 class PositionVerlet:
@@ -40,23 +41,21 @@ class PositionVerlet:
             task.compute_rates()
             state.previous_density_rate[: task.rows] = rate[: task.rows, 3]
             state.acceleration = rate[: state.fluid, :3].copy()
-        rows, now = (task.rows, state.fluid), (state.position_density, state.velocity_pressure)
-        before = (state.previous_density_rate, state.acceleration)
-        team.run(half_step, *rows, dt, self.constants, *before, *now)
+        numbers, rows = (state.fluid, dt), Rows.of(state, rate)
+        team.run(half_step, task.rows, *numbers, self.constants, rows)
         task.compute_rates()
         task.apply_forces()
-        team.run(kick, state.fluid, dt, rate, state.acceleration, *now)
+        team.run(kick, state.fluid, dt, rows)
         task.compute_rates()
-        numbers = (dt, self.furthest, self.constants, rate, state.reference, *before)
-        return team.run(finish, *rows, *numbers, *now)
+        return team.run(finish, task.rows, *numbers, self.furthest, self.constants, rows)
 
 
 @njit(**EXACT)
 def half_step(
-    first: int, last: int, split: int, dt: float, constants: Constants, previous: Array,
-    acceleration: Array, position: Array, velocity: Array,
-) -> None:  # fmt: skip
+    first: int, last: int, split: int, dt: float, constants: Constants, rows: Rows
+) -> None:
     """Bring rows [first, last) to the middle of the step: r', ρ', u'."""
+    position, velocity, _, previous, acceleration, _ = rows
     for i in range(first, last):
         density = position[i, 3] + 0.5 * dt * previous[i]
         if i < split:
@@ -69,11 +68,9 @@ def half_step(
 
 
 @njit(**EXACT)
-def kick(
-    first: int, last: int, dt: float, rate: Array, acceleration: Array, position: Array,
-    velocity: Array,
-) -> None:  # fmt: skip
+def kick(first: int, last: int, dt: float, rows: Rows) -> None:
     """Bring velocity and position of fluid rows [first, last) to the end of the step."""
+    position, velocity, rate, _, acceleration, _ = rows
     for i in range(first, last):
         for d in range(3):
             velocity[i, d] += dt * (rate[i, d] - 0.5 * acceleration[i, d])
@@ -82,11 +79,10 @@ def kick(
 
 @njit(**EXACT)
 def finish(
-    first: int, last: int, split: int, dt: float, furthest: float, constants: Constants,
-    rate: Array, reference: Array, previous: Array, acceleration: Array, position: Array,
-    velocity: Array,
-) -> tuple[float, int]:  # fmt: skip
-    """Bring density to the end of the step; return the greatest shift² since the list, failures."""
+    first: int, last: int, split: int, dt: float, furthest: float, constants: Constants, rows: Rows
+) -> tuple[float, int]:
+    """Bring density to the end of the step; return as `extrapolated.advance` does."""
+    position, velocity, rate, previous, acceleration, reference = rows
     moved, failures = 0.0, 0
     for i in range(first, last):
         previous[i] = rate[i, 3]

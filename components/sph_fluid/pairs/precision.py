@@ -28,7 +28,7 @@ class DoublePrecision:
     """The state and its law as they are."""
 
     def resize(self, state: State, density: float) -> None:
-        """Nothing is copied."""
+        """Nothing to do: nothing is copied."""
 
     def particles(self, state: State, team: Team) -> Particles:
         """All rows of the state itself."""

@@ -23,10 +23,18 @@ ROUNDING = 1e-6  # of a length
 
 @parameters
 class StandingWave:
-    """A standing wave along x."""
+    """A standing wave along x.
 
-    amplitude: Positive  # m, A
-    length: Positive  # m, λ
+    Parameters
+    ----------
+    amplitude : float, m, > 0
+        A.
+    length : float, m, > 0
+        λ, of which whole halves make up the water's extent along x.
+    """
+
+    amplitude: Positive
+    length: Positive
 
     def check(self, boxes: tuple[tuple[Vector, Vector], ...], gravity: Vector) -> None:
         """Refuse water on which the wave cannot stand."""

@@ -97,12 +97,13 @@ def squeeze(stored, cell, outside=1000.0, sweeps=400):
     pairs = [[j for j in (i - 1, i + 1) if 0 <= j < count] for i in range(count)]
     begin = np.concatenate([[0], np.cumsum([len(some) for some in pairs])])
     near = np.array([j for some in pairs for j in some])
-    width, ease = np.full(count, 1e-3), np.full(count, 1e-9 / (12.0 * lubrication.WATER))
+    width, mobility = np.full(count, 1e-3), np.full(count, 1e-9 / (12.0 * lubrication.WATER))
     place = np.stack([np.arange(count) * 0.01, np.zeros(count), np.zeros(count)], axis=1)
     rims = np.full(count, outside)
     pressure, share = np.zeros(count), np.zeros(count)
-    arrays = (rim, begin, near, width, ease, place, rims, np.full(count, stored))
-    lubrication.solve_reynolds(*arrays, cell, (0.0, 0.0, 0.0), sweeps, pressure, share)
+    stores = np.full(count, stored)
+    places = lubrication.FilmPlaces(rim, begin, near, width, place, rims, stores, mobility)
+    lubrication.solve_reynolds(places, cell, (0.0, 0.0, 0.0), sweeps, pressure, share)
     return pressure, share
 
 
