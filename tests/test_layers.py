@@ -112,7 +112,7 @@ def late_imports(path):
             yield line
 
 
-@pytest.mark.parametrize("path", [p for p in FILES if "components" not in p.parts], ids=where)
+@pytest.mark.parametrize("path", FILES, ids=where)
 def test_what_is_imported_late_says_why(path):
     assert not list(late_imports(path)), "give the reason in a comment above, or import at the top"
 

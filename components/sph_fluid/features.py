@@ -1,7 +1,7 @@
 """The parts of a fluid that its parameters ask for, made.
 
 All imports are made where they are asked for: a scene imports, and compiles, nothing of what it
-leaves out. Here alone they are not at the top.
+leaves out.
 """
 
 from typing import TYPE_CHECKING, Protocol
@@ -33,13 +33,16 @@ class PressurePart(Protocol):
 def boundary_method(params: SphFluidParams, samples: Samples) -> BoundaryMethod:
     """How walls and samples act."""
     if params.boundary.method == "mdbc":
+        # Mirrored walls are left out of scenes with other boundaries.
         from quintet.components.sph_fluid.boundary.mirrored import MirroredBoundary
 
         return MirroredBoundary(params, samples)
     if params.boundary.method == "potential":
+        # The contact potential is left out of scenes with other boundaries.
         from quintet.components.sph_fluid.boundary.potential import PotentialBoundary
 
         return PotentialBoundary(params, samples)
+    # Dynamic walls are left out of scenes with other boundaries.
     from quintet.components.sph_fluid.boundary.dynamic import DynamicBoundary
 
     return DynamicBoundary(samples)
@@ -47,6 +50,7 @@ def boundary_method(params: SphFluidParams, samples: Samples) -> BoundaryMethod:
 
 def contact_stiffness(params: SphFluidParams) -> "ContactStiffness":
     """The contact potential, for samples of mirrored walls that links choose it for."""
+    # Left out of scenes in which no link asks for it.
     from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
 
     return ContactStiffness(params)
@@ -56,6 +60,7 @@ def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
     """Planes of symmetry, if there are any."""
     if not params.boundary.symmetry:
         return NoSymmetry()
+    # Left out of scenes without planes of symmetry.
     from quintet.components.sph_fluid.boundary.symmetry import Symmetry
 
     return Symmetry(params)
@@ -65,6 +70,7 @@ def lubrication_films(params: SphFluidParams, samples: Samples) -> "LubricationF
     """Films in narrow gaps."""
     if not params.boundary.lubrication_films:
         return None
+    # Left out of scenes without films.
     from quintet.components.sph_fluid.boundary.lubrication import LubricationFilms
 
     return LubricationFilms(params, samples)
@@ -74,6 +80,7 @@ def pressure_parts(params: SphFluidParams, boundary: BoundaryMethod) -> list[Pre
     """What writes pressures before a pass over pairs, in order: the boundary, and a damper."""
     if params.acoustic_damper == 0.0:
         return [boundary]
+    # Left out of scenes without a damper.
     from quintet.components.sph_fluid.pairs.acoustic_damper import AcousticDamper, MirroredDamper
 
     walls = [MirroredDamper(params)] if params.mirrored else []
@@ -84,6 +91,7 @@ def courant_limit(params: SphFluidParams) -> float:
     """Greatest step over the time that sound takes through a smoothing length."""
     if params.acoustic_damper == 0.0:
         return params.courant
+    # Left out of scenes without a damper.
     from quintet.components.sph_fluid.pairs.acoustic_damper import courant_limit as damped_limit
 
     return min(params.courant, damped_limit(params.acoustic_damper))
@@ -93,6 +101,7 @@ def shepard_filter(params: SphFluidParams) -> "ShepardFilter | None":
     """A filter of the density."""
     if not params.shepard_every:
         return None
+    # Left out of scenes without a filter.
     from quintet.components.sph_fluid.pairs.shepard_filter import ShepardFilter
 
     return ShepardFilter(params)
@@ -102,6 +111,7 @@ def precision(params: SphFluidParams) -> Precision:
     """In which precision pairs are computed."""
     if params.precision == "float64":
         return DoublePrecision()
+    # Left out of scenes in double precision.
     from quintet.components.sph_fluid.pairs.single_precision import SinglePrecision
 
     return SinglePrecision()
@@ -110,9 +120,11 @@ def precision(params: SphFluidParams) -> Precision:
 def integration(params: SphFluidParams) -> Integration:
     """The scheme in time."""
     if params.integration == "symplectic":
+        # Left out of scenes with the other scheme.
         from quintet.components.sph_fluid.integration.position_verlet import PositionVerlet
 
         return PositionVerlet(params)
+    # Left out of scenes with the other scheme.
     from quintet.components.sph_fluid.integration.extrapolated import Extrapolated
 
     return Extrapolated(params)
@@ -123,6 +135,7 @@ def gauges(params: SphFluidParams, symmetry: SymmetryPlanes) -> "Gauges | None":
     asked = params.gauges
     if not (asked.pressure_gauges or asked.level_gauges or asked.front_gauge or asked.motion_gauge):
         return None
+    # Left out of scenes without gauges.
     from quintet.components.sph_fluid.gauges.gauges import Gauges
 
     return Gauges(params, symmetry)

@@ -160,6 +160,7 @@ def recording_file(path: str) -> Path:
 
 def recorded_ports(params: ReplayParams) -> Ports:
     """Ports that the recorded component gave; it takes nothing back."""
+    # Only a replay reads recordings.
     import h5py
 
     path = recording_file(params.recording)

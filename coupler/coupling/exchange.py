@@ -249,6 +249,19 @@ class Exchange:
                 self._rows[place][link] = slice(first, first + count)
                 first += count
 
+    def shares(self, name: str) -> dict[str, list[tuple[int, int]]]:
+        """Rows of each link in the ports of a component that several links share."""
+        return {
+            port: [(one.start, one.stop) for one in rows.values()]
+            for (taker, port), rows in self._rows.items()
+            if taker == name and len(rows) > 1
+        }
+
+    def share_of(self, link: int, name: str, port: str) -> int:
+        """Place of a link among those that share a port of a component."""
+        rows = self._rows.get((name, port), {})
+        return sorted(rows).index(link) if len(rows) > 1 else 0
+
     def is_impulse(self, taker: str, key: str) -> bool:
         """Whether an input of a component is an integral over the window."""
         return self.takes[taker][key].centring == "impulse"

@@ -104,10 +104,11 @@ class Ledger:
                 scale = sent.get(f"{key}/size", [0.0])[0]
                 gap = np.subtract(column_sums(fields[key]), sent.get(key, 0.0))
                 self._account(number).note(self.exchange.unit(transfer.taker, after), gap, scale)
-        for link in self.exchange.links:
+        for number, link in enumerate(self.exchange.links):
             account = self.accounts[link.name]
-            for key, *_ in link.works.get(name, []):
-                work = sent.get(f"{key}/work", [0.0])[0]
+            for key, velocity, _ in link.works.get(name, []):
+                share = self.exchange.share_of(number, name, velocity.partition(".")[0])
+                work = sent[f"{key}/work"][share] if f"{key}/work" in sent else 0.0
                 account.work_given += work
                 if any(one.works_on for one in link.transfers):  # else the other side counts none
                     account.turnover += abs(work)

@@ -4,7 +4,7 @@ An impulse is the sum of force times step over the steps, so what a link carries
 what the component did, at every subcycling ratio.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from quintet.interfaces.errors import PortError
 from quintet.interfaces.sums import column_sums, moment, product, size
 
 Sums = dict[str, list[float]]
+Rows = Sequence[tuple[int, int]]
 
 
 class Outputs:
@@ -22,7 +23,8 @@ class Outputs:
     ``works`` pairs a given force with the taken velocity (and position) of the same items:
     their products are the work and the angular impulse done through the port. Only fields that
     are `wanted` are asked for. Where the component gives integrals over its last step, as a
-    recording does, they are added as they are.
+    recording does, they are added as they are. Work through a port that several links share is
+    told for each link's rows by themselves.
     """
 
     def __init__(self, gives: Iterable[Port], integrals: bool = False) -> None:
@@ -31,7 +33,8 @@ class Outputs:
         self.want(self.fields)
         self.works: list[tuple[str, str, str]] = []  # force, velocity, position or ""
         self.total: dict[str, Array] = {}
-        self.work: dict[str, float] = {}
+        self.shares: Mapping[str, Rows] = {}  # port taken -> first and last row + 1 of each link
+        self.work: dict[str, list[float]] = {}  # of each link
         self.moment: dict[str, Array] = {}
 
     def want(self, keys: Iterable[str]) -> None:
@@ -57,8 +60,12 @@ class Outputs:
             part = given[key] if self.integrals else dt * given[key]
             self.total[key] = self.total[key] + part if key in self.total else part
         for force, velocity, position in self.works:
-            done = dt * product(given[force], taken[velocity])
-            self.work[force] = self.work.get(force, 0.0) + done
+            pushed, moved = given[force], taken[velocity]
+            whole = ((0, len(pushed)),)
+            shares = self.shares.get(velocity.partition(".")[0], whole)
+            done = self.work.setdefault(force, [0.0] * len(shares))
+            for link, (first, stop) in enumerate(shares):
+                done[link] += dt * product(pushed[first:stop], moved[first:stop])
             if position:
                 turned = dt * moment(taken[position], given[force])
                 self.moment[force] = self.moment.get(force, np.zeros(3)) + turned
@@ -88,7 +95,7 @@ class Outputs:
         """Sum every impulse over the items, with its work and moment where they are known."""
         sums = {key: column_sums(array) for key, array in self.total.items()}
         sums |= {f"{key}/size": [size(array)] for key, array in self.total.items()}
-        sums |= {f"{key}/work": [work] for key, work in self.work.items()}
+        sums |= {f"{key}/work": work for key, work in self.work.items()}
         return sums | {f"{key}/moment": turn.tolist() for key, turn in self.moment.items()}
 
 

@@ -95,6 +95,7 @@ class Server:
 
     def _prime(self, message: Message) -> Answer:
         require_finite(message.fields, "as the run begins")
+        self.outputs.shares = message.header.get("shares", {})
         self.inputs.arrive(message.fields, (), 1.0)
         return {}, {}
 

@@ -115,3 +115,27 @@ def test_iterated_windows_do_the_same_work_on_both_sides(tmp_path):
     assert _run(tmp_path, 0.02, 1, "iterated").account.energy_residual < 1e-6
     residuals = [_run(tmp_path, w, 7, "iterated").account.energy_residual for w in (0.04, 0.02)]
     assert laboratory.orders(residuals)[0] > 1.9
+
+
+def test_of_two_plates_in_one_gust_each_link_counts_its_own_work(tmp_path):
+    """The work of a port that links share is parted among them, as forces and samples are."""
+    components = {
+        "gust": {"kind": "toy_plates:Gust", "dt": 0.002, "spacing": SPACING},
+        "soft": {"kind": "toy_plates:Plate", "dt": 0.01},
+        "stiff": {"kind": "toy_plates:Plate", "dt": 0.01, "stiffness": 4000.0},
+    }
+    links = [{"kind": "fsi", "between": ["gust", name]} for name in ("soft", "stiff")]
+    path = laboratory.scene(
+        tmp_path,
+        components,
+        links,
+        end=END,
+        window=0.01,
+        scheme="iterated",
+        iteration={"tolerance": 1e-10},
+        order=["gust", "soft", "stiff"],
+    )
+    soft, stiff = laboratory.couple(path).coupling.ledger.accounts.values()
+    assert soft.turnover > 10.0 * stiff.turnover > 0.0
+    for account in (soft, stiff):
+        assert account.energy_residual < 2e-3

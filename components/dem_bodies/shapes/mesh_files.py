@@ -32,6 +32,7 @@ def read(file: str, scale: float) -> Shape:
 
 def surface(path: Path, scale: float) -> Shape:
     """Read a closed surface of triangles; trimesh measures it exactly."""
+    # Scenes without meshes do not import the reader of meshes.
     import trimesh
 
     try:
@@ -127,6 +128,7 @@ def inside(points: Array, triangles: Array) -> Array:
 
 def nearest(points: Array, triangles: Array) -> Array:
     """Nearest point (n, 3) of a surface to each point."""
+    # Scenes without meshes do not import the reader of meshes.
     from trimesh.triangles import closest_point
 
     middle = triangles.mean(axis=1)
