@@ -198,7 +198,7 @@ class RigidFsi:
     def _move(self, samples: RigidMap, mirror: RigidMap | None, _: Ends, end: Ends) -> Mapped:
         given = end[self.body]
         pose = (given[f"motion.{one.name}"] for one in MOTION.fields)
-        position, velocity = samples.gather(*pose)
+        position, velocity = samples.map_consistent(*pose)
         moved = {"surface.position": position, "surface.velocity": velocity}
         if mirror is not None:
             arms = mirror.arms(given["motion.orientation"])
@@ -209,7 +209,7 @@ class RigidFsi:
         # An impulse was gathered along the way between the two poses: use their middle.
         turns = [one[self.body]["motion.orientation"] for one in (start, end)]
         arms = 0.5 * (samples.arms(turns[0]) + samples.arms(turns[1]))
-        force, torque = samples.spread(end[self.fluid]["surface_load.force"], arms)
+        force, torque = samples.map_conservative(end[self.fluid]["surface_load.force"], arms)
         return {"load.force": force, "load.torque": torque}
 
     def _moment(self, start: Ends, end: Ends, mapped: Fields) -> Array:
@@ -258,15 +258,17 @@ class FaceFsi:
 
         def move(_: Ends, end: Ends) -> Mapped:
             moved = {
-                "surface.position": shape.gather(end[self.body]["faces.position"]),
-                "surface.velocity": shape.gather(end[self.body]["faces.velocity"]),
+                "surface.position": shape.map_consistent(end[self.body]["faces.position"]),
+                "surface.velocity": shape.map_consistent(end[self.body]["faces.velocity"]),
             }
             if self.mirrored:  # samples lie on the faces, each its own image
                 moved["surface.mirror"] = moved["surface.position"]
             return moved
 
         def load(_: Ends, end: Ends) -> Mapped:
-            return {"node_load.force": shape.spread(end[self.fluid]["surface_load.force"])}
+            return {
+                "node_load.force": shape.map_conservative(end[self.fluid]["surface_load.force"])
+            }
 
         static = {
             self.fluid: {
