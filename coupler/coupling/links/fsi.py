@@ -8,7 +8,7 @@ potential, of a fluid whose port asks for it.
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Any
+from typing import Literal
 
 import numpy as np
 
@@ -23,11 +23,12 @@ from quintet.coupler.coupling.exchange import (
     Works,
     requires,
 )
-from quintet.coupler.coupling.links.keys import between
+from quintet.coupler.coupling.links.keys import Between, with_keys
 from quintet.coupler.coupling.mapping import RigidMap, sample_faces
 from quintet.coupler.coupling.rigid_samples import asked_sampling, body_widths, sample_bodies
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError, SceneError
+from quintet.interfaces.params import parameters
 from quintet.interfaces.ports import (
     CONTACT,
     DIMENSIONS,
@@ -40,20 +41,30 @@ from quintet.interfaces.ports import (
     SURFACE_LOAD,
 )
 
-CONTACTS = ("walls", "potential")  # as at the fluid's walls, or by a contact potential
 WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
 
-def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
-    """Make the link of a scene's table: ``between``, and which ``contact`` it asks for."""
-    name, pair = between(number, given, ports, "contact")
-    contact = given.get("contact", CONTACTS[0])
-    if contact not in CONTACTS:
-        raise SceneError(
-            f"links.{number}.contact must be one of {', '.join(CONTACTS)}, as at the fluid's walls "
-            f"or by a contact potential; found {contact!r}. Correct it, or leave it out for walls."
-        )
-    return join(name, pair, ports, contact == "potential")
+@parameters
+class FsiKeys:
+    """A fluid meets rigid bodies, or the faces of a mesh.
+
+    Parameters
+    ----------
+    between
+        The fluid and the structure, in either order.
+    contact
+        What presses between the fluid and this structure: what does at the fluid's walls, or a
+        contact potential, of a fluid with mirrored walls.
+    """
+
+    between: Between
+    contact: Literal["walls", "potential"] = "walls"
+
+
+@with_keys(FsiKeys)
+def make(name: str, given: FsiKeys, ports: Mapping[str, Ports]) -> Link:
+    """Make a link, with the contact that it asks for."""
+    return join(name, given.between, ports, given.contact == "potential")
 
 
 def join(
