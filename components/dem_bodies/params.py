@@ -1,6 +1,6 @@
 """What a scene says about rigid bodies in contact; checked once, before anything starts."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, get_args
 
 import numpy as np
 from pydantic import Field
@@ -19,6 +19,9 @@ from quintet.interfaces.params import (
     parameters,
 )
 
+# In which a body may be locked: translation along, rotation about the axes of the world.
+Direction = Literal["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]
+DIRECTIONS = get_args(Direction)
 Poisson = Annotated[float, Field(ge=0, le=0.5)]
 # Below 0.01 the damping would be stiffer than the contact itself.
 Restitution = Annotated[float, Field(ge=0.01, le=1.0)]
@@ -165,6 +168,11 @@ class Body:
         Of the centre of mass at the start.
     angular_velocity : rad/s
         At the start, in world axes.
+    locked
+        Translations along, and rotations about, axes of the world that loads and contacts do not
+        change: the body keeps the velocity there that it starts with. An angular velocity about a
+        locked axis needs all three rotations locked. With all six it is a wall, a plate, a piston
+        or a drum. A sphere that is locked in any way has no rolling resistance.
     copies
         A lattice of such bodies, the first at `position`.
     """
@@ -195,6 +203,7 @@ class Body:
     orientation: tuple[Number, Number, Number, Number] = (1.0, 0.0, 0.0, 0.0)
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Vector = (0.0, 0.0, 0.0)
+    locked: tuple[Direction, ...] = ()
     copies: Copies | None = None
 
 

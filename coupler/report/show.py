@@ -133,7 +133,11 @@ def _ledger(found: Mapping[str, Any]) -> Table | None:
 
 def _balance(found: Mapping[str, Any]) -> str:
     ledger = found.get("ledger") or {}
-    others = [f"{k.replace('_', ' ')} {_number(v)}" for k, v in ledger.items() if k != "links"]
+    others = [
+        f"{key.replace('_', ' ')} {_number(value)}"
+        for key, value in ledger.items()
+        if key != "links" and value is not None
+    ]
     return "Balance: " + ", ".join(others) if others else ""
 
 
