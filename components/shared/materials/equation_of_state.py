@@ -10,15 +10,17 @@ from numba import njit
 
 from quintet.components.shared.numba_options import EXACT, INNER
 
+POLE = 1e300  # Pa; kernels take every number to be finite
+
 
 @njit(**INNER)
 def reference_pressure(mu, law):  # type: ignore[no-untyped-def]
-    """P [Pa] at μ = ρ/ρ₀ - 1 without thermal energy; ∞ where the Hugoniot has its pole."""
+    """P [Pa] at μ = ρ/ρ₀ - 1 without thermal energy; huge beyond the Hugoniot's pole."""
     if mu <= 0.0 or not law.shocks:
         return law.density * law.c2 * mu
     numerator, _, denominator, _ = fractions(mu, law)
     if denominator <= 0.0:
-        return math.inf
+        return POLE
     return law.density * law.c2 * numerator / (denominator * denominator)
 
 

@@ -11,7 +11,7 @@ from quintet.components.shared.materials.params import Material
 
 ROWS = 513  # of the table of the isentrope's energy
 LEAST = -1.0  # η at which the table begins: half the density
-NEVER = math.inf
+NEVER = 1e300  # kernels take every number to be finite
 
 
 class Solid(NamedTuple):
@@ -28,7 +28,7 @@ class Solid(NamedTuple):
     s3: float
     gamma: float
     a: float
-    # Flow stress of Johnson and Cook; `hard` Pa, ∞ of an elastic material.
+    # Flow stress of Johnson and Cook; `hard` Pa, huge of an elastic material.
     hard: float
     b: float  # Pa
     n: float
@@ -57,7 +57,7 @@ class Solid(NamedTuple):
 def solid(material: Material) -> Solid:
     """Numbers of a material."""
     jc, eos, damage = material.johnson_cook, material.mie_gruneisen, material.damage
-    heat = material.specific_heat or math.inf
+    heat = material.specific_heat or NEVER
     numbers: dict[str, Any] = {
         "density": material.density,
         "shear": material.shear,
@@ -91,7 +91,7 @@ def solid(material: Material) -> Solid:
         "step": 1.0,
     }
     plain = Solid(**numbers, isentrope=np.zeros((2, 2)))
-    if eos is None or math.isinf(heat):
+    if eos is None or heat == NEVER:
         return plain
     step = (0.95 * densest(plain) - LEAST) / (ROWS - 1)
     first = -step * math.ceil(-LEAST / step)  # so that a row is at rest

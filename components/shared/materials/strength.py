@@ -12,7 +12,7 @@ from numba import njit
 
 from quintet.components.shared.numba_options import INNER
 
-CLOSE = 1e-9  # of the flow stress: how far the returned stress may be from it
+CLOSE = 1e-8  # of the flow stress: how far the returned stress may be from it
 MOST = 80  # iterations
 LEAST = 1e-12  # plastic strain at which the slope of hardening is taken at first
 
@@ -81,13 +81,13 @@ def plastic_increment(trial, strain, soft, dt, law):  # type: ignore[no-untyped-
     """
     if not trial > law.hard * soft:
         return 0.0
-    still, _, _ = flow_stress(strain, 0.0, soft, law)
+    still, hardens, _ = flow_stress(strain, 0.0, soft, law)
     if trial <= still:
         return 0.0
     stiff = 3.0 * law.shear
     low, high = 0.0, trial / stiff
-    # From the upper side the first step lands on the lower one, from where it is monotone.
-    delta = (trial - still) / stiff
+    # An upper bound; the next step then lands on the lower side, from where it is monotone.
+    delta = (trial - still) / (stiff + (hardens if law.c == 0.0 and law.n == 1.0 else 0.0))
     for _ in range(MOST):
         stress, hardens, hastens = flow_stress(strain + delta, delta / dt, soft, law)
         gap = trial - stiff * delta - stress

@@ -1,0 +1,31 @@
+"""Throughput of a block of steel that is struck: all laws of the material at work."""
+
+from typing import Any
+
+from quintet.interfaces.manifest import BenchCase
+
+
+def block(nx: int, ny: int, nz: int) -> dict[str, Any]:
+    """Table of a scene: a block of cubes of 0.4 mm that flies against a wall."""
+    edge = 4e-4  # m
+    return {
+        "parts": [
+            {
+                "lowest": [0.0, 0.0, 0.0],
+                "highest": [nx * edge, ny * edge, nz * edge],
+                "elements": [nx, ny, nz],
+                "material": "steel",
+                "velocity": [0.0, 0.0, -300.0],
+            }
+        ],
+        "rigid_walls": [{"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0]}],
+    }
+
+
+def cases() -> tuple[BenchCase, ...]:
+    """Blocks that fit into a processor's cache, and that do not."""
+    sizes = {"6k": (18, 18, 18), "55k": (38, 38, 38), "262k": (64, 64, 64)}
+    return tuple(
+        BenchCase(f"struck block, {name}", block(*size), 20, 100, "element-steps/s")
+        for name, size in sizes.items()
+    )

@@ -1,0 +1,74 @@
+"""A structure as its parameters describe it: mesh, masses, supports."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.components.fe_plate.kernels.geometry import write_volumes
+from quintet.components.fe_plate.mesh import Mesh, faces_in, incident, inside, mesh
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.state import Array, Model, Whole
+from quintet.components.shared.materials.params import material
+from quintet.components.shared.materials.solid import Solid, solid
+from quintet.interfaces.errors import SceneError
+
+AXES = ("x", "y", "z")
+
+
+class Structure(NamedTuple):
+    """All that is known before the first step."""
+
+    mesh: Mesh
+    model: Model
+    laws: list[Solid]  # of the parts
+    first: list[int]  # element of each part, and the end of all
+    mass: Array  # (n,) kg, without what hangs on the nodes
+    coupled: Whole  # (f,) numbers of the outer faces that partners see
+    pressed: list[Whole]  # for each pressure the outer faces that it acts on
+
+
+def structure(params: FePlateParams) -> Structure:
+    """Build a structure; all nodes are at rest."""
+    made = mesh(params.parts)
+    laws = [solid(material(part.material)) for part in params.parts]
+    counts = [part.count for part in params.parts]
+    volume = np.empty(len(made.corner))
+    write_volumes(made.node, made.corner, volume)
+    density = np.array([law.density for law in laws])[made.part]
+    nodes = len(made.node)
+    share = np.repeat(density * volume / 8.0, 8)
+    mass = np.bincount(made.corner.ravel(), share, nodes).astype(np.float64)
+    begin, at = incident(made.corner, nodes)
+    walls = np.zeros((len(params.rigid_walls), 4))
+    for row, wall in zip(walls, params.rigid_walls, strict=True):
+        row[:3] = np.array(wall.normal) / np.linalg.norm(wall.normal)
+        row[3] = row[:3] @ wall.point
+    free: Array = np.ones((nodes, 3))
+    for number, held in enumerate(params.fixed):
+        found = inside(made.node, held)
+        _require(found.any(), f"fixed.{number}: its box must hold a node; it holds none.")
+        for one in held.directions:
+            free[found, AXES.index(one)] = 0.0
+    coupled: Whole = np.arange(len(made.side))
+    if params.coupled_faces:
+        coupled = faces_in(made, params.coupled_faces)
+        _require(len(coupled) > 0, "coupled_faces: the boxes must hold an outer face; none does.")
+    pressed = [faces_in(made, [one.faces]) for one in params.pressures]
+    for number, faces in enumerate(pressed):
+        _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
+    model = Model(
+        corner=made.corner,
+        volume=volume,
+        inverse_mass=1.0 / mass,
+        free=free,
+        begin=begin,
+        at=at,
+        gravity=np.array(params.gravity),
+        walls=walls,
+    )
+    return Structure(made, model, laws, [0, *np.cumsum(counts).tolist()], mass, coupled, pressed)
+
+
+def _require(rule: object, sentence: str) -> None:
+    if not rule:
+        raise SceneError(f"{sentence} Correct the box.")

@@ -1,0 +1,219 @@
+"""A structure of finite elements, stepped by velocity Verlet."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from quintet.components.fe_plate.build import structure
+from quintet.components.fe_plate.kernels.elements import step_elements
+from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.ports import ports
+from quintet.components.fe_plate.state import Array, Whole, state
+from quintet.components.fe_plate.view import view
+from quintet.components.shared.threads import Team
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Component,
+    Fields,
+    Keys,
+    Resources,
+    Totals,
+)
+from quintet.interfaces.errors import StepError
+
+FEWEST = 2048  # elements that are worth handing to another thread
+SMALLEST = 0.02  # of an element's volume at the start: below it, it has been turned inside out
+POSITION, VELOCITY = "faces.position", "faces.velocity"
+MEAN_VELOCITY, ACTIVE = "node_glue.velocity", "face_activity.active"
+
+
+@dataclass(slots=True)
+class Accumulated:
+    """What a run has added up."""
+
+    time: float = 0.0  # s
+    work: float = 0.0  # J, of the loads
+
+
+class FePlate(Component):
+    """Moves a structure under the loads it is given, pressures, gravity and rigid walls.
+
+    Parameters
+    ----------
+    params : FePlateParams
+        Parts, supports, loads.
+    """
+
+    def __init__(self, params: FePlateParams, resources: Resources = ONE_THREAD) -> None:
+        self.params = params
+        self.takes, self.gives = ports(params)
+        built = structure(params)
+        self.mesh, self.model, self.laws, self.first = (
+            built.mesh,
+            built.model,
+            built.laws,
+            built.first,
+        )
+        self.mass, self.pressed = built.mass, built.pressed
+        self.faces = self.mesh.side[built.coupled]  # (f, 4) nodes
+        self.owner = self.mesh.owner[built.coupled]  # (f,) elements
+        self.surface, self.corner = np.unique(self.faces, return_inverse=True)  # nodes, faces' own
+        self.state = state(self.mesh.node, len(self.model.corner), len(self.model.walls))
+        for k, part in enumerate(params.parts):
+            mine = slice(self.first[k], self.first[k + 1])
+            self.state.temperature[mine] = self.laws[k].temperature
+            self.state.velocity[np.unique(self.model.corner[mine])] = part.velocity
+        self.state.velocity[:] *= self.model.free
+        self.state.mean_velocity[:] = self.state.velocity
+        self.numbers = np.array(
+            [
+                params.hourglass,
+                params.viscosity_linear,
+                params.viscosity_quadratic,
+                params.stiffness_damping,
+            ]
+        )
+        self.loads = np.zeros((len(self.surface), 3))  # N, of partners
+        self.accumulated = Accumulated()
+        self.team = Team(resources.threads, FEWEST)
+        self.bound = self._write_forces(0.0)  # s
+
+    def describe(self) -> Fields:
+        """State where the nodes of the surface are, and the corners of its faces."""
+        mesh = {
+            "start": self.mesh.node[self.surface],
+            "corner": self.corner.reshape(-1, 4).astype(np.float64),
+        }
+        return {
+            f"{port}.{key}": one.copy()
+            for port in ("faces", "node_glue")
+            for key, one in mesh.items()
+        }
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Let mass hang on the nodes."""
+        added = static.get("node_load.added_mass")
+        if added is not None:
+            mass = self.mass.copy()
+            mass[self.surface] += added
+            self.model.inverse_mass[:] = 1.0 / mass
+
+    def stable_dt(self) -> float:
+        """Return a share of the proven bound."""
+        return self.params.courant * self.bound
+
+    def take(self, fields: Fields) -> None:
+        """Set the forces [N] on the surface's nodes; without them there are none."""
+        force = fields.get("node_load.force")
+        self.loads[:] = 0.0 if force is None else force
+
+    def step(self, dt: float) -> None:
+        """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
+        self._write_loads()
+        done = kick_and_drift(self.model, self.state, dt, self.params.mass_damping)
+        self.accumulated.time += dt
+        self.accumulated.work += done
+        self.bound = self._write_forces(dt)
+
+    def _write_loads(self) -> None:
+        load, time = self.state.load, self.accumulated.time
+        load[:] = 0.0
+        load[self.surface] = self.loads
+        for one, faces in zip(self.params.pressures, self.pressed, strict=True):
+            if one.begin <= time < (math.inf if one.end is None else one.end):
+                self._press(faces, one.pressure)
+
+    def _press(self, faces: Whole, pressure: float) -> None:
+        """Add a pressure [Pa] on outer faces, a quarter of each to its corners."""
+        live = faces[self.state.active[self.mesh.owner[faces]] > 0.0]
+        side = self.mesh.side[live]
+        a, b, c, d = np.moveaxis(self.state.position[side], 1, 0)
+        area = 0.5 * np.cross(c - a, d - b)  # (f, 3) m2, outwards
+        np.add.at(self.state.load, side, -0.25 * pressure * area[:, None, :])
+
+    def _write_forces(self, dt: float) -> float:
+        """Advance the elements by a step and the nodes' velocities by half; return the bound."""
+        bound = math.inf
+        for law, first, last in zip(self.laws, self.first, self.first[1:], strict=False):
+            found = self.team.run(
+                _shifted, last - first, first, self.model, self.state, law, self.numbers, dt
+            )
+            bound = min(bound, *(one[0] for one in found))
+            least, worst = min((one[1], one[2]) for one in found)
+            if not least > SMALLEST:
+                raise self._failure(
+                    f"element {worst} of {least:.3g} of its volume", worst, "it is inside out"
+                )
+        squares = kick(self.model, self.state, dt, self.params.mass_damping)
+        if not math.isfinite(squares):
+            node = int(np.argmin(np.isfinite(self.state.velocity).all(axis=1)))
+            raise StepError(
+                f"node {node} at {self.mesh.node[node]} m: its velocity is not finite, at "
+                f"{self.accumulated.time:g} s. Take a smaller courant."
+            )
+        return bound
+
+    def _failure(self, what: str, element: int, why: str) -> StepError:
+        middle = self.mesh.node[self.model.corner[element]].mean(axis=0)
+        return StepError(
+            f"{what}, at {np.array2string(middle, precision=4)} m at the start: {why}, at "
+            f"{self.accumulated.time:g} s. Let it erode by failure_strain, or refine the mesh."
+        )
+
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out the motion of the surface, and which faces are still there."""
+        given: dict[str, Array] = {}
+        for key, array in (
+            (POSITION, self.state.position),
+            (VELOCITY, self.state.velocity),
+            (MEAN_VELOCITY, self.state.mean_velocity),
+        ):
+            if key in wanted:
+                given[key] = array[self.surface]
+        if ACTIVE in wanted:
+            given[ACTIVE] = self.state.active[self.owner]
+        return given
+
+    def save(self) -> Fields:
+        """Copy out all state."""
+        kept = {name: array.copy() for name, array in self.state._asdict().items()}
+        total = self.accumulated
+        kept["accumulated"] = np.array([total.time, total.work, self.bound])
+        return kept | {"loads": self.loads.copy()}
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state, bit for bit."""
+        for name, array in self.state._asdict().items():
+            array[:] = state[name]
+        self.loads[:] = state["loads"]
+        time, work, self.bound = state["accumulated"].tolist()
+        self.accumulated = Accumulated(time, work)
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies; internal is strain, plastic work and stabilisation."""
+        s, momentum = self.state, self.mass[:, None] * self.state.velocity
+        mass = self.model.volume * np.array([law.density for law in self.laws])[self.mesh.part]
+        return Totals(
+            mass=float(self.mass.sum()),
+            momentum=momentum.sum(axis=0),
+            angular_momentum=np.cross(s.position, momentum).sum(axis=0),
+            kinetic=0.5 * float((momentum * s.velocity).sum()),
+            potential=-float(self.mass @ (s.position @ self.model.gravity)),
+            internal=float((mass * s.energy).sum() + s.hourglass_energy.sum()),
+        )
+
+    def view(self) -> Fields:
+        """Outer faces with velocity, stress, plastic strain and temperature."""
+        return view(self.mesh, self.state)
+
+    def items(self) -> int:
+        """Count the elements."""
+        return len(self.model.corner)
+
+
+def _shifted(begin: int, end: int, first: int, *arguments: object) -> tuple[float, float, int]:
+    """Step elements that are counted from a part's first one on."""
+    found: tuple[float, float, int] = step_elements(first + begin, first + end, *arguments)
+    return found

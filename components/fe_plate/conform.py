@@ -1,0 +1,51 @@
+"""What the laws of the contract are tried on: a small block, free, clamped, seen in part."""
+
+from typing import Any
+
+import numpy as np
+
+from quintet.interfaces.manifest import ConformCase
+
+BLOCK: dict[str, Any] = {
+    "parts": [
+        {
+            "lowest": [0.0, 0.0, 0.0],
+            "highest": [0.03, 0.02, 0.02],
+            "elements": [3, 2, 2],
+            "material": {"density": 2700.0, "youngs_modulus": 7e10, "poissons_ratio": 0.3},
+        }
+    ],
+}
+NODES = 36 - 2  # of its surface
+STEP = 2e-7  # s
+
+
+def cases() -> tuple[ConformCase, ...]:
+    """An elastic block, free; the same of yielding steel, clamped."""
+    steel = {**BLOCK["parts"][0], "material": "steel"}
+    clamped = {
+        "parts": [steel],
+        "fixed": [{"lowest": [0.0, 0.0, 0.0], "highest": [0.0, 0.02, 0.02]}],
+    }
+    return (
+        _case("free block", BLOCK, forces=("node_load.force",)),
+        _case("clamped steel", clamped),
+        _case("face of a block", {**BLOCK, "coupled_faces": [FACE]}, nodes=9),
+    )
+
+
+FACE = {"lowest": [0.03, 0.0, 0.0], "highest": [0.03, 0.02, 0.02]}
+
+
+def _case(
+    name: str, params: dict[str, Any], nodes: int = NODES, forces: tuple[str, ...] = ()
+) -> ConformCase:
+    return ConformCase(
+        name,
+        params,
+        static={"node_load.added_mass": np.zeros(nodes)},
+        rest={"node_load.force": np.zeros((nodes, 3))},
+        scale={"node_load.force": 100.0},
+        dt=STEP,
+        forces=forces,
+    )

@@ -1,0 +1,1 @@
+"""Kernels of the structure: elements in blocks, a vector of them at once, and nodes."""

@@ -1,0 +1,88 @@
+"""Meshes of 8-node solids: boxes, their outer faces, and which elements meet at a node.
+
+Corners 0 to 3 of an element go round one side, seen from within, and 4 to 7 stand opposite them.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.fe_plate.params import Faces, Fixed, Part
+from quintet.components.fe_plate.state import Array, Whole
+
+# Corners around each side of an element, seen from outside.
+SIDES = np.array(
+    [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+)
+CLOSE = 1e-6  # of the mesh's size: nodes so near a box lie in it
+
+
+class Mesh(NamedTuple):
+    """Nodes and elements of all parts, one part after another."""
+
+    node: Array  # (n, 3) m
+    corner: Whole  # (e, 8) nodes
+    part: Whole  # (e,)
+    side: Whole  # (f, 4) nodes of the outer faces, seen from outside
+    owner: Whole  # (f,) element of each
+
+
+def mesh(parts: Sequence[Part]) -> Mesh:
+    """Make the mesh of some parts."""
+    nodes, corners, first = [], [], 0
+    for part in parts:
+        node, corner = box(part)
+        nodes.append(node)
+        corners.append(corner + first)
+        first += len(node)
+    number = np.repeat(np.arange(len(parts)), [len(one) for one in corners])
+    corner = np.concatenate(corners)
+    return Mesh(np.concatenate(nodes), corner, number, *outer_sides(corner))
+
+
+def box(part: Part) -> tuple[Array, Whole]:
+    """Nodes (n, 3) m and corners (e, 8) of a box of equal elements."""
+    nx, ny, nz = part.elements
+    ends = zip(part.lowest, part.highest, part.elements, strict=True)
+    lines = [np.linspace(a, b, n + 1) for a, b, n in ends]
+    node = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+    number = np.arange(len(node)).reshape(nx + 1, ny + 1, nz + 1)
+    low, high = slice(0, -1), slice(1, None)
+    around = ((low, low), (high, low), (high, high), (low, high))
+    corner = [number[x, y, z].ravel() for z in (low, high) for x, y in around]
+    return node, np.stack(corner, axis=1)
+
+
+def outer_sides(corner: Whole) -> tuple[Whole, Whole]:
+    """Sides (f, 4) that belong to one element alone, and that element (f,)."""
+    side = corner[:, SIDES].reshape(-1, 4)
+    owner = np.repeat(np.arange(len(corner)), len(SIDES))
+    _, first, count = np.unique(
+        np.sort(side, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    outer = np.sort(first[count == 1])
+    return side[outer], owner[outer]
+
+
+def inside(points: Array, box: Faces | Fixed) -> NDArray[np.bool_]:
+    """Whether points (n, 3) m lie in a box, its edges included."""
+    near = CLOSE * np.ptp(points, axis=0).max()
+    low, high = np.array(box.lowest) - near, np.array(box.highest) + near
+    return np.asarray(((points >= low) & (points <= high)).all(axis=1))
+
+
+def faces_in(mesh: Mesh, boxes: Sequence[Faces]) -> Whole:
+    """Numbers of the outer faces all of whose corners lie in one of some boxes."""
+    found = np.zeros(len(mesh.side), bool)
+    for one in boxes:
+        found |= inside(mesh.node, one)[mesh.side].all(axis=1)
+    return np.flatnonzero(found)
+
+
+def incident(corner: Whole, nodes: int) -> tuple[Whole, Whole]:
+    """Corners at each node, by their places in the flat table: those of node i from begin[i] on."""
+    order = np.argsort(corner.ravel(), kind="stable")
+    begin = np.searchsorted(corner.ravel()[order], np.arange(nodes + 1))
+    return begin, order

@@ -1,0 +1,10 @@
+"""What the structure takes and gives: loads at nodes of its surface; the motion of its faces."""
+
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.interfaces.manifest import Ports
+from quintet.interfaces.ports import FACE_ACTIVITY, FACES, NODE_GLUE, NODE_LOAD
+
+
+def ports(_: FePlateParams) -> Ports:
+    """Ports taken and given."""
+    return (NODE_LOAD,), (FACES, NODE_GLUE, FACE_ACTIVITY)

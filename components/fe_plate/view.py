@@ -1,0 +1,38 @@
+"""What a picture shows of a structure: its outer faces, with what its elements bear."""
+
+import numpy as np
+
+from quintet.components.fe_plate.mesh import Mesh, outer_sides
+from quintet.components.fe_plate.state import Array, State
+from quintet.interfaces.component import Fields
+
+
+def von_mises(state: State) -> Array:
+    """Equivalent stress (e,) Pa of the elements."""
+    xx, yy, zz, xy, yz, zx = state.deviator
+    squares = 1.5 * (xx * xx + yy * yy + zz * zz) + 3.0 * (xy * xy + yz * yz + zx * zx)
+    return np.asarray(np.sqrt(squares))
+
+
+def view(mesh: Mesh, state: State) -> Fields:
+    """Corners of the outer faces of what is left, and means of the elements at each."""
+    live = np.flatnonzero(state.active)
+    side, _ = outer_sides(mesh.corner[live])
+    node, cells = np.unique(side, return_inverse=True)
+    corner = mesh.corner[live].ravel()
+    count = np.maximum(np.bincount(corner, minlength=len(mesh.node)), 1)
+
+    def mean(values: Array) -> Array:
+        """Mean over the elements that meet at each node."""
+        summed = np.bincount(corner, np.repeat(values[live], 8), len(mesh.node))
+        return np.asarray((summed / count)[node])
+
+    return {
+        "points": state.position[node],
+        "cells": cells.reshape(-1, 4),
+        "velocity": state.velocity[node],
+        "von_mises": mean(von_mises(state)),
+        "pressure": mean(state.pressure),
+        "plastic_strain": mean(state.strain),
+        "temperature": mean(state.temperature),
+    }

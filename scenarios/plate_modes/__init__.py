@@ -1,0 +1,1 @@
+"""A cantilever of finite elements swings: scene, exact by Euler and Bernoulli."""
