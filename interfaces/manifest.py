@@ -15,6 +15,7 @@ from typing import Any
 from quintet.interfaces.component import Component, Fields, Port
 from quintet.interfaces.errors import SceneError
 
+PATIENCE = 60.0  # s, where neither a kind nor a scene says
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
 
 
@@ -104,6 +105,7 @@ class Manifest:
     plan: Callable[[Any], Plan] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
+    patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
 
     def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
@@ -155,7 +157,12 @@ def manifest_of(cls: type[Component], path: str) -> Manifest:
             "none. Write `@parameters class Params` inside it."
         )
     return Manifest(
-        path, (cls.__doc__ or path).splitlines()[0], params, path, lambda _: (cls.takes, cls.gives)
+        path,
+        (cls.__doc__ or path).splitlines()[0],
+        params,
+        path,
+        lambda _: (cls.takes, cls.gives),
+        patience=getattr(cls, "patience", PATIENCE),
     )
 
 

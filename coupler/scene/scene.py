@@ -70,6 +70,8 @@ class SceneFile:
     endpoint: str = ""  # where the coupler listens; a free port of the loopback
     tls: tuple[str, ...] = ()  # authority, certificate, key
     minutes: Number = 0.0  # rough run time of the scene as it stands
+    # s that a component may keep others waiting beyond three usual windows; 0: as its kind says
+    patience: NotNegative = 0.0
     iteration: IterationSettings = IterationSettings()
     output: OutputSettings = OutputSettings()
 
@@ -124,6 +126,10 @@ class Scene:
     def security(self) -> Security | None:
         """The same, as the lines take it."""
         return Security(*self.tls) if self.tls else None
+
+    def patience(self, name: str) -> float:
+        """How long a component may keep the others waiting beyond three usual windows [s]."""
+        return self.file.patience or self.components[name].manifest.patience
 
     @property
     def folder(self) -> Path:
