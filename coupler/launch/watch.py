@@ -12,7 +12,7 @@ import psutil
 
 from quintet.interfaces.lines.process_status import running
 
-BUSY = 0.05  # share of a core below which a process does not compute
+BUSY = 0.02  # share of a core below which a process does not compute
 INTERVAL = 0.5  # s between two readings of processor times
 
 
