@@ -4,6 +4,7 @@ Only keywords of draft 7 are used, which editors of TOML know.
 """
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -69,7 +70,7 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
     properties["stand_ins"] |= {
         "additionalProperties": {
             "type": "object",
-            "properties": {k: _to(f"keys of component {k}") for k, one in kinds.items() if one},
+            "properties": {k: _to(f"keys.component.{k}") for k, one in kinds.items() if one},
             "additionalProperties": {"type": "object"},
         }
     }
@@ -107,7 +108,12 @@ def _inside(schema: Schema, definitions: Schema) -> Schema:
 
 
 def _to(name: str) -> Schema:
-    return {"$ref": REFERENCE.format(model=name)}
+    return {"$ref": REFERENCE.format(model=_in_address(name))}
+
+
+def _in_address(name: str) -> str:
+    """Write a name as it may stand in an address: editors refuse all others."""
+    return re.sub(r"[^\w.:-]", "_", name, flags=re.ASCII)
 
 
 def _of_kinds(
@@ -118,8 +124,8 @@ def _of_kinds(
     for kind in known:
         own = table[what, kind]
         properties = {**common["properties"], **own.get("properties", {})}
-        made[f"keys of {what} {kind}"] = own
-        made[f"{what} {kind}"] = {**own, "properties": properties}
+        made[_in_address(f"keys.{what}.{kind}")] = own
+        made[_in_address(f"{what}.{kind}")] = {**own, "properties": properties}
     free = [] if what == "link" else [OWN_CLASS]
     names = {"anyOf": [{"enum": list(kinds)}, *free]}
     kind_key = {**common["properties"]["kind"], **names}
@@ -132,12 +138,12 @@ def _of_kinds(
         "allOf": [
             {
                 "if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]},
-                "then": _to(f"{what} {kind}"),
+                "then": _to(f"{what}.{kind}"),
             }
             for kind in known
         ],
         # Always met: for editors that look for keys here, and not below "then".
-        "anyOf": [*(_to(f"{what} {kind}") for kind in known), {}],
+        "anyOf": [*(_to(f"{what}.{kind}") for kind in known), {}],
     }
     return made
 
