@@ -116,6 +116,7 @@ class Running:
                 log.close()
             if self.stop.asked and self.outcome["status"] != "done":
                 self.outcome["status"] = "interrupted"
+            self.outcome["unstable"] = self.ledger.watch.summary()
             return conclude(self)
 
     def leave(self) -> None:
@@ -194,4 +195,5 @@ def conclude(made: Running) -> int:
     if outcome["status"] == "interrupted":
         return results.INTERRUPTED
     results.draw(scene, folder, found)
-    return results.DONE if all(one.met for one in found) else results.UNMET
+    sound = all(one.met for one in found) and not outcome["unstable"]
+    return results.DONE if sound else results.UNMET
