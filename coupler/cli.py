@@ -21,7 +21,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         status = given.does(given)
     except SceneError as error:
-        print("\n".join(f"quintet: {mistake}" for mistake in error.mistakes), file=sys.stderr)
+        for mistake in error.mistakes:  # names may hold what would break a line
+            print(f"quintet: {' '.join(mistake.splitlines())}", file=sys.stderr)
         status = BAD
     except QuintetError as error:
         print(f"quintet: {error}", file=sys.stderr)
@@ -138,8 +139,11 @@ def check(given: argparse.Namespace) -> int:
     """Print the plan of a scene."""
     # Start-up: only this command needs it.
     from quintet.coupler.scene.listing import console, print_plan
+    from quintet.coupler.scene.needs import require_memory
 
-    print_plan(_load(given), console())
+    scene = _load(given)
+    require_memory(scene)
+    print_plan(scene, console())
     return 0
 
 

@@ -30,7 +30,7 @@ def read(path: Path, where: str, second: float = 1.0) -> Curve:
     """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:  # a name with a zero, bytes that are no text
         raise SceneError(
             f"{where} must be a text file beside the scene; {error}. Put it there."
         ) from error

@@ -5,11 +5,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from quintet.coupler.coupling import plan
-from quintet.coupler.coupling.exchange import Exchange, Link
+from quintet.coupler.coupling.exchange import Exchange, Link, refused_starts
 from quintet.coupler.coupling.iteration_settings import unknown_fields
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
-from quintet.interfaces.params import read, unknown
+from quintet.interfaces.component import Fields
+from quintet.interfaces.params import read, shown, unknown
 
 
 def lay_out(
@@ -59,7 +60,7 @@ def _groups(
     table: Any, components: dict[str, ComponentPlan], mistakes: list[str]
 ) -> dict[str, GroupSettings]:
     if not isinstance(table, dict) or not all(isinstance(one, dict) for one in table.values()):
-        mistakes.append(f"groups must be tables; found {table!r}. Write [groups.NAME].")
+        mistakes.append(f"groups must be tables; found {shown(table)}. Write [groups.NAME].")
         return {}
     found = {}
     for name, given in table.items():
@@ -107,6 +108,19 @@ def refused(
         where = f"groups.{one.name}.iteration" if one.name else "iteration"
         wrong += unknown_fields(one.iteration, takes, where)
     return wrong
+
+
+def begins_wrong(components: dict[str, ComponentPlan], links: list[Link]) -> list[str]:
+    """What links refuse of how components begin, as far as their kinds can tell."""
+    initial: dict[str, Fields] = {}
+    wrong = []
+    for name in dict.fromkeys(n for link in links for one in link.transfers for n in one.ends):
+        try:
+            initial[name] = components[name].initial()
+        except Exception as error:  # of any kind: what it does here is its author's
+            said = f"{type(error).__name__}: {error}"
+            wrong.append(f"components.{name}: how it begins cannot be told ({said}). Correct it.")
+    return wrong or refused_starts(links, initial)
 
 
 def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> list[str]:

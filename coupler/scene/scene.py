@@ -11,7 +11,7 @@ from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import Refinement
-from quintet.interfaces.component import Port
+from quintet.interfaces.component import Fields, Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters
@@ -86,10 +86,11 @@ class ComponentPlan:
     takes: tuple[Port, ...]
     gives: tuple[Port, ...]
     threads: int = 1
+    planned: Plan | None = None  # what running it will need, where its kind can tell
 
-    def plan(self) -> Plan | None:
-        """What running it will need, where its kind can tell."""
-        return self.manifest.plan(self.checked) if self.manifest.plan else None
+    def initial(self) -> Fields:
+        """What is known of it before it is built; see `Manifest`."""
+        return self.manifest.initial(self.checked) if self.manifest.initial else {}
 
 
 @dataclass(slots=True)

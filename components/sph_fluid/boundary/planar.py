@@ -12,14 +12,14 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import slab_thickness
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import PortError
-from quintet.interfaces.ports import DIMENSIONS
+from quintet.interfaces.ports import DIMENSIONS, THICKNESS
 
 NEARLY = 1e-9  # m
 
 
 def planar_surface(port: Port) -> Port:
     """Port of surfaces that says that the fluid has two dimensions."""
-    return replace(port, states=(*port.states, DIMENSIONS))
+    return replace(port, states=(*port.states, DIMENSIONS, THICKNESS))
 
 
 def require_one_metre(params: SphFluidParams) -> None:

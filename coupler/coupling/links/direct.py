@@ -18,22 +18,22 @@ from quintet.coupler.coupling.exchange import (
     Works,
     misfits,
 )
-from quintet.coupler.coupling.links.keys import is_stand_in, only
+from quintet.coupler.coupling.links.keys import is_pair, is_stand_in, only
 from quintet.interfaces.component import Array, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import unknown
+from quintet.interfaces.params import shown, unknown
 
 
 def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
     """Make the link of a scene's table: ``pairs`` of ports, the giver's first."""
     only(number, given, ("kind", "name", "pairs"))
     pairs = given.get("pairs")
-    if not isinstance(pairs, list) or not all(isinstance(p, list) and len(p) == 2 for p in pairs):
+    if not isinstance(pairs, list) or not pairs or not all(map(is_pair, pairs)):
         raise SceneError(
             f"links.{number}.pairs must be pairs of ports, the giver first, as in "
-            f'[["a.motion", "b.foot"]]; found {pairs!r}.'
+            f'[["a.motion", "b.foot"]]; found {shown(pairs)}. Write it so.'
         )
-    names = dict.fromkeys(str(path).split(".")[0] for pair in pairs for path in pair)
+    names = dict.fromkeys(path.split(".")[0] for pair in pairs for path in pair)
     return join(str(given.get("name", "-".join(names))), pairs, ports)
 
 

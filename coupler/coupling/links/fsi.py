@@ -25,9 +25,17 @@ from quintet.coupler.coupling.exchange import (
 )
 from quintet.coupler.coupling.links.keys import between
 from quintet.coupler.coupling.mapping import RigidMap, sample_faces
-from quintet.coupler.coupling.rigid_samples import asked_sampling, body_widths, sample_bodies
+from quintet.coupler.coupling.rigid_samples import (
+    Sampling,
+    asked_sampling,
+    body_widths,
+    sample_bodies,
+    unsampled,
+)
+from quintet.coupler.coupling.start_positions import misplaced
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError, SceneError
+from quintet.interfaces.params import shown
 from quintet.interfaces.ports import (
     CONTACT,
     DIMENSIONS,
@@ -40,6 +48,7 @@ from quintet.interfaces.ports import (
     SURFACE_LOAD,
 )
 
+NEARLY = 1e-9  # m
 CONTACTS = ("walls", "potential")  # as at the fluid's walls, or by a contact potential
 WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
@@ -51,7 +60,8 @@ def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link
     if contact not in CONTACTS:
         raise SceneError(
             f"links.{number}.contact must be one of {', '.join(CONTACTS)}, as at the fluid's walls "
-            f"or by a contact potential; found {contact!r}. Correct it, or leave it out for walls."
+            f"or by a contact potential; found {shown(contact)}. Correct it, or leave it out for "
+            "walls."
         )
     return join(name, pair, ports, contact == "potential")
 
@@ -125,6 +135,16 @@ def _marks(contact: float | None, samples: int) -> dict[str, Array]:
     return {} if contact is None else {"surface.contact": np.full(samples, contact)}
 
 
+def _thick(name: str, stated: Fields) -> list[str]:
+    """Refuse a slab in which what samples stand for, 1 m along y, is not what the fluid has."""
+    return [
+        f"in two dimensions samples stand for 1 m along y, and so must {name}; its boxes reach "
+        f"over {thickness:g} m. Let them, and the walls, reach over 1 m."
+        for thickness in stated.get("surface.thickness", ())
+        if abs(thickness - 1.0) > NEARLY
+    ]
+
+
 def _names(ports: tuple[Port, ...]) -> str:
     return ", ".join(port.name for port in ports) or "nothing"
 
@@ -168,7 +188,8 @@ class RigidFsi:
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Sample every body at the fluid's spacing."""
         asked, bodies = asked_sampling(described[self.fluid]), described[self.body]
-        self._check(body_widths(bodies, asked.planar), asked.least)
+        if wrong := self.refuses(described):
+            raise LinkError("\n".join(wrong))
         found = sample_bodies(bodies, asked, self.mirrored)
         samples = RigidMap(found.arm, found.body, len(bodies["motion.shape"]))
         mirror = None
@@ -186,14 +207,28 @@ class RigidFsi:
         maps = (partial(self._move, samples, mirror), partial(self._load, samples))
         return Binding(static, maps[:count], (None, self._moment)[:count])
 
-    def _check(self, widths: Array, least: float) -> None:
-        for body in np.flatnonzero(widths < least)[:1]:
-            raise LinkError(
-                f"link {self.name}: a body must be at least {least:g} m across, a spacing of "
-                f"{self.fluid} and twice the depth of the outermost samples it wants; body "
-                f"{body} of {self.body} is {widths[body]:g} m. Refine the spacing "
-                f"of {self.fluid}, or leave the body out."
-            )
+    def refuses(self, initial: Mapping[str, Fields]) -> list[str]:
+        """See `exchange.refused_starts`."""
+        fluid, bodies = initial.get(self.fluid, {}), initial.get(self.body, {})
+        if "surface.spacing" not in fluid:
+            return []
+        asked, where = asked_sampling(fluid), f"link {self.name}: "
+        wrong = _thick(self.fluid, fluid)
+        if "motion.shape" in bodies:
+            wrong += unsampled(self.body, bodies, asked.planar) or self._thin(bodies, asked)
+            if not wrong and "motion.position" in bodies:
+                wrong += misplaced((self.fluid, self.body), fluid, bodies, asked)
+        return [where + sentence for sentence in wrong]
+
+    def _thin(self, bodies: Fields, asked: Sampling) -> list[str]:
+        widths, least = body_widths(bodies, asked.planar), asked.least
+        return [
+            f"a body must be at least {least:g} m across, a spacing of "
+            f"{self.fluid} and twice the depth of the outermost samples it wants; body "
+            f"{body} of {self.body} is {widths[body]:g} m. Refine the spacing "
+            f"of {self.fluid}, or leave the body out."
+            for body in np.flatnonzero(widths < least)[:1]
+        ]
 
     def _move(self, samples: RigidMap, mirror: RigidMap | None, _: Ends, end: Ends) -> Mapped:
         given = end[self.body]

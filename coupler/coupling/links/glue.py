@@ -22,6 +22,7 @@ from quintet.coupler.coupling.links.keys import between, is_stand_in
 from quintet.coupler.coupling.mapping import project
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import shown
 from quintet.interfaces.ports import (
     FACE_ACTIVITY,
     GLUE_ACTIVITY,
@@ -49,9 +50,8 @@ def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link
     """Make the link of a scene's table: ``between``; ``substeps`` other than 1 are refused."""
     name, pair = between(number, given, ports, "substeps")
     if given.get("substeps", 1) != 1:
-        raise SceneError(
-            f"links.{number}.substeps must be 1; found {given['substeps']!r}: {WHY}. Leave it out."
-        )
+        found = shown(given["substeps"])
+        raise SceneError(f"links.{number}.substeps must be 1; found {found}: {WHY}. Leave it out.")
     return join(name, pair, ports)
 
 

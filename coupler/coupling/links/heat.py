@@ -24,6 +24,7 @@ from quintet.coupler.coupling.links.keys import between
 from quintet.coupler.coupling.mapping import project
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import shown
 from quintet.interfaces.ports import NODE_HEAT, NODE_TEMPERATURE, WALL_HEAT, WALL_TEMPERATURE
 
 HEAT = ("wall_heat.heat_flow", "node_heat.heat_flow")
@@ -41,7 +42,7 @@ def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link
     if not factors or not all(_is_factor(one) for one in factors):
         raise SceneError(
             f"links.{number}.relaxation must be above 0 and at most 1, a number or a list of them; "
-            f"found {asked!r}. Lower it if temperatures swing from window to window."
+            f"found {shown(asked)}. Lower it if temperatures swing from window to window."
         )
     return join(name, pair, ports, tuple(float(one) for one in factors))
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from quintet.coupler.coupling.exchange import Ports
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import unknown
+from quintet.interfaces.params import shown, unknown
 
 
 def between(
@@ -13,13 +13,20 @@ def between(
 ) -> tuple[str, tuple[str, str]]:
     """Name of a link and the two components that it is between; it may have `more` keys."""
     only(number, given, ("kind", "name", "between", *more))
-    pair = given.get("between")
-    if not isinstance(pair, list) or len(pair) != 2 or pair[0] == pair[1]:
-        raise SceneError(f"links.{number}.between must name two components; found {pair!r}.")
+    pair: Any = given.get("between")
+    if not is_pair(pair) or pair[0] == pair[1]:
+        raise SceneError(
+            f"links.{number}.between must name two components; found {shown(pair)}. Name both."
+        )
     for name in pair:
         if name not in ports:
-            raise SceneError(unknown(f"links.{number}: component {name}", str(name), ports))
+            raise SceneError(unknown(f"links.{number}: component {name}", name, ports))
     return str(given.get("name", "-".join(pair))), (pair[0], pair[1])
+
+
+def is_pair(value: Any) -> bool:
+    """Whether it is a list of two texts."""
+    return isinstance(value, list) and [type(one) for one in value] == [str, str]
 
 
 def is_stand_in(ports: Ports | None) -> bool:

@@ -85,8 +85,8 @@ WRONG = {
     "class": ("toys:Toy", "toys:Tony", "components.ping.kind toys:Tony cannot be imported (AttributeError: module 'toys' has no attribute 'Tony'). Name a module:Class."),
     "no component": ("toys:Toy", "toys:Plain", "components.ping.kind toys:Plain: <class 'toys.Plain'> is not a Component. Derive it from Component."),
     "no params": ("toys:Toy", "toys:Bare", "components.ping.kind toys:Bare: a component class must have a Params dataclass; Bare has none. Write `@parameters class Params` inside it."),
-    "threads": ("[components.pong]", "[components.pong]\nthreads = 0", "components.pong.threads must be a whole number from 1; found 0."),
-    "threads text": ("[components.pong]", '[components.pong]\nthreads = "2"', "components.pong.threads must be a whole number from 1; found '2'."),
+    "threads": ("[components.pong]", "[components.pong]\nthreads = 0", "components.pong.threads must be a whole number from 1 to 1024; found 0."),
+    "threads text": ("[components.pong]", '[components.pong]\nthreads = "2"', "components.pong.threads must be a whole number from 1 to 1024; found '2'."),
     "component name": ("[components.pong]", '[components."po/ng"]', "components: a name must be letters, digits, _ or -, and not coupler; found 'po/ng'. Rename it."),
     "component no table": ("[components.ping]", "[components]\npang = 3\n[components.ping]", "components.pang must be a table; found 3. Give it a kind."),
     "link kind": ('kind = "direct"', 'kind = "drect"', "links.0.kind drect is not known. Did you mean direct?"),
@@ -192,8 +192,8 @@ def test_a_recording_that_is_none_is_refused(scene, capsys, tmp_path):
     path = scene()
     (tmp_path / "recording.h5").write_text("not HDF5")
     lines = said(path, capsys, "--swap", f"pong=replay@{tmp_path}")
-    words = "components.pong: kind replay cannot tell its ports from these settings (OSError: "
-    assert lines[0].startswith(words)
+    assert len(lines) == 1 and lines[0].startswith("components.pong: recording ")
+    assert "it must be a whole recording of quintet; reading it found OSError: " in lines[0]
 
 
 def test_bytes_that_are_no_text_are_refused(scene, capsys):
