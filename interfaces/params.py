@@ -55,7 +55,12 @@ def _data_file(name: str, info: ValidationInfo) -> str:
 DataFile = Annotated[str, AfterValidator(_data_file)]  # named from the scene's folder on
 
 
-TAG = re.compile(r"constrained-\w+|literal\[.*\]")  # what pydantic adds to a place
+def is_data_file(metadata: object) -> bool:
+    """Whether metadata of a text are those of `DataFile`."""
+    return isinstance(metadata, AfterValidator) and metadata.func is _data_file
+
+
+TAG = re.compile(r"constrained-\w+|(?:literal|tuple|dict)\[.*\]")  # what pydantic adds to a place
 LARGEST = 1e30  # no quantity in SI units is as large; of ten of them a product is still finite
 DEEPEST = 32  # tables and lists within each other
 SHOWN = 200  # characters of a value in a sentence

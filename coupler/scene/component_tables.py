@@ -1,16 +1,16 @@
 """``[components.NAME]``: kind and settings of each component, checked by its manifest."""
 
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from quintet.coupler.scene.scene import NAME, ComponentPlan
+from quintet.coupler.scene.scene import NAME, ComponentKeys, ComponentPlan
 from quintet.interfaces.errors import QuintetError, SceneError
 from quintet.interfaces.manifest import Manifest, find, known_kinds
 from quintet.interfaces.params import beyond_computing, read, shown, unknown
 
-MOST_THREADS = 1024
 Table = dict[str, Any]
 
 
@@ -45,16 +45,15 @@ def read_components(table: Table, folder: Path, mistakes: list[str]) -> dict[str
 
 def _component(name: str, given: Table, folder: Path, mistakes: list[str]) -> ComponentPlan | None:
     where = f"components.{name}"
-    kind, threads = given.pop("kind", None), given.pop("threads", 1)
-    if not isinstance(kind, str):
+    if not isinstance(kind := given.get("kind"), str):
         known = ", ".join(sorted(known_kinds()))
         mistakes.append(f"{where}.kind must be a name; found {shown(kind)}. Known here: {known}.")
         return None
-    if type(threads) is not int or not 1 <= threads <= MOST_THREADS:
-        mistakes.append(
-            f"{where}.threads must be a whole number from 1 to {MOST_THREADS}; found "
-            f"{shown(threads)}. Name no more than there are cores."
-        )
+    of_all = {one.name for one in fields(ComponentKeys)} & given.keys()
+    common, wrong = read(ComponentKeys, {key: given.pop(key) for key in of_all}, where)
+    mistakes += wrong
+    if common is None:
+        return None
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
         return None
@@ -76,7 +75,7 @@ def _component(name: str, given: Table, folder: Path, mistakes: list[str]) -> Co
         said = f"{type(error).__name__}: {error}"
         mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
         return None
-    return ComponentPlan(name, kind, manifest, given, params, takes, gives, threads, plan)
+    return ComponentPlan(name, kind, manifest, given, params, takes, gives, common.threads, plan)
 
 
 def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:

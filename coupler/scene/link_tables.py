@@ -25,18 +25,13 @@ def read_links(
     found: list[Link] = []
     known = known_links()
     for number, given in enumerate(table):
-        kind, name = str(given.get("kind", "")), given.get("name", "link")
+        kind = str(given.get("kind", ""))
         lists = [given.get("between", []), given.get("pairs", [])]
         if kind not in known:
             mistakes.append(unknown(f"links.{number}.kind {kind}", kind, known))
         elif not all(map(_is_names, lists)):
             mistakes.append(
                 f"links.{number}: components and ports are names; found {shown(lists)}."
-            )
-        elif not isinstance(name, str) or not name:
-            mistakes.append(
-                f"links.{number}.name must be a text; found {shown(name)}. Leave it out, or write "
-                "one."
             )
         elif not wrong & set(_named(lists)):
             try:

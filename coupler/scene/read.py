@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Iterable
+from dataclasses import fields
 from functools import partial
 from importlib.resources import files
 from itertools import islice
@@ -24,13 +25,14 @@ from quintet.coupler.scene.scene import (
 )
 from quintet.coupler.scene.stability_table import Scope
 from quintet.coupler.scene.swap import put_swap
+from quintet.coupler.scene.tables import SceneTables
 from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
 from quintet.interfaces.manifest import look_in
 from quintet.interfaces.params import DEEPEST, extremes, read, shown, unknown
 
 MOST_TOLD = 20  # mistakes of one kind
-TABLES = ("components", "links", "groups", "expect", "presets", "stand_ins", *variants.TABLES)
+TABLES = tuple(one.name for one in fields(SceneTables))
 
 
 def library() -> dict[str, Path]:

@@ -71,7 +71,7 @@ def test_one_component_in_memory_imports_no_transport_and_no_other_solver(tmp_pa
     assert not names & {"quintet.interfaces.lines.zenoh", "quintet.interfaces.lines.mpi"}
     assert solvers(names) == ({"stand_ins"}, {"params", "recorded", "echo"})
     links = {name for name in names if name.startswith("quintet.coupler.coupling.links.")}
-    assert not links
+    assert links <= {"quintet.coupler.coupling.links.keys"}  # what all of them have
 
 
 def test_a_scene_imports_the_component_that_it_names_and_no_other(tmp_path):

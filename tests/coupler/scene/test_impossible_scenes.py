@@ -25,17 +25,17 @@ CASES = {
     ),
     "a list in the place of a port": (
         ["two_springs", "--set", 'links.0.pairs=[[[], "lower.load"]]'],
-        "links.0.pairs must be pairs of ports, the giver first, as in "
-        """[["a.motion", "b.foot"]]; found [[[], 'lower.load']]. Write it so.""",
+        "links.0: pairs must be pairs of ports, the giver first, as in "
+        """[["a.motion", "b.foot"]]; found [[[], 'lower.load']]. Name both of each.""",
     ),
-    "no pairs": (["two_springs", "--set", "links.0.pairs=[]"], "links.0.pairs must be pairs of"),
+    "no pairs": (["two_springs", "--set", "links.0.pairs=[]"], "links.0: pairs must be pairs of"),
     "lists in the place of components": (
         ["floating_cube", "--set", "links.0.between=[[], []]"],
-        "links.0.between must name two components; found [[], []]. Name both.",
+        "links.0: between must name two components; found [[], []]. Name both.",
     ),
     "a number for a link's name": (
         ["two_springs", "--set", "links.0.name=3"],
-        "links.0.name must be a text; found 3. Leave it out, or write one.",
+        "links.0.name should be a valid string; found 3. Correct it.",
     ),
     "a size of 1e30": (
         ["sphere_rebound", "--set", f"{BODY}.diameter=1e30"],
@@ -69,7 +69,7 @@ CASES = {
     ),
     "threads without number": (
         ["still_water", "--set", "components.water.threads=100000"],
-        "components.water.threads must be a whole number from 1 to 1024; found 100000. Name no",
+        "components.water.threads should be less than or equal to 1024; found 100000. Correct it.",
     ),
     "a port without number": (
         ["two_springs", "--set", "endpoint=tcp/127.0.0.1:99999"],
