@@ -5,7 +5,7 @@ measured, and the same measure is taken of the reference: a number, or a curve i
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -16,7 +16,7 @@ import pydantic
 from quintet.coupler.measures import time_series
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
-from quintet.interfaces.component import Field, Port
+from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters, shown, unknown
 from quintet.interfaces.units import same
@@ -184,6 +184,22 @@ def _check_field(expectation: Expectation, fields: Mapping[str, Field]) -> list[
         allowed = f"0 to {shape[0] - 1}" if len(shape) == 1 else "left out"
         return [f"{where}: axis of {expectation.field} must be {allowed}; found {axis}."]
     return []
+
+
+def lacking_items(
+    expectations: Iterable[Expectation], outputs: Mapping[str, Fields]
+) -> Iterator[str]:
+    """Say which items are expected that a component does not have.
+
+    `outputs` has those of each component that are known, by its name.
+    """
+    for one in expectations:
+        array = outputs.get(one.component, {}).get(one.field)
+        if array is not None and isinstance(one.item, int) and one.item >= len(array):
+            yield (
+                f"expectation {one.name}: item must be below {len(array)}, as many as "
+                f"{one.component} has of {one.field}; found {one.item}. Correct it."
+            )
 
 
 def _check_unit(expectation: Expectation, field: Field) -> list[str]:

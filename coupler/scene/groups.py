@@ -8,6 +8,7 @@ from quintet.coupler.coupling import plan
 from quintet.coupler.coupling.exchange import Exchange, Link, refused_starts
 from quintet.coupler.coupling.iteration_settings import unknown_fields
 from quintet.coupler.coupling.plan import CouplingPlan
+from quintet.coupler.measures.expectation import Expectation, lacking_items
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
 from quintet.interfaces.component import Fields
 from quintet.interfaces.params import read, shown, unknown
@@ -110,17 +111,19 @@ def refused(
     return wrong
 
 
-def begins_wrong(components: dict[str, ComponentPlan], links: list[Link]) -> list[str]:
-    """What links refuse of how components begin, as far as their kinds can tell."""
+def begins_wrong(
+    components: dict[str, ComponentPlan], links: list[Link], expect: list[Expectation]
+) -> list[str]:
+    """What links and expectations refuse of how components begin, where their kinds can tell."""
+    linked = [name for link in links for one in link.transfers for name in one.ends]
     initial: dict[str, Fields] = {}
-    wrong = []
-    for name in dict.fromkeys(n for link in links for one in link.transfers for n in one.ends):
+    for name in dict.fromkeys([*linked, *(one.component for one in expect)]):
         try:
             initial[name] = components[name].initial()
         except Exception as error:  # of any kind: what it does here is its author's
             said = f"{type(error).__name__}: {error}"
-            wrong.append(f"components.{name}: how it begins cannot be told ({said}). Correct it.")
-    return wrong or refused_starts(links, initial)
+            return [f"components.{name}: how it begins cannot be told ({said}). Correct it."]
+    return [*refused_starts(links, initial), *lacking_items(expect, initial)]
 
 
 def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> list[str]:

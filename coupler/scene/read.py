@@ -128,7 +128,7 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
             mistakes += refused(coupling, components, links)
             mistakes += unknown_outputs(file, components)
             mistakes += refused_times(file, components, coupling, links)
-            mistakes += [] if mistakes else begins_wrong(components, links)
+            mistakes += [] if mistakes else begins_wrong(components, links, expect)
         if file.window != "auto" and file.window > file.end:
             mistakes.append(
                 f"scene.window must not exceed scene.end ({file.end:g} s); found {file.window:g} s."

@@ -11,7 +11,7 @@ import numpy as np
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import slab_thickness
 from quintet.interfaces.component import Array, Fields, Port
-from quintet.interfaces.errors import PortError
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import DIMENSIONS, THICKNESS
 
 NEARLY = 1e-9  # m
@@ -26,7 +26,7 @@ def require_one_metre(params: SphFluidParams) -> None:
     """Refuse samples, which stand for 1 m along y, in a slab of another thickness."""
     thickness = slab_thickness(params)
     if abs(thickness - 1.0) > NEARLY:
-        raise PortError(
+        raise SceneError(
             "surface: in two dimensions samples stand for 1 m along y, and so must the fluid; its "
             f"boxes reach over {thickness:g} m. Let them, and the walls, reach over 1 m."
         )
