@@ -12,7 +12,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import Component, Fields, Port
+from quintet.interfaces.component import Component, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
@@ -104,6 +104,7 @@ class Manifest:
     plan: Callable[[Any], Plan] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
+    shows: tuple[Field, ...] = ()  # as of the component
 
     def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
@@ -154,9 +155,8 @@ def manifest_of(cls: type[Component], path: str) -> Manifest:
             f"kind {path}: a component class must have a Params dataclass; {cls.__name__} has "
             "none. Write `@parameters class Params` inside it."
         )
-    return Manifest(
-        path, (cls.__doc__ or path).splitlines()[0], params, path, lambda _: (cls.takes, cls.gives)
-    )
+    title, takes, gives = (cls.__doc__ or path).splitlines()[0], cls.takes, cls.gives
+    return Manifest(path, title, params, path, lambda _: (takes, gives), shows=cls.shows)
 
 
 def known_kinds() -> dict[str, str]:

@@ -20,7 +20,7 @@ FLOORS = {
         {"errors"},
         {"units", "params"},
         {"component"},
-        {"ports", "manifest", "rotation", "sums"},
+        {"ports", "manifest", "rotation", "sums", "faces"},
         {"lines"},
         {"serving"},
     ],

@@ -11,10 +11,11 @@ from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import Refinement
-from quintet.interfaces.component import Port
+from quintet.interfaces.component import Field, Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
-from quintet.interfaces.params import NotNegative, Number, Positive, parameters
+from quintet.interfaces.params import NotNegative, Number, Positive, Vector, parameters
+from quintet.interfaces.serving.port_view import port_fields
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component or group: it names files and lines
 PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")  # name of a scene: never a path
@@ -47,12 +48,21 @@ class GroupSettings:
 class OutputSettings:
     """``[output]``: what a run leaves."""
 
-    interval: NotNegative = 0.0  # s between two pictures' worth of particles; 0: none
+    interval: NotNegative = 0.0  # s between two views for ParaView; 0: those of pictures alone
     pictures: tuple[NotNegative, ...] = ()  # s, times of the pictures
+    colours: tuple[str, ...] = ()  # "component.field" of a view: what each is coloured by
+    region: tuple[Vector, Vector] | None = None  # m, corners of the box that pictures show
     totals: NotNegative = 0.0  # s between two rows of the ledger; 0: with the particles
     snapshots: NotNegative = 0.0  # s between two, to resume from; 0: now and then, and at an end
     record: bool = True  # every exchange
     fields: tuple[str, ...] = ()  # "component.port.field": recorded though no link reads them
+
+    def __post_init__(self) -> None:
+        if self.region and not all(low < high for low, high in zip(*self.region, strict=True)):
+            raise ValueError(
+                f"output.region must be the lowest and the highest corner of a box; found "
+                f"{self.region}. Correct it."
+            )
 
 
 @parameters
@@ -87,6 +97,11 @@ class ComponentPlan:
     gives: tuple[Port, ...]
     threads: int = 1
 
+    @property
+    def shows(self) -> tuple[Field, ...]:
+        """Fields of its view, as far as is known without it."""
+        return self.manifest.shows or port_fields(self.gives)
+
     def plan(self) -> Plan | None:
         """What running it will need, where its kind can tell."""
         return self.manifest.plan(self.checked) if self.manifest.plan else None
@@ -119,6 +134,12 @@ class Scene:
     def tls(self) -> tuple[str, ...]:
         """Authority, certificate and key, or nothing."""
         return self.file.tls
+
+    @property
+    def headline(self) -> str:
+        """Name, preset and title, above pictures."""
+        name, title = self.file.name, self.file.title
+        return f"{name}{f' ({self.preset})' if self.preset else ''}{f': {title}' if title else ''}"
 
     @property
     def security(self) -> Security | None:
