@@ -12,7 +12,7 @@ from quintet.components.shared.polygons import in_space
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.faces import CORNERS, FACES, polygons, stacked
 
-REACH = 3.0  # sizes of all bodies together, by which planes are shown beyond them
+REACH = 1.0  # sizes of what holds bodies and planes, by which planes are shown beyond it
 ON = 1e-9  # of that size: what lies on a plane is not beyond it
 
 
@@ -47,11 +47,14 @@ def planes_view(planes: Sequence[Plane], state: State) -> Fields:
     """Polygons on the planes: what of each is before the others, and not far from the bodies."""
     where, radius = state.position[:-1], state.motion[:-1, 3]
     low, high = (where - radius[:, None]).min(axis=0), (where + radius[:, None]).max(axis=0)
-    size = float((high - low).max())
-    low, high = low - REACH * size, high + REACH * size
     points = np.array([plane.point for plane in planes]).reshape(-1, 3)
     normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    centre = 0.5 * (low + high)
+    feet = centre - normals * ((centre - points) * normals).sum(axis=1, keepdims=True)
+    low, high = np.vstack([feet, low]).min(axis=0), np.vstack([feet, high]).max(axis=0)
+    size = float((high - low).max())
+    low, high = low - REACH * size, high + REACH * size
     # The box as six more planes, that look inwards.
     limits = np.concatenate([points, np.tile(low, (3, 1)), np.tile(high, (3, 1))])
     inwards = np.concatenate([normals, np.eye(3), -np.eye(3)])
