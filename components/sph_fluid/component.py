@@ -15,17 +15,21 @@ from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import ports
+from quintet.components.sph_fluid.ports import SHOWS, ports
+from quintet.components.sph_fluid.setup.geometry import wall_faces
 from quintet.components.sph_fluid.setup.start import stated
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import OrderError, StepError
+from quintet.interfaces.faces import polygons
 
 LOADS = frozenset({"surface_load.force"})
 
 
 class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
+
+    shows = SHOWS
 
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, ports(params)
@@ -158,6 +162,10 @@ class SphFluid(Component):
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
         return diagnostics.view(self.state)
+
+    def walls(self) -> Fields:
+        """Return the tank's closed faces, and the obstacles in it."""
+        return polygons(wall_faces(self.params))
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""
