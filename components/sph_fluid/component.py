@@ -15,16 +15,21 @@ from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import ports
+from quintet.components.sph_fluid.ports import SHOWS, ports
+from quintet.components.sph_fluid.setup.geometry import wall_faces
+from quintet.components.sph_fluid.setup.start import stated
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import OrderError, StepError
+from quintet.interfaces.faces import polygons
 
 LOADS = frozenset({"surface_load.force"})
 
 
 class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
+
+    shows = SHOWS
 
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, ports(params)
@@ -45,14 +50,8 @@ class SphFluid(Component):
         self.gauges = features.gauges(params, self.symmetry)
 
     def describe(self) -> Fields:
-        """At which spacing, and how deep, surfaces should be sampled."""
-        depth = self.params.boundary.sample_depth * self.params.spacing
-        planar = {"surface.dimensions": np.array([2.0])} if self.params.dimensions == 2 else {}
-        return planar | {
-            "surface.spacing": np.array([self.params.spacing]),
-            "surface.depth": np.array([self.constants.smoothing.support]),
-            "surface.inset": np.array([depth]),
-        }
+        """State how surfaces should be sampled, and where water, tank and obstacles are."""
+        return stated(self.params)
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""
@@ -163,6 +162,10 @@ class SphFluid(Component):
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
         return diagnostics.view(self.state)
+
+    def walls(self) -> Fields:
+        """Return the tank's closed faces, and the obstacles in it."""
+        return polygons(wall_faces(self.params))
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""

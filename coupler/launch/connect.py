@@ -17,7 +17,7 @@ from quintet.coupler.launch.watch import Watch
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Component
-from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.process import build, shared_files
@@ -87,6 +87,8 @@ class InMemory:
 def _built(one: ComponentPlan, header: dict[str, Any]) -> Component:
     try:
         return build(one.manifest, header)
+    except SceneError as error:
+        raise SceneError(f"components.{one.name}: {error}") from error
     except (Exception, SystemExit) as error:
         told = failure(error)
         raise ComponentFailed(one.name, 0, told["text"], told["traceback"]) from error
@@ -103,7 +105,10 @@ class OverZenoh:
         self.participants: dict[str, Participant] = {}
         self.watchdog = watchdog
         self.watches: dict[str, Watch] = {}
-        self.session = Session(endpoint, True, "coupler", scene.security)
+        try:
+            self.session = Session(endpoint, True, "coupler", scene.security)
+        except LineError as error:
+            raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
         self.run = secrets.token_hex(8)
         lines = {name: ZenohLine(self.session, self.run, name) for name in scene.components}
         try:
