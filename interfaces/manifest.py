@@ -154,9 +154,8 @@ def manifest_of(cls: type[Component], path: str) -> Manifest:
             f"kind {path}: a component class must have a Params dataclass; {cls.__name__} has "
             "none. Write `@parameters class Params` inside it."
         )
-    return Manifest(
-        path, (cls.__doc__ or path).splitlines()[0], params, path, lambda _: (cls.takes, cls.gives)
-    )
+    title = (cls.__doc__ or path).splitlines()[0]
+    return Manifest(path, title, params, path, cls.ports_of, getattr(cls, "plan_of", None))
 
 
 def known_kinds() -> dict[str, str]:

@@ -39,7 +39,7 @@ class Boundary:
 
     Parameters
     ----------
-    method : "dbc", "mdbc" or "potential", default "dbc"
+    method : "dbc", "mdbc" or "potential", default "mdbc"
         Dynamic boundary particles (Crespo et al. 2007), modified ones whose density is mirrored
         (English et al. 2022), or a contact potential in place of their pressure (Vignjevic et al.
         2006).
@@ -59,8 +59,9 @@ class Boundary:
         Spacings from a moving surface in to its outermost samples; 0.5 with mdbc.
     wall_viscosity_factor : float, 1, default 1, from 0 to 1
         Share of the viscosity that acts between the fluid and walls or samples: 0 lets it slip.
-    lubrication_films : bool, default false
-        Whether films press in gaps that are too narrow for particles alone; with mdbc.
+    lubrication_films : "auto", true or false, default "auto"
+        Whether films press in gaps that are too narrow for particles alone; with mdbc, in three
+        dimensions. "auto": from when a wet body comes near to a wall or to another.
     roughness : float, m, default 5e-4, > 0
         Least width that a film has between faces that touch.
     potential_stiffness : float, Pa, default none, > 0
@@ -77,7 +78,7 @@ class Boundary:
         "gaps": "lubrication_films",
     }
 
-    method: Literal["dbc", "mdbc", "potential"] = "dbc"
+    method: Literal["dbc", "mdbc", "potential"] = "mdbc"
     walls: Box | None = None
     open_faces: tuple[Face, ...] = ("z+",)
     symmetry: tuple[UprightFace, ...] = ()
@@ -86,7 +87,7 @@ class Boundary:
     wall_offset: Positive = 0.5
     sample_depth: NotNegative = 0.5
     wall_viscosity_factor: Fraction = 1.0
-    lubrication_films: bool = False
+    lubrication_films: bool | Literal["auto"] = "auto"
     roughness: Positive = 5e-4
     potential_stiffness: Positive | None = None
     potential_exponent: Exponent = 1
@@ -120,9 +121,10 @@ class Gauges:
 class SphFluidParams:
     """A fluid that fills boxes, in an open tank; SI.
 
-    Edges are cut into round(edge / spacing) cells with a particle in the middle of each; every
-    particle has mass density · spacing³. In two dimensions, x and z, all boxes are one slab
-    between frictionless planes, a single layer of particles.
+    Edges are cut into round(edge / spacing) cells with a particle in the middle of each; all
+    particles have the same mass, that of the boxes at `density` over their number. In two
+    dimensions, x and z, all boxes are one slab between frictionless planes, a single layer of
+    particles.
 
     Parameters
     ----------
@@ -132,6 +134,8 @@ class SphFluidParams:
         Artificial, ten times the largest velocity or more.
     fluid : list of two corners, m
         Boxes full of fluid.
+    remove_inside_bodies : bool, default false
+        Whether fluid that is inside joined bodies at the start is removed; with mdbc.
     dimensions : 2 or 3, default 3
         In two: x and z.
     kernel : "cubic" or "wendland", default "cubic"
@@ -194,6 +198,7 @@ class SphFluidParams:
     spacing: Positive
     sound_speed: Positive
     fluid: tuple[Box, ...]
+    remove_inside_bodies: bool = False
     dimensions: Literal[2, 3] = 3
     kernel: Literal["cubic", "wendland"] = "cubic"
     smoothing: Positive = 1.5

@@ -35,7 +35,7 @@ def surface(params: SphFluidParams) -> Port:
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
     if params.dimensions == 2:
         port = planar_surface(port)
-    fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films
+    fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films is True
     return port if fixed else replace(port, static=(*port.static, CONTACT))
 
 

@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.dem_bodies.shapes.mesh_files import Shape, inside, nearest, read
+from quintet.components.shared.mesh_files import Shape, inside, nearest, read
 from quintet.components.shared.lattice import lattice_points
 from quintet.interfaces.component import Array
 
