@@ -19,7 +19,7 @@ FLOORS = {
     "interfaces": [
         {"errors"},
         {"units", "params"},
-        {"component"},
+        {"component", "keys"},
         {"ports", "manifest", "rotation", "sums"},
         {"lines"},
         {"serving"},
@@ -28,7 +28,7 @@ FLOORS = {
         {"coupling", "files"},
         {"measures"},
         {"scene"},
-        {"launch", "report"},
+        {"launch", "report", "reference"},
         {"run"},
         {"study", "bench", "conform"},
         {"cli", "python"},
