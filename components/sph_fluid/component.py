@@ -110,8 +110,8 @@ class SphFluid(Component):
         if len(self.samples.row):
             if self.params.dimensions == 2:
                 fields = in_plane(fields, self.params)
-            self.samples.place(self.state, fields)
-            self.boundary.place(self.state, fields)
+            self.samples.move(self.state, fields)
+            self.boundary.follow_samples(self.state, fields)
             self.symmetry.require_before(fields["surface.position"])
 
     def step(self, dt: float) -> None:
@@ -148,7 +148,7 @@ class SphFluid(Component):
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         self.pairs.push_samples(self.state, self.team)
         if self.films:
-            self.films.push(self.state, self.lists.arrays, dt)
+            self.films.advance(self.state, self.lists.arrays, dt)
         self.pairs.move_with_neighbours(self.state, dt, self.team)
 
     def _finish(self, moved: Moved, dt: float) -> None:
@@ -176,7 +176,7 @@ class SphFluid(Component):
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
-        self.samples.find(self.state)
+        self.samples.find_rows(self.state)
         self.boundary.load(self.state)
         if self.films:
             self.films.load(self.state)

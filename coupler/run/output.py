@@ -1,5 +1,6 @@
 """Output during a run: recording, views, ledger, snapshots."""
 
+import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -106,6 +107,10 @@ class OutputWriter:
         if self._passes(self._snapshots, now) if self._snapshots else late:
             self._keep(coupling)
         self._now = now
+
+    def warn(self, text: str) -> None:
+        """See `Observer.warn`."""
+        print(f"\nquintet: {text}", file=sys.stderr, flush=True)
 
     def ends_early(self, coupling: Coupling) -> None:
         """See `Observer.ends_early`."""

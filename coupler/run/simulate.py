@@ -67,6 +67,7 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
             log.close()
     if stop.asked and outcome["status"] != "done":
         outcome["status"] = "interrupted"
+    outcome["unstable"] = ledger.watch.summary()
     summary = ledger.summary()
     return conclude(scene, folder, outcome, participants, summary, costs, clock())
 
@@ -145,4 +146,5 @@ def conclude(
     results.draw(scene, folder, found)
     if outcome["status"] == "interrupted":
         return results.INTERRUPTED
-    return results.DONE if all(one.met for one in found) else results.UNMET
+    sound = all(one.met for one in found) and not outcome["unstable"]
+    return results.DONE if sound else results.UNMET
