@@ -81,7 +81,7 @@ class Films(Protocol):
     def resize(self, state: State, lists: Lists) -> None:
         """Find the films of a state with new lists."""
 
-    def push(self, state: State, lists: Lists, dt: float) -> None:
+    def advance(self, state: State, lists: Lists, dt: float) -> None:
         """Advance the films by a step [s], and add their push to the samples' force."""
 
 

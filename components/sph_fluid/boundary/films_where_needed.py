@@ -78,7 +78,7 @@ class FilmsWhereNeeded:
                     "is meant."
                 )
 
-    def push(self, state: State, lists: Lists, dt: float) -> None:
+    def advance(self, state: State, lists: Lists, dt: float) -> None:
         """Advance the films by a step [s], if there are any, and add their push."""
         if self.made is not None:
-            self.made.push(state, lists, dt)
+            self.made.advance(state, lists, dt)

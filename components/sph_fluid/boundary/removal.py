@@ -38,7 +38,7 @@ def remove(state: State, samples: Samples, fields: Fields, params: SphFluidParam
             )
         found |= inside
     state.keep(np.flatnonzero(~found), np.arange(len(state.sample)))
-    samples.find(state)
+    samples.find_rows(state)
     return told
 
 
