@@ -15,12 +15,14 @@ from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import ports
+from quintet.components.sph_fluid.ports import SHOWS, ports
+from quintet.components.sph_fluid.setup.geometry import wall_faces
 from quintet.components.sph_fluid.setup.mass import mass_notes
 from quintet.components.sph_fluid.setup.particle_count import plan
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import OrderError, StepError
+from quintet.interfaces.faces import polygons
 from quintet.interfaces.manifest import Plan, Ports
 
 LOADS = frozenset({"surface_load.force"})
@@ -44,6 +46,8 @@ class SphFluid(Component):
     def plan_of(cls, params: SphFluidParams) -> Plan:
         """What a run will need."""
         return plan(params)
+
+    shows = SHOWS
 
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
@@ -197,6 +201,10 @@ class SphFluid(Component):
     def notes(self) -> tuple[str, ...]:
         """What was not as a scene may have meant it: masses, films that are missing."""
         return (*self.told, *(self.films.notes if self.films else ()))
+
+    def walls(self) -> Fields:
+        """Return the tank's closed faces, and the obstacles in it."""
+        return polygons(wall_faces(self.params))
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""
