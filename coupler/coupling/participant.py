@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.errors import LineError, MessageError, QuintetError
+from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message, Shapes, require_finite
 from quintet.interfaces.lines.transport import Line
 
@@ -77,6 +77,9 @@ class Participant:
         except (LineError, MessageError) as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
         if message.order == "failed":
+            if message.header.get("error") == SceneError.__name__ and self.shapes is None:
+                # It has not begun: the scene is refused, by who knows the rule.
+                raise SceneError(f"components.{self.name}: {message.header.get('text')}")
             said = f"{message.header.get('error')}: {message.header.get('text')}"
             trace = str(message.header.get("traceback", ""))
             raise ComponentFailed(self.name, self.window, said, trace)
