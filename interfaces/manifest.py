@@ -169,16 +169,9 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
             "none. Write `@parameters class Params` inside it."
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
-    takes, gives = cls.takes, cls.gives
-    return Manifest(
-        kind,
-        title,
-        params,
-        path,
-        lambda _: (takes, gives),
-        shows=cls.shows,
-        patience=getattr(cls, "patience", PATIENCE),
-    )
+    plan, initial = (getattr(cls, name, None) for name in ("plan_of", "initial_of"))
+    more = {"shows": cls.shows, "patience": getattr(cls, "patience", PATIENCE)}
+    return Manifest(kind, title, params, path, cls.ports_of, plan, initial, **more)
 
 
 def known_kinds() -> dict[str, str]:

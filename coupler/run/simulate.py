@@ -178,6 +178,7 @@ def conclude(made: Running) -> int:
         "ledger": made.ledger.summary(),
         "repetitions": made.costs.repetitions,
         "unconverged": made.costs.unconverged,
+        "notes": {name: one.notes for name, one in made.participants.items() if one.notes},
         "timing": results.timing(made.participants, made.clock(), made.costs.mapping),
         "machine": results.machine(),
         "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
