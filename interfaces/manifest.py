@@ -6,7 +6,7 @@ entry-point group ``quintet.components``, or as ``module:Class``.
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -170,8 +170,8 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
     plan, initial = (getattr(cls, name, None) for name in ("plan_of", "initial_of"))
-    more = {"shows": cls.shows, "patience": getattr(cls, "patience", PATIENCE)}
-    return Manifest(kind, title, params, path, cls.ports_of, plan, initial, **more)
+    made = Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
+    return replace(made, patience=getattr(cls, "patience", PATIENCE))
 
 
 def known_kinds() -> dict[str, str]:
