@@ -25,6 +25,7 @@ from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
 MARGIN, BEYOND = 0.03, 0.12  # of the picture: around all that moves; how far walls may reach
+WITHIN = 0.08  # of an edge: margin at most, as of long tanks
 TALL, LOWEST = 2.0, 0.22  # height over width of a panel: at most; what is lower is stretched
 FLATTEST = 0.05  # height over width of what is shown, at least
 Region = tuple[tuple[float, float, float], tuple[float, float, float]]
@@ -157,7 +158,8 @@ def _limits(
         corners = np.concatenate(still)[:, [0, 2]]
         low = np.minimum(low, np.maximum(corners.min(axis=0), low - BEYOND * size))
         high = np.maximum(high, np.minimum(corners.max(axis=0), high + BEYOND * size))
-    low, high = low - MARGIN * size, high + MARGIN * size
+    margin = np.minimum(MARGIN * size, WITHIN * (high - low))
+    low, high = low - margin, high + margin
     middle, (wide, tall) = 0.5 * (low + high), high - low
     half = 0.5 * np.array([max(wide, tall / TALL), max(tall, wide * FLATTEST)])
     return middle - half, middle + half
