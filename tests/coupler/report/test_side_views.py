@@ -167,7 +167,7 @@ def test_a_long_tank_is_no_strip(tmp_path, figure):
     drawn.draw_without_rendering()
     height = _panels(drawn)[0].get_window_extent().height / drawn.dpi
     assert height > 1.6 and drawn.get_figwidth() < 13.0 and drawn.get_figheight() < 20.0
-    assert re.search(r"z drawn [12]\.\d times as long as x", drawn.get_suptitle())
+    assert re.search(r"z drawn [0-9.]+ times as long as x", drawn.get_suptitle())
 
 
 def test_spheres_have_their_size(tmp_path, figure):
