@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
+from pydantic import dataclasses
 from pydantic.fields import FieldInfo
 
 from quintet.interfaces.params import is_data_file
@@ -45,10 +46,17 @@ class Key:
 def keys(params: type) -> list[Key]:
     """Return the keys of a class made by `parameters`, in its order."""
     said = documented(params)
-    fields: dict[str, FieldInfo] = getattr(params, "__pydantic_fields__", {})
+    fields = fields_of(params)
     return [
         _key(info.alias or name, info, *said.get(name, ("", ""))) for name, info in fields.items()
     ]
+
+
+def fields_of(params: type) -> dict[str, FieldInfo]:
+    """Return the fields of a parameter class, or of a plain dataclass."""
+    made = params if hasattr(params, "__pydantic_fields__") else dataclasses.dataclass(params)
+    found: dict[str, FieldInfo] = made.__pydantic_fields__
+    return found
 
 
 def about(params: type) -> str:
@@ -60,12 +68,22 @@ def about(params: type) -> str:
 
 
 def documented(params: type) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of the names in the docstring's section of parameters."""
+    """Return unit and meaning of the names in the docstring's section of parameters.
+
+    What a class derives from says that of its own.
+    """
+    found: dict[str, tuple[str, str]] = {}
+    for one in reversed(params.__mro__[:-1]):
+        found |= _documented(one)
+    return found
+
+
+def _documented(params: type) -> dict[str, tuple[str, str]]:
     text = inspect.cleandoc(params.__dict__.get("__doc__") or "")
     parts = SECTION.split(text)
     body = dict(zip(parts[1::2], parts[2::2], strict=True)).get("Parameters", "")
     found = {}
-    for entry in re.split(r"\n(?=\S)", body.strip("\n")):
+    for entry in re.split(r"\n(?=\S)", body.strip("\n")) if body else ():
         head, _, meaning = entry.partition("\n")
         names, _, unit = head.partition(" : ")
         for name in names.split(","):

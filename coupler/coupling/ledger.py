@@ -20,6 +20,7 @@ from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
+from quintet.coupler.coupling.stability_watch import StabilityWatch
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.rotation import vector_between
 from quintet.interfaces.sums import column_sums, product, size
@@ -78,6 +79,7 @@ class Ledger:
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy = EnergyBalance()
+        self.watch = StabilityWatch(self.accounts)
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
         self._file = open(path, "a" if size else "w", newline="") if path else None
@@ -232,6 +234,7 @@ class Ledger:
             "accounts": [_as_row(account) for account in self.accounts.values()],
             "totals": self.totals,
             "energy": self.energy.save(),
+            "watch": self.watch.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
             "size": self._file.tell() if self._file else 0,
@@ -243,6 +246,7 @@ class Ledger:
             self.accounts[row["link"]] = Account(**{**row, "impulse": np.array(row["impulse"])})
         self.totals = dict(state["totals"])
         self.energy.load(state["energy"])
+        self.watch.load(state["watch"])
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])
 

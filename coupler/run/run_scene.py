@@ -6,12 +6,16 @@ from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin, files_of, go_on
 from quintet.coupler.run.simulate import make_folder, simulate
+from quintet.coupler.scene.needs import require_memory
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.lines.endpoint import require_free
 
 
-def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tuple[Path, int]:
+def run_scene(
+    scene: Scene, out: Path | None = None, force: bool = False, own_process: bool = False
+) -> tuple[Path, int]:
     """Run a scene from its start; return the folder of the run and the exit status.
 
     Parameters
@@ -20,13 +24,14 @@ def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tup
         A new or empty folder; ``runs/NAME``, or the next number that is free, if not given.
     force : bool
         Replace a former run in the folder: only what it wrote, once the new one has begun.
+    own_process : bool
+        Whether this process may be left from within, if a solver in it does not come back.
     """
-    if scene.transport == "mpi":
-        find_launcher()  # before a former run is touched
+    check_machine(scene)  # before a former run is touched
     with begin("run", scene.file.name, files_of(scene), out, force) as place:
         try:
             make_folder(scene, place.path)
-            status = _run(scene, place.path, None)
+            status = _run(scene, place.path, None, own_process)
         except QuintetError:
             place.undo()
             raise
@@ -35,14 +40,24 @@ def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tup
     return place.path, status
 
 
-def resume_scene(scene: Scene, folder: Path, snapshot: Path) -> int:
+def resume_scene(scene: Scene, folder: Path, snapshot: Path, own_process: bool = False) -> int:
     """Continue a run from one of its snapshots; return the exit status."""
+    check_machine(scene)
     with go_on(folder, "run"):
-        return _run(scene, folder, snapshot)
+        return _run(scene, folder, snapshot, own_process)
 
 
-def _run(scene: Scene, folder: Path, snapshot: Path | None) -> int:
+def check_machine(scene: Scene) -> None:
+    """Refuse what this machine does not have: memory, an endpoint that is free, a launcher."""
+    require_memory(scene, scene.elsewhere)
+    if scene.transport == "mpi":
+        find_launcher()
+    elif scene.transport == "zenoh" and scene.endpoint:
+        require_free(scene.endpoint)
+
+
+def _run(scene: Scene, folder: Path, snapshot: Path | None, own_process: bool) -> int:
     if scene.transport == "mpi":
         target = ["--resume", str(folder)] if snapshot else ["--out", str(folder)]
         return run_under_mpi(["run", *run_arguments(**scene.asked), *target], scene, folder)
-    return simulate(scene, folder, snapshot)
+    return simulate(scene, folder, snapshot, own_process)

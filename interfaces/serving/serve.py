@@ -4,6 +4,7 @@ Substeps, interpolation and the summing of impulses are done here, once for all 
 """
 
 import math
+import sys
 import time
 import traceback
 from collections.abc import Callable
@@ -18,12 +19,14 @@ from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.serving.inputs import Inputs
 from quintet.interfaces.serving.order_guard import OrderGuard
 from quintet.interfaces.serving.outputs import InputAudit, Outputs, Sums
+from quintet.interfaces.serving.port_view import look_at
 from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
 MOST = 1e9  # steps in a window; more would never end
-LONGEST = 1 << 16  # characters of an error's text or traceback
-PATIENCE = 3600.0  # s between two orders; the coupler's death is noticed at once
+LONGEST_TEXT = 1 << 16  # characters of an error's text or traceback
+# s between two orders, in which others may build or compute; the coupler's death ends the wait.
+LONGEST_WAIT = 86400.0
 
 
 def divide(left: float, stable: float) -> int:
@@ -51,6 +54,7 @@ class Server:
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
         self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
         self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
+        self._told = 0  # notes
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
             "describe": self._describe,
@@ -97,7 +101,8 @@ class Server:
         require_finite(message.fields, "as the run begins")
         self.outputs.shares = message.header.get("shares", {})
         self.inputs.arrive(message.fields, (), 1.0)
-        return {}, {}
+        self.component.prime(message.fields)
+        return {"notes": self._notes()}, {}
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()
@@ -122,7 +127,15 @@ class Server:
             "busy": time.perf_counter() - began,
             "cpu": time.process_time() - spent,
         }
+        if notes := self._notes():
+            answer["notes"] = notes
         return answer, fields
+
+    def _notes(self) -> list[str]:
+        """Notes of the component that were not yet told."""
+        found = [str(note) for note in self.component.notes()]
+        told, self._told = self._told, len(found)
+        return found[told:]
 
     def _integral(self, key: str) -> bool:
         return key in self.inputs.impulses
@@ -214,7 +227,15 @@ class Server:
         return {"stable": self.stable()}, {}
 
     def _view(self, message: Message) -> Answer:
-        return {"totals": self._totals()}, self.component.view()
+        """Totals; where asked for, what there is to see and the units of its fields, and walls."""
+        header: dict[str, Any] = {"totals": self._totals()}
+        fields: dict[str, Any] = {}
+        if message.header.get("shown", True):
+            shown, header["units"] = look_at(self.component)
+            fields |= shown
+        if message.header.get("walls"):
+            fields |= {f"walls.{key}": one for key, one in self.component.walls().items()}
+        return header, fields
 
 
 def depth(message: Message) -> int:
@@ -230,6 +251,9 @@ def peak_memory() -> int:
 
 def failure(error: BaseException) -> dict[str, Any]:
     """Put an error into the header that tells the coupler of it."""
+    if isinstance(error, MemoryError):
+        # What the failed functions hold is released, or there is none left to tell of it.
+        traceback.clear_frames(error.__traceback__)
     own = isinstance(error, QuintetError)
     said = str(error)
     if isinstance(error, SystemExit):
@@ -245,10 +269,10 @@ def failure(error: BaseException) -> dict[str, Any]:
 def sendable(text: str) -> str:
     """Text that a header can hold: valid UTF-8, and of a long one its beginning and its end."""
     text = text.encode("utf-8", "backslashreplace").decode("utf-8")
-    if len(text) <= LONGEST:
+    if len(text) <= LONGEST_TEXT:
         return text
-    left_out = len(text) - LONGEST
-    return f"{text[: LONGEST // 2]} … {left_out} characters … {text[-LONGEST // 2 :]}"
+    left_out, half = len(text) - LONGEST_TEXT, LONGEST_TEXT // 2
+    return f"{text[:half]} … {left_out} characters … {text[-half:]}"
 
 
 def answer(server: Server, line: Line, message: Message) -> bool:
@@ -256,9 +280,9 @@ def answer(server: Server, line: Line, message: Message) -> bool:
     try:
         header, fields = server.handle(message)
     except (Exception, SystemExit) as error:
-        if not isinstance(error, QuintetError):
-            traceback.print_exc()  # into the component's log, before the coupler looks there
-        line.send(failure(error), {})
+        told = failure(error)
+        print(told["traceback"], end="", file=sys.stderr, flush=True)  # into the component's log
+        line.send(told, {})
         return False
     line.send({"order": "done", **header}, fields)
     return message.order != "finish"
@@ -267,7 +291,7 @@ def answer(server: Server, line: Line, message: Message) -> bool:
 def serve(server: Server, line: Line) -> bool:
     """Answer the coupler until it says finish; tell whether all went well."""
     while True:
-        message = line.receive(PATIENCE)
+        message = line.receive(LONGEST_WAIT)
         if message.order == "abort":
             return False
         if not answer(server, line, message):
