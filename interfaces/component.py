@@ -138,6 +138,12 @@ class Component(ABC):
 
     takes: tuple[Port, ...] = ()
     gives: tuple[Port, ...] = ()
+    shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
+
+    @classmethod
+    def ports_of(cls, params: Any) -> tuple[tuple[Port, ...], tuple[Port, ...]]:
+        """Ports that it takes and gives with these parameters, known before it is made."""
+        return cls.takes, cls.gives
 
     def describe(self) -> Fields:
         """Static fields of the ports it gives, and what it states at those it takes."""
@@ -153,6 +159,9 @@ class Component(ABC):
         joined : set of str
             Names of its ports that have a partner.
         """
+
+    def prime(self, fields: Fields) -> None:  # noqa: B027  (most need none)
+        """Learn what the inputs that are instants are as the run begins; once, after `bind`."""
 
     @abstractmethod
     def stable_dt(self) -> float:
@@ -190,8 +199,23 @@ class Component(ABC):
         return Totals()
 
     def view(self) -> Fields:
-        """What a picture needs: ``points`` (n, 3) m, optional ``cells`` (m, 3 or 4), and fields."""
+        """What pictures and ParaView show of its present state.
+
+        ``points`` (n, 3) m; optional ``cells`` (m, 3 or more): polygons, by the numbers of their
+        corners, -1 after the last corner of those with fewer. All other fields have a row for each
+        point or for each cell, and stand with their units in `shows`; ``radius`` [m] tells
+        that points are spheres. By default nothing: then the bodies, meshes or points are shown
+        whose positions it gives.
+        """
         return {}
+
+    def walls(self) -> Fields:
+        """What stands still around it, for pictures: ``points`` and ``cells`` as in a view."""
+        return {}
+
+    def notes(self) -> tuple[str, ...]:
+        """Sentences that the user should read: all so far, in the order in which they came up."""
+        return ()
 
     def items(self) -> int:
         """How many particles, bodies or elements it advances per step."""

@@ -14,8 +14,9 @@ its faces are exact. Two boxes touch where a corner of one is near the other (8 
 rounded boxes) and where two edges cross; that is all that convex polyhedra can do. A sharp edge
 yields until it is blunt: contacts of boxes and polygons have at least the radius of a default edge
 radius, and that of a body a tenth as thick as it is long, however sharp or thin they are; so they
-may be deeper than edges are round (`contact/sharp.py`). Spheres and their unions touch boxes by their exact distance. Contacts along an edge or face thus need no row of
-small spheres, whose bumps would add to the friction.
+may be deeper than edges are round (`contact/sharp.py`). Spheres and their unions touch boxes by
+their exact distance. Contacts along an edge or face thus need no row of small spheres, whose bumps
+would add to the friction.
 
 An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
 cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.
@@ -53,21 +54,24 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 from quintet.components.dem_bodies import build
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.ports import ports
+from quintet.components.dem_bodies.ports import SHOWS, ports
+from quintet.components.dem_bodies.start import initial
 from quintet.interfaces.manifest import Manifest, Plan
 
 __all__ = ["MANIFEST", "DemBodiesParams"]
 
 
 def _plan(params: DemBodiesParams) -> Plan:
-    solids = [build.solid(body) for body in params.bodies]
-    count, ω = len(solids), build.expected_frequency(params, solids)
+    bodies, count = params.placed.templates, len(params.bodies)
+    solids = [build.solid(body) for body in bodies]
+    ω = build.expected_frequency(params, bodies, solids)
     dt = DURATION * SPEED_UP / ω / params.steps_per_contact
     if count == 1 and not params.planes:  # nothing to touch
         dt = params.longest_step
     dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
     # Of a step, some time is for calling it, and some for each body: more where it is no ball.
-    balls = sum(map(build.is_ball, params.bodies))
+    each = zip(bodies, params.placed.counts, strict=True)
+    balls = sum(n for body, n in each if build.is_ball(body))
     step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
     return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)
 
@@ -79,6 +83,8 @@ MANIFEST = Manifest(
     component="quintet.components.dem_bodies.component:DemBodies",
     ports=ports,
     plan=_plan,
+    initial=initial,
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",
+    shows=SHOWS,
 )

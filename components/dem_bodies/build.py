@@ -35,10 +35,10 @@ from quintet.components.dem_bodies.state import (
     Whole,
 )
 from quintet.components.shared.polygons import area_moments
+from quintet.interfaces.faces import CORNERS
 
 SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
 THIN = 0.1  # of a box's longest edge: what is thinner is listed as if it were not
-CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
 # Pairs of corners that differ in one coordinate.
 EDGES = np.array([(k, k + step) for step in (1, 2, 4) for k in range(8) if not k & step])
 
@@ -51,6 +51,12 @@ class Solid(NamedTuple):
     centres: Numbers  # (s, 3) m, body axes
     radii: Numbers  # (s,) m
     size: Numbers  # (3,) m, edges of the box that holds it
+
+
+def solids(params: DemBodiesParams) -> list[Solid]:
+    """Measure all bodies; copies share what is found of the first."""
+    each = zip(params.placed.templates, params.placed.counts, strict=True)
+    return [one for body, count in each for one in count * [solid(body)]]
 
 
 def solid(body: Body) -> Solid:
@@ -299,7 +305,9 @@ def inverse_of_free(inertia: Numbers, free: Numbers) -> Numbers:
     return np.asarray(both * np.linalg.inv(both * inertia + np.diag(1.0 - free)))
 
 
-def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
+def expected_frequency(
+    params: DemBodiesParams, bodies: Sequence[Body], solids: Sequence[Solid]
+) -> float:
     """Bound of √(S_n/m*) [rad/s] in impacts at the expected speed.
 
     For each material the lightest contact and the largest radius are taken, though they may be
@@ -307,11 +315,11 @@ def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
     """
     table, names = material_pairs(params)[:, :, 0], list(params.materials)
     lightest, largest = np.zeros(len(names)), np.zeros(len(names))
-    for body, one in zip(params.bodies, solids, strict=True):
+    for body, one in zip(bodies, solids, strict=True):
         k = names.index(body.material)
         lightest[k] = max(lightest[k], largest_inverse_effective_mass(one))
         largest[k] = max(largest[k], contact_radii(body, one).max())
-    boxes = any(body.shape in ("box", "polygon") for body in params.bodies)
+    boxes = any(body.shape in ("box", "polygon") for body in bodies)
     found = []
     for i in np.flatnonzero(lightest):
         for j in np.flatnonzero(lightest):

@@ -22,8 +22,8 @@ bears the fluid: it starts without weight.
 
 Pressure below zero is cut unless `negative_pressure` is on, which thin fast layers need to hold
 together; `density_diffusion` levels the density between particles (Fourtakas et al. 2019), `kernel`
-"wendland" keeps still water calm, `lubrication_films` puts films into gaps narrower than 1.25
-spacings, which press what particles leave of their faces (`boundary/lubrication.py`), an
+"wendland" keeps still water calm, `lubrication_films` are in gaps narrower than 1.25 spacings, and
+press what particles leave of their faces (`boundary/lubrication.py`), an
 `acoustic_damper` takes the ringing out of strikes (`pairs/acoustic_damper.py`). Of what is off,
 nothing is compiled.
 
@@ -43,6 +43,11 @@ is an error: a tenth is what a weakly compressible fluid bears (Monaghan 1994).
 
 A particle that goes further than half of the tank's longest edge beyond the walls is lost: it is
 removed, and `totals` shows its mass missing. Without walls none is.
+
+Particles of fluid weigh together what its boxes and `shapes` hold, whether or not the spacing
+divides these (`setup/mass.py`). Fluid starts at rest under hydrostatic pressure, or as `initial`
+says (`setup/initial_fields.py`). Fluid that joined bodies stand in is removed with
+`remove_inside_bodies`, and refused without.
 
 `obstacles` are boxes of wall particles that stand still in the tank; a `wave` sets level water into
 the motion of a standing wave at the start. `staggered` rows of the lattice that fluid begins with
@@ -66,20 +71,12 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 """
 
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import ports
-from quintet.components.sph_fluid.setup.particle_count import particles
-from quintet.interfaces.manifest import Manifest, Plan
+from quintet.components.sph_fluid.ports import SHOWS, ports
+from quintet.components.sph_fluid.setup.particle_count import plan
+from quintet.components.sph_fluid.setup.start import stated
+from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "SphFluidParams"]
-
-
-def _plan(params: SphFluidParams) -> Plan:
-    # One part in ten: how much velocities add to the speed of sound.
-    dt = params.courant * params.smoothing_length / (1.1 * params.sound_speed)
-    twice = params.integration == "symplectic"  # two passes over longer lists
-    listed = (58.0 if twice else 45.0) * params.smoothing**3  # neighbours, with their margin
-    rate = 2e6 * 150 / listed * (0.5 if twice else 1.0) * (0.8 if params.mirrored else 1.0)
-    return Plan(particles(params), dt, rate=rate, bytes_per_item=180 + 4 * listed)
 
 
 MANIFEST = Manifest(
@@ -88,7 +85,9 @@ MANIFEST = Manifest(
     params=SphFluidParams,
     component="quintet.components.sph_fluid.component:SphFluid",
     ports=ports,
-    plan=_plan,
+    plan=plan,
+    initial=stated,
     bench="quintet.components.sph_fluid.bench:cases",
     conform="quintet.components.sph_fluid.conform:cases",
+    shows=SHOWS,
 )

@@ -7,6 +7,7 @@ from pydantic import NonNegativeInt
 
 from quintet.components.sph_fluid.setup import geometry
 from quintet.components.sph_fluid.setup.checks import check
+from quintet.components.sph_fluid.setup.expressions import Expression
 from quintet.components.sph_fluid.setup.geometry import (
     Axis,
     Box,
@@ -16,8 +17,16 @@ from quintet.components.sph_fluid.setup.geometry import (
     Spot,
     UprightFace,
 )
+from quintet.components.sph_fluid.setup.shapes import FluidShape
 from quintet.components.sph_fluid.setup.standing_wave import StandingWave
-from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
+from quintet.interfaces.params import (
+    DataFile,
+    Fraction,
+    NotNegative,
+    Positive,
+    Vector,
+    parameters,
+)
 
 
 @parameters
@@ -68,7 +77,8 @@ class Boundary:
     wall_viscosity_factor : 1
         Share of the viscosity that acts between the fluid and walls or samples: 0 lets it slip.
     lubrication_films
-        Whether films press in gaps that are too narrow for particles alone; with mdbc.
+        Whether films press in gaps that are too narrow for particles alone; with mdbc, in three
+        dimensions. With auto from when a wet body comes near to a wall or to another.
     roughness : m
         Least width that a film has between faces that touch.
     potential_stiffness : Pa
@@ -85,7 +95,7 @@ class Boundary:
         "gaps": "lubrication_films",
     }
 
-    method: Literal["dbc", "mdbc", "potential"] = "dbc"
+    method: Literal["dbc", "mdbc", "potential"] = "mdbc"
     walls: Box | None = None
     open_faces: tuple[Face, ...] = ("z+",)
     symmetry: tuple[UprightFace, ...] = ()
@@ -94,7 +104,7 @@ class Boundary:
     wall_offset: Positive = 0.5
     sample_depth: NotNegative = 0.5
     wall_viscosity_factor: Fraction = 1.0
-    lubrication_films: bool = False
+    lubrication_films: bool | Literal["auto"] = "auto"
     roughness: Positive = 5e-4
     potential_stiffness: Positive | None = None
     potential_exponent: Exponent = 1
@@ -125,12 +135,39 @@ class Gauges:
 
 
 @parameters
+class InitialFields:
+    """How the fluid moves at the start, and how dense it is.
+
+    Expressions are of x, y and z [m], as "0.1 * sin(2 * pi * x)": numbers, pi, + - * / **, sin,
+    cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, atan2, hypot, min, max, where(a < b, c, d).
+    A table is a CSV file whose first line names its columns: of x, y, z [m] those that it depends
+    on, of u, v, w [m/s] and density [kg/m3] what it gives. Its rows are the points of a rectangular
+    grid; between them it is linear, beyond them as at its edge.
+
+    Parameters
+    ----------
+    velocity : m/s
+        Along x, y and z, each a number or an expression.
+    density : kg/m3
+        A number or an expression, within 10 % of ρ₀: pressure follows from it by Tait's equation,
+        the mass of particles does not. Without it pressure is hydrostatic.
+    table
+        Name of a table, beside the scene.
+    """
+
+    velocity: tuple[Expression, Expression, Expression] | None = None
+    density: Expression | None = None
+    table: DataFile | None = None
+
+
+@parameters
 class SphFluidParams:
     """A fluid that fills boxes, in an open tank; SI.
 
-    Edges are cut into round(edge / spacing) cells with a particle in the middle of each; every
-    particle has mass density · spacing³. In two dimensions, x and z, all boxes are one slab
-    between frictionless planes, a single layer of particles.
+    Edges are cut into round(edge / spacing) cells with a particle in the middle of each; all
+    particles have the same mass, that of the boxes at `density` over their number. In two
+    dimensions, x and z, all boxes are one slab between frictionless planes, a single layer of
+    particles.
 
     Parameters
     ----------
@@ -140,6 +177,12 @@ class SphFluidParams:
         Artificial, ten times the largest velocity or more, and at least 10 √(g depth).
     fluid : m
         Boxes full of fluid, each by its lowest and highest corner.
+    shapes
+        Fluid in other shapes.
+    initial
+        Velocity and density of the fluid at the start, where it is not at rest.
+    remove_inside_bodies
+        Whether fluid that is inside joined bodies at the start is removed; with mdbc.
     dimensions
         In two: x and z.
     kernel
@@ -206,7 +249,10 @@ class SphFluidParams:
 
     spacing: Positive
     sound_speed: Positive
-    fluid: tuple[Box, ...]
+    fluid: tuple[Box, ...] = ()
+    shapes: tuple[FluidShape, ...] = ()
+    initial: InitialFields | None = None
+    remove_inside_bodies: bool = False
     dimensions: Literal[2, 3] = 3
     kernel: Literal["cubic", "wendland"] = "cubic"
     smoothing: Smoothing = 1.5

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
-from quintet.coupler.coupling.exchange import Exchange, WindowInputs
+from quintet.coupler.coupling.exchange import Exchange, WindowInputs, refused_starts
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.plan import CouplingPlan
@@ -25,6 +25,7 @@ from quintet.coupler.coupling.schedule import (
 from quintet.coupler.coupling.schemes import advance
 from quintet.coupler.coupling.windows import Windows
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.inputs import Inputs
 
 
@@ -193,12 +194,15 @@ def join_ports(
         one.bind(static[name], **header)
     # Motion is known at once; forces, which follow from it, are zero before the first window.
     outputs = {name: one.give() for name, one in participants.items()}
+    initial = {name: {**described[name], **given} for name, given in outputs.items()}
+    if refused := refused_starts(exchange.links, initial):
+        raise SceneError(refused)
     exchange.count_rows(outputs)
     _begin(coupling, outputs)
     for name, one in participants.items():
         numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == name]
         instants = _instants(exchange, name, numbers, outputs)
-        one.call("prime", instants, shares=exchange.shares(name))
+        one.prime(instants, shares=exchange.shares(name))
         coupling.ledger.primed(name, instants)
 
 

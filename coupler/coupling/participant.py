@@ -1,6 +1,7 @@
 """One component as the run loop sees it, wherever it runs."""
 
 import statistics
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -8,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.errors import LineError, MessageError, QuintetError
+from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message, Shapes, require_finite
 from quintet.interfaces.lines.transport import Line
 
@@ -53,6 +54,7 @@ class Participant:
         self.window = 0  # the next
         self.stable = 0.0  # s, largest step from its present state
         self.timing = Timing()
+        self.notes: list[str] = []  # what the user should read of it
         self.shapes: Shapes | None = None  # of its outputs, once known
         self._asked = 0.0
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
@@ -75,6 +77,9 @@ class Participant:
         except (LineError, MessageError) as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
         if message.order == "failed":
+            if message.header.get("error") == SceneError.__name__ and self.shapes is None:
+                # It has not begun: the scene is refused, by who knows the rule.
+                raise SceneError(f"components.{self.name}: {message.header.get('text')}")
             said = f"{message.header.get('error')}: {message.header.get('text')}"
             trace = str(message.header.get("traceback", ""))
             raise ComponentFailed(self.name, self.window, said, trace)
@@ -90,6 +95,16 @@ class Participant:
         answer = self.call("bind", static, **header)
         self.timing.items = int(answer.header["items"])
         self.stable = float(answer.header["stable"])
+
+    def prime(self, fields: Fields, **header: Any) -> None:
+        """Tell it what holds as the run begins."""
+        self._note(self.call("prime", fields, **header))
+
+    def _note(self, message: Message) -> None:
+        """Show the user what it has to say."""
+        for note in message.header.get("notes", ()):
+            self.notes.append(str(note))
+            print(f"quintet: note of {self.name}: {note}", file=sys.stderr, flush=True)
 
     def start(self, dt: float, fields: Fields, ends: list[str], **header: Any) -> None:
         """Order the next window, of a length `dt` [s]."""
@@ -108,6 +123,7 @@ class Participant:
         timing.windows += 1
         timing.recent.append(took)
         self.stable = float(header["stable"])
+        self._note(message)
         self.window += 1
         return message
 

@@ -6,16 +6,27 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from quintet.coupler.files.recording import NAME as RECORDING
 from quintet.interfaces.errors import SceneError
 
 FORMAT = 1
 MARKER, LOCK = "quintet-run.json", "quintet-run.lock"
+RECORDING = "recording.h5"
 RESULTS, LEDGER, SCENE = "results.json", "ledger.csv", "scene.toml"
 RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")
 RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES)  # of every run
 SNAPSHOTS = "snapshot-*.h5"
+VIEWS, WALLS = ".vtkhdf", ".walls.vtkhdf"
+
+
+def view_file(component: str) -> str:
+    """File with what there is to see of a component."""
+    return f"{component}{VIEWS}"
+
+
+def walls_file(component: str) -> str:
+    """File with what stands still around a component; no name of a component has a dot."""
+    return f"{component}{WALLS}"
 
 
 @dataclass(frozen=True, slots=True)

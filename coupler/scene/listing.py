@@ -17,7 +17,6 @@ from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Port
 
-WIDTH = 110  # characters, of a plan as text
 UNWRAPPED = 10_000  # characters, more than any line has
 
 
@@ -58,7 +57,7 @@ class Plan:
     scene: Scene
 
     def __str__(self) -> str:
-        screen = Console(file=io.StringIO(), width=WIDTH, highlight=False, markup=False)
+        screen = Console(file=io.StringIO(), width=UNWRAPPED, highlight=False, markup=False)
         print_plan(self.scene, screen)
         return screen.file.getvalue()  # type: ignore[attr-defined]
 
@@ -93,8 +92,8 @@ def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:
     exchange = scene.exchange()
     where = f"group {plan.name}" if plan.name else "run"
     members = ", ".join(plan.members)
-    plans = {name: one.plan() for name, one in scene.components.items()}
-    steps = {name: one.dt for name, one in plans.items() if one is not None}
+    plans = {name: one.planned for name, one in scene.components.items()}
+    steps = {n: one.dt for n, one in plans.items() if one is not None and math.isfinite(one.dt)}
     joined = {name for ends in plan.transfers(exchange).values() for name in ends}
     equal = plan.equal(exchange)
     known = [steps[name] for name in joined or set(plan.members) if name in steps]
@@ -119,11 +118,13 @@ def _processes(scene: Scene) -> str:
 
 
 def _needs(one: ComponentPlan, end: float) -> tuple[str, str, str, str]:
-    plan = one.plan()
+    plan = one.planned
     if plan is None:
         return "", "", "", ""
-    seconds = plan.items * math.ceil(end / plan.dt) / (plan.rate * one.threads)
     memory = f"{plan.items * plan.bytes_per_item / 1e6:.0f} MB" if plan.bytes_per_item else ""
+    if math.isinf(plan.dt):
+        return f"{plan.items}", "any", memory, ""
+    seconds = float(plan.items) * math.ceil(end / plan.dt) / (plan.rate * one.threads)
     return f"{plan.items}", f"{plan.dt:.2g} s", memory, f"{seconds:.0f} s"
 
 

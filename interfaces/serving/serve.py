@@ -18,6 +18,7 @@ from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.serving.inputs import Inputs
 from quintet.interfaces.serving.order_guard import OrderGuard
 from quintet.interfaces.serving.outputs import InputAudit, Outputs, Sums
+from quintet.interfaces.serving.port_view import look_at
 from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
@@ -51,6 +52,7 @@ class Server:
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
         self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
         self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
+        self._told = 0  # notes
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
             "describe": self._describe,
@@ -97,7 +99,8 @@ class Server:
         require_finite(message.fields, "as the run begins")
         self.outputs.shares = message.header.get("shares", {})
         self.inputs.arrive(message.fields, (), 1.0)
-        return {}, {}
+        self.component.prime(message.fields)
+        return {"notes": self._notes()}, {}
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()
@@ -122,7 +125,15 @@ class Server:
             "busy": time.perf_counter() - began,
             "cpu": time.process_time() - spent,
         }
+        if notes := self._notes():
+            answer["notes"] = notes
         return answer, fields
+
+    def _notes(self) -> list[str]:
+        """Notes of the component that were not yet told."""
+        found = [str(note) for note in self.component.notes()]
+        told, self._told = self._told, len(found)
+        return found[told:]
 
     def _integral(self, key: str) -> bool:
         return key in self.inputs.impulses
@@ -214,7 +225,15 @@ class Server:
         return {"stable": self.stable()}, {}
 
     def _view(self, message: Message) -> Answer:
-        return {"totals": self._totals()}, self.component.view()
+        """Totals; where asked for, what there is to see and the units of its fields, and walls."""
+        header: dict[str, Any] = {"totals": self._totals()}
+        fields: dict[str, Any] = {}
+        if message.header.get("shown", True):
+            shown, header["units"] = look_at(self.component)
+            fields |= shown
+        if message.header.get("walls"):
+            fields |= {f"walls.{key}": one for key, one in self.component.walls().items()}
+        return header, fields
 
 
 def depth(message: Message) -> int:

@@ -5,6 +5,8 @@ to the gauge's height as in still water, over the room Σ V_j W_j that the walls
 fills that room up to a seventh it is the mean over the fluid instead, which knows no gaps between
 particles. A face that a drop strikes feels but its share, as the real one's sensor does; without
 fluid near it a gauge reads 0. Dynamic walls keep the fluid off: there it is always the mean.
+Where fluid fills less than half of the room there is none to pull: a gauge above the surface, or
+before the front, reads nothing below 0 even of a fluid that bears tension.
 
 A level is where the share of volume Σ_j V_j W_j, seen from above, first rises through one half;
 beside a wall, where it is nowhere 1, through half of its largest value. Lone drops are passed
@@ -25,13 +27,13 @@ from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.gauges.kernels import add_around, fill_columns, furthest
 from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import slab_thickness
+from quintet.components.sph_fluid.setup.geometry import fluid_boxes, slab_thickness
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
 
 FULL = 0.85  # of the room that walls leave: so much is filled where there is but fluid
 FINE = 0.25  # spacings between the heights at which the share of volume is looked at
-SURFACE = 0.5  # share of volume at the surface
+SURFACE = 0.5  # share of the room at the surface
 DROP = 2.0  # particles on one spot whose share of volume is not yet a surface
 
 
@@ -44,12 +46,13 @@ class Gauges:
         self.spots = np.array(params.gauges.level_gauges).reshape(-1, 2)  # (m, 2) m
         if params.dimensions == 2:
             self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
-                corner[1] for corner in params.fluid[0]
+                corner[1] for corner in fluid_boxes(params)[0]
             )
         # (k m, 3 or 2) m: these, and from where images see what these see in them.
         self.image_points = symmetry.all_images(self.points)
         self.above = symmetry.all_images(self.spots)
-        boxes = [params.boundary.walls] if params.boundary.walls else params.fluid
+        walls = params.boundary.walls
+        boxes = [walls] if walls else fluid_boxes(params)
         self.floor = min(box[0][2] for box in boxes)  # m
         volume = self.constants.mass / self.constants.density
         self.lone = volume * float(kernel(0.0, self.constants.smoothing))  # 1, V W(0)
@@ -79,7 +82,8 @@ class Gauges:
         least = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
         filled = np.maximum(share, least)
         pressure = np.divide(load, filled, out=np.zeros(len(load)), where=share > 0.0)
-        return np.maximum(pressure, self.constants.lowest)
+        least = np.where(share < SURFACE * (1.0 - walls), 0.0, self.constants.lowest)
+        return np.maximum(pressure, least)
 
     def _height(self, state: State) -> Array:
         z, spacing = state.position_density[: state.fluid, 2], self.params.spacing

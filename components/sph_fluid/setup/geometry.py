@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
+from quintet.interfaces.component import Array
+from quintet.interfaces.faces import box
 from quintet.interfaces.params import Number, Vector
 
 if TYPE_CHECKING:
@@ -19,6 +21,18 @@ Exponent = Annotated[int, Field(ge=1, le=8)]
 Smoothing = Annotated[float, Field(ge=1.0, le=3.0)]
 
 FACES = get_args(Face)
+
+
+def cells(box: Box, params: "SphFluidParams") -> tuple[int, int, int]:
+    """Whole number of particles along each edge of a box."""
+    low, high = box
+    x, y, z = (max(1, round((b - a) / params.spacing)) for a, b in zip(low, high, strict=True))
+    return (x, y, z) if params.dimensions == 3 else (x, 1, z)
+
+
+def fluid_boxes(params: "SphFluidParams") -> tuple[Box, ...]:
+    """Boxes of fluid, and those around its other shapes."""
+    return *params.fluid, *(shape.box for shape in params.shapes)
 
 
 def closed_faces(params: "SphFluidParams") -> tuple[Face, ...]:
@@ -46,9 +60,16 @@ def tank(params: "SphFluidParams") -> Box | None:
     )
 
 
+def wall_faces(params: "SphFluidParams") -> list[Array]:
+    """Corners (4, 3) m of each closed face of the tank, and of each face of the obstacles."""
+    edge = params.boundary
+    found = box(*edge.walls, closed_faces(params)) if edge.walls else []
+    return found + [face for one in edge.obstacles for face in box(*one, FACES)]
+
+
 def slab_thickness(params: "SphFluidParams") -> float:
     """Of the slab [m] that a particle's mass is counted over; 1 in three dimensions."""
-    low, high = params.fluid[0]
+    low, high = fluid_boxes(params)[0]
     return high[1] - low[1] if params.dimensions == 2 else 1.0
 
 
@@ -75,5 +96,5 @@ def depth(params: "SphFluidParams") -> float:
     gravity = hydrostatic_gravity(params)
     if not any(gravity):
         return 0.0
-    found = [level for box in params.fluid for level in levels(box, gravity)]
+    found = [level for box in fluid_boxes(params) for level in levels(box, gravity)]
     return max(found) - min(found)

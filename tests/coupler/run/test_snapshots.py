@@ -10,7 +10,7 @@ import pytest
 from started import Started, write_scene
 
 from quintet.coupler.cli import main
-from quintet.coupler.files import vtkhdf
+from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.report.diff import compare
 from quintet.coupler.run import snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
@@ -34,10 +34,10 @@ def same(one, other):
     for key in ("status", "windows", "time", "expect", "ledger"):
         assert found[0][key] == found[1][key], key
     for path in one.glob("*.vtkhdf"):
-        times = vtkhdf.times(path)
-        assert list(times) == list(vtkhdf.times(other / path.name))
+        times = vtkhdf_reader.times(path)
+        assert list(times) == list(vtkhdf_reader.times(other / path.name))
         for k in range(len(times)):
-            views = [vtkhdf.read_step(run / path.name, k)[1] for run in (one, other)]
+            views = [vtkhdf_reader.read_step(run / path.name, k)[1] for run in (one, other)]
             assert all((views[0][key] == views[1][key]).all() for key in views[0])
     return True
 
@@ -78,7 +78,7 @@ def test_water_and_a_body_go_on_from_a_snapshot_with_the_same_bits(gone_on):
     output = ("end=0.03", "output.interval=0.01", "output.snapshots=0.012")
     first, again, window = gone_on(SMALL_DAM, *output)
     assert window == 24 and same(first, again)
-    assert len(vtkhdf.times(again / "water.vtkhdf")) == 4
+    assert len(vtkhdf_reader.times(again / "water.vtkhdf")) == 4
 
 
 @pytest.mark.parametrize("transport", ["memory", *OVER])
