@@ -31,6 +31,7 @@ class Timing:
     compute: float = 0.0  # s, as the component itself measured
     cpu: float = 0.0  # s of processor time in its windows, all threads
     wait: float = 0.0  # s that the coupler waited for it
+    prepare: float = 0.0  # s, what it did before its first window, such as compiling
     first: float = 0.0  # s, its first window
     steps: int = 0
     windows: int = 0  # that were ordered, repetitions counted
@@ -94,7 +95,11 @@ class Participant:
         """Join its ports: who reads what, and with what forces do work."""
         answer = self.call("bind", static, **header)
         self.timing.items = int(answer.header["items"])
-        self.stable = float(answer.header["stable"])
+
+    def prepared(self) -> None:
+        """Wait until it has compiled, or whatever else it does before its first step."""
+        header = self.receive().header
+        self.stable, self.timing.prepare = float(header["stable"]), float(header["seconds"])
 
     def prime(self, fields: Fields, **header: Any) -> None:
         """Tell it what holds as the run begins."""

@@ -2,6 +2,7 @@
 
 import contextlib
 import secrets
+import shlex
 import socket
 import time
 import traceback
@@ -13,6 +14,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch.mpi_job import write_processes
 from quintet.coupler.launch.processes import GRACE, Watch, start
+from quintet.coupler.scene.overrides import run_arguments
+from quintet.coupler.scene.read import library
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message
@@ -97,7 +100,9 @@ class OverZenoh:
         lines = {name: ZenohLine(self.session, run, name) for name in scene.components}
         try:
             for name in scene.components:
-                if name not in scene.elsewhere:
+                if name in scene.elsewhere:
+                    print(f"{name} is awaited: {join_command(scene, name, endpoint)}", flush=True)
+                else:
                     self._start(scene, name, endpoint, folder)
             for name, line in lines.items():
                 self._await_hello(scene, name, line, interrupted)
@@ -146,6 +151,14 @@ class OverZenoh:
         """See `Connection.close`."""
         end_all(self.participants, list(self.watches.values()), well)
         self.session.close()
+
+
+def join_command(scene: Scene, name: str, endpoint: str) -> str:
+    """Command that starts a component elsewhere and joins it to the coupler at an endpoint."""
+    known = library().get(scene.path.parent.name)
+    name_or_path = {"scene": scene.path.parent.name} if known == scene.path else {}
+    asked = run_arguments(**{**scene.asked, **name_or_path})
+    return shlex.join(["quintet", "join", *asked, name, "--at", endpoint])
 
 
 class OverMpi:

@@ -1,5 +1,6 @@
 """One run, from a checked scene to its results, failures included."""
 
+import contextlib
 import os
 import shlex
 import sys
@@ -22,6 +23,7 @@ from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.run.start_report import StartReport
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import LinkError, SceneError
@@ -44,11 +46,14 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     participants: dict[str, Participant] = {}
     costs = Costs()
     try:
-        with stop.listening():
+        with contextlib.ExitStack() as stack:
+            stack.enter_context(stop.listening())
+            start = stack.enter_context(StartReport(log_files(scene, folder)))
             connection = connect(scene, folder, stop)
             participants = connection.participants
             coupling = assemble(scene.coupling, participants, exchange, ledger, logs, costs)
             resume = partial(snapshots.restore, path=snapshot) if snapshot else lambda _: None
+            writer.on_begin = start.close
             end = run(coupling, scene.file.end, writer, scene.asked_outputs(), resume)
             writer.close()
             outcome |= outcome_of(end)
@@ -70,6 +75,14 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     outcome["unstable"] = ledger.watch.summary()
     summary = ledger.summary()
     return conclude(scene, folder, outcome, participants, summary, costs, clock())
+
+
+def log_files(scene: Scene, folder: Path) -> dict[str, Path]:
+    """Logs of the components that are processes of their own on this host."""
+    if scene.transport == "memory":
+        return {}
+    here = [name for name in scene.components if name not in scene.elsewhere]
+    return {name: folder / "log" / f"{name}.log" for name in here}
 
 
 def make_folder(scene: Scene, folder: Path) -> None:

@@ -17,6 +17,7 @@ from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
 from quintet.interfaces.serving.malloc import keep_freed_memory
+from quintet.interfaces.serving.notices import listen, notice
 from quintet.interfaces.serving.serve import Server, failure, serve
 
 JOINING = 600.0  # s until every other component has joined
@@ -57,6 +58,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     # Ctrl-C reaches the whole terminal; the coupler answers it and tells the components.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     keep_freed_memory()
+    listen(say)
     say(f"{given.name}: {manifest.title}, process {os.getpid()}")
     try:
         line = over_mpi(given.name) if given.mpi else over_zenoh(given)
@@ -98,7 +100,10 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
         raise SceneError(mistakes)
-    return make(manifest.load(), params, resources)
+    notice("importing the solver")
+    solver = manifest.load()
+    notice("building")
+    return make(solver, params, resources)
 
 
 def over_zenoh(given: argparse.Namespace) -> Line:
