@@ -78,7 +78,7 @@ class OutputSettings:
         others points take the first field, as speed, and faces none.
     region : m
         Lowest and highest corner of the box that pictures show; particles in front of it, along y,
-        are left out. If not given all is shown.
+        are left out, and so are faces that show a field. If not given all is shown.
     totals : s
         Between two rows of the ledger; 0: with the views.
     snapshots : s
