@@ -205,7 +205,7 @@ def join_ports(
         one.prime(instants, shares=exchange.shares(name))
         coupling.ledger.primed(name, instants)
     for one in participants.values():
-        one.send_order("prepare")  # all at the same time, for some compile
+        one.order_prepare()  # all at the same time, for some compile
     for one in participants.values():
         one.prepared()
 

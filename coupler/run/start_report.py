@@ -5,7 +5,6 @@ import threading
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from types import TracebackType
 
 from rich.live import Live
 from rich.text import Text
@@ -35,26 +34,16 @@ class StartReport:
         self._live: Live | None = None
         self._printer: threading.Thread | None = None
 
-    def __enter__(self) -> "StartReport":
+    def show(self) -> None:
         """Begin to show."""
         listen(self._hear)
         if shows_bar():
-            show = self._text
-            self._live = Live(get_renderable=show, refresh_per_second=4, transient=True)
+            text = self._text
+            self._live = Live(get_renderable=text, refresh_per_second=4, transient=True)
             self._live.start()
         else:
             self._printer = threading.Thread(target=self._print, daemon=True)
             self._printer.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Show no more."""
-        self.close()
 
     def close(self) -> None:
         """Show no more; a second call does nothing."""
