@@ -102,15 +102,15 @@ def couple(path: Path) -> Trace:
     """Run a scene in this process, all outputs wanted."""
     checked = load(str(path))
     exchange = checked.exchange()
-    connection = connect(checked, path.parent, Watchdog(StopRequest(), own=True))
-    participants = connection.participants
+    watchdog = Watchdog(StopRequest())
+    participants = connect(checked, path.parent, watchdog).participants
     coupling = assemble(checked.coupling, participants, exchange, Ledger(exchange))
     trace = Trace(coupling, {name: component_of(one) for name, one in participants.items()})
     asked = {name: list(exchange.gives[name]) for name in participants}
     try:
         run(coupling, checked.file.end, trace, asked)
     finally:
-        connection.close(False)
+        watchdog.close()
     return trace
 
 
