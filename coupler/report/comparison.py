@@ -186,7 +186,7 @@ def _verdict(one: Expectation, outcome: Outcome | None) -> str:
     if one.measure == "at":
         what = f"at {one.begin:g} s"
     elif one.level is not None:
-        what = f"passes {one.level:g}"
+        what = f"passes {one.level:g} at"
     if outcome is None or outcome.value is None:
         return f"{one.name}: {what}: no value: NOT met"
     expected = f"at most {outcome.within:.3g}"

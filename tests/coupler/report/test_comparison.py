@@ -45,7 +45,7 @@ def figure(monkeypatch, tmp_path):
 def test_expectations_of_one_curve_share_a_panel(figure):
     (panel,) = figure(X_RMS, X_PASSES, title="a scene").axes
     text = panel.get_title()
-    assert "x [rms]: RMS distance" in text and "x_$1: passes 0.3 0.3, expected" in text
+    assert "x [rms]: RMS distance" in text and "x_$1: passes 0.3 at 0.3, expected" in text
     computed, reference = panel.get_lines()[:2]
     assert len(computed.get_xdata()) == 50 and len(reference.get_xdata()) == 3
 
