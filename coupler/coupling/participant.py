@@ -1,19 +1,20 @@
 """One component as the run loop sees it, wherever it runs."""
 
+import contextlib
 import statistics
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
-from quintet.interfaces.lines.message import Message, Shapes, require_finite
-from quintet.interfaces.lines.transport import Line
+from quintet.interfaces.lines.message import Message, Shapes, order_of, require_finite
+from quintet.interfaces.lines.transport import FramedLine
 
-PATIENCE = 3600.0  # s for one answer of a component that is seen to be working
+LONGEST_WAIT = 86400.0  # s for one answer, also of a component that nobody watches
 
 
 class ComponentFailed(QuintetError):
@@ -31,6 +32,7 @@ class Timing:
     compute: float = 0.0  # s, as the component itself measured
     cpu: float = 0.0  # s of processor time in its windows, all threads
     wait: float = 0.0  # s that the coupler waited for it
+    prepare: float = 0.0  # s, what it did before its first window, such as compiling
     first: float = 0.0  # s, its first window
     steps: int = 0
     windows: int = 0  # that were ordered, repetitions counted
@@ -47,35 +49,52 @@ class Timing:
 class Participant:
     """A component behind a line: orders go out, answers come back checked."""
 
-    def __init__(self, name: str, line: Line) -> None:
+    def __init__(self, name: str, line: FramedLine) -> None:
         self.name, self.line = name, line
         self.components = {name: self}
-        self.asking: Callable[[], None] = lambda: None  # called when a wait begins
+        self.order = ""  # the last that it got
+        self.built = False  # whether it has answered an order
+        self.waited_since = 0.0  # s of the monotonic clock, while it keeps the coupler waiting
+        # What ended the run meanwhile, if a watch has ended it.
+        self.verdict: Callable[[], BaseException | None] = lambda: None
         self.window = 0  # the next
         self.stable = 0.0  # s, largest step from its present state
         self.timing = Timing()
         self.notes: list[str] = []  # what the user should read of it
         self.shapes: Shapes | None = None  # of its outputs, once known
         self._asked = 0.0
+        self._answered = True  # whether the answer to the last order is known
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
+
+    @contextlib.contextmanager
+    def keeping_others_waiting(self) -> Iterator[None]:
+        """Note since when the coupler waits for it, for who watches it meanwhile."""
+        self.waited_since = time.monotonic()
+        try:
+            yield
+        finally:
+            self.waited_since = 0.0
 
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
         self._asked = time.perf_counter()
-        self.asking()
+        self.order, self._answered = order, False
         try:
-            self.line.send({"order": order, "window": self.window, **header}, fields or {})
+            with self.keeping_others_waiting():
+                self.line.send({"order": order, "window": self.window, **header}, fields or {})
         except LineError as error:
-            raise ComponentFailed(self.name, self.window, str(error)) from error
+            raise self._failure(error) from error
 
     def receive(self, expected: Shapes | None = None, finite: bool = True) -> Message:
         """Wait for the answer."""
         try:
-            message = self.line.receive(PATIENCE, expected)
+            with self.keeping_others_waiting():
+                message = self.line.receive(LONGEST_WAIT, expected)
             if finite:
                 require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
-            raise ComponentFailed(self.name, self.window, str(error)) from error
+            raise self._failure(error) from error
+        self._answered = self.built = True
         if message.order == "failed":
             if message.header.get("error") == SceneError.__name__ and self.shapes is None:
                 # It has not begun: the scene is refused, by who knows the rule.
@@ -84,6 +103,29 @@ class Participant:
             trace = str(message.header.get("traceback", ""))
             raise ComponentFailed(self.name, self.window, said, trace)
         return message
+
+    def _failure(self, error: QuintetError) -> BaseException:
+        return self.verdict() or ComponentFailed(self.name, self.window, str(error))
+
+    def has_failed(self) -> bool:
+        """Whether the answer that has arrived, but was not yet asked for, tells of a failure."""
+        if self._answered or (frame := self.line.peek()) is None:
+            return False
+        self._answered = True  # not to be looked at again
+        try:
+            return order_of(frame) == "failed"
+        except MessageError:  # as whoever receives it will say
+            return True
+
+    def await_hello(self, seconds: float, connect: Callable[[float], None]) -> Message:
+        """Wait until the component has connected, and for its first message."""
+        try:
+            with self.keeping_others_waiting():
+                connect(seconds)
+                return self.line.receive(seconds)
+        except LineError as error:
+            cause = f"did not join: {error}"
+            raise self.verdict() or ComponentFailed(self.name, 0, cause) from error
 
     def call(self, order: str, fields: Fields | None = None, **header: Any) -> Message:
         """Send an order and wait for the answer."""
@@ -94,7 +136,16 @@ class Participant:
         """Join its ports: who reads what, and with what forces do work."""
         answer = self.call("bind", static, **header)
         self.timing.items = int(answer.header["items"])
-        self.stable = float(answer.header["stable"])
+
+    def order_prepare(self) -> None:
+        """Order that it compile, or whatever else it does before its first step; no limit holds."""
+        self.built = False
+        self.send_order("prepare")
+
+    def prepared(self) -> None:
+        """Wait until that is done."""
+        header = self.receive().header
+        self.stable, self.timing.prepare = float(header["stable"]), float(header["seconds"])
 
     def prime(self, fields: Fields, **header: Any) -> None:
         """Tell it what holds as the run begins."""

@@ -1,4 +1,4 @@
-"""Handling of SIGINT and SIGTERM while a run goes on."""
+"""Handling of signals while a run goes on."""
 
 import contextlib
 import signal
@@ -8,12 +8,15 @@ from types import FrameType
 
 
 @contextlib.contextmanager
-def handled_by(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Handle SIGINT and SIGTERM by a function; other threads than the main one cannot."""
+def handled_by(
+    handler: Callable[[int, FrameType | None], None],
+    numbers: tuple[int, ...] = (signal.SIGINT, signal.SIGTERM),
+) -> Iterator[None]:
+    """Handle signals by a function; other threads than the main one cannot."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    old = {one: signal.signal(one, handler) for one in (signal.SIGINT, signal.SIGTERM)}
+    old = {one: signal.signal(one, handler) for one in numbers}
     try:
         yield
     finally:
