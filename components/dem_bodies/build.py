@@ -25,6 +25,7 @@ from quintet.components.dem_bodies.shapes.placement import (
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.dem_bodies.state import (
     COLUMNS,
+    DEEPEST_PAIR,
     OMEGA,
     RADIUS,
     REPORTED,
@@ -281,7 +282,8 @@ def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> Sta
     motion[:-1, RADIUS] = [bounding_radius(body) for body in bodies]
     motion[:-1, VELOCITY : VELOCITY + 3] = [body.velocity for body in bodies]
     motion[:-1, OMEGA : OMEGA + 3] = [body.angular_velocity for body in bodies]
-    rows = np.array([*number, n - 1])
+    rows, report = np.array([*number, n - 1]), np.zeros(REPORTED)
+    report[DEEPEST_PAIR] = -1.0  # nothing touches as far as is known
     return State(
         body=rows,
         row=np.argsort(rows),
@@ -295,7 +297,7 @@ def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> Sta
         world_inverse_inertia=np.array([packed(world) for world in inverses] + [np.zeros(6)]),
         centre=np.zeros((spheres, 3)),
         listed_centre=np.full((spheres, 3), np.inf),
-        report=np.zeros(REPORTED),
+        report=report,
     )
 
 

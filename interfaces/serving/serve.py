@@ -60,6 +60,7 @@ class Server:
             "describe": self._describe,
             "bind": self._bind,
             "prime": self._prime,
+            "prepare": self._prepare,
             "give": self._give,
             "advance": self._advance,
             "keep": self._keep,
@@ -89,7 +90,7 @@ class Server:
         for force, velocity, position in header.get("works", []):
             if force in self.outputs.through and velocity in self.inputs.fields:
                 self.outputs.works.append((force, velocity, position))
-        return {"items": self.component.items(), "stable": self.stable()}, {}
+        return {"items": self.component.items()}, {}
 
     def stable(self) -> float:
         """Largest step that the component allows now [s]."""
@@ -103,6 +104,12 @@ class Server:
         self.inputs.arrive(message.fields, (), 1.0)
         self.component.prime(message.fields)
         return {"notes": self._notes()}, {}
+
+    def _prepare(self, _: Message) -> Answer:
+        began = time.perf_counter()
+        self.component.prepare(self.inputs.at_start())
+        self._stable = None
+        return {"stable": self.stable(), "seconds": time.perf_counter() - began}, {}
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()
