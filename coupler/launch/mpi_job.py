@@ -141,12 +141,14 @@ def _forward_output(output: Sequence[IO[bytes]]) -> None:
 
 @contextlib.contextmanager
 def _forward_signals(job_file: Path, process: "subprocess.Popen[bytes]") -> Iterator[list[int]]:
-    """Forward SIGINT and SIGTERM to the coupler alone, which ends the others in order."""
+    """Forward SIGINT, SIGTERM and SIGHUP to the coupler alone, which ends the others in order."""
     signals: list[int] = []
 
     def forward(number: int, _: FrameType | None) -> None:
         signals.append(number)
         pid = int(str(_read(job_file).get("coupler", 0)))
+        if number == signal.SIGHUP:  # libraries of MPI use it for themselves
+            number = signal.SIGTERM
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
 

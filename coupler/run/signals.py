@@ -1,4 +1,4 @@
-"""Signals that end a run: SIGINT, SIGTERM, and the end of the process that started it."""
+"""Signals that end a run: SIGINT, SIGTERM, SIGHUP, and the end of the process that started it."""
 
 import contextlib
 import os
@@ -26,7 +26,7 @@ class StopRequest:
 
     @contextlib.contextmanager
     def listening(self) -> Iterator[None]:
-        """Handle SIGINT, SIGTERM: the first ends the run after this window, the second at once."""
+        """Handle signals: the first ends the run after this window, the second at once."""
 
         def ask(number: int, _: FrameType | None) -> None:
             if self.asked:
