@@ -25,7 +25,7 @@ from quintet.coupler.files.run_files import (
 )
 from quintet.coupler.launch.mpi_job import COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG
 from quintet.coupler.scene.scene import Scene
-from quintet.interfaces.errors import SceneError
+from quintet.interfaces.errors import DiskError, SceneError
 
 FORMER = "quintet-former"  # within the folder: the run that is being replaced
 SHOWN = 3  # foreign files named in a message
@@ -115,7 +115,11 @@ def _take(
         _set_aside(folder, former)
     marker = new_marker(kind, name.removesuffix(f"-{kind}"), [*files, *kept])
     made = RunFolder(folder, marker, bool(former))
-    write_marker(folder, made.marker)
+    try:
+        write_marker(folder, made.marker)
+    except DiskError:
+        made.undo()
+        raise
     return made
 
 

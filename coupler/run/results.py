@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.files.disk import told, write_at_last
 from quintet.coupler.files.recording import Recording
-from quintet.coupler.files.run_files import PICTURES
+from quintet.coupler.files.run_files import PICTURES, RESULTS
 from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
 from quintet.coupler.report.pictures import comparison, side_views
 from quintet.coupler.scene.scene import Scene
@@ -45,9 +46,10 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
     """Draw the pictures of a scene, and its time series against references."""
     times = scene.file.output.pictures
     if times and list(folder.glob("*.vtkhdf")):
-        side_views(folder, folder / PICTURES[0], times)
+        with told(folder / PICTURES[0]):
+            side_views(folder, folder / PICTURES[0], times)
     if any(one.csv for one in scene.expect) and found:
-        with Recording(folder / "recording.h5") as recording:
+        with Recording(folder / "recording.h5") as recording, told(folder / PICTURES[1]):
             comparison(scene.folder, scene.expect, found, recording, folder / PICTURES[1])
 
 
@@ -111,11 +113,8 @@ def fault(error: ComponentFailed, folder: Path, lines: list[str]) -> dict[str, A
 
 
 def write(folder: Path, content: dict[str, Any]) -> None:
-    """Write ``results.json`` atomically."""
-    path = folder / "results.json"
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(content, indent=2, default=float))
-    part.replace(path)
+    """Write ``results.json``: whole, and elsewhere where the folder's disk has no room for it."""
+    write_at_last(folder / RESULTS, json.dumps(content, indent=2, default=float))
 
 
 def expectations(found: list[Outcome]) -> list[dict[str, Any]]:

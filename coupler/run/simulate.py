@@ -1,12 +1,13 @@
 """One run, from a checked scene to its results, failures included."""
 
+import contextlib
 import os
 import shlex
 import sys
 import traceback
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import tomli_w
 
@@ -15,6 +16,14 @@ from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs
+from quintet.coupler.files.disk import (
+    REASONS,
+    disk_error,
+    give_up_reserve,
+    reserve,
+    told,
+    write_whole,
+)
 from quintet.coupler.files.run_files import LEDGER, SCENE
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
@@ -24,7 +33,14 @@ from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
-from quintet.interfaces.errors import LinkError, SceneError
+from quintet.interfaces.errors import DiskError, LinkError, SceneError
+
+
+class Closable(Protocol):
+    """A file of a run, or several."""
+
+    def close(self) -> None:
+        """Write what is left; a second call does nothing."""
 
 
 def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
@@ -39,10 +55,11 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
     }
     first = snapshots.window_of(snapshot) if snapshot else None
     writer = OutputWriter(scene, folder, stop, logs, first)
+    files: tuple[Closable, ...] = (writer, ledger, *logs.values())
     outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
     connection: Connection | None = None
     participants: dict[str, Participant] = {}
-    costs = Costs()
+    costs, lost = Costs(), False
     try:
         with stop.listening():
             connection = connect(scene, folder, stop)
@@ -50,22 +67,24 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
             coupling = assemble(scene.coupling, participants, exchange, ledger, logs, costs)
             resume = partial(snapshots.restore, path=snapshot) if snapshot else lambda _: None
             end = run(coupling, scene.file.end, writer, scene.asked_outputs(), resume)
-            writer.close()
+            for one in files:
+                one.close()
             outcome |= outcome_of(end)
             connection.close(True)
             connection = None
     except KeyboardInterrupt:
         outcome |= {"status": "interrupted", "windows": writer.done, "time": writer.time}
     except Exception as error:  # any failure is reported in the results
+        error = of_disk(error, folder)
+        lost = isinstance(error, DiskError)
         outcome |= refused(error, writer) or failed(error, scene, folder, writer)
     finally:
         if connection:
             connection.close(False)
-        writer.close()
-        ledger.close()
-        for log in logs.values():
-            log.close()
-    if stop.asked and outcome["status"] != "done":
+        for one in files:
+            with contextlib.suppress(DiskError):  # told already: it ended the run
+                one.close()
+    if stop.asked and outcome["status"] != "done" and not lost:
         outcome["status"] = "interrupted"
     summary = ledger.summary()
     return conclude(scene, folder, outcome, participants, summary, costs, clock())
@@ -73,8 +92,10 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
 
 def make_folder(scene: Scene, folder: Path) -> None:
     """Prepare the folder of a run: its logs, and the scene as it runs."""
-    (folder / "log").mkdir(parents=True, exist_ok=True)
-    (folder / SCENE).write_text(tomli_w.dumps(scene.resolved), encoding="utf-8")
+    with told(folder):
+        (folder / "log").mkdir(parents=True, exist_ok=True)
+    write_whole(folder / SCENE, tomli_w.dumps(scene.resolved))
+    reserve(folder)
 
 
 def outcome_of(end: RunEnd) -> dict[str, Any]:
@@ -91,10 +112,19 @@ def refused(error: Exception, writer: OutputWriter) -> dict[str, Any]:
     return {"status": "refused", "cause": str(error)}
 
 
+def of_disk(error: Exception, folder: Path) -> Exception:
+    """Tell the disk of an error of the system that a full one caused."""
+    if isinstance(error, OSError) and error.errno in REASONS:
+        return disk_error(Path(error.filename or folder), error)
+    return error
+
+
 def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -> dict[str, Any]:
     """Report a failure: component, window, cause, and the last lines of its log."""
+    give_up_reserve(folder)  # what is said here may go to the same disk
     if not isinstance(error, ComponentFailed):
-        error = ComponentFailed("coupler", writer.done, str(error), traceback.format_exc())
+        trace = "" if isinstance(error, DiskError) else traceback.format_exc()
+        error = ComponentFailed("coupler", writer.done, str(error), trace)
     lines = tail(folder / "log" / f"{error.component}.log")
     found = results.fault(error, folder, lines)
     print(f"\nquintet: {error}", file=sys.stderr)
@@ -141,7 +171,10 @@ def conclude(
         return results.BAD
     if outcome["status"] == "failed":
         return results.FAILED
-    results.draw(scene, folder, found)
+    try:
+        results.draw(scene, folder, found)
+    except DiskError as error:
+        print(f"quintet: {error}", file=sys.stderr, flush=True)
     if outcome["status"] == "interrupted":
         return results.INTERRUPTED
     return results.DONE if all(one.met for one in found) else results.UNMET

@@ -135,8 +135,9 @@ def shared_files() -> list[str]:
 
 
 def say(text: str) -> None:
-    """Print one line to the component's log."""
-    print(text, flush=True)
+    """Print one line to the component's log; a disk that is full ends nothing here."""
+    with contextlib.suppress(OSError):
+        print(text, flush=True)
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ class Toy(Component):
         items: Count = 5
         pause: float = 0.0  # s, of every step
         substeps: Count = 1  # of a window of 1 ms
+        seen: bool = False  # whether it has a view
         fails_at: int = -1
         fails_by: Literal["raise", "long", "odd", "sys.exit", "exit", "kill", "stop", "nan"] = (
             "raise"
@@ -89,6 +90,9 @@ class Toy(Component):
 
     def totals(self):
         return Totals(mass=1.0)
+
+    def view(self):
+        return {"points": self.value.copy()} if self.params.seen else {}
 
     def items(self):
         return self.params.items
