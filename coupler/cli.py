@@ -44,10 +44,20 @@ def parser() -> argparse.ArgumentParser:
         one.set_defaults(does=does)
         return one
 
+    top.add_argument("--version", action=Version, nargs=0, help="of quintet")
     one = command("list", list_scenes, "scenes: name, title, components, presets, run times")
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("check", check, "read a scene, print its plan; start no solver")
     _scene(one)
+    shape = one.add_mutually_exclusive_group()
+    shape.add_argument("--graph", action="store_true", help=GRAPH)
+    shape.add_argument("--mermaid", action="store_true", help=MERMAID)
+    one = command("describe", describe, "every key of a scene, a kind or a link, with its unit")
+    one.add_argument("subject", nargs="*", metavar="SUBJECT", help=SUBJECT)
+    one.add_argument("--json", action="store_true", help="for programs")
+    one.add_argument("--write", nargs="+", type=Path, default=[], metavar="FILE", help=WRITE)
+    one = command("schema", schema, "keys of scene files as a JSON schema, for editors")
+    one.add_argument("scene", nargs="?", help="whose module:Class kinds it is to know as well")
     one = command("run", run, "run a scene, compare it with what it must reproduce")
     _scene(one, nargs="?")
     one.add_argument("--out", type=Path, help=OUT)
@@ -92,6 +102,10 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+GRAPH = "draw components, ports and links instead of the plan"
+MERMAID = "the same as a Mermaid flowchart, for texts that draw it"
+SUBJECT = "scene, a kind, or link and its kind; then one of its tables; a list if none is given"
+WRITE = "fill in the tables between <!-- describe SUBJECT --> and <!-- described --> of texts"
 KEEP = "keep runs that an earlier study completed in DIR, of the same scene on the same machine"
 OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"
 FORCE = "replace a former one in that folder: only the files that it wrote"
@@ -99,6 +113,18 @@ RESUME = "go on with an interrupted or failed run, from its last snapshot"
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 PARAMS = "its parameters in TOML, in place of cases; a table conform in it has what it takes"
 ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
+
+
+class Version(argparse.Action):
+    """Print the version that is installed, and end."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Read it from the package's metadata."""
+        # Start-up: only this option needs it.
+        from importlib.metadata import version
+
+        print(f"quintet {version('quintet')}")
+        parser.exit()
 
 
 def _scene(one: argparse.ArgumentParser, **more: Any) -> None:
@@ -135,11 +161,36 @@ def list_scenes(given: argparse.Namespace) -> int:
 
 
 def check(given: argparse.Namespace) -> int:
-    """Print the plan of a scene."""
+    """Print the plan of a scene, or draw who is linked to whom."""
+    scene = _load(given)
     # Start-up: only this command needs it.
+    from quintet.coupler.scene import graph
     from quintet.coupler.scene.listing import console, print_plan
 
-    print_plan(_load(given), console())
+    if given.graph or given.mermaid:
+        print(graph.mermaid(scene) if given.mermaid else graph.drawing(scene))
+    else:
+        print_plan(scene, console())
+    return 0
+
+
+def describe(given: argparse.Namespace) -> int:
+    """Print what a scene, a kind or a link may say."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.reference.describe import run_describe
+
+    return run_describe(given)
+
+
+def schema(given: argparse.Namespace) -> int:
+    """Print the JSON schema of scene files."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.reference.schema import as_text, scene_schema
+    from quintet.coupler.scene.read import load
+
+    scene = load(given.scene) if given.scene else None
+    kinds = [one.kind for one in scene.components.values()] if scene else []
+    print(as_text(scene_schema(kinds)))
     return 0
 
 

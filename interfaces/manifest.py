@@ -144,19 +144,22 @@ def resolve(path: str) -> Any:
     return getattr(import_module(module), name)
 
 
-def manifest_of(cls: type[Component], path: str) -> Manifest:
-    """Manifest of a class that publishes none: its ``Params`` and its ports."""
+def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
+    """Manifest of a class that publishes none: its ``Params`` and its ports.
+
+    `path` is its ``module:Class``, by which it is also named if it has no name as a `kind`.
+    """
+    kind = kind or path
     if not (isinstance(cls, type) and issubclass(cls, Component)):
-        raise SceneError(f"kind {path}: {cls!r} is not a Component. Derive it from Component.")
+        raise SceneError(f"kind {kind}: {cls!r} is not a Component. Derive it from Component.")
     params = getattr(cls, "Params", None)
     if params is None:
         raise SceneError(
-            f"kind {path}: a component class must have a Params dataclass; {cls.__name__} has "
+            f"kind {kind}: a component class must have a Params dataclass; {cls.__name__} has "
             "none. Write `@parameters class Params` inside it."
         )
-    return Manifest(
-        path, (cls.__doc__ or path).splitlines()[0], params, path, lambda _: (cls.takes, cls.gives)
-    )
+    title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
+    return Manifest(kind, title, params, path, lambda _: (cls.takes, cls.gives))
 
 
 def known_kinds() -> dict[str, str]:
@@ -170,4 +173,4 @@ def find(kind: str) -> Manifest:
     if not path:
         raise KeyError(kind)
     found = resolve(path)
-    return found if isinstance(found, Manifest) else manifest_of(found, kind)
+    return found if isinstance(found, Manifest) else manifest_of(found, path, kind)

@@ -53,7 +53,12 @@ def _data_file(name: str, info: ValidationInfo) -> str:
 DataFile = Annotated[str, AfterValidator(_data_file)]  # named from the scene's folder on
 
 
-TAG = re.compile(r"constrained-\w+|literal\[.*\]")  # what pydantic adds to a place
+def is_data_file(metadata: object) -> bool:
+    """Whether metadata of a text are those of `DataFile`."""
+    return isinstance(metadata, AfterValidator) and metadata.func is _data_file
+
+
+TAG = re.compile(r"constrained-\w+|(?:literal|tuple|dict)\[.*\]")  # what pydantic adds to a place
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)

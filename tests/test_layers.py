@@ -19,7 +19,7 @@ FLOORS = {
     "interfaces": [
         {"errors"},
         {"units", "params"},
-        {"component"},
+        {"component", "keys"},
         {"ports", "manifest", "rotation", "sums"},
         {"lines"},
         {"serving"},
@@ -29,7 +29,7 @@ FLOORS = {
         {"coupling"},
         {"measures"},
         {"scene"},
-        {"launch", "report"},
+        {"launch", "report", "reference"},
         {"run"},
         {"study", "bench", "conform"},
         {"cli", "python"},

@@ -18,6 +18,9 @@ small spheres, whose bumps would add to the friction.
 An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
 cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.
 
+Any of a body's six degrees of freedom may be `locked`: it then keeps its velocity there. Planes are
+infinite and at rest, in any pose; a box with all six locked is a finite one, at rest or moving.
+
 In two dimensions bodies are discs and convex polygons in the plane of x and z, prisms of 1 m along
 y, and move in it: nothing here pushes them out of it, and what loads would is left out. A disc has
 the contacts of a sphere of its radius, a polygon those of its rounded corners with the edges of
@@ -58,11 +61,11 @@ def _plan(params: DemBodiesParams) -> Plan:
     solids = [build.solid(body) for body in params.bodies]
     count, ω = len(solids), build.expected_frequency(params, solids)
     dt = DURATION * SPEED_UP / ω / params.steps_per_contact
-    if count == 1 and not params.planes:  # nothing to touch: two steps for each half of the skin
-        dt = max(dt, 0.25 * build.skin(params.bodies, solids) / params.impact_speed)
+    if count == 1 and not params.planes:  # nothing to touch
+        dt = params.longest_step
     dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
     # Of a step, some time is for calling it, and some for each body: more where it is no ball.
-    balls = sum(body.diameter is not None for body in params.bodies)
+    balls = sum(map(build.is_ball, params.bodies))
     step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
     return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)
 

@@ -7,7 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.dem_bodies.contact import materials
-from quintet.components.dem_bodies.params import Body, DemBodiesParams, Material
+from quintet.components.dem_bodies.params import (
+    DIRECTIONS,
+    Body,
+    DemBodiesParams,
+    Material,
+)
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.placement import (
     ROUNDED,
@@ -138,7 +143,17 @@ def material_pair(a: Material, b: Material) -> Numbers:
 
 def balls_first(bodies: Sequence[Body]) -> list[int]:
     """Bodies in the order of their rows at the start."""
-    return sorted(range(len(bodies)), key=lambda k: bodies[k].diameter is None)
+    return sorted(range(len(bodies)), key=lambda k: not is_ball(bodies[k]))
+
+
+def is_ball(body: Body) -> bool:
+    """Whether a body is one sphere and free: those have a list and kernels of their own."""
+    return body.diameter is not None and not body.locked
+
+
+def free_motion(body: Body) -> list[float]:
+    """Write 1 for each direction along and about which a body may move, 0 where it is locked."""
+    return [float(one not in body.locked) for one in DIRECTIONS]
 
 
 def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) -> Model:
@@ -157,7 +172,7 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
         elif body.corners is not None:
             rounded[k] = edge_radius(body)
     material = [names[body.material] for body in bodies] + [0]
-    balls = [body.diameter is not None for body in bodies]
+    balls = [is_ball(body) for body in bodies]
     first = np.cumsum(counts)
     boxes = [int(first[k]) + EDGES for k, body in enumerate(bodies) if body.size is not None]
     normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
@@ -167,9 +182,12 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
     return Model(
         inverse_mass=np.array([1.0 / one.mass for one in solids] + [0.0]),
         inverse_inertia=np.array([packed(one) for one in inverses] + [np.zeros(6)]),
+        inertia=np.array([packed(one.inertia) for one in solids] + [np.zeros(6)]),
         inverse_moment=np.array([one[0, 0] for one in inverses] + [0.0]),
         isotropic=np.array([isotropic(one.inertia) for one in solids] + [True]),
         ball=np.array([*balls, False]),
+        free=np.array([free_motion(body) for body in bodies] + [[1.0] * 6]),
+        locked=np.array([*(bool(body.locked) for body in bodies), False]),
         others=np.flatnonzero(~np.array(balls)),
         half_extent=half,
         edge_radius=rounded,
@@ -220,8 +238,13 @@ def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> Sta
     for body, one in zip(bodies, solids, strict=True):
         axes = rotation_matrix(body.orientation)
         inertia = axes @ one.inertia @ axes.T
-        momenta.append(inertia @ np.array(body.angular_velocity))
-        inverses.append(np.asarray(np.linalg.inv(inertia), np.float64))
+        momentum = inertia @ np.array(body.angular_velocity)
+        inverse = np.asarray(np.linalg.inv(inertia), np.float64)
+        if body.locked:
+            free = np.array(free_motion(body)[3:])
+            momentum, inverse = free * momentum, inverse_of_free(inertia, free)
+        momenta.append(momentum)
+        inverses.append(inverse)
     orientations = np.array([body.orientation for body in bodies] + [(1.0, 0.0, 0.0, 0.0)])
     motion = np.zeros((n, COLUMNS))
     motion[:-1, :3] = [body.position for body in bodies]
@@ -244,6 +267,12 @@ def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> Sta
         listed_centre=np.full((spheres, 3), np.inf),
         report=np.zeros(REPORTED),
     )
+
+
+def inverse_of_free(inertia: Numbers, free: Numbers) -> Numbers:
+    """Inverse (3, 3) 1/(kg m2) of what is free of an inertia; 0 about locked axes."""
+    both = np.outer(free, free)
+    return np.asarray(both * np.linalg.inv(both * inertia + np.diag(1.0 - free)))
 
 
 def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:

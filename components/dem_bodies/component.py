@@ -38,6 +38,7 @@ SHAPES = {
     "disc": DISC, "polygon": POLYGON,
 }  # fmt: skip
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
+TURN = 0.05  # rad in a step of a free body that is no sphere: its energy is then kept to 1e-4
 FEWEST = 8  # blocks of rows that are worth handing to another thread
 SHARED = (kernels.DRIFT, kernels.BALLS, kernels.KICK)  # stages of a step that threads share out
 # Of the port, in the order that kernels.copy_motion takes.
@@ -114,9 +115,24 @@ class DemBodies(Component):
             contact = min(contact, many_contacts_step(most, stiffest, self.damping))
         # Pairs that are not listed were further apart than the skin, and may have come nearer.
         gap = min(report[rows.SMALLEST_GAP], self.skin - 2.0 * math.sqrt(report[rows.TRAVEL]))
+        if self.count == 1:  # it turns within its bounding sphere, away from all that it can touch
+            gap, longest = max(gap, self._clearance()), min(longest, self._turning_step())
         speed = report[rows.LARGEST_SPEED] + report[rows.LARGEST_ACCELERATION] * longest
         free = gap / (2.0 * speed) if speed > 0.0 else longest
         return float(min(longest, max(free, contact)))
+
+    def _clearance(self) -> float:
+        """Distance [m] of the first row's bounding sphere from the nearest plane."""
+        plane, x = self.model.plane, self.state.position[0]
+        away = plane[:, 0] * x[0] + plane[:, 1] * x[1] + plane[:, 2] * x[2] - plane[:, 3]
+        return float((away - self.model.bounding_radius[0]).min(initial=math.inf))
+
+    def _turning_step(self) -> float:
+        """Step [s] that resolves the rotation of the first row, if its axis moves."""
+        if self.model.isotropic[0]:
+            return math.inf
+        x, y, z = self.state.angular_velocity[0].tolist()
+        return TURN / max(math.sqrt(x * x + y * y + z * z), 1e-300)
 
     def _most_contacts(self, others: Array, balls: Array) -> int:
         """Most contacts of any row, of the pairs with a depth in these histories."""

@@ -9,6 +9,7 @@ from quintet.components.dem_bodies.contact.geometry import (
     set_row_vector,
 )
 from quintet.components.dem_bodies.contact.pairs import contact_loads, detect_contacts
+from quintet.components.dem_bodies.integration.locked_motion import angular_momentum_of_locked
 from quintet.components.dem_bodies.integration.reductions import reduce_bodies, reduce_pairs
 from quintet.components.dem_bodies.integration.velocity_verlet import drift, end_kick
 from quintet.components.dem_bodies.state import (
@@ -98,6 +99,8 @@ def kinetic_energy(model: Model, state: State) -> float:
         energy += 0.5 * dot(v, v) / model.inverse_mass[i]
         if model.ball[i]:
             energy += 0.5 * dot(ω, ω) / model.inverse_moment[i]
+        elif model.locked[i]:
+            energy += 0.5 * dot(angular_momentum_of_locked(model, state, i), ω)
         else:
             energy += 0.5 * dot(row_vector(state.angular_momentum, i), ω)
     return energy
@@ -111,6 +114,8 @@ def angular_momenta(model: Model, state: State) -> Numbers:
         if model.ball[i]:
             moment = 1.0 / model.inverse_moment[i]
             set_row_vector(momenta, i, 0, scaled(moment, row_vector(motion, i, OMEGA)))
+        elif model.locked[i]:
+            set_row_vector(momenta, i, 0, angular_momentum_of_locked(model, state, i))
     return momenta
 
 

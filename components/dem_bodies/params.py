@@ -1,6 +1,6 @@
 """What a scene says about rigid bodies in contact; checked once, before anything starts."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, get_args
 
 import numpy as np
 from pydantic import Field
@@ -19,6 +19,9 @@ from quintet.interfaces.params import (
     parameters,
 )
 
+# In which a body may be locked: translation along, rotation about the axes of the world.
+Direction = Literal["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]
+DIRECTIONS = get_args(Direction)
 Poisson = Annotated[float, Field(ge=0, le=0.5)]
 # Below 0.01 the damping would be stiffer than the contact itself.
 Restitution = Annotated[float, Field(ge=0.01, le=1.0)]
@@ -33,13 +36,15 @@ class Material:
 
     Parameters
     ----------
-    youngs_modulus : float, Pa, > 0
-    poissons_ratio : float, 0 to 0.5
-    restitution : float, 0.01 to 1
+    youngs_modulus : Pa
+        E, of the elastic material.
+    poissons_ratio : 1
+        ν, its transverse contraction over its extension.
+    restitution : 1
         Normal velocity after an impact over that before.
-    friction : float, ≥ 0
+    friction : 1
         Coulomb's coefficient.
-    rolling_friction : float, ≥ 0, by default 0
+    rolling_friction : 1
         Coefficient of rolling resistance of spheres, the tangent of the slope on which they begin
         to roll; boxes and unions of spheres have none but their shape.
     """
@@ -62,11 +67,15 @@ class Pair:
 
     Parameters
     ----------
-    between : two names of materials
-    friction : float, ≥ 0, optional
-    restitution : float, 0.01 to 1, optional
-    rolling_friction : float, ≥ 0, optional
-        At least one of the three.
+    between
+        Names of the two materials.
+    friction : 1
+        Coulomb's coefficient; the lower of both if not given.
+    restitution : 1
+        Normal velocity after an impact over that before; the lower of both if not given.
+    rolling_friction : 1
+        Coefficient of rolling resistance; the lower of both if not given. A pair says at least one
+        of the three.
     """
 
     RENAMED: ClassVar = {"rolling": "rolling_friction"}
@@ -82,14 +91,14 @@ class Copies:
 
     Parameters
     ----------
-    number : three int, ≥ 1
-        Along x, y and z.
-    spacing : three float, m, > 0
+    number : 1
+        How many along x, y and z.
+    spacing : m
         From one copy to the next.
-    scatter : float, m, ≥ 0, by default 0
+    scatter : m
         By which each copy at most is moved along each axis.
-    seed : int, by default 0
-        Of the scatter.
+    seed : 1
+        Of the random numbers of the scatter.
     """
 
     number: tuple[Count, Count, Count]
@@ -104,13 +113,14 @@ class Agglomerate:
 
     Parameters
     ----------
-    file : str
+    file
         STL, OBJ, PLY, or voxels as .npy; named from the scene's folder on.
-    scale : float, m, > 0, by default 1
+    scale : m
         What one unit of length in the file, or one voxel, stands for.
-    dim : int, ≥ 2
+    dim : 1
         Places of the lattice along the longest edge.
-    sphere_radius : float, m, > 0
+    sphere_radius : m
+        Of the spheres that cover the surface.
     """
 
     file: DataFile
@@ -125,34 +135,45 @@ class Body:
 
     Parameters
     ----------
-    shape : "box", "sphere", "spheres" or "agglomerate"; in two dimensions "disc" or "polygon"
-    size : three float, m, > 0
+    shape
+        Disc and polygon in two dimensions, the others in three.
+    size : m
         Edges of a box.
-    edge_radius : float, m, > 0, by default 5 % of the shortest edge
+    edge_radius : m
         Radius of a box's edges and corners, or of a polygon's corners; less than half the shortest
-        edge of a box.
-    diameter : float, m, > 0
+        edge of a box. 5 % of the shortest edge if not given.
+    diameter : m
         Of a sphere or disc.
-    corners : three or more times two float, m
-        x and z of a convex polygon's corners, in order round it, in any frame along the body's
-        axes: they are moved so that the centre of mass is the origin.
-    centres, radii : n times three float, and n float > 0, m
+    corners : m
+        x and z of a convex polygon's corners, three or more, in order round it, in any frame along
+        the body's axes: they are moved so that the centre of mass is the origin.
+    centres : m
         Of spheres that are one body, in any frame along the body's axes: they are moved so that
         the centre of mass of their union is the origin.
-    agglomerate : Agglomerate
-        Its centre of mass is the origin too.
-    density, mass : float, kg/m3 or kg, > 0
-        Exactly one of both; in two dimensions the mass is that of 1 m along y.
-    material : str
+    radii : m
+        Of the same spheres.
+    agglomerate
+        A shape in a file; its centre of mass is the origin too.
+    density : kg/m3
+        This or the mass.
+    mass : kg
+        This or the density; in two dimensions the mass of 1 m along y.
+    material
         One of the materials.
-    position : three float, m
+    position : m
         Of the centre of mass.
-    orientation : four float w, x, y, z, by default 1, 0, 0, 0
-        Unit quaternion, body to world.
-    velocity : three float, m/s, by default 0
-    angular_velocity : three float, rad/s, by default 0
-        In world axes.
-    copies : Copies, optional
+    orientation : 1
+        Unit quaternion w, x, y, z, body to world.
+    velocity : m/s
+        Of the centre of mass at the start.
+    angular_velocity : rad/s
+        At the start, in world axes.
+    locked
+        Translations along, and rotations about, axes of the world that loads and contacts do not
+        change: the body keeps the velocity there that it starts with. An angular velocity about a
+        locked axis needs all three rotations locked. With all six it is a wall, a plate, a piston
+        or a drum. A sphere that is locked in any way has no rolling resistance.
+    copies
         A lattice of such bodies, the first at `position`.
     """
 
@@ -182,6 +203,7 @@ class Body:
     orientation: tuple[Number, Number, Number, Number] = (1.0, 0.0, 0.0, 0.0)
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Vector = (0.0, 0.0, 0.0)
+    locked: tuple[Direction, ...] = ()
     copies: Copies | None = None
 
 
@@ -191,11 +213,11 @@ class Plane:
 
     Parameters
     ----------
-    point : three float, m
+    point : m
         Any of its surface.
-    normal : three float
+    normal : 1
         To the free side; of any length.
-    material : str
+    material
         One of the materials.
     """
 
@@ -210,23 +232,28 @@ class DemBodiesParams:
 
     Parameters
     ----------
-    bodies : list of Body, at least one
-    materials : table of Material, by their names
-    planes : list of Plane, by default none
-    dimensions : 2 or 3, by default 3
+    bodies
+        Rigid bodies, in the order in which ports count them.
+    materials
+        What they are made of, by name.
+    planes
+        Fixed half-spaces that hold them.
+    dimensions
         In two all bodies are discs and polygons in the plane of x and z, 1 m deep along y, and move
         in it.
-    pairs : list of Pair, by default none
-    gravity : three float, m/s2, by default 0, 0, -9.81
-    impact_speed : float, m/s, > 0, by default 1
+    pairs
+        What holds between two materials in place of the lower of both.
+    gravity : m/s2
+        Acceleration of free fall.
+    impact_speed : m/s
         Of the impacts to be expected; the step resolves them.
-    steps_per_contact : int, ≥ 10, by default 40
-        In the duration of such an impact.
-    longest_step : float, s, > 0, by default 1e-3
+    steps_per_contact : 1
+        Steps in the duration of such an impact.
+    longest_step : s
         While nothing is about to touch.
-    fixed_step : float, s, > 0, optional
+    fixed_step : s
         In place of the stable one: to see where that ends.
-    contact_forces : bool, by default false
+    contact_forces
         Whether what contacts do to each body is given, as port `contact`.
     """
 

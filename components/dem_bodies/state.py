@@ -26,9 +26,12 @@ class Model(NamedTuple):
 
     inverse_mass: Numbers  # (n,) 1/kg
     inverse_inertia: Numbers  # (n, 6) 1/(kg m2), body axes: xx yy zz xy xz yz
+    inertia: Numbers  # (n, 6) kg m2, body axes, likewise
     inverse_moment: Numbers  # (n,) 1/(kg m2), that of balls about any axis
     isotropic: NDArray[np.bool_]  # (n,) whether inertia is the same about all axes
     ball: NDArray[np.bool_]  # (n,) whether the body is one sphere
+    free: Numbers  # (n, 6) 1 or 0: translation along, rotation about x, y, z; 0 where locked
+    locked: NDArray[np.bool_]  # (n,) whether any of these is
     others: Whole  # (o,) rows of the bodies that are no balls
     half_extent: Numbers  # (n, 3) m, half edges of a box less its edge radius; 0 for others
     edge_radius: Numbers  # (n,) m, of a box or polygon; 0 for others

@@ -7,7 +7,15 @@ from pydantic import NonNegativeInt
 
 from quintet.components.sph_fluid.setup import geometry
 from quintet.components.sph_fluid.setup.checks import check
-from quintet.components.sph_fluid.setup.geometry import Axis, Box, Exponent, Face, Spot, UprightFace
+from quintet.components.sph_fluid.setup.geometry import (
+    Axis,
+    Box,
+    Exponent,
+    Face,
+    Smoothing,
+    Spot,
+    UprightFace,
+)
 from quintet.components.sph_fluid.setup.standing_wave import StandingWave
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
@@ -18,11 +26,11 @@ class Viscosity:
 
     Parameters
     ----------
-    artificial : float, 1, default 0.1, ≥ 0
+    artificial : 1
         α of Monaghan's artificial viscosity (1992, eq. 4.2).
-    kinematic : float, m2/s, default 0, ≥ 0
+    kinematic : m2/s
         ν, the kinematic viscosity of the fluid itself.
-    form : "laplacian" or "stress", default "laplacian"
+    form
         How `kinematic` acts: as a Laplacian (Lo & Shao 2002), close beside walls; or along the
         line between particles (Monaghan & Gingold 1983), without which a free surface is not free
         of stress.
@@ -39,33 +47,33 @@ class Boundary:
 
     Parameters
     ----------
-    method : "dbc", "mdbc" or "potential", default "dbc"
-        Dynamic boundary particles (Crespo et al. 2007), modified ones whose density is mirrored
-        (English et al. 2022), or a contact potential in place of their pressure (Vignjevic et al.
-        2006).
-    walls : two corners, m, default none
-        The inside of a tank.
-    open_faces : list of faces, default ["z+"]
-        Faces that the tank lacks: "x-" to "z+".
-    symmetry : list of upright faces, default none
-        Faces of the tank that are planes of symmetry, without walls: "x-" to "y+".
-    wall_velocity : table of faces, m/s, default none
+    method
+        Dynamic boundary particles (Crespo et al. 2007; dbc), modified ones whose density is
+        mirrored (English et al. 2022; mdbc), or a contact potential in place of their pressure
+        (Vignjevic et al. 2006).
+    walls : m
+        The inside of a tank, lowest and highest corner.
+    open_faces
+        Faces that the tank lacks.
+    symmetry
+        Upright faces of the tank that are planes of symmetry, without walls.
+    wall_velocity : m/s
         Velocities of faces that move in their own planes, like belts.
-    obstacles : list of two corners, m, default none
-        Boxes that stand still in the tank.
-    wall_offset : float, 1, default 0.5, > 0
+    obstacles : m
+        Boxes that stand still in the tank, each by its lowest and highest corner.
+    wall_offset : 1
         Spacings from a wall's face out to its first particles; 0.5 with mdbc.
-    sample_depth : float, 1, default 0.5, ≥ 0
+    sample_depth : 1
         Spacings from a moving surface in to its outermost samples; 0.5 with mdbc.
-    wall_viscosity_factor : float, 1, default 1, from 0 to 1
+    wall_viscosity_factor : 1
         Share of the viscosity that acts between the fluid and walls or samples: 0 lets it slip.
-    lubrication_films : bool, default false
+    lubrication_films
         Whether films press in gaps that are too narrow for particles alone; with mdbc.
-    roughness : float, m, default 5e-4, > 0
+    roughness : m
         Least width that a film has between faces that touch.
-    potential_stiffness : float, Pa, default none, > 0
+    potential_stiffness : Pa
         K Δpᵈ of the contact potential; without it, what holds the pressure of water at rest.
-    potential_exponent : int, 1, default 1, from 1 to 8
+    potential_exponent : 1
         n, how much the contact potential steepens towards the wall.
     """
 
@@ -98,13 +106,13 @@ class Gauges:
 
     Parameters
     ----------
-    pressure_gauges : list of points, m, default none
-        Where the pressure is given [Pa].
-    level_gauges : list of x and y, m, default none
-        Above which the surface's height is given [m].
-    front_gauge : "x", "y" or "z", default none
+    pressure_gauges : m
+        Points at which the pressure is given [Pa].
+    level_gauges : m
+        x and y of the verticals on which the surface's height is given [m].
+    front_gauge
         Axis along which the position of the furthest fluid is given [m].
-    motion_gauge : bool, default false
+    motion_gauge
         Whether the largest speed [m/s], energies [J] and the centre of mass [m] are given.
     """
 
@@ -126,43 +134,48 @@ class SphFluidParams:
 
     Parameters
     ----------
-    spacing : float, m, > 0
+    spacing : m
         Between particles.
-    sound_speed : float, m/s, ≥ 10 √(g depth)
-        Artificial, ten times the largest velocity or more.
-    fluid : list of two corners, m
-        Boxes full of fluid.
-    dimensions : 2 or 3, default 3
+    sound_speed : m/s
+        Artificial, ten times the largest velocity or more, and at least 10 √(g depth).
+    fluid : m
+        Boxes full of fluid, each by its lowest and highest corner.
+    dimensions
         In two: x and z.
-    kernel : "cubic" or "wendland", default "cubic"
+    kernel
         Cubic spline, or Wendland's C2, which keeps particles apart and calm.
-    smoothing : float, 1, default 1.5, from 1 to 3
+    smoothing : 1
         Smoothing length over spacing.
-    staggered : bool, default false
+    staggered
         Whether rows along x start moved against each other.
-    density : float, kg/m3, default 1000, > 0
+    density : kg/m3
         ρ₀, at no pressure.
-    gravity : vector, m/s2, default [0, 0, -9.81]
-    density_diffusion : float, 1, default 0, ≥ 0
+    gravity : m/s2
+        Acceleration of free fall.
+    density_diffusion : 1
         δ of the diffusion of density (Fourtakas et al. 2019); 0.1 is usual.
-    acoustic_damper : float, 1, default 0, ≥ 0
+    acoustic_damper : 1
         ζ of a bulk viscosity ζ h c₀ that damps sound; 1 is much. With integration symplectic.
-    negative_pressure : bool, default false
+    negative_pressure
         Whether pressure may fall below zero.
-    xsph : float, 1, default 0, from 0 to 1
+    xsph : 1
         ε: how far particles move with their neighbours' mean velocity (Monaghan 1989).
-    shepard_every : int, steps, default 0, ≥ 0
-        Between two Shepard filters of the density; 0: none.
-    precision : "float64" or "float32", default "float64"
+    shepard_every : 1
+        Steps between two Shepard filters of the density; 0: none.
+    precision
         In which pairs are computed.
-    integration : "extrapolated" or "symplectic", default "extrapolated"
+    integration
         One pass over pairs in a step, or two and second order (position Verlet).
-    courant : float, 1, default 0.2, > 0
+    courant : 1
         Step over the time that sound takes through a smoothing length.
-    viscosity, boundary, gauges : tables
-        See `Viscosity`, `Boundary`, `Gauges`.
-    wave : table, default none
-        A standing wave on the fluid at the start; see `StandingWave`.
+    viscosity
+        How the fluid is viscous.
+    boundary
+        Walls, what stands in the tank, and how they and moving surfaces act on the fluid.
+    gauges
+        What is measured.
+    wave
+        A standing wave on the fluid at the start.
     """
 
     RENAMED: ClassVar = {
@@ -196,7 +209,7 @@ class SphFluidParams:
     fluid: tuple[Box, ...]
     dimensions: Literal[2, 3] = 3
     kernel: Literal["cubic", "wendland"] = "cubic"
-    smoothing: Positive = 1.5
+    smoothing: Smoothing = 1.5
     staggered: bool = False
     density: Positive = 1000.0
     gravity: Vector = (0.0, 0.0, -9.81)

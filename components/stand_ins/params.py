@@ -22,9 +22,9 @@ class ReplayParams:
 
     Parameters
     ----------
-    recording : str
+    recording
         A recording, or the folder of a run.
-    component : str
+    component
         Name of the component in it.
     """
 
@@ -38,22 +38,26 @@ class PrescribedBody:
 
     Parameters
     ----------
-    shape : "box" or "sphere"; in two dimensions "disc" or "polygon"
-    size : three float, m, > 0
+    shape
+        Disc and polygon in two dimensions, the others in three.
+    size : m
         Edges; of a sphere its diameter three times, of a disc with 1 m between them. Of all shapes
         but polygons.
-    corners : three or more times two float, m
-        x and z of a convex polygon's corners from its position on, in order round it.
-    position : three float, m
+    corners : m
+        x and z of a convex polygon's corners from its position on, three or more, in order round
+        it.
+    position : m
         Of the centre at the start.
-    velocity : three float, m/s, by default 0
-    angular_velocity : three float, rad/s, by default 0
+    velocity : m/s
+        Of the steady motion.
+    angular_velocity : rad/s
         About the centre, in world axes.
-    mass : float, kg, > 0, by default 1
+    mass : kg
         Stated to the partner; it moves nothing here.
-    amplitude : three float, m, by default 0
-    frequency : float, 1/s, by default 0
-        Both of the sine.
+    amplitude : m
+        Of the sine along each axis.
+    frequency : 1/s
+        Of the sine.
     """
 
     shape: Literal["box", "sphere", "disc", "polygon"]
@@ -73,8 +77,9 @@ class PrescribedParams:
 
     Parameters
     ----------
-    bodies : list of PrescribedBody, at least one
-    measure_loads : bool, by default false
+    bodies
+        At least one, in the order in which ports count them.
+    measure_loads
         Whether the loads on them are taken, and given again as port `measured_load`.
     """
 
@@ -129,11 +134,13 @@ class EchoParams:
 
     Parameters
     ----------
-    items : int, ≥ 1, by default 100
+    items : 1
         Of three numbers each.
-    fails_at : int, by default -1
+    fails_at : 1
         Step at which it fails; below 0 never.
-    fails_by : "raise", "exit", "nan", "kill" or "stop", by default "raise"
+    fails_by
+        How it fails: by an exception, by leaving, with a value that is not finite, by a signal that
+        kills it, or by one that stops it.
     """
 
     items: Count = 100

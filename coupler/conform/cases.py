@@ -17,24 +17,11 @@ from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Array, Component, Fields, Resources, fields_of, make
 from quintet.interfaces.errors import QuintetError, SceneError
-from quintet.interfaces.manifest import ConformCase, Manifest, find, known_kinds, look_in
+from quintet.interfaces.manifest import ConformCase, Manifest
 from quintet.interfaces.params import unknown
 
 OWN_TABLE = "conform"  # of a file with parameters: what else the case says
 DT = 1e-3  # s, of a component that allows any step
-
-
-def manifest_of(kind: str) -> Manifest:
-    """Find a kind by its installed name, or as ``module:Class`` beside or below this folder."""
-    look_in([str(Path.cwd())] if ":" in kind else [])
-    try:
-        return find(kind)
-    except KeyError as error:
-        raise SceneError(unknown(f"conform {kind}", kind, known_kinds())) from error
-    except ImportError as error:
-        raise SceneError(f"conform {kind}: it cannot be imported ({error}).") from error
-    except AttributeError as error:
-        raise SceneError(f"conform {kind}: {error}. Name a class as module:Class.") from error
 
 
 @contextmanager

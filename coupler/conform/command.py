@@ -6,10 +6,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.conform.cases import manifest_of, of_file, of_kind, of_scene, trials
+from quintet.coupler.conform.cases import of_file, of_kind, of_scene, trials
 from quintet.coupler.conform.check import Finding, try_all
 from quintet.coupler.conform.laws import name_of
 from quintet.coupler.conform.trial import Trial
+from quintet.coupler.scene.kinds import named_kind
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import ConformCase, Manifest
 
@@ -46,7 +47,7 @@ def choose(given: argparse.Namespace) -> tuple[Manifest, tuple[ConformCase, ...]
     if not given.scene:
         if (given.preset or given.settings) or not given.kind:
             raise SceneError("conform needs a KIND; --preset and --set belong to --scene.")
-        manifest = manifest_of(given.kind)
+        manifest = named_kind(given.kind, "conform")
         if given.params:
             return manifest, (of_file(given.params),), given.params.resolve().parent
         return manifest, of_kind(manifest, given.case), None

@@ -14,29 +14,29 @@ Windows = Annotated[int, Field(ge=0)]
 
 @parameters
 class IterationSettings:
-    """``[iteration]``: how windows are repeated.
+    """How windows are repeated.
 
     Parameters
     ----------
-    acceleration : {"constant", "aitken", "iqn-ils"}
+    acceleration
         How the next guess is made: relaxed by a constant factor, by Aitken's (small interfaces,
         little added mass), or by interface quasi-Newton (strong coupling).
-    tolerance : float, 1
+    tolerance : 1
         A field has converged when its residual, what was found less what was guessed, is below
         this share of its norm.
-    absolute : table of float, in the field's unit (an impulse's: of its rate)
+    absolute : of the field, of an impulse that of its rate
         By ``"component.port.field"`` of the side that takes it: the root mean square of the
         residual below which it counts as converged, however small its values are.
-    limit : int
+    limit : 1
         Repetitions of one window at most.
-    relaxation : float, 1
+    relaxation : 1
         Share of the residual that is added to the guess: always (constant), in the first
         repetition of a window at most (aitken), while there are no columns (iqn-ils).
-    reuse : int
+    reuse : 1
         Former windows whose columns are used again (iqn-ils).
-    filter : float, 1
+    filter : 1
         A column of which newer ones leave less than this share is dropped (iqn-ils).
-    at_limit : {"stop", "continue"}
+    at_limit
         What happens when `limit` is met: the run ends, or goes on with what was found.
 
     References

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
@@ -75,7 +76,7 @@ class Ledger:
         self.exchange = exchange
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
-        self.energy: list[float] = []  # J, sum over the components, at every note
+        self.energy = EnergyBalance()
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
         self._table = TableFile(path, size)
@@ -206,14 +207,13 @@ class Ledger:
     def note(self, time: float, totals: Mapping[str, dict[str, Any]]) -> None:
         """Write a row for every link and component, at a time [s]."""
         self.totals.update(totals)
-        kinds = ("kinetic", "potential", "internal")
-        self.energy.append(sum(one[kind] for one in self.totals.values() for kind in kinds))
+        self.energy.note(self.totals)
         for account in self.accounts.values():
             residuals = [account.momentum_residual, account.angular_residual]
             work = [account.work_given, account.work_taken, account.heat]
             self._table.write([time, account.link, *residuals, *account.impulse, *work])
         for name, one in totals.items():
-            totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in kinds)]
+            totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in KINDS)]
             self._table.write([time, name, *[""] * 8, *totals_row])
         self._table.flush()
 
@@ -222,7 +222,7 @@ class Ledger:
         return {
             "accounts": [_as_row(account) for account in self.accounts.values()],
             "totals": self.totals,
-            "energy": self.energy,
+            "energy": self.energy.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
             "size": self._table.flush(),
@@ -232,7 +232,8 @@ class Ledger:
         """Come back to saved books."""
         for row in state["accounts"]:
             self.accounts[row["link"]] = Account(**{**row, "impulse": np.array(row["impulse"])})
-        self.totals, self.energy = dict(state["totals"]), list(state["energy"])
+        self.totals = dict(state["totals"])
+        self.energy.load(state["energy"])
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])
 
@@ -242,15 +243,7 @@ class Ledger:
             {**_as_row(one), "energy_residual": one.energy_residual}
             for one in self.accounts.values()
         ]
-        return {"links": links, "energy_drift": self._drift()}
-
-    def _drift(self) -> float:
-        """Largest rise of the energy above its start, relative to all that was ever released."""
-        if len(self.energy) < 2:
-            return 0.0
-        energy = np.asarray(self.energy)
-        released = float(energy.max() - energy.min())
-        return float(energy.max() - energy[0]) / released if released else 0.0
+        return {"links": links, "energy_drift": self.energy.drift()}
 
     def sync(self) -> None:
         """Bring all that was written to the disk."""

@@ -38,23 +38,62 @@ class Expectation:
     level is passed; ``at`` the value at ``begin``; ``period`` [s] and ``decay`` [1/s] those of the
     damped oscillation that fits best; these and the others are taken between ``begin`` and
     ``end``. Impulse fields are measured as mean rates.
+
+    Parameters
+    ----------
+    name
+        Of the expectation.
+    component
+        That gives the field.
+    field
+        ``"port.field"``.
+    item : 1
+        Its number, from 0, or what is taken of all items.
+    axis : 1
+        Number of a vector's component, from 0; its magnitude if not given.
+    offset : of the field
+        Added to the recorded value.
+    scale : `unit` over that of the field
+        What the sum is then multiplied with.
+    measure
+        Distance to the reference curve (rms), also over that curve's own size (relative_rms); time
+        at which `level` is passed first (crossing); value at the time `begin` (at); largest,
+        smallest and mean value; period and decay of the damped oscillation that fits best.
+    value : `unit`
+        The reference as a number; this or `csv`.
+    csv
+        The reference as a curve: a file beside the scene, with columns of time and value.
+    csv_second : s
+        One unit of the times in that file.
+    begin : s
+        Of the part that is measured.
+    end : s
+        Of the part that is measured; that of the reference curve, or of the run, if not given.
+    level : `unit`, after offset and scale
+        That a crossing passes.
+    within : `unit`
+        Tolerance; of a crossing in s.
+    unit
+        Of the measured value.
+    source
+        Where the reference is from.
     """
 
     name: str
     component: str
-    field: str  # "port.field"
-    item: Index | Literal["mean", "max", "min"] = 0  # its number, or what to take of all
-    axis: Index | None = None  # of a vector; None: its magnitude, or the field is scalar
-    offset: Number = 0.0  # added to the recorded value
-    scale: Number = 1.0  # then multiplied with it
+    field: str
+    item: Index | Literal["mean", "max", "min"] = 0
+    axis: Index | None = None
+    offset: Number = 0.0
+    scale: Number = 1.0
     measure: Measure
-    value: Number | None = None  # reference as a number
-    csv: str | None = None  # reference as a curve: a file beside the scene
-    csv_second: Positive = 1.0  # s, one unit of the times in that file
-    begin: NotNegative = 0.0  # s
-    end: NotNegative | None = None  # s; None: of the reference curve, or of the run
-    level: Number | None = None  # of a crossing
-    within: NotNegative  # tolerance, in `unit`; a crossing's in s
+    value: Number | None = None
+    csv: str | None = None
+    csv_second: Positive = 1.0
+    begin: NotNegative = 0.0
+    end: NotNegative | None = None
+    level: Number | None = None
+    within: NotNegative
     unit: str
     source: str
 

@@ -14,7 +14,7 @@ from rich.text import Text
 from quintet.interfaces.errors import SceneError
 
 NAME = "results.json"
-PLAIN_WIDTH = 160  # characters, where no terminal says how wide it is
+UNWRAPPED = 10_000  # characters, more than any line has
 Row = list[Any]
 
 
@@ -66,8 +66,8 @@ def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | No
 
 
 def console() -> Console:
-    """The console that tables are printed on; of fixed width where there is no terminal."""
-    width = None if sys.stdout.isatty() else PLAIN_WIDTH
+    """The console that tables are printed on; where there is no terminal no line is wrapped."""
+    width = None if sys.stdout.isatty() else UNWRAPPED
     return Console(width=width, highlight=False, markup=False)
 
 
@@ -133,7 +133,11 @@ def _ledger(found: Mapping[str, Any]) -> Table | None:
 
 def _balance(found: Mapping[str, Any]) -> str:
     ledger = found.get("ledger") or {}
-    others = [f"{k.replace('_', ' ')} {_number(v)}" for k, v in ledger.items() if k != "links"]
+    others = [
+        f"{key.replace('_', ' ')} {_number(value)}"
+        for key, value in ledger.items()
+        if key != "links" and value is not None
+    ]
     return "Balance: " + ", ".join(others) if others else ""
 
 

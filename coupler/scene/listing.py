@@ -3,6 +3,7 @@
 import io
 import json
 import math
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -17,11 +18,13 @@ from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Port
 
 WIDTH = 110  # characters, of a plan as text
+UNWRAPPED = 10_000  # characters, more than any line has
 
 
 def console() -> Console:
-    """The console that plans and lists are printed on."""
-    return Console(highlight=False, markup=False)
+    """The console that tables are printed on; where there is no terminal no line is wrapped."""
+    width = None if sys.stdout.isatty() else UNWRAPPED
+    return Console(width=width, highlight=False, markup=False)
 
 
 def list_all(as_json: bool) -> None:

@@ -3,6 +3,7 @@
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import fields
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
@@ -16,6 +17,7 @@ from quintet.coupler.scene.groups import lay_out, refused, unknown_outputs
 from quintet.coupler.scene.overrides import put_preset, put_set, put_swap
 from quintet.coupler.scene.scene import (
     NAME,
+    ComponentKeys,
     ComponentPlan,
     Scene,
     SceneFile,
@@ -23,12 +25,13 @@ from quintet.coupler.scene.scene import (
     wrong_name,
 )
 from quintet.coupler.scene.stability_table import Scope
+from quintet.coupler.scene.tables import SceneTables
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
 from quintet.interfaces.manifest import Manifest, find, known_kinds, look_in
 from quintet.interfaces.params import read, unknown
 
-TABLES = ("components", "links", "groups", "expect", "presets", "stand_ins", *variants.TABLES)
+TABLES = tuple(one.name for one in fields(SceneTables))
 
 
 def library() -> dict[str, Path]:
@@ -202,13 +205,15 @@ def _component(
     name: str, given: dict[str, Any], folder: Path, mistakes: list[str]
 ) -> ComponentPlan | None:
     where = f"components.{name}"
-    kind, threads = given.pop("kind", None), given.pop("threads", 1)
-    if not isinstance(kind, str):
+    if not isinstance(kind := given.get("kind"), str):
         known = ", ".join(sorted(known_kinds()))
         mistakes.append(f"{where}.kind must be a name; found {kind!r}. Known here: {known}.")
         return None
-    if type(threads) is not int or threads < 1:
-        mistakes.append(f"{where}.threads must be a whole number from 1; found {threads!r}.")
+    of_all = {one.name for one in fields(ComponentKeys)} & given.keys()
+    common, wrong = read(ComponentKeys, {key: given.pop(key) for key in of_all}, where)
+    mistakes += wrong
+    if common is None:
+        return None
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
         return None
@@ -225,7 +230,7 @@ def _component(
         said = f"{type(error).__name__}: {error}"
         mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
         return None
-    return ComponentPlan(name, kind, manifest, given, params, takes, gives, threads)
+    return ComponentPlan(name, kind, manifest, given, params, takes, gives, common.threads)
 
 
 def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:

@@ -14,7 +14,7 @@ from quintet.coupler.scene.study_table import Refinement
 from quintet.interfaces.component import Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
-from quintet.interfaces.params import NotNegative, Number, Positive, parameters
+from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component or group: it names files and lines
 PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")  # name of a scene: never a path
@@ -22,18 +22,35 @@ Transport = Literal["memory", "zenoh", "mpi"]
 
 
 @parameters
-class GroupSettings:
-    """``[groups.NAME]``: components with a scheme and windows of their own.
+class ComponentKeys:
+    """What components of all kinds have, beside the keys of their own kind.
 
     Parameters
     ----------
-    members : tuple of str
+    kind
+        An installed kind, or ``module:Class`` of a module beside the scene or in the folder where
+        the run is started.
+    threads : 1
+        That it may use.
+    """
+
+    kind: str
+    threads: Count = 1
+
+
+@parameters
+class GroupSettings:
+    """Components with a scheme and windows of their own.
+
+    Parameters
+    ----------
+    members
         Components, and names of other groups, in the order in which they step.
-    scheme : {"serial", "parallel", "iterated"}
+    scheme
         How the group's windows are stepped.
-    window : float, s, or "auto"
+    window : s
         Between two exchanges of its members, within the window around it; auto follows the state.
-    iteration : IterationSettings
+    iteration
         How its windows are repeated, under the scheme iterated.
     """
 
@@ -45,31 +62,78 @@ class GroupSettings:
 
 @parameters
 class OutputSettings:
-    """``[output]``: what a run leaves."""
+    """What a run leaves.
 
-    interval: NotNegative = 0.0  # s between two pictures' worth of particles; 0: none
-    pictures: tuple[NotNegative, ...] = ()  # s, times of the pictures
-    totals: NotNegative = 0.0  # s between two rows of the ledger; 0: with the particles
-    snapshots: NotNegative = 0.0  # s between two, to resume from; 0: now and then, and at an end
-    record: bool = True  # every exchange
-    fields: tuple[str, ...] = ()  # "component.port.field": recorded though no link reads them
+    Parameters
+    ----------
+    interval : s
+        Between two sets of particles for ParaView; 0: none.
+    pictures : s
+        Times of the pictures.
+    totals : s
+        Between two rows of the ledger; 0: with the particles.
+    snapshots : s
+        Between two, to resume from; 0: every ten minutes of the clock, and at an interruption.
+    record
+        Whether every exchange is recorded.
+    fields
+        ``"component.port.field"``: recorded though no link reads them.
+    """
+
+    interval: NotNegative = 0.0
+    pictures: tuple[NotNegative, ...] = ()
+    totals: NotNegative = 0.0
+    snapshots: NotNegative = 0.0
+    record: bool = True
+    fields: tuple[str, ...] = ()
 
 
 @parameters
 class SceneFile:
-    """The keys of a scene file, but for its components, links and expectations."""
+    """The keys of a scene file, but for its components, links and expectations.
+
+    Parameters
+    ----------
+    name
+        Of the scene, and of its folder of runs.
+    end : s
+        Simulated time at which it ends.
+    title
+        One line on what it is.
+    about
+        What it shows, and its source.
+    window : s
+        Between two exchanges; auto follows the state.
+    scheme
+        How components step: one after the other, all at once, or repeated until they agree.
+    order
+        In which components and groups step; as they stand in the file if not given.
+    transport
+        What carries messages: one process for all, or a process for each component.
+    endpoint
+        Where the coupler listens, ``tcp/HOST:PORT`` or ``tls/HOST:PORT``; a free port of the
+        loopback if not given.
+    tls
+        Files of authority, certificate and key, for an endpoint off the loopback.
+    minutes : min
+        Rough run time of the scene as it stands, for ``quintet list``.
+    iteration
+        How windows are repeated, under the scheme iterated.
+    output
+        What a run leaves.
+    """
 
     name: str
-    end: Positive  # s
+    end: Positive
     title: str = ""
-    about: str = ""  # what it shows, and its source
-    window: Positive | Literal["auto"] = "auto"  # s between two exchanges
+    about: str = ""
+    window: Positive | Literal["auto"] = "auto"
     scheme: Scheme = "serial"
-    order: tuple[str, ...] = ()  # in which components and groups step; as they stand in the file
+    order: tuple[str, ...] = ()
     transport: Transport = "zenoh"
-    endpoint: str = ""  # where the coupler listens; a free port of the loopback
-    tls: tuple[str, ...] = ()  # authority, certificate, key
-    minutes: Number = 0.0  # rough run time of the scene as it stands
+    endpoint: str = ""
+    tls: tuple[str, ...] = ()
+    minutes: Number = 0.0
     iteration: IterationSettings = IterationSettings()
     output: OutputSettings = OutputSettings()
 

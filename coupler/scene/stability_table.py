@@ -30,10 +30,18 @@ FEWEST_WINDOWS = 20  # in a run whose window is varied: windows are whole, so th
 
 @parameters
 class Energy:
-    """Largest growth of the total energy since the start."""
+    """Largest growth of the total energy since the start.
 
-    factor: Positive | None = None  # times the start's
-    amount: Positive | None = None  # J
+    Parameters
+    ----------
+    factor : 1
+        Times the energy at the start, above 1; this or the amount.
+    amount : J
+        Above the energy at the start; this or the factor.
+    """
+
+    factor: Positive | None = None
+    amount: Positive | None = None
 
     def __post_init__(self) -> None:
         if (self.factor is None) == (self.amount is None):
@@ -44,18 +52,40 @@ class Energy:
 
 @parameters
 class Bounds:
-    """Bounds of a recorded field: of all its items, at the end of every window."""
+    """Bounds of a recorded field: of all its items, at the end of every window.
+
+    Parameters
+    ----------
+    component
+        That gives the field.
+    field
+        ``"port.field"``.
+    axis : 1
+        Number of a vector's component, from 0; all of them if not given.
+    low : of the field
+        Least value that is stable.
+    high : of the field
+        Largest value that is stable.
+    """
 
     component: str
-    field: str  # "port.field"
-    axis: Index | None = None  # of a vector; None: all of them
+    field: str
+    axis: Index | None = None
     low: Number | None = None
     high: Number | None = None
 
 
 @parameters
 class Against:
-    """A second parameter; the limit is found for each of its values."""
+    """A second parameter; the limit is found for each of its values.
+
+    Parameters
+    ----------
+    parameter
+        Its path.
+    values : of the parameter
+        For each of which the limit is found.
+    """
 
     parameter: str
     values: tuple[Number, ...]
@@ -63,24 +93,60 @@ class Against:
 
 @parameters
 class LimitTable:
-    """One stability limit as given in the scene file."""
+    """One stability limit as given in the scene file.
+
+    Parameters
+    ----------
+    name
+        Of the limit, and of the folder of its runs; the parameter's path if not given.
+    parameter
+        Path of what is varied; a list of paths is scaled together by a factor.
+    from_ : of the parameter
+        Stable end of the range, the smaller or the larger one.
+    to : of the parameter
+        Unstable end of the range.
+    log
+        Whether the middle of a range is the geometric one.
+    accuracy : 1
+        Relative width of the range that is left at the end.
+    predicted : of the parameter
+        The limit by theory: one, or one for each value of `against`.
+    source
+        Of the prediction.
+    end : s
+        Of the short runs; that of the scene if not given.
+    transport
+        Of the short runs.
+    settings
+        Of the short runs, by dotted path, on top of the scene.
+    against
+        A second parameter.
+    energy
+        How far the total energy may rise.
+    momentum : 1
+        Largest residual of any link.
+    bounds
+        Bounds of recorded fields.
+    expectation
+        Names of expectations; a run that does not meet them is degraded.
+    """
 
     name: str = ""
     parameter: str | tuple[str, ...]
     from_: Annotated[Number, pydantic.Field(alias="from")]
     to: Number
-    log: bool = False  # whether the middle is the geometric one
-    accuracy: Annotated[float, pydantic.Field(gt=0.0, le=0.5)] = 0.05  # relative final range
-    predicted: Number | tuple[Number, ...] | None = None  # one for each value of `against`
-    source: str = ""  # of the prediction
-    end: Positive | None = None  # s, of the short runs; the scene's if not given
+    log: bool = False
+    accuracy: Annotated[float, pydantic.Field(gt=0.0, le=0.5)] = 0.05
+    predicted: Number | tuple[Number, ...] | None = None
+    source: str = ""
+    end: Positive | None = None
     transport: Literal["memory", "zenoh", "mpi"] = "memory"
-    settings: dict[str, Any] = pydantic.Field(default_factory=dict)  # of the short runs, by path
+    settings: dict[str, Any] = pydantic.Field(default_factory=dict)
     against: Against | None = None
     energy: Energy | None = None
-    momentum: NotNegative | None = None  # largest residual of any link
+    momentum: NotNegative | None = None
     bounds: tuple[Bounds, ...] = ()
-    expectation: tuple[str, ...] = ()  # names of those that must be met, else: degraded
+    expectation: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         wrong = [sentence for is_wrong, sentence in self._rules() if is_wrong]

@@ -22,11 +22,21 @@ MakeVariant = Callable[[Table], tuple[Table, list[str]]]  # settings -> scene wi
 
 @parameters
 class RefinementTable:
-    """One refinement as given in the scene file."""
+    """One refinement as given in the scene file.
+
+    Parameters
+    ----------
+    label
+        Name of the refinement, and of the folder of its run.
+    settings
+        By dotted path, on top of the scene.
+    size
+        Path of the size against which the order is observed.
+    """
 
     label: str
-    settings: dict[str, Any]  # by dotted path, on top of the scene
-    size: str = ""  # path of the size against which the order is observed
+    settings: dict[str, Any]
+    size: str = ""
 
 
 @dataclass(frozen=True, slots=True)

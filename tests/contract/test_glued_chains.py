@@ -130,6 +130,6 @@ def test_glue_refuses_schemes_that_gain_or_lose_energy(tmp_path, scheme):
 def test_glue_refuses_ratios_that_gain_energy(tmp_path, ratio):
     path = _scene(tmp_path, 1.0)
     path.write_text(path.read_text().replace('kind = "glue"', f'kind = "glue"\nsubsteps = {ratio}'))
-    wrong = r"links.0.substeps must be 1; found .*at a ratio of 2 it gains 28 % .* at 4 66 %"
+    wrong = r"links.0: substeps must be 1; found .*at a ratio of 2 it gains 28 % .* at 4 66 %"
     with pytest.raises(SceneError, match=wrong):
         laboratory.couple(path)

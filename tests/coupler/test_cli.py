@@ -5,9 +5,10 @@ import json
 import pytest
 from started import Started, write_scene
 
+import quintet
 from quintet.coupler.cli import main
 from quintet.coupler.launch.connect import free_port
-from quintet.coupler.scene.read import library
+from quintet.coupler.scene.read import library, load
 
 EXPECT = """
 [[expect]]
@@ -48,6 +49,20 @@ def test_list_names_every_scene_with_its_presets(capsys):
     assert status("list") == 0
     table = capsys.readouterr().out
     assert all(name in table for name in rows)
+
+
+@pytest.mark.parametrize("command", [["list"], ["check", "dam_break_cubes"]])
+def test_no_line_is_wrapped_into_a_pipe(capsys, monkeypatch, command):
+    monkeypatch.setenv("COLUMNS", "40")
+    assert status(*command) == 0
+    lines = capsys.readouterr().out.splitlines()
+    rows = len(library()) + 1 if command == ["list"] else len(load(command[1]).expect) + 10
+    assert len(lines) == rows and max(map(len, lines)) > 80
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    assert status("--version") == 0
+    assert capsys.readouterr().out == f"quintet {quintet.__version__}\n"
 
 
 def test_check_prints_the_plan_and_starts_nothing(tmp_path, capsys):

@@ -12,6 +12,7 @@ from quintet.components.dem_bodies.contact.geometry import (
     sphere_plane,
     sphere_sphere,
 )
+from quintet.components.dem_bodies.integration.locked_motion import free_inverse_mass
 from quintet.components.dem_bodies.laws import contact_force, damping_weight, pair_constants
 from quintet.components.dem_bodies.state import (
     DEEPEST,
@@ -33,6 +34,10 @@ from quintet.components.dem_bodies.state import (
 )
 from quintet.components.shared.numba_options import INNER
 from quintet.components.shared.rotations import Vector, cross, dot, sub
+
+# Over that of both bodies, if they were free: a contact of which neither can yield. Nothing moves
+# it, and its dampers are those of free bodies.
+LOCKED_MASS = 1e9
 
 
 @njit(**INNER)
@@ -159,9 +164,12 @@ def contact_loads(model: Model, state: State, pairs: BodyPairs, count: int, dt: 
         n, depth, radius = row_vector(geometry, k), geometry[k, 6], geometry[k, 7]
         point = (geometry[k, 3], geometry[k, 4], geometry[k, 5])
         arm_i, arm_j = sub(point, row_vector(motion, i)), sub(point, row_vector(motion, j))
-        inverse_i = inverse_effective_mass(inverse_mass[i], inverse_inertia, i, arm_i, n)
-        inverse_j = inverse_effective_mass(inverse_mass[j], inverse_inertia, j, arm_j, n)
+        yield_i, yield_j = free_inverse_mass(model, i, n), free_inverse_mass(model, j, n)
+        inverse_i = inverse_effective_mass(yield_i, inverse_inertia, i, arm_i, n)
+        inverse_j = inverse_effective_mass(yield_j, inverse_inertia, j, arm_j, n)
         mass = 1.0 / (inverse_i + inverse_j)
+        if not mass * (inverse_mass[i] + inverse_mass[j]) < LOCKED_MASS:
+            mass = 1.0 / (inverse_mass[i] + inverse_mass[j])
         end_i = point_velocity(motion, i, END_VELOCITY, arm_i)
         end = sub(end_i, point_velocity(motion, j, END_VELOCITY, arm_j))
         before, bearing = history[pair, 3] - history[pair, 4], depth

@@ -11,6 +11,12 @@ from quintet.components.dem_bodies.contact.geometry import (
     set_vector,
     vector,
 )
+from quintet.components.dem_bodies.integration.locked_motion import (
+    locked_angular_velocity,
+    masked,
+    rotate_locked,
+    turns_evenly,
+)
 from quintet.components.dem_bodies.integration.rigid_rotation import (
     angular_velocity,
     rotate_body,
@@ -124,10 +130,18 @@ def kick_body(
     force, torque = row_vector(state.contact_load, i), row_vector(state.contact_load, i, 3)
     outer, twist = row_vector(state.load, i), row_vector(state.load, i, 3)
     change = kick(half_gravity, half * model.inverse_mass[i], force, outer)
-    v, before = axpy(1.0, change, row_vector(motion, i, VELOCITY)), angular_velocity(state, i)
     momentum = kick_rotation(row_vector(state.angular_momentum, i), half, torque, twist)
+    if model.locked[i]:
+        change, momentum = masked(model.free, i, 0, change), masked(model.free, i, 3, momentum)
+        before = locked_angular_velocity(model, state, i)
+    else:
+        before = angular_velocity(state, i)
+    v = axpy(1.0, change, row_vector(motion, i, VELOCITY))
     set_row_vector(state.angular_momentum, i, 0, momentum)
-    ω = angular_velocity(state, i)
+    if model.locked[i]:
+        ω = locked_angular_velocity(model, state, i)
+    else:
+        ω = angular_velocity(state, i)
     set_row_vector(motion, i, VELOCITY, v)
     set_row_vector(motion, i, OMEGA, ω)
     work = kick_work(half, force, torque, v, change, before, ω)
@@ -142,10 +156,16 @@ def drift_body(model: Model, state: State, i: int, dt: float) -> tuple[float, fl
     v = row_vector(motion, i, VELOCITY)
     set_row_vector(motion, i, 0, axpy(dt, v, row_vector(motion, i)))
     set_row_vector(motion, i, END_VELOCITY, axpy(1.0, change, v))
-    set_row_vector(motion, i, OMEGA, rotate_body(model, state, i, dt))
+    if model.locked[i]:
+        set_row_vector(motion, i, OMEGA, rotate_locked(model, state, i, dt))
+    else:
+        set_row_vector(motion, i, OMEGA, rotate_body(model, state, i, dt))
     torque, twist = row_vector(state.contact_load, i, 3), row_vector(state.load, i, 3)
+    # The inverse inertia of a locked body leaves out what torques do about locked axes.
     x, y, z = kick_rotation(row_vector(state.angular_momentum, i), half, torque, twist)
     end_ω = symmetric_product(state.world_inverse_inertia, i, x, y, z)
+    if model.locked[i] and turns_evenly(model, i):
+        end_ω = row_vector(motion, i, OMEGA)
     set_row_vector(motion, i, END_OMEGA, end_ω)
     return work, given, place_spheres(model, state, i)
 

@@ -33,10 +33,28 @@ def check_body(where: str, body: "Body") -> None:
             f"{where}.orientation must be a unit quaternion (w, x, y, z); found "
             f"{body.orientation} of length {length:.6g}. Divide it by its length."
         )
+    check_locked(where, body)
     try:
         cover(body)
     except ValueError as error:  # the mistakes that are in the file
         raise ValueError(f"{where}: {error}") from error
+
+
+def check_locked(where: str, body: "Body") -> None:
+    """Refuse locks that are named twice, and a rotation that locks would have to force."""
+    if len(set(body.locked)) < len(body.locked):
+        raise ValueError(
+            f"{where}.locked must name each direction once; found {', '.join(body.locked)}. Leave "
+            "out what is there twice."
+        )
+    rotations = [f"rotation_{axis}" for axis in "xyz"]
+    locked = [one in body.locked for one in rotations]
+    for axis, held, ω in zip("xyz", locked, body.angular_velocity, strict=True):
+        if held and ω != 0.0 and not all(locked):
+            raise ValueError(
+                f"{where}.angular_velocity must be 0 about {axis}, which is locked; found {ω:g} "
+                f"rad/s. Set it to 0, or lock {', '.join(rotations)} for a body that turns evenly."
+            )
 
 
 def check_shape(where: str, body: "Body") -> None:

@@ -20,10 +20,6 @@ def check(params: "SphFluidParams") -> None:
     """Refuse what cannot be computed."""
     if not params.fluid:
         raise ValueError("fluid must have at least one box; found none. Add a box.")
-    if not 1.0 <= params.smoothing <= 3.0:
-        raise ValueError(
-            f"smoothing must be from 1 to 3 spacings; found {params.smoothing}. Use 1.2 to 2."
-        )
     check_boxes(params)
     check_walls(params)
     check_obstacles(params)

@@ -16,6 +16,7 @@ Axis = Literal["x", "y", "z"]
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
 UprightFace = Literal["x-", "x+", "y-", "y+"]
 Exponent = Annotated[int, Field(ge=1, le=8)]
+Smoothing = Annotated[float, Field(ge=1.0, le=3.0)]
 
 FACES = get_args(Face)
 

@@ -27,9 +27,9 @@ class StandingWave:
 
     Parameters
     ----------
-    amplitude : float, m, > 0
+    amplitude : m
         A.
-    length : float, m, > 0
+    length : m
         λ, of which whole halves make up the water's extent along x.
     """
 

@@ -19,7 +19,7 @@ def known_links() -> dict[str, str]:
 
 
 def maker(kind: str) -> Maker:
-    """Return the function that makes links of a kind; KeyError if none is installed."""
+    """Return what makes links of a kind, with its keys; KeyError if none is installed."""
     (entry,) = entry_points(group="quintet.links", name=kind) or (None,)
     if entry is None:
         raise KeyError(kind)

@@ -18,23 +18,30 @@ from quintet.coupler.coupling.exchange import (
     Works,
     misfits,
 )
-from quintet.coupler.coupling.links.keys import is_stand_in, only
+from quintet.coupler.coupling.links.keys import Pairs, is_stand_in, with_keys
 from quintet.interfaces.component import Array, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import unknown
+from quintet.interfaces.params import parameters, unknown
 
 
-def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
-    """Make the link of a scene's table: ``pairs`` of ports, the giver's first."""
-    only(number, given, ("kind", "name", "pairs"))
-    pairs = given.get("pairs")
-    if not isinstance(pairs, list) or not all(isinstance(p, list) and len(p) == 2 for p in pairs):
-        raise SceneError(
-            f"links.{number}.pairs must be pairs of ports, the giver first, as in "
-            f'[["a.motion", "b.foot"]]; found {pairs!r}.'
-        )
-    names = dict.fromkeys(str(path).split(".")[0] for pair in pairs for path in pair)
-    return join(str(given.get("name", "-".join(names))), pairs, ports)
+@parameters
+class DirectKeys:
+    """Fields pass as they are between ports that have the same ones.
+
+    Parameters
+    ----------
+    pairs
+        Pairs of ports, the giver's first: ``[["a.motion", "b.foot"]]``.
+    """
+
+    pairs: Pairs
+
+
+@with_keys(DirectKeys)
+def make(name: str, given: DirectKeys, ports: Mapping[str, Ports]) -> Link:
+    """Make a link with the names of its components if it has none."""
+    names = dict.fromkeys(path.split(".")[0] for pair in given.pairs for path in pair)
+    return join(name or "-".join(names), given.pairs, ports)
 
 
 def join(name: str, pairs: Any, ports: Mapping[str, Ports]) -> "Direct":

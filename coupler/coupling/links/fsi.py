@@ -7,58 +7,67 @@ potential, of a fluid whose port asks for it.
 """
 
 from collections.abc import Mapping
-from functools import partial
-from typing import Any
-
-import numpy as np
+from dataclasses import replace
+from typing import Literal
 
 from quintet.coupler.coupling.exchange import (
     Binding,
     Demands,
-    Ends,
     Link,
-    Mapped,
     Ports,
     Transfer,
     Works,
     requires,
 )
-from quintet.coupler.coupling.links.keys import between
-from quintet.coupler.coupling.mapping import RigidMap, sample_faces
-from quintet.coupler.coupling.rigid_samples import asked_sampling, body_widths, sample_bodies
-from quintet.interfaces.component import Array, Fields, Port
-from quintet.interfaces.errors import LinkError, SceneError
+from quintet.coupler.coupling.links.keys import Between, with_keys
+from quintet.coupler.coupling.links.sampled_structures import (
+    FACES_OF_A_MESH,
+    RIGID_BODIES,
+    Sampling,
+    Structure,
+)
+from quintet.interfaces.component import Fields, Port
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import parameters
 from quintet.interfaces.ports import (
     CONTACT,
     DIMENSIONS,
     FACES,
-    LOAD,
     MIRRORED_SURFACE,
     MOTION,
-    NODE_LOAD,
     SURFACE,
     SURFACE_LOAD,
 )
 
-CONTACTS = ("walls", "potential")  # as at the fluid's walls, or by a contact potential
 WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
 
-def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
-    """Make the link of a scene's table: ``between``, and which ``contact`` it asks for."""
-    name, pair = between(number, given, ports, "contact")
-    contact = given.get("contact", CONTACTS[0])
-    if contact not in CONTACTS:
-        raise SceneError(
-            f"links.{number}.contact must be one of {', '.join(CONTACTS)}, as at the fluid's walls "
-            f"or by a contact potential; found {contact!r}. Correct it, or leave it out for walls."
-        )
-    return join(name, pair, ports, contact == "potential")
+@parameters
+class FsiKeys:
+    """A fluid meets rigid bodies, or the faces of a mesh.
+
+    Parameters
+    ----------
+    between
+        The fluid and the structure, in either order.
+    contact
+        What presses between the fluid and this structure: what does at the fluid's walls, or a
+        contact potential, of a fluid with mirrored walls.
+    """
+
+    between: Between
+    contact: Literal["walls", "potential"] = "walls"
+
+
+@with_keys(FsiKeys)
+def make(name: str, given: FsiKeys, ports: Mapping[str, Ports]) -> Link:
+    """Make a link, with the contact that it asks for."""
+    return join(name, given.between, ports, given.contact == "potential")
 
 
 def join(
     name: str, pair: tuple[str, str], ports: Mapping[str, Ports], potential: bool = False
-) -> "RigidFsi | FaceFsi":
+) -> "Fsi":
     """Match two components: one samples a surface, the other moves bodies or faces.
 
     With `potential` the fluid is asked to press on the samples by a contact potential.
@@ -69,8 +78,8 @@ def join(
         gives = {port.name for port in ports[body][1]}
         if SURFACE.name not in takes or not gives & {MOTION.name, FACES.name}:
             continue
-        rigid = MOTION.name in gives
-        motion, load = (MOTION, LOAD) if rigid else (FACES, NODE_LOAD)
+        structure = RIGID_BODIES if MOTION.name in gives else FACES_OF_A_MESH
+        motion, load = structure.motion, structure.load
         lacks = requires(ports[fluid], fluid, MIRRORED_SURFACE, SURFACE_LOAD)
         # What is moved by a path or a recording takes no load, and is sent none.
         loaded = load.name in {port.name for port in ports[body][0]}
@@ -82,8 +91,7 @@ def join(
         moving = next(port for port in ports[body][1] if port.name == motion.name)
         _same_dimensions(name, {fluid: surface, body: moving})
         contact = _contact(name, fluid, surface, potential)
-        kind = RigidFsi if rigid else FaceFsi
-        return kind(name, fluid, body, mirrored, contact, loaded)
+        return Fsi(Sampling(name, fluid, body, mirrored, contact), structure, loaded)
     raise SceneError(
         f"link {name}: fsi needs a component that takes surface and gives surface_load, and one "
         f"that gives motion and takes load, or gives faces and takes node_load; {first} takes "
@@ -120,44 +128,27 @@ def _contact(name: str, fluid: str, surface: Port, potential: bool) -> float | N
     return None
 
 
-def _marks(contact: float | None, samples: int) -> dict[str, Array]:
-    """Static field that tells the fluid what presses on these samples, if it asks."""
-    return {} if contact is None else {"surface.contact": np.full(samples, contact)}
-
-
 def _names(ports: tuple[Port, ...]) -> str:
     return ", ".join(port.name for port in ports) or "nothing"
 
 
-class RigidFsi:
-    """Samples ride on rigid bodies; their forces become a force and a torque on each."""
+class Fsi:
+    """Samples ride on a structure, and their forces become loads on it."""
 
-    def __init__(
-        self,
-        name: str,
-        fluid: str,
-        body: str,
-        mirrored: bool = False,
-        contact: float | None = None,
-        loaded: bool = True,
-    ) -> None:
-        self.name, self.fluid, self.body = name, fluid, body
-        self.mirrored, self.contact = mirrored, contact
+    def __init__(self, sampling: Sampling, structure: Structure, loaded: bool) -> None:
+        self.sampling, self.structure = sampling, structure
+        self.name, fluid, body = sampling.link, sampling.fluid, sampling.body
         self.partner = {fluid: SURFACE.name}
         self.works: dict[str, Works] = {fluid: [WORK]}
-        poses = tuple(f"motion.{one.name}" for one in MOTION.fields)
-        move = Transfer(body, fluid, reads=poses, fills=_sampled(mirrored))
+        move = Transfer(body, fluid, reads=structure.reads, fills=_sampled(sampling.mirrored))
         load = Transfer(
             fluid,
             body,
             reads=("surface_load.force",),
-            fills=("load.force", "load.torque"),
-            needs=poses,
-            sums=(("surface_load.force", "load.force"),),
-            works_on=(
-                ("load.force", "motion.velocity", "motion.position"),
-                ("load.torque", "motion.angular_velocity", "motion.orientation"),
-            ),
+            fills=structure.fills,
+            needs=structure.needs,
+            sums=(("surface_load.force", structure.fills[0]),),
+            works_on=structure.works_on,
         )
         self.transfers = (move, load) if loaded else (move,)
 
@@ -166,117 +157,9 @@ class RigidFsi:
         return Demands()
 
     def bind(self, described: Mapping[str, Fields]) -> Binding:
-        """Sample every body at the fluid's spacing."""
-        asked, bodies = asked_sampling(described[self.fluid]), described[self.body]
-        self._check(body_widths(bodies, asked.planar), asked.least)
-        found = sample_bodies(bodies, asked, self.mirrored)
-        samples = RigidMap(found.arm, found.body, len(bodies["motion.shape"]))
-        mirror = None
-        if found.image is not None:
-            mirror = RigidMap(found.image, found.body, samples.bodies)
-        static = {
-            self.fluid: {
-                "surface.normal": found.normal,
-                "surface.volume": found.volume,
-                "surface.body": found.body.astype(np.float64),
-                **_marks(self.contact, len(found.body)),
-            }
-        }
-        count = len(self.transfers)
-        maps = (partial(self._move, samples, mirror), partial(self._load, samples))
-        return Binding(static, maps[:count], (None, self._moment)[:count])
-
-    def _check(self, widths: Array, least: float) -> None:
-        for body in np.flatnonzero(widths < least)[:1]:
-            raise LinkError(
-                f"link {self.name}: a body must be at least {least:g} m across, a spacing of "
-                f"{self.fluid} and twice the depth of the outermost samples it wants; body "
-                f"{body} of {self.body} is {widths[body]:g} m. Refine the spacing "
-                f"of {self.fluid}, or leave the body out."
-            )
-
-    def _move(self, samples: RigidMap, mirror: RigidMap | None, _: Ends, end: Ends) -> Mapped:
-        given = end[self.body]
-        pose = (given[f"motion.{one.name}"] for one in MOTION.fields)
-        position, velocity = samples.gather(*pose)
-        moved = {"surface.position": position, "surface.velocity": velocity}
-        if mirror is not None:
-            arms = mirror.arms(given["motion.orientation"])
-            moved["surface.mirror"] = given["motion.position"][samples.body] + arms
-        return moved
-
-    def _load(self, samples: RigidMap, start: Ends, end: Ends) -> Mapped:
-        # An impulse was gathered along the way between the two poses: use their middle.
-        turns = [one[self.body]["motion.orientation"] for one in (start, end)]
-        arms = 0.5 * (samples.arms(turns[0]) + samples.arms(turns[1]))
-        force, torque = samples.spread(end[self.fluid]["surface_load.force"], arms)
-        return {"load.force": force, "load.torque": torque}
-
-    def _moment(self, start: Ends, end: Ends, mapped: Fields) -> Array:
-        centre = 0.5 * (start[self.body]["motion.position"] + end[self.body]["motion.position"])
-        turn = np.cross(centre, mapped["load.force"]) + mapped["load.torque"]
-        return np.asarray(turn.sum(axis=0))
-
-
-class FaceFsi:
-    """Samples lie on the faces of a mesh; their forces go to its nodes."""
-
-    def __init__(
-        self,
-        name: str,
-        fluid: str,
-        body: str,
-        mirrored: bool = False,
-        contact: float | None = None,
-        loaded: bool = True,
-    ) -> None:
-        self.name, self.fluid, self.body = name, fluid, body
-        self.mirrored, self.contact = mirrored, contact
-        self.partner = {fluid: SURFACE.name}
-        self.works: dict[str, Works] = {fluid: [WORK]}
-        faces = ("faces.position", "faces.velocity")
-        move = Transfer(body, fluid, reads=faces, fills=_sampled(mirrored))
-        load = Transfer(
-            fluid,
-            body,
-            reads=("surface_load.force",),
-            fills=("node_load.force",),
-            sums=(("surface_load.force", "node_load.force"),),
-            works_on=(("node_load.force", "faces.velocity", "faces.position"),),
-        )
-        self.transfers = (move, load) if loaded else (move,)
-
-    def demands(self) -> Demands:
-        """Nothing: any steps, any scheme."""
-        return Demands()
-
-    def bind(self, described: Mapping[str, Fields]) -> Binding:
-        """Sample every face at the fluid's spacing."""
-        spacing = float(described[self.fluid]["surface.spacing"][0])
-        mesh = described[self.body]
-        shape, area, normal = sample_faces(mesh["faces.start"], mesh["faces.corner"], spacing)
-
-        def move(_: Ends, end: Ends) -> Mapped:
-            moved = {
-                "surface.position": shape.gather(end[self.body]["faces.position"]),
-                "surface.velocity": shape.gather(end[self.body]["faces.velocity"]),
-            }
-            if self.mirrored:  # samples lie on the faces, each its own image
-                moved["surface.mirror"] = moved["surface.position"]
-            return moved
-
-        def load(_: Ends, end: Ends) -> Mapped:
-            return {"node_load.force": shape.spread(end[self.fluid]["surface_load.force"])}
-
-        static = {
-            self.fluid: {
-                "surface.normal": normal,
-                "surface.volume": area * spacing,
-                "surface.body": np.zeros(len(area)),
-                **_marks(self.contact, len(area)),
-            }
-        }
-        return Binding(static, (move, load)[: len(self.transfers)])
+        """Sample the surface at the fluid's spacing."""
+        found, count = self.structure.bind(self.sampling, described), len(self.transfers)
+        return replace(found, maps=found.maps[:count], moment=found.moment[:count])
 
 
 def _sampled(mirrored: bool) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ v_S = Σ φ v_M, with the shape functions φ of the face on which a particle lie
 """
 
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from quintet.coupler.coupling.exchange import (
     Binding,
@@ -18,10 +18,11 @@ from quintet.coupler.coupling.exchange import (
     Works,
     requires,
 )
-from quintet.coupler.coupling.links.keys import between, is_stand_in
+from quintet.coupler.coupling.links.keys import Between, is_stand_in, with_keys
 from quintet.coupler.coupling.mapping import project
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import Count, parameters
 from quintet.interfaces.ports import (
     FACE_ACTIVITY,
     GLUE_ACTIVITY,
@@ -45,14 +46,30 @@ WHY = (
 )
 
 
-def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
-    """Make the link of a scene's table: ``between``; ``substeps`` other than 1 are refused."""
-    name, pair = between(number, given, ports, "substeps")
-    if given.get("substeps", 1) != 1:
-        raise SceneError(
-            f"links.{number}.substeps must be 1; found {given['substeps']!r}: {WHY}. Leave it out."
-        )
-    return join(name, pair, ports)
+@parameters
+class GlueKeys:
+    """Particles hang on the faces of a mesh.
+
+    Parameters
+    ----------
+    between
+        The particles and the mesh, in either order.
+    substeps : 1
+        Steps of one side in a step of the other: 1, as any other number feeds energy in.
+    """
+
+    between: Between
+    substeps: Count = 1
+
+    def __post_init__(self) -> None:
+        if self.substeps != 1:
+            raise ValueError(f"substeps must be 1; found {self.substeps}: {WHY}. Leave it out.")
+
+
+@with_keys(GlueKeys)
+def make(name: str, given: GlueKeys, ports: Mapping[str, Ports]) -> Link:
+    """Make a link of steps that are equal on both sides."""
+    return join(name, given.between, ports)
 
 
 def join(name: str, pair: tuple[str, str], ports: Mapping[str, Ports]) -> "Glue":

@@ -7,7 +7,9 @@ change of it overshoots where the wall conducts better than the mesh.
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated
+
+from pydantic import Field
 
 from quintet.coupler.coupling.exchange import (
     Binding,
@@ -20,34 +22,42 @@ from quintet.coupler.coupling.exchange import (
     Works,
     requires,
 )
-from quintet.coupler.coupling.links.keys import between
+from quintet.coupler.coupling.links.keys import Between, with_keys
 from quintet.coupler.coupling.mapping import project
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import parameters
 from quintet.interfaces.ports import NODE_HEAT, NODE_TEMPERATURE, WALL_HEAT, WALL_TEMPERATURE
 
 HEAT = ("wall_heat.heat_flow", "node_heat.heat_flow")
 
 
-def make(number: int, given: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
-    """Make the link of a scene's table: ``between``, and ``relaxation`` by window.
+Factor = Annotated[float, Field(gt=0.0, le=1.0)]
 
-    The relaxation is a number, or a list of them for the first windows of which the last one
-    holds for all the others.
+
+@parameters
+class HeatKeys:
+    """A wall of points and a mesh share temperature and heat.
+
+    Parameters
+    ----------
+    between
+        The wall and the mesh, in either order.
+    relaxation : 1
+        Share of the temperature's change that is handed on from window to window: a number, or a
+        list for the first windows, of which the last holds for all others. Lower it if temperatures
+        swing.
     """
-    name, pair = between(number, given, ports, "relaxation")
-    asked = given.get("relaxation", 1.0)
-    factors = asked if isinstance(asked, list) else [asked]
-    if not factors or not all(_is_factor(one) for one in factors):
-        raise SceneError(
-            f"links.{number}.relaxation must be above 0 and at most 1, a number or a list of them; "
-            f"found {asked!r}. Lower it if temperatures swing from window to window."
-        )
-    return join(name, pair, ports, tuple(float(one) for one in factors))
+
+    between: Between
+    relaxation: Factor | Annotated[tuple[Factor, ...], Field(min_length=1)] = 1.0
 
 
-def _is_factor(value: Any) -> bool:
-    return type(value) in (int, float) and 0.0 < value <= 1.0
+@with_keys(HeatKeys)
+def make(name: str, given: HeatKeys, ports: Mapping[str, Ports]) -> Link:
+    """Make a link with its relaxation by window."""
+    factors = given.relaxation if isinstance(given.relaxation, tuple) else (given.relaxation,)
+    return join(name, given.between, ports, factors)
 
 
 def join(

@@ -1,34 +1,88 @@
-"""The keys of a link's table in a scene."""
+"""The keys of a link's table in a scene: published by its kind, checked before it is made."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Annotated, Any
 
-from quintet.coupler.coupling.exchange import Ports
+from pydantic import BeforeValidator
+
+from quintet.coupler.coupling.exchange import Link, Ports
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import unknown
+from quintet.interfaces.params import parameters, read, unknown
 
 
-def between(
-    number: int, given: Mapping[str, Any], ports: Mapping[str, Ports], *more: str
-) -> tuple[str, tuple[str, str]]:
-    """Name of a link and the two components that it is between; it may have `more` keys."""
-    only(number, given, ("kind", "name", "between", *more))
-    pair = given.get("between")
-    if not isinstance(pair, list) or len(pair) != 2 or pair[0] == pair[1]:
-        raise SceneError(f"links.{number}.between must name two components; found {pair!r}.")
-    for name in pair:
-        if name not in ports:
-            raise SceneError(unknown(f"links.{number}: component {name}", str(name), ports))
-    return str(given.get("name", "-".join(pair))), (pair[0], pair[1])
+def _two_components(value: Any) -> tuple[Any, ...]:
+    if not isinstance(value, list) or len(value) != 2 or value[0] == value[1]:
+        raise ValueError(f"between must name two components; found {value!r}. Name both.")
+    return tuple(value)
+
+
+def _port_pairs(value: Any) -> tuple[Any, ...]:
+    if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
+        raise ValueError(
+            "pairs must be pairs of ports, the giver first, as in "
+            f'[["a.motion", "b.foot"]]; found {value!r}. Name both of each.'
+        )
+    return tuple(tuple(pair) for pair in value)
+
+
+Between = Annotated[tuple[str, str], BeforeValidator(_two_components)]
+Pairs = Annotated[tuple[tuple[str, str], ...], BeforeValidator(_port_pairs)]
+Make = Callable[[str, Any, Mapping[str, Ports]], Link]  # name, its keys, ports of components
+
+
+@parameters
+class LinkKeys:
+    """What links of all kinds have, beside the keys of their own kind.
+
+    Parameters
+    ----------
+    kind
+        An installed kind of link.
+    name
+        In the ledger; the names of its components if not given.
+    """
+
+    kind: str
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkKind:
+    """A kind of link with the parameter class of its keys; called with a table, it makes one."""
+
+    keys: type
+    make: Make
+
+    def __call__(self, number: int, table: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
+        """Check the table, and make the link; one between two has their names if it has none."""
+        where, common = f"links.{number}", {one.name for one in fields(LinkKeys)}
+        own_names = {one.name for one in fields(self.keys)}
+        known = [*common, *own_names, *getattr(self.keys, "RENAMED", ())]
+        if strange := [key for key in table if key not in known]:
+            raise SceneError([unknown(f"{where}.{key}", key, known) for key in strange])
+        shared = {"kind": "", **{key: one for key, one in table.items() if key in common}}
+        all_have, wrong = read(LinkKeys, shared, where)
+        own = {key: one for key, one in table.items() if key not in common}
+        given, also_wrong = read(self.keys, own, where)
+        if all_have is None or given is None:
+            raise SceneError([*wrong, *also_wrong])
+        pair = getattr(given, "between", ())
+        for name in pair:
+            if name not in ports:
+                raise SceneError(unknown(f"{where}: component {name}", name, ports))
+        return self.make(all_have.name or "-".join(pair), given, ports)
+
+
+def with_keys(keys: type) -> Callable[[Make], LinkKind]:
+    """Make a kind of link of a function ``make(name, given, ports)`` and the class of its keys.
+
+    The class is made by `quintet.interfaces.params.parameters`; `given` is one of it. Its
+    docstring is what ``quintet describe`` and ``quintet schema`` tell of each key.
+    """
+    return lambda make: LinkKind(keys, make)
 
 
 def is_stand_in(ports: Ports | None) -> bool:
     """Whether a component takes nothing at all, as a recording does: it is sent nothing."""
     return ports is not None and not ports[0]
-
-
-def only(number: int, given: Mapping[str, Any], known: tuple[str, ...]) -> None:
-    """Refuse keys that a link's table does not have."""
-    wrong = [unknown(f"links.{number}.{key}", key, known) for key in given if key not in known]
-    if wrong:
-        raise SceneError(wrong)

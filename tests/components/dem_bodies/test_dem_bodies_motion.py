@@ -228,6 +228,42 @@ def test_steps_are_long_while_nothing_can_touch():
     assert near.stable_dt() < 0.2 * far.stable_dt()
 
 
+@pytest.mark.parametrize("body", [sphere(NOTHING, 0.1), box(NOTHING, SIZE)])
+def test_a_lone_spinning_body_takes_the_longest_step(body):
+    """However fast it moves; only what turns about an axis that moves is resolved."""
+    lone = build([body | {"angular_velocity": [5.0, 20.0, 3.0], "velocity": [9.0, 0.0, 0.0]}])
+    steps, start = [], lone.totals()
+    run(lone, 0.2, lambda _: steps.append(lone.stable_dt()))
+    assert min(steps) == max(steps) == lone.params.longest_step
+    assert lone.totals().kinetic == pytest.approx(
+        start.kinetic + start.potential - lone.totals().potential, rel=1e-4
+    )
+
+
+def test_a_body_that_spins_far_above_the_floor_takes_the_longest_step_until_it_is_near():
+    spun = {"angular_velocity": [0.0, 0.0, 60.0]}
+    body = build([box([0.0, 0.0, 1.0], **spun)], planes=[FLOOR])
+    steps, gaps = [], []
+
+    def watch(_):
+        steps.append(body.stable_dt())
+        gaps.append(body.state.position[0, 2] - 0.5 * 0.15 * 3.0**0.5)
+
+    run(body, 0.43, watch)
+    near = np.array(gaps) < 0.03
+    assert (np.array(steps)[~near] == body.params.longest_step).all()
+    assert np.array(steps)[near].min() < 0.5 * body.params.longest_step
+
+
+def test_a_slender_body_that_spins_fast_keeps_its_energy():
+    """About the axis between the longest and the shortest, which is not stable."""
+    lone = build([box(NOTHING, SIZE, angular_velocity=[0.1, 300.0, 0.1])], gravity=NOTHING)
+    energies = []
+    run(lone, 1.0, lambda _: energies.append(energy(lone)))
+    assert lone.stable_dt() < lone.params.longest_step
+    assert np.ptp(energies) < 1e-4 * energies[0]
+
+
 def test_too_deep_a_contact_ends_the_run():
     soft = {"a": material(youngs_modulus=1e4)}
     ball = build([sphere([0.0, 0.0, 0.06], 0.1, velocity=[0.0, 0.0, -9.0])], soft, planes=[FLOOR])

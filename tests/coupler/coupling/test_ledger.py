@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from quintet.coupler.coupling.energy_balance import EnergyBalance
 from quintet.coupler.coupling.exchange import Exchange
 from quintet.coupler.coupling.ledger import Account, Ledger
 from quintet.coupler.coupling.links import maker
@@ -116,3 +117,28 @@ def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
     assert len(rows) == 1 + 3 * 3
     assert {len(row) for row in rows if row[1] in ("a", "b")} == {len(rows[0])}
     assert ledger.summary()["energy_drift"] == pytest.approx(0.5 / 1.5)
+
+
+def _totals(kinetic, potential):
+    return {"a": {"kinetic": kinetic, "potential": potential, "internal": 0.0}}
+
+
+@pytest.mark.parametrize(
+    ("energies", "drift"),
+    [
+        # A body that falls turns its potential energy into motion; what rises is the error alone.
+        ([(0.0, 5.0), (3.0, 2.0), (4.9, 0.10005)], 5e-5 / 4.9),
+        ([(0.0, 5.0), (3.0, 1.0), (0.0, 0.5)], 0.0),
+        # At rest but for rounding, nothing is turned over that a rise could be told against.
+        ([(0.0, 26.5), (0.0, 26.500000004)], None),
+        ([(0.0, 0.0), (0.0, 0.0)], None),
+    ],
+)
+def test_a_rise_of_energy_is_told_against_the_largest_that_was_turned_over(energies, drift):
+    balance = EnergyBalance()
+    for kinetic, potential in energies:
+        balance.note(_totals(kinetic, potential))
+    kept = EnergyBalance()
+    kept.load(balance.save())
+    for one in (balance, kept):
+        assert one.drift() == (None if drift is None else pytest.approx(drift, rel=1e-6))

@@ -8,9 +8,9 @@ import pytest
 from quintet.coupler.coupling.exchange import Exchange
 from quintet.coupler.coupling.links import maker
 from quintet.coupler.coupling.links.direct import join as join_direct
-from quintet.coupler.coupling.links.fsi import FaceFsi, RigidFsi
 from quintet.coupler.coupling.links.fsi import join as join_fsi
 from quintet.coupler.coupling.links.glue import join as join_glue
+from quintet.coupler.coupling.links.sampled_structures import FACES_OF_A_MESH, RIGID_BODIES
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
@@ -51,8 +51,9 @@ TURN = np.array([[np.cos(0.4), 0.0, 0.0, np.sin(0.4)]])
 def test_fsi_finds_who_is_who_in_either_order():
     for pair in (("water", "cubes"), ("cubes", "water")):
         found = join_fsi("link", pair, PORTS)
-        assert isinstance(found, RigidFsi) and (found.fluid, found.body) == ("water", "cubes")
-    assert isinstance(join_fsi("link", ("plate", "water"), PORTS), FaceFsi)
+        assert found.structure is RIGID_BODIES
+        assert (found.sampling.fluid, found.sampling.body) == ("water", "cubes")
+    assert join_fsi("link", ("plate", "water"), PORTS).structure is FACES_OF_A_MESH
     assert len(join_fsi("link", ("water", "path"), PORTS).transfers) == 1  # it takes no load
 
 
@@ -87,10 +88,7 @@ def test_fsi_tells_the_fluid_which_contact_a_link_asks_for(given, mark):
 
 def test_fsi_says_which_contacts_there_are_and_who_has_none():
     given = {"kind": "fsi", "between": ["water", "cubes"]}
-    wrong = (
-        r"links.3.contact must be one of walls, potential, .*found 'potentials'. "
-        "Correct it, or leave it out for walls."
-    )
+    wrong = r"links.3.contact should be 'walls' or 'potential'; found 'potentials'. Correct it."
     with pytest.raises(SceneError, match=wrong):
         maker("fsi")(3, {**given, "contact": "potentials"}, PORTS)
     alone = (

@@ -1,0 +1,145 @@
+"""Structures that a fluid samples: rigid bodies and deforming faces, how they move and take loads.
+
+Samples ride on what moves them, and their forces go back by the transpose of the same map.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from quintet.coupler.coupling.exchange import Binding, Ends, Mapped
+from quintet.coupler.coupling.mapping import RigidMap, sample_faces
+from quintet.coupler.coupling.rigid_samples import asked_sampling, body_widths, sample_bodies
+from quintet.interfaces.component import Array, Fields, Port
+from quintet.interfaces.errors import LinkError
+from quintet.interfaces.ports import FACES, LOAD, MOTION, NODE_LOAD
+
+POSES = tuple(f"motion.{one.name}" for one in MOTION.fields)
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """Whose surface is sampled for which fluid, and what that fluid asks of samples."""
+
+    link: str
+    fluid: str
+    body: str
+    mirrored: bool  # whether each sample has an image within the body
+    contact: float | None  # code of what presses on samples, of a fluid that lets links choose
+
+
+@dataclass(frozen=True, slots=True)
+class Structure:
+    """Ports and fields of one kind of structure, and how its surface is sampled."""
+
+    motion: Port
+    load: Port
+    reads: tuple[str, ...]  # fields that move samples
+    fills: tuple[str, ...]  # fields that their forces become
+    needs: tuple[str, ...]  # fields of the structure that this takes
+    works_on: tuple[tuple[str, str, str], ...]
+    bind: Callable[[Sampling, Mapping[str, Fields]], Binding]
+
+
+def _bind_bodies(of: Sampling, described: Mapping[str, Fields]) -> Binding:
+    """Sample every body at the fluid's spacing."""
+    asked, bodies = asked_sampling(described[of.fluid]), described[of.body]
+    _require_width(of, body_widths(bodies, asked.planar), asked.least)
+    found = sample_bodies(bodies, asked, of.mirrored)
+    samples = RigidMap(found.arm, found.body, len(bodies["motion.shape"]))
+    mirror = None
+    if found.image is not None:
+        mirror = RigidMap(found.image, found.body, samples.bodies)
+    static = _static(of, found.normal, found.volume, found.body.astype(np.float64))
+    maps = (partial(_move_bodies, of.body, samples, mirror), partial(_load_bodies, of, samples))
+    return Binding(static, maps, (None, partial(_moment, of.body)))
+
+
+def _require_width(of: Sampling, widths: Array, least: float) -> None:
+    for body in np.flatnonzero(widths < least)[:1]:
+        raise LinkError(
+            f"link {of.link}: a body must be at least {least:g} m across, a spacing of "
+            f"{of.fluid} and twice the depth of the outermost samples it wants; body "
+            f"{body} of {of.body} is {widths[body]:g} m. Refine the spacing "
+            f"of {of.fluid}, or leave the body out."
+        )
+
+
+def _static(of: Sampling, normal: Array, volume: Array, body: Array) -> dict[str, Mapped]:
+    """Static fields of the samples; what presses on them only if the fluid asks."""
+    fields: Mapped = {"surface.normal": normal, "surface.volume": volume, "surface.body": body}
+    if of.contact is not None:
+        fields["surface.contact"] = np.full(len(body), of.contact)
+    return {of.fluid: fields}
+
+
+def _move_bodies(
+    body: str, samples: RigidMap, mirror: RigidMap | None, _: Ends, end: Ends
+) -> Mapped:
+    given = end[body]
+    position, velocity = samples.gather(*(given[key] for key in POSES))
+    moved = {"surface.position": position, "surface.velocity": velocity}
+    if mirror is not None:
+        arms = mirror.arms(given["motion.orientation"])
+        moved["surface.mirror"] = given["motion.position"][samples.body] + arms
+    return moved
+
+
+def _load_bodies(of: Sampling, samples: RigidMap, start: Ends, end: Ends) -> Mapped:
+    # An impulse was gathered along the way between the two poses: use their middle.
+    turns = [one[of.body]["motion.orientation"] for one in (start, end)]
+    arms = 0.5 * (samples.arms(turns[0]) + samples.arms(turns[1]))
+    force, torque = samples.spread(end[of.fluid]["surface_load.force"], arms)
+    return {"load.force": force, "load.torque": torque}
+
+
+def _moment(body: str, start: Ends, end: Ends, mapped: Fields) -> Array:
+    centre = 0.5 * (start[body]["motion.position"] + end[body]["motion.position"])
+    turn = np.cross(centre, mapped["load.force"]) + mapped["load.torque"]
+    return np.asarray(turn.sum(axis=0))
+
+
+def _bind_faces(of: Sampling, described: Mapping[str, Fields]) -> Binding:
+    """Sample every face at the fluid's spacing."""
+    spacing = float(described[of.fluid]["surface.spacing"][0])
+    mesh = described[of.body]
+    shape, area, normal = sample_faces(mesh["faces.start"], mesh["faces.corner"], spacing)
+
+    def move(_: Ends, end: Ends) -> Mapped:
+        moved = {
+            "surface.position": shape.gather(end[of.body]["faces.position"]),
+            "surface.velocity": shape.gather(end[of.body]["faces.velocity"]),
+        }
+        if of.mirrored:  # samples lie on the faces, each its own image
+            moved["surface.mirror"] = moved["surface.position"]
+        return moved
+
+    def load(_: Ends, end: Ends) -> Mapped:
+        return {"node_load.force": shape.spread(end[of.fluid]["surface_load.force"])}
+
+    return Binding(_static(of, normal, area * spacing, np.zeros(len(area))), (move, load))
+
+
+RIGID_BODIES = Structure(
+    motion=MOTION,
+    load=LOAD,
+    reads=POSES,
+    fills=("load.force", "load.torque"),
+    needs=POSES,
+    works_on=(
+        ("load.force", "motion.velocity", "motion.position"),
+        ("load.torque", "motion.angular_velocity", "motion.orientation"),
+    ),
+    bind=_bind_bodies,
+)
+FACES_OF_A_MESH = Structure(
+    motion=FACES,
+    load=NODE_LOAD,
+    reads=("faces.position", "faces.velocity"),
+    fills=("node_load.force",),
+    needs=(),
+    works_on=(("node_load.force", "faces.velocity", "faces.position"),),
+    bind=_bind_faces,
+)

@@ -1,0 +1,142 @@
+"""``quintet describe``: every key with its meaning, unit, type, range and default."""
+
+import argparse
+import json
+import re
+import shutil
+import sys
+import textwrap
+from collections.abc import Iterator
+from dataclasses import replace
+
+from quintet.coupler.reference.sections import Reference, Section, first_line, reference, subjects
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.keys import Key
+from quintet.interfaces.params import unknown
+
+PLACE = re.compile(r"(<!-- describe ([^>]+?) -->\n).*?(<!-- described -->)", re.DOTALL)
+HEADS = ("key", "unit", "type", "default", "meaning")
+
+
+def run_describe(given: argparse.Namespace) -> int:
+    """Print what a scene, a kind or a link may say, or write it into texts."""
+    if given.write:
+        for path in given.write:
+            path.write_text(filled(path.read_text(), str(path)))
+        return 0
+    if not given.subject:
+        rows = list(subjects())
+        room = max(len(name) for name, _ in rows)
+        print("\n".join(f"{name:<{room}}  {title}" for name, title in rows))
+        return 0
+    found, table = chosen(given.subject)
+    if given.json:
+        print(json.dumps([as_data(one) for one in found.sections], indent=2, ensure_ascii=False))
+        return 0
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    if table:
+        head = next(one for one in found.sections if table in (".".join(one.path), ""))
+        print("\n".join(section_lines(head, width)))
+        return 0
+    print("\n".join(lines(found, width)))
+    return 0
+
+
+def chosen(words: list[str]) -> tuple[Reference, str]:
+    """Return what the words name, and the table in it if they go on to one."""
+    count = 2 if words[0] == "link" else 1
+    if words[0] == "link" and len(words) == 1:
+        raise SceneError("describe link needs a kind of link. Name one, as in describe link fsi.")
+    if len(words) > count + 1:
+        raise SceneError(f"describe: one subject at a time; found {' '.join(words)}. Name one.")
+    found, table = reference(*words[:count]), "".join(words[count:])
+    tables = [".".join(one.path) for one in found.sections if one.path]
+    if table and table not in tables:
+        raise SceneError(unknown(f"describe {found.name}: table {table}", table, tables))
+    return found, table
+
+
+def lines(found: Reference, width: int | None) -> Iterator[str]:
+    """Write a reference as lines, its texts wrapped at a width if one is given."""
+    yield f"{found.name}: {found.title}"
+    for section in found.sections:
+        yield ""
+        same = first_line(section.about) == found.title
+        yield from section_lines(replace(section, about="") if same else section, width)
+
+
+def section_lines(section: Section, width: int | None) -> Iterator[str]:
+    """Write one table as lines: two for each key, what it may be and what it means."""
+    if section.head:
+        yield section.head
+    if section.about:
+        yield from _wrapped(section.about, width, "")
+        yield ""
+    rows = [(one.name, one.unit, may_be(one), default(one)) for one in section.keys]
+    widths = [max((len(row[n]) for row in rows), default=0) for n in range(3)]
+    for row, key in zip(rows, section.keys, strict=True):
+        parts = [f"{part:<{room}}" for part, room in zip(row, widths, strict=False)]
+        yield "  ".join([*parts, row[-1]]).rstrip()
+        yield from _wrapped(key.meaning, width, "    ")
+
+
+def _wrapped(text: str, width: int | None, indent: str) -> Iterator[str]:
+    for part in text.split("\n\n"):
+        line = indent + " ".join(part.split())
+        yield from textwrap.wrap(line, width, subsequent_indent=indent) if width else [line]
+
+
+def may_be(key: Key) -> str:
+    """Type and range."""
+    return f"{key.words}, {key.range}" if key.range else key.words
+
+
+def default(key: Key) -> str:
+    """What holds where the key is left out."""
+    return "needed" if key.needed else key.default
+
+
+def as_data(section: Section) -> dict[str, object]:
+    """One table, for programs."""
+    names = ("unit", "range", "default", "needed", "meaning")
+    rows = [
+        {"key": one.name, "type": one.words, **{name: getattr(one, name) for name in names}}
+        for one in section.keys
+    ]
+    return {"table": section.head, "about": section.about, "keys": rows}
+
+
+def markdown(found: Reference) -> Iterator[str]:
+    """Write a reference as tables of Markdown."""
+    for section in found.sections:
+        if section.head:
+            about = " ".join(section.about.split("\n\n")[0].split())
+            yield f"`{section.head}`: {about}" if about else f"`{section.head}`:"
+            yield ""
+        yield f"| {' | '.join(HEADS)} |"
+        yield f"|{len(HEADS) * '---|'}"
+        for key in section.keys:
+            row = (f"`{key.name}`", key.unit, may_be(key), _cell_of_default(key), key.meaning)
+            yield f"| {' | '.join(one.replace('|', '&#124;') for one in row)} |"
+        yield ""
+
+
+def _cell_of_default(key: Key) -> str:
+    if key.needed:
+        return "**needed**"
+    return f"`{key.default}`" if key.default not in ("", "none") else key.default
+
+
+def filled(text: str, where: str) -> str:
+    """Fill in the tables of a text, each between ``describe SUBJECT`` and ``described``."""
+
+    def tables(place: re.Match[str]) -> str:
+        found, _ = chosen(place[2].split())
+        return place[1] + "\n" + "\n".join(markdown(found)) + place[3]
+
+    if not PLACE.search(text):
+        raise SceneError(
+            f"{where}: there is no place for tables. Write <!-- describe SUBJECT --> and "
+            "<!-- described --> on lines of their own."
+        )
+    return PLACE.sub(tables, text)

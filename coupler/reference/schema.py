@@ -1,0 +1,160 @@
+"""``quintet schema``: the keys of scene files as a JSON schema, by which editors help.
+
+Only keywords of draft 7 are used, which editors of TOML know.
+"""
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pydantic import TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+
+from quintet.coupler.coupling.links import known_links, maker
+from quintet.coupler.coupling.links.keys import LinkKeys
+from quintet.coupler.reference.sections import SCENE_TITLE
+from quintet.coupler.scene.scene import ComponentKeys, SceneFile
+from quintet.coupler.scene.tables import SceneTables
+from quintet.interfaces.keys import about, keys
+from quintet.interfaces.manifest import find, known_kinds
+
+Schema = dict[str, Any]
+REFERENCE = "#/definitions/{model}"
+OWN_CLASS = {"type": "string", "pattern": ":", "description": "module:Class"}
+
+
+class Described(GenerateJsonSchema):
+    """Schemas of parameter classes, with the meaning and unit of every key."""
+
+    def dataclass_schema(self, schema: Any) -> JsonSchemaValue:
+        """Add what the class says of itself and of its keys."""
+        made = super().dataclass_schema(schema)
+        params = schema["cls"]
+        made["description"] = about(params)
+        for key in keys(params):
+            one = made["properties"][key.name]
+            unit = f" Unit: {key.unit}." if key.unit else ""
+            one["description"] = (key.meaning + unit).strip()
+            if key.unit:
+                one["unit"] = key.unit
+        return made
+
+
+def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
+    """Make the schema of a scene file; `more_kinds` are ``module:Class`` that it knows too."""
+    kinds = {kind: find(kind).params for kind in sorted({*known_kinds(), *more_kinds})}
+    links = {kind: getattr(maker(kind), "keys", None) for kind in sorted(known_links())}
+    wanted: dict[tuple[str, str], type] = {("scene", "file"): SceneFile}
+    wanted |= {("scene", "tables"): SceneTables}
+    wanted |= {("common", "components"): ComponentKeys, ("common", "links"): LinkKeys}
+    wanted |= {("component", kind): params for kind, params in kinds.items()}
+    wanted |= {("link", kind): params for kind, params in links.items() if params}
+    found, inner = TypeAdapter.json_schemas(
+        [(name, "validation", TypeAdapter(params)) for name, params in wanted.items()],
+        ref_template=REFERENCE,
+        schema_generator=Described,
+    )
+    definitions: Schema = inner.get("$defs", {})
+    table = {name: _inside(found[name, "validation"], definitions) for name in wanted}
+    file, tables = table["scene", "file"], table["scene", "tables"]
+    properties = {**file["properties"], **tables["properties"]}
+    of_components = _of_kinds("component", kinds, table, table["common", "components"])
+    of_links = _of_kinds("link", links, table, table["common", "links"])
+    definitions |= of_components | of_links
+    properties["components"] |= {"minProperties": 1, "additionalProperties": _to("component")}
+    properties["links"] |= {"items": _to("link")}
+    properties["stand_ins"] |= {
+        "additionalProperties": {
+            "type": "object",
+            "properties": {kind: _to(f"keys of component {kind}") for kind in kinds},
+            "additionalProperties": {"type": "object"},
+        }
+    }
+    made = {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": SCENE_TITLE,
+        "type": "object",
+        "properties": properties,
+        "required": [*file["required"], *tables["required"]],
+        "additionalProperties": False,
+        "definitions": definitions,
+    }
+    return dict(_plain(_used(made)))
+
+
+def as_text(schema: Schema) -> str:
+    """Write a schema as JSON."""
+    return json.dumps(schema, indent=1, ensure_ascii=False)
+
+
+def _inside(schema: Schema, definitions: Schema) -> Schema:
+    """Return the table that a schema refers to."""
+    name = schema.get("$ref", "").rpartition("/")[2]
+    return dict(definitions[name]) if name else dict(schema)
+
+
+def _to(name: str) -> Schema:
+    return {"$ref": REFERENCE.format(model=name)}
+
+
+def _of_kinds(
+    what: str, kinds: Iterable[str], table: Mapping[tuple[str, str], Schema], common: Schema
+) -> Schema:
+    """Define what a table of any kind may say: by its kind, those of all kinds and its own keys."""
+    made, known = {}, [kind for kind in kinds if (what, kind) in table]
+    for kind in known:
+        own = table[what, kind]
+        properties = {**common["properties"], **own.get("properties", {})}
+        made[f"keys of {what} {kind}"] = own
+        made[f"{what} {kind}"] = {**own, "properties": properties}
+    names = {"enum": list(kinds)} if what == "link" else {"anyOf": [{"enum": known}, OWN_CLASS]}
+    kind_key = {**common["properties"]["kind"], **names}
+    kind_key.pop("type", None)
+    made[what] = {
+        "type": "object",
+        "description": common["description"],
+        "properties": {**common["properties"], "kind": kind_key},
+        "required": ["kind"],
+        "allOf": [
+            {
+                "if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]},
+                "then": _to(f"{what} {kind}"),
+            }
+            for kind in known
+        ],
+        # Always met: for editors that look for keys here, and not below "then".
+        "anyOf": [*(_to(f"{what} {kind}") for kind in known), {}],
+    }
+    return made
+
+
+def _used(schema: Schema) -> Schema:
+    """Leave out definitions that nothing refers to."""
+    definitions = schema["definitions"]
+    queue: list[Schema] = [{**schema, "definitions": {}}]
+    kept: set[str] = set()
+    while queue:
+        text = json.dumps(queue.pop())
+        for name in definitions.keys() - kept:
+            if json.dumps(REFERENCE.format(model=name)) in text:
+                kept.add(name)
+                queue.append(definitions[name])
+    used = {name: one for name, one in definitions.items() if name in kept}
+    return {**schema, "definitions": used}
+
+
+def _plain(schema: Any) -> Any:
+    """Write what draft 7 lacks as it has it: tuples, and what stands beside a reference."""
+    if isinstance(schema, list):
+        return [_plain(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    made = {key: _plain(one) for key, one in schema.items()}
+    if made.get("title") != SCENE_TITLE and isinstance(made.get("title"), str):
+        del made["title"]  # a class's or key's name once more
+    if "prefixItems" in made:
+        items = made.pop("prefixItems")
+        made["items"] = items[0] if all(one == items[0] for one in items) else items
+    if "$ref" in made and len(made) > 1:
+        made["allOf"] = [{"$ref": made.pop("$ref")}]
+    return made

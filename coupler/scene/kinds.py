@@ -1,0 +1,23 @@
+"""Kinds of components, named on the command line."""
+
+from pathlib import Path
+
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.manifest import Manifest, find, known_kinds, look_in
+from quintet.interfaces.params import unknown
+
+
+def named_kind(kind: str, where: str) -> Manifest:
+    """Find a kind by its installed name, or as ``module:Class`` beside or below this folder.
+
+    `where` begins the sentence that is said when there is none.
+    """
+    look_in([str(Path.cwd())] if ":" in kind else [])
+    try:
+        return find(kind)
+    except KeyError as error:
+        raise SceneError(unknown(f"{where} {kind}", kind, known_kinds())) from error
+    except ImportError as error:
+        raise SceneError(f"{where} {kind}: it cannot be imported ({error}).") from error
+    except AttributeError as error:
+        raise SceneError(f"{where} {kind}: {error}. Name a class as module:Class.") from error

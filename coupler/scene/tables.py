@@ -1,0 +1,45 @@
+"""The tables of a scene file beside its own keys, all of them."""
+
+from dataclasses import field
+from typing import Any
+
+from quintet.coupler.coupling.links.keys import LinkKeys
+from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.scene.scene import ComponentKeys, GroupSettings
+from quintet.coupler.scene.stability_table import LimitTable
+from quintet.coupler.scene.study_table import RefinementTable
+from quintet.interfaces.params import parameters
+
+
+@parameters
+class SceneTables:
+    """Tables of a scene.
+
+    Parameters
+    ----------
+    components
+        At least one; with them stand the keys of their kinds.
+    links
+        What joins their ports; with them stand the keys of their kinds.
+    groups
+        Components with a scheme and windows of their own.
+    expect
+        Numbers that the run must reproduce.
+    presets
+        Settings by dotted path, for ``--preset NAME``.
+    stand_ins
+        By component and kind: the keys of a kind that ``--swap`` puts in its place.
+    study
+        Refinements of a convergence study, from coarse to fine.
+    stability
+        Limits of stability.
+    """
+
+    components: dict[str, ComponentKeys]
+    links: tuple[LinkKeys, ...] = ()
+    groups: dict[str, GroupSettings] = field(default_factory=dict)
+    expect: tuple[Expectation, ...] = ()
+    presets: dict[str, dict[str, Any]] = field(default_factory=dict)
+    stand_ins: dict[str, dict[str, dict[str, Any]]] = field(default_factory=dict)
+    study: tuple[RefinementTable, ...] = ()
+    stability: tuple[LimitTable, ...] = ()

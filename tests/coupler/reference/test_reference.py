@@ -1,0 +1,146 @@
+"""Every key is told with meaning and unit: by ``quintet describe`` and in the folders' texts."""
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from quintet.coupler.cli import main
+from quintet.coupler.coupling.links import known_links
+from quintet.coupler.reference.describe import PLACE, filled
+from quintet.coupler.reference.sections import link_keys, reference, sections, subjects
+from quintet.coupler.scene.scene import SceneFile
+from quintet.coupler.scene.tables import SceneTables
+from quintet.interfaces.keys import documented, keys
+from quintet.interfaces.manifest import find, known_kinds
+from quintet.interfaces.units import UNITS
+from quintet.scenarios.two_springs.springs import Mass
+
+ROOT = Path(__file__).resolve().parents[3]
+SUBJECTS = ["scene", *sorted(known_kinds()), *(f"link {one}" for one in sorted(known_links()))]
+SEVERAL = re.compile(r"of the (field|parameter)\b|`unit`")  # the scene says which
+
+
+def every_class():
+    """Yield the parameter classes of scenes, links and components, with those within."""
+    outer = [SceneFile, SceneTables, Mass.Params, *map(link_keys, known_links())]
+    queue = [*outer, *(find(kind).params for kind in known_kinds())]
+    while queue:
+        yield (one := queue.pop())
+        queue += [key.inner for key in keys(one) if key.inner is not None]
+
+
+CLASSES = sorted(set(every_class()), key=lambda one: (one.__module__, one.__qualname__))
+
+
+@pytest.mark.parametrize("params", CLASSES, ids=lambda one: one.__qualname__)
+def test_every_key_has_a_meaning_and_every_number_a_unit(params):
+    found = keys(params)
+    assert [key.name for key in found if not key.meaning] == []
+    assert [key.name for key in found if key.numeric and not key.unit] == []
+    assert [key.name for key in found if key.unit and not key.numeric] == []
+    others = {key.unit for key in found} - UNITS - {"", "min", "m2/s"}
+    assert [unit for unit in others if not SEVERAL.match(unit)] == []
+    names = {key.name for key in found}
+    assert {name.rstrip("_") for name in documented(params)} <= names  # none that is gone
+
+
+@pytest.mark.parametrize("params", CLASSES, ids=lambda one: one.__qualname__)
+def test_defaults_are_told_as_a_scene_would_give_them(params):
+    for key in keys(params):
+        if key.default not in ("", "none"):
+            (info,) = (
+                one
+                for name, one in params.__pydantic_fields__.items()
+                if key.name in (name, one.alias)
+            )
+            value = tomllib.loads(f"x = {key.default}")["x"]
+            made = info.get_default(call_default_factory=True)
+            assert json.dumps(value) == json.dumps(made)
+        assert key.needed != bool(key.default) or key.inner is not None
+
+
+def test_all_that_can_be_described_is_listed():
+    assert [name for name, _ in subjects()] == SUBJECTS
+
+
+TEXTS = [path for path in ROOT.glob("*/**/README.md") if ".venv" not in path.parts]
+TEXTS = [path for path in TEXTS if PLACE.search(path.read_text())]
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_tables_in_texts_are_as_quintet_describe_writes_them(path):
+    again = filled(path.read_text(), path.name)
+    assert path.read_text() == again, f"quintet describe --write {path.relative_to(ROOT)}"
+
+
+def test_every_subject_stands_in_a_text():
+    told = [place[1] for path in TEXTS for place in PLACE.findall(path.read_text())]
+    assert sorted(told) == sorted(SUBJECTS)
+
+
+def said(capsys, *arguments):
+    with pytest.raises(SystemExit) as ended:
+        main(["describe", *arguments])
+    found = capsys.readouterr()
+    return ended.value.code, found.out, found.err
+
+
+@pytest.mark.parametrize("subject", SUBJECTS)
+def test_describe_prints_every_key(capsys, subject):
+    status, out, _ = said(capsys, *subject.split())
+    assert status == 0
+    rows = [(key, line) for one in reference(*subject.split()).sections for key in one.keys
+            for line in out.splitlines() if line.split(" ")[0] == key.name]  # fmt: skip
+    assert {key.name for key, _ in rows} == {
+        key.name for one in reference(*subject.split()).sections for key in one.keys
+    }
+    for one in reference(*subject.split()).sections:
+        assert all(f"    {key.meaning}" in out.splitlines() for key in one.keys)
+
+
+def test_describe_prints_one_table_alone(capsys):
+    status, out, _ = said(capsys, "scene", "output")
+    assert status == 0 and out.startswith("[output]\nWhat a run leaves.\n")
+    assert "[[expect]]" not in out
+
+
+def test_describe_gives_data_for_programs(capsys):
+    _, out, _ = said(capsys, "link", "fsi", "--json")
+    (table,) = json.loads(out)
+    contact = next(one for one in table["keys"] if one["key"] == "contact")
+    assert contact["type"] == '"walls" or "potential"' and contact["default"] == '"walls"'
+
+
+def test_a_class_beside_a_scene_is_described(capsys):
+    status, out, _ = said(capsys, "quintet.scenarios.two_springs.springs:Mass")
+    assert status == 0
+    assert re.search(r"^stiffness +N/m +number, > 0 +needed\n    Of the spring\.$", out, re.M)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["sph_fliud"], "describe sph_fliud is not known. Did you mean sph_fluid?"),
+        (["link", "fis"], "describe link fis is not known. Did you mean fsi?"),
+        (["link"], "describe link needs a kind of link. Name one, as in describe link fsi."),
+        (["scene", "ouput"], "describe scene: table ouput is not known. Did you mean output?"),
+        (["scene", "output", "more"], "one subject at a time; found scene output more."),
+        (["nowhere:Mass"], "describe nowhere:Mass: it cannot be imported"),
+        (["--write", "{text}"], "there is no place for tables."),
+    ],
+)
+def test_what_cannot_be_described_is_told(capsys, tmp_path, words, sentence):
+    (tmp_path / "text.md").write_text("# A text\n")
+    status, out, err = said(capsys, *[one.format(text=tmp_path / "text.md") for one in words])
+    assert (status, out) == (2, "") and sentence in err
+
+
+def test_the_same_class_is_told_once():
+    found = [one.head for one in reference("scene").sections]
+    assert len(found) == len(set(found)) and "[groups.NAME.iteration]" not in found
+    group = next(one for one in reference("scene").sections if one.head == "[groups.NAME]")
+    assert group.keys[-1].meaning.endswith("Keys as in `[iteration]`.")
+    assert len(list(sections(SceneFile))) == 3
