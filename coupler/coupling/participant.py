@@ -3,14 +3,16 @@
 import statistics
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from quintet.interfaces.component import Array, Fields
+from quintet.coupler.coupling.answers import AnswerSums, check_answer, check_outputs
+from quintet.interfaces.component import Array, Field, Fields
 from quintet.interfaces.errors import LineError, MessageError, QuintetError
 from quintet.interfaces.lines.message import Message, Shapes, require_finite
 from quintet.interfaces.lines.transport import Line
+from quintet.interfaces.serving.serve import sendable
 
 PATIENCE = 3600.0  # s for one answer of a component that is seen to be working
 
@@ -54,12 +56,14 @@ class Participant:
         self.stable = 0.0  # s, largest step from its present state
         self.timing = Timing()
         self.shapes: Shapes | None = None  # of its outputs, once known
+        self.sums: AnswerSums | None = None  # of which its answers tell, once its ports are joined
+        self._order = ""  # the last
         self._asked = 0.0
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
 
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
-        self._asked = time.perf_counter()
+        self._asked, self._order = time.perf_counter(), order
         self.asking()
         try:
             self.line.send({"order": order, "window": self.window, **header}, fields or {})
@@ -70,13 +74,17 @@ class Participant:
         """Wait for the answer."""
         try:
             message = self.line.receive(PATIENCE, expected)
+            if message.order != "failed":
+                check_answer(self._order, message)
+            if self.sums and self._order == "advance" and message.order != "failed":
+                self.sums.check(message)
             if finite:
                 require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
         if message.order == "failed":
-            said = f"{message.header.get('error')}: {message.header.get('text')}"
-            trace = str(message.header.get("traceback", ""))
+            said = sendable(f"{message.header.get('error')}: {message.header.get('text')}")
+            trace = sendable(str(message.header.get("traceback", "")))
             raise ComponentFailed(self.name, self.window, said, trace)
         return message
 
@@ -111,9 +119,16 @@ class Participant:
         self.window += 1
         return message
 
-    def give(self) -> dict[str, Array]:
+    def give(
+        self, wanted: Iterable[str] | None = None, gives: Mapping[str, Field] | None = None
+    ) -> dict[str, Array]:
         """Ask for the outputs at the start, and remember their shapes."""
         fields = self.call("give").fields
+        try:
+            if wanted is not None and gives is not None:
+                check_outputs(fields, wanted, gives)
+        except MessageError as error:
+            raise ComponentFailed(self.name, self.window, str(error)) from error
         self.shapes = {key: array.shape for key, array in fields.items()}
         return fields
 

@@ -197,7 +197,8 @@ def accept(
         )
     one = participants[name] = Participant(name, line)
     if watch:
-        watch.shared = [str(path) for path in hello.header.get("shared", [])]
+        told = map(Path, map(str, hello.header.get("shared", [])))
+        watch.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
         watch.usual = lambda: one.timing.usual
         line.watch, one.asking = watch, watch.reset
     line.send(settings(scene, name), {})

@@ -33,7 +33,7 @@ from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
-from quintet.interfaces.errors import DiskError, LinkError, SceneError
+from quintet.interfaces.errors import DiskError, LinkError, QuintetError, SceneError
 
 
 class Closable(Protocol):
@@ -123,7 +123,7 @@ def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -
     """Report a failure: component, window, cause, and the last lines of its log."""
     give_up_reserve(folder)  # what is said here may go to the same disk
     if not isinstance(error, ComponentFailed):
-        trace = "" if isinstance(error, DiskError) else traceback.format_exc()
+        trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
         error = ComponentFailed("coupler", writer.done, str(error), trace)
     lines = tail(folder / "log" / f"{error.component}.log")
     found = results.fault(error, folder, lines)

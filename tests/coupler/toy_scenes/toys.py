@@ -85,7 +85,9 @@ class Toy(Component):
         return {name: array.copy() for name, array in state.items()}
 
     def load(self, state):
-        self.value, self.push = np.array(state["value"]), np.array(state["push"])
+        shape = self.value.shape
+        self.value = np.array(state["value"], float).reshape(shape)
+        self.push = np.array(state["push"], float).reshape(shape)
         self.steps = int(state["steps"])
 
     def totals(self):
