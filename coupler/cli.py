@@ -104,7 +104,9 @@ def parser() -> argparse.ArgumentParser:
 
 GRAPH = "draw components, ports and links instead of the plan"
 MERMAID = "the same as a Mermaid flowchart, for texts that draw it"
-SUBJECT = "scene, a kind, or link and its kind; then one of its tables; a list if none is given"
+SUBJECT = (
+    "scene, a kind, or link and its kind; then one table or key of it; a list if none is given"
+)
 WRITE = "fill in the tables between <!-- describe SUBJECT --> and <!-- described --> of texts"
 KEEP = "keep runs that an earlier study completed in DIR, of the same scene on the same machine"
 OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"

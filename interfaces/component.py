@@ -138,6 +138,7 @@ class Component(ABC):
 
     takes: tuple[Port, ...] = ()
     gives: tuple[Port, ...] = ()
+    shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
 
     def describe(self) -> Fields:
         """Static fields of the ports it gives, and what it states at those it takes."""
@@ -190,7 +191,18 @@ class Component(ABC):
         return Totals()
 
     def view(self) -> Fields:
-        """What a picture needs: ``points`` (n, 3) m, optional ``cells`` (m, 3 or 4), and fields."""
+        """What pictures and ParaView show of its present state.
+
+        ``points`` (n, 3) m; optional ``cells`` (m, 3 or more): polygons, by the numbers of their
+        corners, -1 after the last corner of those with fewer. All other fields have a row for each
+        point or for each cell, and stand with their units in `shows`; ``radius`` [m] tells
+        that points are spheres. By default nothing: then the bodies, meshes or points are shown
+        whose positions it gives.
+        """
+        return {}
+
+    def walls(self) -> Fields:
+        """What stands still around it, for pictures: ``points`` and ``cells`` as in a view."""
         return {}
 
     def items(self) -> int:

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
+from pydantic import dataclasses
 from pydantic.fields import FieldInfo
 
 from quintet.interfaces.params import is_data_file
@@ -45,10 +46,17 @@ class Key:
 def keys(params: type) -> list[Key]:
     """Return the keys of a class made by `parameters`, in its order."""
     said = documented(params)
-    fields: dict[str, FieldInfo] = getattr(params, "__pydantic_fields__", {})
+    fields = fields_of(params)
     return [
         _key(info.alias or name, info, *said.get(name, ("", ""))) for name, info in fields.items()
     ]
+
+
+def fields_of(params: type) -> dict[str, FieldInfo]:
+    """Return the fields of a parameter class, or of a plain dataclass."""
+    made = params if hasattr(params, "__pydantic_fields__") else dataclasses.dataclass(params)
+    found: dict[str, FieldInfo] = made.__pydantic_fields__
+    return found
 
 
 def about(params: type) -> str:

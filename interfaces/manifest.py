@@ -12,7 +12,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import Component, Fields, Port
+from quintet.interfaces.component import Component, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
@@ -104,6 +104,7 @@ class Manifest:
     plan: Callable[[Any], Plan] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
+    shows: tuple[Field, ...] = ()  # as of the component
 
     def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
@@ -159,7 +160,8 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
             "none. Write `@parameters class Params` inside it."
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
-    return Manifest(kind, title, params, path, lambda _: (cls.takes, cls.gives))
+    takes, gives = cls.takes, cls.gives
+    return Manifest(kind, title, params, path, lambda _: (takes, gives), shows=cls.shows)
 
 
 def known_kinds() -> dict[str, str]:

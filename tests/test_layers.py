@@ -20,7 +20,7 @@ FLOORS = {
         {"errors"},
         {"units", "params"},
         {"component", "keys"},
-        {"ports", "manifest", "rotation", "sums"},
+        {"ports", "manifest", "rotation", "sums", "faces"},
         {"lines"},
         {"serving"},
     ],

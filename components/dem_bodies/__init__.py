@@ -51,7 +51,7 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 from quintet.components.dem_bodies import build
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.ports import ports
+from quintet.components.dem_bodies.ports import SHOWS, ports
 from quintet.interfaces.manifest import Manifest, Plan
 
 __all__ = ["MANIFEST", "DemBodiesParams"]
@@ -79,4 +79,5 @@ MANIFEST = Manifest(
     plan=_plan,
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",
+    shows=SHOWS,
 )

@@ -35,10 +35,10 @@ from quintet.components.dem_bodies.state import (
     Whole,
 )
 from quintet.components.shared.polygons import area_moments
+from quintet.interfaces.faces import CORNERS
 
 SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
 THIN = 0.1  # of a box's longest edge: what is thinner is listed as if it were not
-CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # of a box, z fastest
 # Pairs of corners that differ in one coordinate.
 EDGES = np.array([(k, k + step) for step in (1, 2, 4) for k in range(8) if not k & step])
 

@@ -17,9 +17,9 @@ from quintet.components.dem_bodies.integration.step_limit import (
     many_contacts_step,
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.ports import ports
+from quintet.components.dem_bodies.ports import SHOWS, ports
 from quintet.components.dem_bodies.shapes import planar
-from quintet.components.dem_bodies.shapes.view import view
+from quintet.components.dem_bodies.shapes.view import planes_view, view
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -65,6 +65,8 @@ class DemBodies(Component):
     params : DemBodiesParams
         Bodies, materials, planes.
     """
+
+    shows = SHOWS
 
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params = params
@@ -282,8 +284,12 @@ class DemBodies(Component):
         )
 
     def view(self) -> Fields:
-        """Corners and faces of boxes, centres of spheres, with body number and velocity."""
+        """Corners and faces of boxes and polygons, centres and radii of spheres, velocities."""
         return view(self.params.bodies, self.solids, self.state)
+
+    def walls(self) -> Fields:
+        """Return what is near the bodies of the planes."""
+        return planes_view(self.params.planes, self.state)
 
     def items(self) -> int:
         """Count the bodies."""

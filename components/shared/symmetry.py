@@ -62,7 +62,7 @@ class SymmetryImages:
         return points
 
     def with_room(self, array: Array, rows: int) -> Array:
-        """Return the first rows of an array (≥ rows, width) with room for their images."""
+        """Return the first rows of an array (≥ rows, width) with buffer for their images."""
         count = sum(map(len, self.origin))
         return np.concatenate([array[:rows], np.zeros((count, *array.shape[1:]))])
 
@@ -130,7 +130,7 @@ def mirrored(points: Array, plane: Plane) -> Array:
 
 def neighbours_and_images(
     points: Array, first_group: NDArray[np.bool_], split: int, rows: int, reach: float, team: Team,
-    query_points: Array | None, room: NDArray[np.int32],
+    query_points: Array | None, buffer: NDArray[np.int32],
 ) -> NeighbourLists:  # fmt: skip
     """Lists as `neighbours_within` makes them, among points and their images.
 
@@ -143,7 +143,7 @@ def neighbours_and_images(
     split, rows : int
         How many of the points that are no images are of the first group, and of both.
     reach : float, m
-    team, query_points, room
+    team, query_points, buffer
         As there.
 
     Returns
@@ -155,7 +155,7 @@ def neighbours_and_images(
     grid = grid_around(points[first], reach)
     first, second = (group[sorted_into(points[group], grid)[2]] for group in (first, second))
     row = np.concatenate([first, second])
-    found = neighbours_within(reach, points[row], len(first), team, query_points, room)
+    found = neighbours_within(reach, points[row], len(first), team, query_points, buffer)
     at = np.empty(len(row), np.int64)
     at[row] = np.arange(len(row))
     if query_points is None:

@@ -66,7 +66,7 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 """
 
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import ports
+from quintet.components.sph_fluid.ports import SHOWS, ports
 from quintet.components.sph_fluid.setup.particle_count import particles
 from quintet.interfaces.manifest import Manifest, Plan
 
@@ -91,4 +91,5 @@ MANIFEST = Manifest(
     plan=_plan,
     bench="quintet.components.sph_fluid.bench:cases",
     conform="quintet.components.sph_fluid.conform:cases",
+    shows=SHOWS,
 )

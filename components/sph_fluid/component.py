@@ -15,16 +15,20 @@ from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import ports
+from quintet.components.sph_fluid.ports import SHOWS, ports
+from quintet.components.sph_fluid.setup.geometry import wall_faces
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import OrderError, StepError
+from quintet.interfaces.faces import polygons
 
 LOADS = frozenset({"surface_load.force"})
 
 
 class SphFluid(Component):
     """A weakly compressible fluid in a tank, and the surfaces that move in it."""
+
+    shows = SHOWS
 
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, ports(params)
@@ -82,8 +86,8 @@ class SphFluid(Component):
         if len(self.samples.row):
             if self.params.dimensions == 2:
                 fields = in_plane(fields, self.params)
-            self.samples.place(self.state, fields)
-            self.boundary.place(self.state, fields)
+            self.samples.move(self.state, fields)
+            self.boundary.follow_samples(self.state, fields)
             self.symmetry.require_before(fields["surface.position"])
 
     def step(self, dt: float) -> None:
@@ -120,7 +124,7 @@ class SphFluid(Component):
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         self.pairs.push_samples(self.state, self.team)
         if self.films:
-            self.films.push(self.state, self.lists.arrays, dt)
+            self.films.advance(self.state, self.lists.arrays, dt)
         self.pairs.move_with_neighbours(self.state, dt, self.team)
 
     def _finish(self, moved: Moved, dt: float) -> None:
@@ -148,7 +152,7 @@ class SphFluid(Component):
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
-        self.samples.find(self.state)
+        self.samples.find_rows(self.state)
         self.boundary.load(self.state)
         if len(self.state.reference):
             self._list()
@@ -163,6 +167,10 @@ class SphFluid(Component):
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
         return diagnostics.view(self.state)
+
+    def walls(self) -> Fields:
+        """Return the tank's closed faces, and the obstacles in it."""
+        return polygons(wall_faces(self.params))
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""

@@ -92,32 +92,35 @@ def pair_rates(
     near_mask = np.ones_like(near_position[:, 0])
     greatest, fastest = 0.0, bits_of(zero)
     for i in range(first, last):
-        here = position[i, 0], position[i, 1], position[i, 2], position[i, 3]
-        going = velocity[i, 0], velocity[i, 1], velocity[i, 2], velocity[i, 3]
-        far = out_of_reach(here[0], constants.smoothing.length), here[1], here[2], here[3]
+        position_i = position[i, 0], position[i, 1], position[i, 2], position[i, 3]
+        velocity_i = velocity[i, 0], velocity[i, 1], velocity[i, 2], velocity[i, 3]
+        outside = out_of_reach(position_i[0], constants.smoothing.length)
+        padding = outside, position_i[1], position_i[2], position_i[3]
         if i < split:
-            count = pack_rows(begin[i], middle[i], neighbour, position, far, near_position)
-            pack_rows(begin[i], middle[i], neighbour, velocity, going, near_velocity)
+            count = pack_rows(begin[i], middle[i], neighbour, position, padding, near_position)
+            pack_rows(begin[i], middle[i], neighbour, velocity, velocity_i, near_velocity)
             force, density_rate, compression, xsph, fastest = sum_pairs(
-                count, here, going, near_position, near_velocity, near_velocity, near_volume,
-                near_mask, law.fluid, constants, fastest,
+                count, position_i, velocity_i, near_position, near_velocity, near_velocity,
+                near_volume, near_mask, law.fluid, constants, fastest,
             )  # fmt: skip
             ax, ay, az = force
             if law.fluid.xsph is not None:
                 for d in range(3):
                     xsph_velocity[i, d] = 2.0 * constants.mass * xsph[d]
             if middle[i] < end[i]:
-                count = pack_rows(middle[i], end[i], neighbour, position, far, near_position)
-                pack_rows(middle[i], end[i], neighbour, velocity, going, near_velocity)
+                count = pack_rows(middle[i], end[i], neighbour, position, padding, near_position)
+                pack_rows(middle[i], end[i], neighbour, velocity, velocity_i, near_velocity)
                 if law.boundary.viscosity.on is not None:
-                    pack_rows(middle[i], end[i], neighbour, boundary_velocity, going, near_apparent)
+                    pack_rows(
+                        middle[i], end[i], neighbour, boundary_velocity, velocity_i, near_apparent
+                    )
                 if law.boundary.volume is not None:
                     pack_values(middle[i], end[i], neighbour, volume, near_volume)
                 if law.boundary.contact.partial is not None:
                     pack_values(middle[i], end[i], neighbour, mask, near_mask)
                 force, more, other, _, fastest = sum_pairs(
-                    count, here, going, near_position, near_velocity, near_apparent, near_volume,
-                    near_mask, law.boundary, constants, fastest,
+                    count, position_i, velocity_i, near_position, near_velocity, near_apparent,
+                    near_volume, near_mask, law.boundary, constants, fastest,
                 )  # fmt: skip
                 ax, ay, az = ax + force[0], ay + force[1], az + force[2]
                 density_rate, compression = density_rate + more, compression + other
@@ -129,10 +132,10 @@ def pair_rates(
             rate[i, 1] = fy
             rate[i, 2] = fz
         else:
-            count = pack_rows(begin[i], end[i], neighbour, position, far, near_position)
-            pack_rows(begin[i], end[i], neighbour, velocity, going, near_velocity)
+            count = pack_rows(begin[i], end[i], neighbour, position, padding, near_position)
+            pack_rows(begin[i], end[i], neighbour, velocity, velocity_i, near_velocity)
             density_rate = sum_continuity(
-                count, here, going, near_position, near_velocity, constants
+                count, position_i, velocity_i, near_position, near_velocity, constants
             )
             compression = density_rate
         rate[i, 3] = constants.mass * density_rate
@@ -142,10 +145,10 @@ def pair_rates(
 
 
 @njit(inline="always")
-def sum_continuity(count, here, going, position, velocity, constants):  # type: ignore[no-untyped-def]
+def sum_continuity(count, position_i, velocity_i, position, velocity, constants):  # type: ignore[no-untyped-def]
     """Σ u_ij·∇_iW_ij of a boundary particle over so many of the fluid around it."""
-    x, y, z, _ = here
-    u, v, w, _ = going
+    x, y, z, _ = position_i
+    u, v, w, _ = velocity_i
     found = position.dtype.type(0)
     for k in range(count):
         dx, dy, dz = x - position[k, 0], y - position[k, 1], z - position[k, 2]
@@ -158,14 +161,15 @@ def sum_continuity(count, here, going, position, velocity, constants):  # type: 
 
 @njit(inline="always")
 def sum_pairs(  # type: ignore[no-untyped-def]
-    count, here, going, position, velocity, apparent, volume, mask, terms, constants, fastest
-):
+    count, position_i, velocity_i, position, velocity, apparent, volume, mask, terms, constants,
+    fastest,
+):  # fmt: skip
     """Sums over so many neighbours of a fluid particle, all alike.
 
     Parameters
     ----------
     count : int
-    here, going : four floats
+    position_i, velocity_i : four floats
         The particle's rows of `Particles`.
     position, velocity, apparent : (any, 4) float arrays
         Of its neighbours, side by side; `apparent` velocities are those that viscosity sees.
@@ -181,8 +185,8 @@ def sum_pairs(  # type: ignore[no-untyped-def]
     force over m² (3), dρ/dt over m, the same without diffusion, XSPH's sum (3), `fastest`
     """
     zero = position.dtype.type(0)
-    x, y, z, density = here
-    u, v, w, pressure = going
+    x, y, z, density = position_i
+    u, v, w, pressure = velocity_i
     more = density + constants.base + constants.base
     force = zero, zero, zero
     density_rate, compression = zero, zero
@@ -204,9 +208,9 @@ def sum_pairs(  # type: ignore[no-untyped-def]
         other = velocity[k, 3]
         if terms.contact.on is not None:
             other *= contact_factor(r2, mask[k], terms.contact, constants.smoothing)
-        seen = apparent[k, 0], apparent[k, 1], apparent[k, 2]
+        apparent_j = apparent[k, 0], apparent[k, 1], apparent[k, 2]
         force = add_pair_force(
-            force, (dx, dy, dz), (u, v, w), seen, r2, pressure + other, approach, slope,
+            force, (dx, dy, dz), (u, v, w), apparent_j, r2, pressure + other, approach, slope,
             per_r2, per_density, terms,
         )  # fmt: skip
         if terms.diffusion.on is not None:
@@ -265,13 +269,13 @@ def sample_forces(
                 if terms.contact.partial is not None:
                     acts = mask[i]
                 own = pressure * contact_factor(r2, acts, terms.contact, constants.smoothing)
-            seen = u, v, w
+            apparent_i = u, v, w
             if terms.viscosity.on is not None:
-                seen = apparent[i, 0], apparent[i, 1], apparent[i, 2]
-            going = velocity[j, 0], velocity[j, 1], velocity[j, 2]
+                apparent_i = apparent[i, 0], apparent[i, 1], apparent[i, 2]
+            velocity_j = velocity[j, 0], velocity[j, 1], velocity[j, 2]
             on_sample = add_pair_force(
-                on_sample, (dx, dy, dz), seen, going, r2, own + velocity[j, 3], dot * per_r2,
-                slope, per_r2, per_density, terms,
+                on_sample, (dx, dy, dz), apparent_i, velocity_j, r2, own + velocity[j, 3],
+                dot * per_r2, slope, per_r2, per_density, terms,
             )  # fmt: skip
         for d in range(3):
             force[s, d] = constants.mass * constants.mass * on_sample[d]

@@ -6,7 +6,7 @@ from quintet.components.sph_fluid.boundary.planar import planar_surface
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import CONTACT, MIRRORED_SURFACE, SURFACE, SURFACE_LOAD
+from quintet.interfaces.ports import CONTACT, MIRRORED_SURFACE, SURFACE, SURFACE_LOAD, VELOCITY
 
 PRESSURE = Port("pressure_gauge", (Field("pressure", (), "Pa"),))
 LEVEL = Port("level_gauge", (Field("height", (), "m"),))
@@ -20,6 +20,8 @@ MOTION = Port(
         Field("centre", (3,), "m"),  # of mass
     ),
 )
+# Of the view: the fluid's particles.
+SHOWS = (VELOCITY, Field("density", (), "kg/m3"), Field("pressure", (), "Pa"))
 
 
 def ports(params: SphFluidParams) -> Ports:

@@ -18,6 +18,7 @@ from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
+from quintet.coupler.coupling.stability_watch import StabilityWatch
 from quintet.coupler.files.table_file import TableFile
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.rotation import vector_between
@@ -77,6 +78,7 @@ class Ledger:
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy = EnergyBalance()
+        self.watch = StabilityWatch(self.accounts)
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
         self._table = TableFile(path, size)
@@ -223,6 +225,7 @@ class Ledger:
             "accounts": [_as_row(account) for account in self.accounts.values()],
             "totals": self.totals,
             "energy": self.energy.save(),
+            "watch": self.watch.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
             "size": self._table.flush(),
@@ -234,6 +237,7 @@ class Ledger:
             self.accounts[row["link"]] = Account(**{**row, "impulse": np.array(row["impulse"])})
         self.totals = dict(state["totals"])
         self.energy.load(state["energy"])
+        self.watch.load(state["watch"])
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])
 

@@ -1,7 +1,7 @@
 """Operators between the items of two components, each with its transpose.
 
-Motion is gathered (consistent: a constant stays constant), forces are spread with the
-transposed operator (conservative: sums, and power, stay the same to rounding).
+Motion is mapped consistently (a constant stays constant), forces conservatively, with the
+transposed operator (sums, and power, stay the same to rounding).
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class RigidMap:
         """Arms in the world frame (n, 3) m, for orientations (bodies, 4)."""
         return np.einsum("nij,nj->ni", matrix(orientation)[self.body], self.arm)
 
-    def gather(
+    def map_consistent(
         self, position: Array, velocity: Array, orientation: Array, angular_velocity: Array
     ) -> tuple[Array, Array]:
         """Position (n, 3) m and velocity (n, 3) m/s of the samples of moving bodies."""
@@ -46,7 +46,7 @@ class RigidMap:
         turning = np.cross(angular_velocity[self.body], arms)
         return position[self.body] + arms, velocity[self.body] + turning
 
-    def spread(self, force: Array, arms: Array) -> tuple[Array, Array]:
+    def map_conservative(self, force: Array, arms: Array) -> tuple[Array, Array]:
         """Force and torque about the centre (bodies, 3) of forces (n, 3) at arms (n, 3)."""
         return (
             sum_by(force, self.body, self.bodies),
@@ -73,11 +73,11 @@ class ShapeMap:
     nodes: int
     face: Array
 
-    def gather(self, values: Array) -> Array:
+    def map_consistent(self, values: Array) -> Array:
         """Values (nodes, k) at the points: (n, k)."""
         return np.einsum("nc,nck->nk", self.weight, values[self.node])
 
-    def spread(self, values: Array) -> Array:
+    def map_conservative(self, values: Array) -> Array:
         """Amounts (n, k) at the points, given to the nodes: (nodes, k)."""
         parts = self.weight[:, :, None] * values[:, None, :]
         return sum_by(parts.reshape(-1, values.shape[1]), self.node.reshape(-1), self.nodes)

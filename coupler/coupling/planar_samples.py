@@ -110,8 +110,8 @@ def offset_inward(corner: Array, distance: float) -> Array:
         return np.array([np.linalg.solve([n, m], [a, b]) for n, m, a, b in pairs])
     for n, a in zip(away, level, strict=True):
         corner = _clip(corner, corner @ n - a)
-    apart = np.linalg.norm(corner - np.roll(corner, 1, axis=0), axis=1)
-    return np.asarray(corner[apart > NEARLY * np.abs(level).max()])
+    edge_length = np.linalg.norm(corner - np.roll(corner, 1, axis=0), axis=1)
+    return np.asarray(corner[edge_length > NEARLY * np.abs(level).max()])
 
 
 def _clip(corner: Array, above: Array) -> Array:

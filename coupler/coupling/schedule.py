@@ -148,7 +148,7 @@ class Coupling:
         length, _ = auto_length(steps, equal)
         return length if math.isfinite(length) else self.windows.end * self.windows.tick / BLIND
 
-    def gather(
+    def collect_inputs(
         self, name: str, stepped: Collection[str], window: Window
     ) -> dict[str, WindowInputs]:
         """Bring to a member's components what the others gave; `stepped` have done this window."""

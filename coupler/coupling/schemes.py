@@ -30,7 +30,7 @@ def serial(coupling: Coupling, window: Window) -> None:
     """One after the other: each sees the window's end of those before it."""
     stepped: list[str] = []
     for name in coupling.members:
-        inputs = coupling.gather(name, stepped, window)
+        inputs = coupling.collect_inputs(name, stepped, window)
         coupling.start(name, window, inputs)
         _conclude(coupling, name, coupling.finish(name, window), inputs, window)
         stepped.append(name)
@@ -43,7 +43,7 @@ def serial(coupling: Coupling, window: Window) -> None:
 
 def parallel(coupling: Coupling, window: Window) -> None:
     """All at once: each sees the others as they were at the window's beginning."""
-    inputs = {name: coupling.gather(name, (), window) for name in coupling.members}
+    inputs = {name: coupling.collect_inputs(name, (), window) for name in coupling.members}
     for name in coupling.members:
         coupling.start(name, window, inputs[name])
     given = {name: coupling.finish(name, window) for name in coupling.members}
@@ -77,7 +77,7 @@ def iterated(coupling: Coupling, window: Window) -> None:
     while True:
         inputs, given = _sweep(coupling, window, guess)
         everyone = list(coupling.members)
-        taken = {name: coupling.gather(name, everyone, window) for name in guessing}
+        taken = {name: coupling.collect_inputs(name, everyone, window) for name in guessing}
         found = {(one, key): _inputs_of(taken, one).fields[key] for one, key in guess}
         residuals = measure.compare(guess, found, window.dt)
         if converged(residuals):
@@ -135,7 +135,7 @@ def _sweep(
     booked: dict[str, Inputs] = {}
     gave: dict[str, Given] = {}
     for name in coupling.members:
-        inputs = coupling.gather(name, stepped, window)
+        inputs = coupling.collect_inputs(name, stepped, window)
         for (component, key), value in guess.items():
             if component in inputs:
                 mine = inputs[component]
@@ -163,7 +163,7 @@ def _first_guess(coupling: Coupling, window: Window) -> Guess:
     stretch = window.dt / coupling.last_dt if coupling.last_dt else 1.0
     found: Guess = {}
     for number, name in enumerate(names):
-        for component, inputs in coupling.gather(name, names[:number], window).items():
+        for component, inputs in coupling.collect_inputs(name, names[:number], window).items():
             for key, array in inputs.fields.items():
                 if key not in inputs.ends:
                     impulse = coupling.exchange.is_impulse(component, key)

@@ -17,6 +17,17 @@ RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")
 RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, RESERVE)  # of every run
 SNAPSHOTS = "snapshot-*.h5"
+VIEWS, WALLS = ".vtkhdf", ".walls.vtkhdf"
+
+
+def view_file(component: str) -> str:
+    """File with what there is to see of a component."""
+    return f"{component}{VIEWS}"
+
+
+def walls_file(component: str) -> str:
+    """File with what stands still around a component; no name of a component has a dot."""
+    return f"{component}{WALLS}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,25 +1,28 @@
 """VTKHDF files: views of a component over time, as temporal PolyData for ParaView.
 
 The layout is VTKHDF 2.0. What does not change from step to step is stored once and pointed
-to by every step, so that an append extends only the points, their fields and the times.
+to by every step, so that an append extends only the points, their fields and the times. Points of
+no polygon are vertices. Every dataset has its unit as an attribute, and the field data lists
+them, for ParaView shows no attributes.
 """
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
 
 from quintet.coupler.files.disk import PART, removed_on_failure
 from quintet.coupler.files.hdf5 import create, room
+from quintet.coupler.files.vtkhdf_reader import SCENE, UNITS, read_step, scene, times, units
 from quintet.interfaces.component import Array
-from quintet.interfaces.errors import PortError, SceneError
+from quintet.interfaces.errors import PortError
 
 BLOCK = 1024  # entries by which the small tables grow; readers take the first NSteps
 CHUNK = 1 << 16  # points in the largest chunk
 TABLES = 1 << 19  # bytes of all small tables, a block of each
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
+NOTHING: Mapping[str, str] = {}
 Topology = tuple[Array, Array]  # corners of all cells, where each begins
 
 
@@ -28,9 +31,19 @@ class VtkHdf:
 
     The file is whole after every append, even if the process is killed, and may be read
     while it grows.
+
+    Parameters
+    ----------
+    path : Path
+    units : mapping of str
+        Units of the fields, by their names, in the order of the view.
+    scene : str
+        What runs.
     """
 
-    def __init__(self, path: Path | str) -> None:
+    def __init__(
+        self, path: Path | str, units: Mapping[str, str] = NOTHING, scene: str = ""
+    ) -> None:
         self._file = create(path)
         with room(self._file, TABLES):
             self._root = self._file.create_group("VTKHDF")
@@ -39,11 +52,16 @@ class VtkHdf:
             self._tables = self._root.create_group("Steps")
             self._tables.attrs["NSteps"] = np.int64(0)
             self._values = _table(self._tables, "Values", dtype="f8")
-        self._data: dict[str, h5py.Dataset] = {}  # "points" and the fields
+        self._units, self._scene = {"points": "m", **units}, scene
+        self._data: dict[str, h5py.Dataset] = {}  # "points" and the fields over points
+        self._cell_data: dict[str, h5py.Dataset] = {}
+        self._told: list[h5py.Dataset] = []  # where each step finds the texts
         self._parts: dict[int, int] = {}  # number of points -> entry of the table of counts
         self._steps = 0
         self._rows = 0  # points written so far
         self._corners = 0  # points that the cells need
+        self._cells = 0  # polygons
+        self._loose = 0  # points of no polygon
         self._is_cloud = True  # no cells: every point is drawn
 
     def append(self, time: float, view: Mapping[str, Array]) -> None:
@@ -53,37 +71,50 @@ class VtkHdf:
         ----------
         time : float, s
         view : mapping of arrays
-            ``points`` (n, 3) m; optional ``cells`` (m, 3 or 4), numbers of corner points, -1
-            ends a triangle, taken from the first step; all others are fields (n,) or (n, k).
-            The names must not change; n may.
+            ``points`` (n, 3) m; optional ``cells`` (m, 3 or more), numbers of corner points, -1
+            after the last corner, taken from the first step; all others are fields with n rows,
+            or, if these are other numbers, m. The names must not change; n may.
         """
         arrays = {k: np.asarray(v, np.float32) for k, v in view.items() if k != "cells"}
-        _require_points(arrays)
-        count, cells = len(arrays["points"]), np.asarray(view.get("cells", ()))
+        cells = np.asarray(view.get("cells", ()))
         with room(self._file, _largest(arrays) + 2 * cells.nbytes):
             if not self._data:
                 self._begin(arrays, view.get("cells"))
+            _require_points({k: one for k, one in arrays.items() if k not in self._cell_data})
             self._require_same(arrays)
-            self._append(time, count, arrays)
+            self._append(time, arrays)
 
-    def _append(self, time: float, count: int, arrays: dict[str, Array]) -> None:
+    def _append(self, time: float, arrays: dict[str, Array]) -> None:
+        count = len(arrays["points"])
         for key, dataset in self._data.items():
             dataset.resize(self._rows + count, axis=0)
             dataset[self._rows :] = arrays[key].reshape(count, *dataset.shape[1:])
+        for key, dataset in self._cell_data.items():
+            self._append_cells(key, dataset, arrays[key])
         self._add_step(time, count)
         self._rows += count
+
+    def _append_cells(self, key: str, dataset: h5py.Dataset, array: Array) -> None:
+        """Append a field over the polygons; vertices, which come before them, have no value."""
+        first = len(dataset)
+        dataset.resize(first + self._loose + self._cells, axis=0)
+        dataset[first : first + self._loose] = np.nan
+        dataset[first + self._loose :] = array.reshape(self._cells, *dataset.shape[1:])
+        self._put(self._tables[f"CellDataOffsets/{key}"], self._steps, first)
 
     def close(self) -> None:
         """Close the file; a second call does nothing."""
         self._file.close()
 
     def _begin(self, arrays: dict[str, Array], cells: Array | None) -> None:
-        count = len(arrays["points"])
+        count, polygons = len(arrays.get("points", ())), 0 if cells is None else len(cells)
+        over_cells = {k for k, v in arrays.items() if v.ndim and len(v) == polygons != count}
+        _require_points({k: one for k, one in arrays.items() if k not in over_cells})
         fields = self._root.create_group("PointData")
         for key, array in arrays.items():
-            group, name = (self._root, "Points") if key == "points" else (fields, key)
-            item = array.shape[1:] if array.ndim < 3 else (int(np.prod(array.shape[1:])),)
-            self._data[key] = _table(group, name, item, "f4", min(max(count, 256), CHUNK))
+            if key not in over_cells:
+                group, name = (self._root, "Points") if key == "points" else (fields, key)
+                self._data[key] = self._field(group, name, array, self._units.get(key, ""))
         for name, item, fill in (
             ("PartOffsets", (), 0),
             ("PointOffsets", (), 0),
@@ -95,45 +126,74 @@ class VtkHdf:
         offsets = self._tables.create_group("PointDataOffsets")
         for key in fields:  # one and the same dataset, under the name of each field
             offsets[key] = self._tables["PointOffsets"]
-        self._begin_topologies(cells)
+        for key in over_cells:
+            group = self._root.require_group("CellData")
+            self._cell_data[key] = self._field(group, key, arrays[key], self._units.get(key, ""))
+            _table(self._tables.require_group("CellDataOffsets"), key)
+        self._begin_topologies(cells, count)
+        self._values.attrs["units"] = "s"
+        known = {key: unit for key, unit in self._units.items() if key in arrays}
+        self._tell(UNITS, "; ".join(f"{key} {unit}" for key, unit in known.items()))
+        self._tell(SCENE, self._scene)
 
-    def _begin_topologies(self, cells: Array | None) -> None:
+    def _field(self, group: h5py.Group, name: str, array: Array, unit: str) -> h5py.Dataset:
+        item = array.shape[1:] if array.ndim < 3 else (int(np.prod(array.shape[1:])),)
+        made = _table(group, name, item, "f4", min(max(len(array), 256), CHUNK))
+        if unit:
+            made.attrs["units"] = unit
+        return made
+
+    def _tell(self, name: str, text: str) -> None:
+        """Write a text that holds at all steps: one value at the same place of each."""
+        group = self._root.require_group("FieldData")
+        # VTK reads no other type of text; what is not ASCII passes as it stands.
+        group.create_dataset(name, data=[text.encode()], dtype=h5py.string_dtype("ascii"))
+        for key, item, fill in (("FieldDataOffsets", (), 0), ("FieldDataSizes", (2,), 1)):
+            self._told.append(_table(self._tables.require_group(key), name, item, fill=fill))
+
+    def _begin_topologies(self, cells: Array | None, count: int) -> None:
         counts = _table(self._root, "NumberOfPoints")
-        drawn = "Vertices" if cells is None else "Polygons"
+        drawn = ("Vertices",) if cells is None else ("Vertices", "Polygons")
         for name in TOPOLOGIES:
             group = self._root.create_group(name)
             _table(group, "Connectivity", chunk=4096)
             _table(group, "Offsets", chunk=4096).resize(1, axis=0)
             if name == "Vertices" and cells is None:  # as many as there are points
                 group["NumberOfCells"] = group["NumberOfConnectivityIds"] = counts
-            elif name != drawn:
+            elif name not in drawn:
                 _table(group, "NumberOfCells")
                 group["NumberOfConnectivityIds"] = group["NumberOfCells"]
         if cells is not None:
-            self._is_cloud = False
-            self._add_polygons(np.asarray(cells, np.int64))
+            whole = np.asarray(cells, np.int64)
+            loose = np.setdiff1d(np.arange(count), whole)
+            self._is_cloud, self._cells, self._loose = False, len(whole), len(loose)
+            self._add_cells("Polygons", whole)
+            self._add_cells("Vertices", loose[:, None])
 
-    def _add_polygons(self, cells: Array) -> None:
+    def _add_cells(self, topology: str, cells: Array) -> None:
         connectivity, offsets = _flat(cells)
-        group = self._root["Polygons"]
+        group = self._root[topology]
         _extend(group["Connectivity"], connectivity, 0)
         _extend(group["Offsets"], offsets, 0)
         _table(group, "NumberOfCells", fill=len(cells))
         _table(group, "NumberOfConnectivityIds", fill=len(connectivity))
-        self._corners = int(cells.max(initial=-1)) + 1
+        self._corners = max(self._corners, int(cells.max(initial=-1)) + 1)
 
     def _require_same(self, arrays: dict[str, Array]) -> None:
-        if arrays.keys() != self._data.keys():
-            wrong = sorted(arrays.keys() ^ self._data.keys())[0]
+        data = self._data | self._cell_data
+        if arrays.keys() != data.keys():
+            wrong = sorted(arrays.keys() ^ data.keys())[0]
             raise PortError(
                 f"view of step {self._steps}: its names must stay those of the first step; "
                 f"{wrong} {'appeared' if wrong in arrays else 'is missing'}. Correct view()."
             )
         for key, array in arrays.items():
-            if array[:1].size and array[0].size != np.prod(self._data[key].shape[1:], dtype=int):
+            rows = self._cells if key in self._cell_data else len(array)
+            size = np.prod(data[key].shape[1:], dtype=int)
+            if len(array) != rows or (array[:1].size and array[0].size != size):
                 raise PortError(
                     f"view of step {self._steps}: {key} must keep the shape of its items; found "
-                    f"{array.shape} after {self._data[key].shape[1:]}. Correct view()."
+                    f"{array.shape} after {data[key].shape[1:]}. Correct view()."
                 )
         if len(arrays["points"]) < self._corners:
             raise PortError(
@@ -153,8 +213,9 @@ class VtkHdf:
                 self._reserve_vertices(count)
         for name, value in (("PartOffsets", part), ("PointOffsets", self._rows)):
             self._put(self._tables[name], self._steps, value)
-        for name in ("NumberOfParts", "CellOffsets", "ConnectivityIdOffsets"):
-            _reserve(self._tables[name], self._steps)
+        constant = ("NumberOfParts", "CellOffsets", "ConnectivityIdOffsets")
+        for table in (*(self._tables[name] for name in constant), *self._told):
+            _reserve(table, self._steps)
         self._values.resize(self._steps + 1, axis=0)  # exact: readers size their list by it
         self._values[self._steps] = time
         self._steps += 1
@@ -178,7 +239,7 @@ def resume(path: Path, time: float) -> VtkHdf:
     """Continue a file after its steps up to a time [s]; later steps are dropped."""
     part = path.with_name(path.name + PART)
     with removed_on_failure(part):
-        made = VtkHdf(part)
+        made = VtkHdf(part, units(path), scene(path))
         for k, when in enumerate(times(path)):
             if when <= time:
                 made.append(*read_step(path, k))
@@ -188,9 +249,10 @@ def resume(path: Path, time: float) -> VtkHdf:
 
 def _largest(arrays: dict[str, Array]) -> int:
     """Bytes that a step may need on the disk: its points and fields, chunks begun, vertices."""
-    points = len(arrays["points"])
-    chunks = min(max(points, 256), CHUNK) * sum(4 * max(1, a[:1].size) for a in arrays.values())
-    return sum(array.nbytes for array in arrays.values()) + chunks + 24 * points + TABLES
+    rows = max((len(array) for array in arrays.values() if array.ndim), default=0)
+    widths = sum(4 * max(1, array.size // max(1, rows)) for array in arrays.values())
+    chunks = min(max(rows, 256), CHUNK) * widths
+    return 2 * sum(array.nbytes for array in arrays.values()) + chunks + 24 * rows + TABLES
 
 
 def _require_points(arrays: dict[str, Array]) -> None:
@@ -233,48 +295,3 @@ def _flat(cells: Array) -> Topology:
     """Flatten cells to connectivity and offsets, without the -1 that end triangles."""
     used = cells >= 0
     return cells[used], np.concatenate([[0], np.cumsum(used.sum(axis=1))])
-
-
-def _padded(connectivity: Array, offsets: Array) -> Array:
-    """Inverse of `_flat`: cells padded with -1."""
-    sizes = np.diff(offsets)
-    used = np.arange(sizes.max(initial=3)) < sizes[:, None]
-    cells = np.full(used.shape, -1, np.int64)
-    cells[used] = connectivity
-    return cells
-
-
-def _open(path: Path | str) -> h5py.File:
-    try:
-        file = h5py.File(path, "r", locking=False)
-    except OSError as error:
-        raise SceneError(
-            f"view file {path}: it must be a VTKHDF file; {error}. Run the scene again."
-        ) from error
-    if "VTKHDF/Steps" not in file:
-        file.close()
-        raise SceneError(f"view file {path}: it has no steps of VTKHDF. Run the scene again.")
-    return file
-
-
-def times(path: Path | str) -> Array:
-    """Return the times (steps,) s of a file."""
-    with _open(path) as file:
-        return np.asarray(file["VTKHDF/Steps/Values"])
-
-
-def read_step(path: Path | str, k: int) -> tuple[float, dict[str, Array]]:
-    """Read step `k` of a file: its time [s], and its view in float32."""
-    with _open(path) as file:
-        root: Any = file["VTKHDF"]
-        count = int(root["Steps"].attrs["NSteps"])
-        if not 0 <= k < count:
-            raise SceneError(f"view file {path}: it has {count} steps; there is no step {k}.")
-        start = int(root["Steps/PointOffsets"][k])
-        end = start + int(root["NumberOfPoints"][root["Steps/PartOffsets"][k]])
-        view = {"points": root["Points"][start:end]}
-        view |= {name: data[start:end] for name, data in root["PointData"].items()}
-        polygons = root["Polygons"]
-        if len(polygons["Connectivity"]):
-            view["cells"] = _padded(polygons["Connectivity"][:], polygons["Offsets"][:])
-        return float(root["Steps/Values"][k]), view

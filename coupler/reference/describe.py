@@ -29,31 +29,39 @@ def run_describe(given: argparse.Namespace) -> int:
         room = max(len(name) for name, _ in rows)
         print("\n".join(f"{name:<{room}}  {title}" for name, title in rows))
         return 0
-    found, table = chosen(given.subject)
+    found, part = chosen(given.subject)
     if given.json:
         print(json.dumps([as_data(one) for one in found.sections], indent=2, ensure_ascii=False))
         return 0
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    if table:
-        head = next(one for one in found.sections if table in (".".join(one.path), ""))
-        print("\n".join(section_lines(head, width)))
-        return 0
-    print("\n".join(lines(found, width)))
+    print("\n".join(lines(found, width) if not part else part_lines(found, part, width)))
     return 0
 
 
 def chosen(words: list[str]) -> tuple[Reference, str]:
-    """Return what the words name, and the table in it if they go on to one."""
+    """Return what the words name, and the table or key in it if they go on to one."""
     count = 2 if words[0] == "link" else 1
     if words[0] == "link" and len(words) == 1:
         raise SceneError("describe link needs a kind of link. Name one, as in describe link fsi.")
     if len(words) > count + 1:
         raise SceneError(f"describe: one subject at a time; found {' '.join(words)}. Name one.")
-    found, table = reference(*words[:count]), "".join(words[count:])
-    tables = [".".join(one.path) for one in found.sections if one.path]
-    if table and table not in tables:
-        raise SceneError(unknown(f"describe {found.name}: table {table}", table, tables))
-    return found, table
+    return reference(*words[:count]), "".join(words[count:])
+
+
+def part_lines(found: Reference, part: str, width: int | None) -> Iterator[str]:
+    """Write one table of a reference, or one key by its path."""
+    tables = {".".join(one.path): one for one in found.sections}
+    if part in tables:
+        return section_lines(tables[part], width)
+    rows = {
+        ".".join([*one.path, key.name]): replace(one, about="", keys=(key,))
+        for one in found.sections
+        for key in one.keys
+    }
+    if part not in rows:
+        known = [*tables, *rows]
+        raise SceneError(unknown(f"describe {found.name}: {part}", part, filter(None, known)))
+    return section_lines(rows[part], width)
 
 
 def lines(found: Reference, width: int | None) -> Iterator[str]:

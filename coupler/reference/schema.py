@@ -4,19 +4,23 @@ Only keywords of draft 7 are used, which editors of TOML know.
 """
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from pydantic import TypeAdapter
+from pydantic.errors import PydanticInvalidForJsonSchema
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
 from quintet.coupler.coupling.links import known_links, maker
 from quintet.coupler.coupling.links.keys import LinkKeys
 from quintet.coupler.reference.sections import SCENE_TITLE
+from quintet.coupler.scene.kinds import named_kind
 from quintet.coupler.scene.scene import ComponentKeys, SceneFile
 from quintet.coupler.scene.tables import SceneTables
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import about, keys
-from quintet.interfaces.manifest import find, known_kinds
+from quintet.interfaces.manifest import known_kinds
 
 Schema = dict[str, Any]
 REFERENCE = "#/definitions/{model}"
@@ -42,12 +46,12 @@ class Described(GenerateJsonSchema):
 
 def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
     """Make the schema of a scene file; `more_kinds` are ``module:Class`` that it knows too."""
-    kinds = {kind: find(kind).params for kind in sorted({*known_kinds(), *more_kinds})}
+    kinds = {kind: _params(kind) for kind in sorted({*known_kinds(), *more_kinds})}
     links = {kind: getattr(maker(kind), "keys", None) for kind in sorted(known_links())}
     wanted: dict[tuple[str, str], type] = {("scene", "file"): SceneFile}
     wanted |= {("scene", "tables"): SceneTables}
     wanted |= {("common", "components"): ComponentKeys, ("common", "links"): LinkKeys}
-    wanted |= {("component", kind): params for kind, params in kinds.items()}
+    wanted |= {("component", kind): params for kind, params in kinds.items() if params}
     wanted |= {("link", kind): params for kind, params in links.items() if params}
     found, inner = TypeAdapter.json_schemas(
         [(name, "validation", TypeAdapter(params)) for name, params in wanted.items()],
@@ -66,7 +70,7 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
     properties["stand_ins"] |= {
         "additionalProperties": {
             "type": "object",
-            "properties": {kind: _to(f"keys of component {kind}") for kind in kinds},
+            "properties": {k: _to(f"keys.component.{k}") for k, one in kinds.items() if one},
             "additionalProperties": {"type": "object"},
         }
     }
@@ -82,6 +86,16 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
     return dict(_plain(_used(made)))
 
 
+def _params(kind: str) -> type | None:
+    """Return the parameter class of a kind; None where it cannot be told as a schema."""
+    try:
+        params = named_kind(kind, "schema").params
+        TypeAdapter(params).json_schema()
+    except (SceneError, PydanticInvalidForJsonSchema):
+        return None
+    return params
+
+
 def as_text(schema: Schema) -> str:
     """Write a schema as JSON."""
     return json.dumps(schema, indent=1, ensure_ascii=False)
@@ -94,7 +108,12 @@ def _inside(schema: Schema, definitions: Schema) -> Schema:
 
 
 def _to(name: str) -> Schema:
-    return {"$ref": REFERENCE.format(model=name)}
+    return {"$ref": REFERENCE.format(model=_in_address(name))}
+
+
+def _in_address(name: str) -> str:
+    """Write a name as it may stand in an address: editors refuse all others."""
+    return re.sub(r"[^\w.:-]", "_", name, flags=re.ASCII)
 
 
 def _of_kinds(
@@ -105,9 +124,10 @@ def _of_kinds(
     for kind in known:
         own = table[what, kind]
         properties = {**common["properties"], **own.get("properties", {})}
-        made[f"keys of {what} {kind}"] = own
-        made[f"{what} {kind}"] = {**own, "properties": properties}
-    names = {"enum": list(kinds)} if what == "link" else {"anyOf": [{"enum": known}, OWN_CLASS]}
+        made[_in_address(f"keys.{what}.{kind}")] = own
+        made[_in_address(f"{what}.{kind}")] = {**own, "properties": properties}
+    free = [] if what == "link" else [OWN_CLASS]
+    names = {"anyOf": [{"enum": list(kinds)}, *free]}
     kind_key = {**common["properties"]["kind"], **names}
     kind_key.pop("type", None)
     made[what] = {
@@ -118,12 +138,12 @@ def _of_kinds(
         "allOf": [
             {
                 "if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]},
-                "then": _to(f"{what} {kind}"),
+                "then": _to(f"{what}.{kind}"),
             }
             for kind in known
         ],
         # Always met: for editors that look for keys here, and not below "then".
-        "anyOf": [*(_to(f"{what} {kind}") for kind in known), {}],
+        "anyOf": [*(_to(f"{what}.{kind}") for kind in known), {}],
     }
     return made
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from rich.table import Table
 
-from quintet.coupler.report.pictures import panels_of, save
+from quintet.coupler.report.panels import curve_panels, save
 
 Row = dict[str, Any]
 
@@ -37,7 +37,7 @@ def three_digits(value: float | None) -> str:
     return "-" if value is None else f"{value:.3g}"
 
 
-def draw(rows: Sequence[Row], out: Path) -> Path | None:
+def draw(rows: Sequence[Row], out: Path, title: str = "") -> Path | None:
     """Draw error over processor time, both on a logarithmic scale, a panel for each expectation.
 
     Returns `out`, or None where no refinement has an error to be drawn.
@@ -46,7 +46,7 @@ def draw(rows: Sequence[Row], out: Path) -> Path | None:
     names = list(dict.fromkeys(n for row in done for n, e in row["errors"].items() if e))
     if not names:
         return None
-    figure, panels = panels_of(len(names), 0.7)
+    figure, panels = curve_panels(len(names), title)
     for panel, name in zip(panels, names, strict=True):
         _draw(panel, name, [row for row in done if row["errors"].get(name)])
     return save(figure, out)

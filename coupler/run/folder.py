@@ -21,6 +21,8 @@ from quintet.coupler.files.run_files import (
     left,
     new_marker,
     read_marker,
+    view_file,
+    walls_file,
     write_marker,
 )
 from quintet.coupler.launch.mpi_job import COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG
@@ -34,7 +36,7 @@ SHOWN = 3  # foreign files named in a message
 def files_of(scene: Scene) -> list[str]:
     """Names of all files that a run of a scene may write, but for its snapshots."""
     logs = [*(f"{name}.log" for name in scene.components), *COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG]
-    views = [f"{name}.vtkhdf" for name in scene.components]
+    views = [one(name) for name in scene.components for one in (view_file, walls_file)]
     convergence = [log_file(group) for group in scene.coupling.iterated()]
     return [*RUN_FILES, *views, *convergence, *(f"log/{name}" for name in logs)]
 

@@ -27,6 +27,9 @@ class Observer(Protocol):
     def end_window(self, coupling: Coupling) -> None:
         """Take note of a window's end."""
 
+    def warn(self, text: str) -> None:
+        """Tell what makes the run doubtful."""
+
     def wants_end(self) -> bool:
         """Whether to stop here."""
 
@@ -66,7 +69,10 @@ def run(
     while not windows.finished and not observer.wants_end():
         advance(coupling, observer.due)
         coupling.ledger.close_window(coupling.all_late(), coupling.all_in_transit())
+        found = coupling.ledger.watch.look(coupling)
         observer.end_window(coupling)
+        for one in found:
+            observer.warn(str(one))
     if not windows.finished:
         observer.ends_early(coupling)
     return RunEnd(windows.finished, windows.done, windows.time)

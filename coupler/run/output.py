@@ -1,6 +1,7 @@
 """Output during a run: recording, views, ledger, snapshots."""
 
 import contextlib
+import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,6 +10,7 @@ from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows, in_ticks
 from quintet.coupler.files.recording import NAME, Instant, Recorder
+from quintet.coupler.files.run_files import view_file, walls_file
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
 from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport
@@ -18,6 +20,7 @@ from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.component import Fields
 from quintet.interfaces.ports import only_fields
 
+WALLS = "walls."  # what fields of walls begin with, beside those of the view
 SNAPSHOT_INTERVAL = 600.0  # s of wall time between two snapshots, where the scene gives none
 
 
@@ -45,6 +48,8 @@ class OutputWriter:
         self._recorder: Recorder | None = None
         self._progress: ProgressReport | None = None
         self._files: dict[str, VtkHdf] = {}
+        self._shows = bool(scene.file.output.interval or scene.file.output.pictures)
+        self._asked: set[str] = set()  # components that were asked for their walls
         self._began = 0.0  # s, simulated
 
     def plan(self, windows: Windows) -> None:
@@ -97,7 +102,7 @@ class OutputWriter:
         windows = self._windows
         now, self.done, self.time = windows.now, windows.done, windows.time
         self._record(coupling)
-        if self._passes(self._views, now) or (self._views and now in windows.marks):
+        if self._passes(self._views, now) or now in windows.marks:
             self._note(coupling)
         elif self._passes(self._totals, now):
             coupling.ledger.note(self.time, dict(coupling.ledger.totals))
@@ -107,6 +112,10 @@ class OutputWriter:
         if self._passes(self._snapshots, now) if self._snapshots else late:
             self._keep(coupling)
         self._now = now
+
+    def warn(self, text: str) -> None:
+        """See `Observer.warn`."""
+        print(f"\nquintet: {text}", file=sys.stderr, flush=True)
 
     def ends_early(self, coupling: Coupling) -> None:
         """See `Observer.ends_early`."""
@@ -130,23 +139,40 @@ class OutputWriter:
                 self._recorder.add(name, instant, coupling.outputs[name])
 
     def _note(self, coupling: Coupling) -> None:
-        """Ask every component for its totals and its picture."""
+        """Ask every component for its totals, and for what there is to see of it."""
         totals = {}
         for name, one in coupling.components.items():
-            answer = one.call("view")
+            first = self._shows and name not in self._asked
+            answer = one.call("view", shown=self._shows, walls=first)
             totals[name] = answer.header["totals"]
-            if self._views and "points" in answer.fields:
-                self._file(name).append(self._windows.time, answer.fields)
+            if first:
+                self._asked.add(name)
+                self._write_walls(name, answer.fields)
+            shown = {k: v for k, v in answer.fields.items() if not k.startswith(WALLS)}
+            if "points" in shown:
+                units = answer.header["units"]
+                self._file(name, units).append(self._windows.time, shown)
         coupling.ledger.note(self._windows.time, totals)
 
-    def _file(self, name: str) -> VtkHdf:
+    def _file(self, name: str, units: Mapping[str, str]) -> VtkHdf:
         found = self._files.get(name)
         if found is None:
-            path = self.folder / f"{name}.vtkhdf"
+            path = self.folder / view_file(name)
             is_there = self.first is not None and path.is_file()
-            found = resume(path, self._began) if is_there else VtkHdf(path)
+            if is_there:
+                found = resume(path, self._began)
+            else:
+                found = VtkHdf(path, units, self.scene.headline)
             self._files[name] = found
         return found
+
+    def _write_walls(self, name: str, fields: Fields) -> None:
+        """Write what stands still around a component into a file of its own, with one step."""
+        walls = {k.removeprefix(WALLS): v for k, v in fields.items() if k.startswith(WALLS)}
+        if "points" in walls:
+            file = VtkHdf(self.folder / walls_file(name), scene=self.scene.headline)
+            file.append(0.0, walls)
+            file.close()
 
     def close(self) -> None:
         """Close all files, however the run ended."""

@@ -15,7 +15,9 @@ from quintet.coupler.files.disk import told, write_at_last
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.run_files import PICTURES, RESULTS
 from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
-from quintet.coupler.report.pictures import comparison, side_views
+from quintet.coupler.report.comparison import comparison
+from quintet.coupler.report.side_views import side_views
+from quintet.coupler.report.view_steps import view_files
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
@@ -44,13 +46,16 @@ def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
 
 def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
     """Draw the pictures of a scene, and its time series against references."""
-    times = scene.file.output.pictures
-    if times and list(folder.glob("*.vtkhdf")):
-        with told(folder / PICTURES[0]):
-            side_views(folder, folder / PICTURES[0], times)
-    if any(one.csv for one in scene.expect) and found:
-        with Recording(folder / "recording.h5") as recording, told(folder / PICTURES[1]):
-            comparison(scene.folder, scene.expect, found, recording, folder / PICTURES[1])
+    output, title = scene.file.output, scene.headline
+    if output.pictures and view_files(folder):
+        colours, region = output.colours, output.region
+        out = folder / PICTURES[0]
+        with told(out):
+            side_views(folder, out, output.pictures, title, colours, region)
+    if found:
+        out, values = folder / PICTURES[1], bool(output.pictures)
+        with Recording(folder / "recording.h5") as recording, told(out):
+            comparison(scene.folder, scene.expect, found, recording, out, title, values)
 
 
 def timing(participants: dict[str, Participant], wall: float, mapping: float) -> dict[str, Any]:

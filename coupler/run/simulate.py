@@ -86,6 +86,7 @@ def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
                 one.close()
     if stop.asked and outcome["status"] != "done" and not lost:
         outcome["status"] = "interrupted"
+    outcome["unstable"] = ledger.watch.summary()
     summary = ledger.summary()
     return conclude(scene, folder, outcome, participants, summary, costs, clock())
 
@@ -177,4 +178,5 @@ def conclude(
         print(f"quintet: {error}", file=sys.stderr, flush=True)
     if outcome["status"] == "interrupted":
         return results.INTERRUPTED
-    return results.DONE if all(one.met for one in found) else results.UNMET
+    sound = all(one.met for one in found) and not outcome["unstable"]
+    return results.DONE if sound else results.UNMET

@@ -110,15 +110,18 @@ def refused(
 
 
 def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> list[str]:
-    """Refuse outputs to be recorded that no component gives."""
+    """Refuse outputs to be recorded that no component gives, or to be drawn that none shows."""
     known = [
         f"{name}.{port.name}.{one.name}"
         for name, component in components.items()
         for port in component.gives
         for one in port.fields
     ]
+    shown = [f"{name}.{one.name}" for name, part in components.items() for one in part.shows]
+    asked = (("fields", file.output.fields, known), ("colours", file.output.colours, shown))
     return [
-        unknown(f"output.fields: {path}", path, known)
-        for path in file.output.fields
-        if path not in known
+        unknown(f"output.{key}: {path}", path, there)
+        for key, paths, there in asked
+        for path in paths
+        if path not in there
     ]

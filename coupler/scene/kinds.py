@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from quintet.interfaces.errors import SceneError
+from quintet.interfaces.errors import QuintetError, SceneError
 from quintet.interfaces.manifest import Manifest, find, known_kinds, look_in
 from quintet.interfaces.params import unknown
 
@@ -17,7 +17,9 @@ def named_kind(kind: str, where: str) -> Manifest:
         return find(kind)
     except KeyError as error:
         raise SceneError(unknown(f"{where} {kind}", kind, known_kinds())) from error
-    except ImportError as error:
-        raise SceneError(f"{where} {kind}: it cannot be imported ({error}).") from error
+    except QuintetError:
+        raise
     except AttributeError as error:
         raise SceneError(f"{where} {kind}: {error}. Name a class as module:Class.") from error
+    except Exception as error:  # of any kind: the module is its author's
+        raise SceneError(f"{where} {kind}: it cannot be imported ({error}).") from error

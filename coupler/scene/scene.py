@@ -11,10 +11,11 @@ from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import Refinement
-from quintet.interfaces.component import Port
+from quintet.interfaces.component import Field, Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
-from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
+from quintet.interfaces.params import Count, NotNegative, Number, Positive, Vector, parameters
+from quintet.interfaces.serving.port_view import port_fields
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component or group: it names files and lines
 PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")  # name of a scene: never a path
@@ -67,11 +68,17 @@ class OutputSettings:
     Parameters
     ----------
     interval : s
-        Between two sets of particles for ParaView; 0: none.
+        Between two views of the components for ParaView; 0: those of the pictures alone.
     pictures : s
         Times of the pictures.
+    colours
+        What components are coloured by in pictures: ``"component.field"`` of what they show. Of
+        others points take the first field, as speed, and faces none.
+    region : m
+        Lowest and highest corner of the box that pictures show; particles in front of it, along y,
+        are left out. If not given all is shown.
     totals : s
-        Between two rows of the ledger; 0: with the particles.
+        Between two rows of the ledger; 0: with the views.
     snapshots : s
         Between two, to resume from; 0: every ten minutes of the clock, and at an interruption.
     record
@@ -82,10 +89,19 @@ class OutputSettings:
 
     interval: NotNegative = 0.0
     pictures: tuple[NotNegative, ...] = ()
+    colours: tuple[str, ...] = ()
+    region: tuple[Vector, Vector] | None = None
     totals: NotNegative = 0.0
     snapshots: NotNegative = 0.0
     record: bool = True
     fields: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.region and not all(low < high for low, high in zip(*self.region, strict=True)):
+            raise ValueError(
+                f"output.region must be the lowest and the highest corner of a box; found "
+                f"{self.region}. Correct it."
+            )
 
 
 @parameters
@@ -151,6 +167,11 @@ class ComponentPlan:
     gives: tuple[Port, ...]
     threads: int = 1
 
+    @property
+    def shows(self) -> tuple[Field, ...]:
+        """Fields of its view, as far as is known without it."""
+        return self.manifest.shows or port_fields(self.gives)
+
     def plan(self) -> Plan | None:
         """What running it will need, where its kind can tell."""
         return self.manifest.plan(self.checked) if self.manifest.plan else None
@@ -183,6 +204,12 @@ class Scene:
     def tls(self) -> tuple[str, ...]:
         """Authority, certificate and key, or nothing."""
         return self.file.tls
+
+    @property
+    def headline(self) -> str:
+        """Name, preset and title, above pictures."""
+        name, title = self.file.name, self.file.title
+        return f"{name}{f' ({self.preset})' if self.preset else ''}{f': {title}' if title else ''}"
 
     @property
     def security(self) -> Security | None:

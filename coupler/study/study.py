@@ -144,7 +144,7 @@ def print_summary(found: Row, picture: Path) -> None:
         if best
         else "recommended: none; no refinement meets all expectations"
     )
-    if draw(rows, picture):
+    if draw(rows, picture, found["scene"]):
         screen.print(f"drawn in {picture}")
 
 

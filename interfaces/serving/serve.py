@@ -20,6 +20,7 @@ from quintet.interfaces.serving.inputs import Inputs
 from quintet.interfaces.serving.order_guard import OrderGuard
 from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.outputs import InputAudit, Outputs, Sums
+from quintet.interfaces.serving.port_view import look_at
 from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
@@ -224,7 +225,15 @@ class Server:
         return {"stable": self.stable()}, {}
 
     def _view(self, message: Message) -> Answer:
-        return {"totals": self._totals()}, self.component.view()
+        """Totals; where asked for, what there is to see and the units of its fields, and walls."""
+        header: dict[str, Any] = {"totals": self._totals()}
+        fields: dict[str, Any] = {}
+        if message.header.get("shown", True):
+            shown, header["units"] = look_at(self.component)
+            fields |= shown
+        if message.header.get("walls"):
+            fields |= {f"walls.{key}": one for key, one in self.component.walls().items()}
+        return header, fields
 
 
 def unlike(state: Fields, own: Fields) -> str:

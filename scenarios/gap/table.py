@@ -13,7 +13,7 @@ import numpy as np
 
 from quintet.coupler.coupling.body_samples import fill
 from quintet.coupler.files.recording import Recording
-from quintet.coupler.files.vtkhdf import read_step, times
+from quintet.coupler.files.vtkhdf_reader import read_step, times
 from quintet.interfaces.component import Array
 from quintet.interfaces.ports import BOX
 

@@ -33,6 +33,7 @@ class Trace:
     energies: list[float] = field(default_factory=list)  # J
     ends: list[float] = field(default_factory=list)  # s, of the windows
     stable: list[dict[str, float]] = field(default_factory=list)  # s, steps allowed
+    warnings: list[str] = field(default_factory=list)
 
     def history(self, name: str, key: str) -> Array:
         """One field of a component at the start and at every window's end."""
@@ -74,6 +75,9 @@ class Trace:
         self.stable.append({name: one.stable for name, one in coupling.components.items()})
         self.outputs.append(dict(coupling.outputs))
         self.energies.append(self.energy())
+
+    def warn(self, text: str) -> None:
+        self.warnings.append(text)
 
     def wants_end(self) -> bool:
         return False

@@ -86,38 +86,42 @@ def test_one_bit_too_many_in_a_force_shows(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_wrong_sign_of_the_spread_force_shows(tmp_path, monkeypatch, scheme):
-    spread = ShapeMap.spread
-    monkeypatch.setattr(ShapeMap, "spread", lambda self, values: -spread(self, values))
+def test_a_wrong_sign_of_the_mapped_force_shows(tmp_path, monkeypatch, scheme):
+    conservative = ShapeMap.map_conservative
+    monkeypatch.setattr(
+        ShapeMap, "map_conservative", lambda self, values: -conservative(self, values)
+    )
     assert _plate(tmp_path, scheme).momentum_residual > 0.1
 
 
 def test_a_wrong_sign_of_one_axis_shows(tmp_path, monkeypatch):
-    spread = ShapeMap.spread
+    conservative = ShapeMap.map_conservative
     mirror = np.array([1.0, 1.0, -1.0])
-    monkeypatch.setattr(ShapeMap, "spread", lambda self, values: mirror * spread(self, values))
+    monkeypatch.setattr(
+        ShapeMap, "map_conservative", lambda self, values: mirror * conservative(self, values)
+    )
     assert _plate(tmp_path).momentum_residual > 0.1
 
 
 def test_a_wrong_sign_of_the_torque_shows(tmp_path, monkeypatch):
-    spread = RigidMap.spread
+    conservative = RigidMap.map_conservative
 
     def wrong(self, force, arms):
-        total, torque = spread(self, force, arms)
+        total, torque = conservative(self, force, arms)
         return total, -torque
 
-    monkeypatch.setattr(RigidMap, "spread", wrong)
+    monkeypatch.setattr(RigidMap, "map_conservative", wrong)
     assert _balls(tmp_path).angular_residual > 0.01
 
 
-def test_a_wrong_sign_of_the_gathered_velocity_shows_in_the_work(tmp_path, monkeypatch):
-    gather = ShapeMap.gather
+def test_a_wrong_sign_of_the_mapped_velocity_shows_in_the_work(tmp_path, monkeypatch):
+    consistent = ShapeMap.map_consistent
 
     def wrong(self, values):
-        found = gather(self, values)
+        found = consistent(self, values)
         return found if np.abs(values).max() > 1.0 else -found  # velocities, not positions
 
-    monkeypatch.setattr(ShapeMap, "gather", wrong)
+    monkeypatch.setattr(ShapeMap, "map_consistent", wrong)
     assert _plate(tmp_path, "parallel").energy_residual > 0.5
 
 

@@ -41,8 +41,8 @@ def _exact():
 
     mesh = Plate(Plate.Params()).describe()
     shape, area, _ = sample_faces(mesh["faces.start"], mesh["faces.corner"], SPACING)
-    phi = np.array([shape.gather(unit[:, None])[:, 0] for unit in np.eye(12)]).T  # (n, 12)
-    place = shape.gather(mesh["faces.start"])[:, 0]
+    phi = np.array([shape.map_consistent(unit[:, None])[:, 0] for unit in np.eye(12)]).T  # (n, 12)
+    place = shape.map_consistent(mesh["faces.start"])[:, 0]
     # sin(k x - ω t) = sin(k x) cos(ω t) - cos(k x) sin(ω t), with cos and sin as two more unknowns.
     pulsation, zero, one = WAVE * SPEED, np.zeros((12, 12)), np.eye(12)
     push = (

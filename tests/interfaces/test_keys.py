@@ -1,5 +1,6 @@
 """What a parameter class says of its keys is read as data: from its docstring and annotations."""
 
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -72,6 +73,25 @@ def test_meaning_and_unit_are_those_of_the_docstring():
     assert (FOUND["colour"].meaning, FOUND["colour"].unit) == ("Any.", "")
     assert (FOUND["size"].meaning, FOUND["size"].unit) == ("", "")
     assert about(Table) == "A table to stand on.\n\nIt has legs."
+
+
+def test_a_plain_dataclass_is_read_too():
+    @dataclass
+    class Plain:
+        """Plain.
+
+        Parameters
+        ----------
+        height : m
+            Of it.
+        """
+
+        height: float = 2.0
+        share: Fraction = 0.5
+
+    height, share = keys(Plain)
+    assert (height.meaning, height.unit, height.words) == ("Of it.", "m", "number")
+    assert (share.range, share.default) == ("0 to 1", "0.5")
 
 
 def test_a_class_without_a_docstring_says_nothing():

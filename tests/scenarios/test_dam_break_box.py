@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from quintet.coupler.files.vtkhdf import read_step, times
+from quintet.coupler.files.vtkhdf_reader import read_step, times
 
 pytestmark = pytest.mark.slow
 

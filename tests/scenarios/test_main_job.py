@@ -82,4 +82,5 @@ def test_a_prescribed_cube_runs(tmp_path: Path) -> None:
 
 
 def test_views_are_left_for_every_component(live: tuple[Path, dict]) -> None:
-    assert sorted(path.name for path in live[0].glob("*.vtkhdf")) == ["cube.vtkhdf", "water.vtkhdf"]
+    views = ["cube.vtkhdf", "cube.walls.vtkhdf", "water.vtkhdf", "water.walls.vtkhdf"]
+    assert sorted(path.name for path in live[0].glob("*.vtkhdf")) == views

@@ -73,9 +73,9 @@ def polygon_distance(corner: Array, points: Array) -> Array:
 
 def polygon_gap(a: Array, b: Array) -> float:
     """Distance [m] of two convex polygons; negative: the least way that parts them."""
-    apart = max(_separation(a, b), _separation(b, a))
-    if apart < 0.0:
-        return apart
+    separation = max(_separation(a, b), _separation(b, a))
+    if separation < 0.0:
+        return separation
     return float(min(polygon_distance(a, b).min(), polygon_distance(b, a).min()))
 
 

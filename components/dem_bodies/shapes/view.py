@@ -1,40 +1,94 @@
-"""What a picture shows of bodies: corners, faces, centres of spheres."""
+"""What a picture shows of bodies: corners and faces, centres and radii of spheres; planes."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from quintet.components.dem_bodies.build import CORNERS, Solid
-from quintet.components.dem_bodies.params import Body
+from quintet.components.dem_bodies.build import Solid
+from quintet.components.dem_bodies.params import Body, Plane
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.state import State
 from quintet.components.shared.polygons import in_space
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.faces import CORNERS, FACES, polygons, stacked
 
-# Corners around each face of a box, seen from outside.
-FACES = np.array(
-    [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-)
+REACH = 1.0  # sizes of what holds bodies and planes, by which planes are shown beyond it
+ON = 1e-9  # of that size: what lies on a plane is not beyond it
 
 
 def view(bodies: Sequence[Body], solids: Sequence[Solid], state: State) -> Fields:
-    """Corners and faces of boxes and polygons, centres of spheres, with number and velocity."""
+    """Corners and faces of boxes and polygons, centres and radii of spheres, and velocities."""
     points: list[Array] = []
+    radii: list[Array] = []
     owners: list[int] = []
     faces: list[Array] = []
     for k, (body, solid, a) in enumerate(zip(bodies, solids, state.row, strict=False)):
-        corners = solid.centres
+        corners, radius = solid.centres, solid.radii
         if body.size is not None:
-            corners = CORNERS * 0.5 * np.array(body.size)
+            corners, radius = CORNERS * 0.5 * np.array(body.size), np.zeros(8)
             faces.append(FACES + len(owners))
         elif body.corners is not None:
             corners = in_space(planar.corners(body))
-            faces.append(planar.triangles(len(corners)) + len(owners))
+            radius = np.zeros(len(corners))
+            faces.append(np.arange(len(corners))[None] + len(owners))
         axes = state.axes[a].reshape(3, 3)
         points.append(state.position[a] + corners @ axes.T)
+        radii.append(radius)
         owners += [k] * len(corners)
     where, owner = np.vstack(points), np.array(owners)
     row = state.row[owner]
     turning = np.cross(state.angular_velocity[row], where - state.position[row])
-    shown = {"points": where, "body": owner, "velocity": state.velocity[row] + turning}
-    return shown | ({"cells": np.vstack(faces)} if faces else {})
+    velocity = state.velocity[row] + turning
+    shown = {"points": where, "velocity": velocity, "radius": np.concatenate(radii), "body": owner}
+    return shown | ({"cells": stacked(faces)} if faces else {})
+
+
+def planes_view(planes: Sequence[Plane], state: State) -> Fields:
+    """Polygons on the planes: what of each is before the others, and not far from the bodies."""
+    where, radius = state.position[:-1], state.motion[:-1, 3]
+    low, high = (where - radius[:, None]).min(axis=0), (where + radius[:, None]).max(axis=0)
+    points = np.array([plane.point for plane in planes]).reshape(-1, 3)
+    normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
+    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    centre = 0.5 * (low + high)
+    feet = centre - normals * ((centre - points) * normals).sum(axis=1, keepdims=True)
+    low, high = np.vstack([feet, low]).min(axis=0), np.vstack([feet, high]).max(axis=0)
+    size = float((high - low).max())
+    low, high = low - REACH * size, high + REACH * size
+    # The box as six more planes, that look inwards.
+    limits = np.concatenate([points, np.tile(low, (3, 1)), np.tile(high, (3, 1))])
+    inwards = np.concatenate([normals, np.eye(3), -np.eye(3)])
+    centre, reach = 0.5 * (low + high), float(np.linalg.norm(high - low))
+    found = []
+    for k, (point, normal) in enumerate(zip(points, normals, strict=True)):
+        middle = centre - normal * (normal @ (centre - point))
+        corners = middle + reach * _square(normal)
+        for m, (limit, inward) in enumerate(zip(limits, inwards, strict=True)):
+            if m != k:
+                corners = _before(corners, limit, inward, ON * size)
+        if len(corners) >= 3:
+            found.append(corners)
+    return polygons(found)
+
+
+def _square(normal: Array) -> Array:
+    """Corners (4, 3) of a square of edge 2 about the origin, across a unit normal."""
+    along = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    along /= np.linalg.norm(along)
+    across = np.cross(normal, along)
+    return np.array([-along - across, along - across, along + across, across - along])
+
+
+def _before(corners: Array, point: Array, inward: Array, allowed: float) -> Array:
+    """Corners (k, 3) m of what of a convex polygon is before a plane (Sutherland & Hodgman)."""
+    if not len(corners):
+        return corners
+    heights = (corners - point) @ inward
+    kept: list[Array] = []
+    ends = zip(np.roll(corners, -1, axis=0), np.roll(heights, -1), strict=True)
+    for corner, height, (end, end_height) in zip(corners, heights, ends, strict=True):
+        if height >= -allowed:
+            kept.append(corner)
+        if (height < -allowed) != (end_height < -allowed):
+            kept.append(corner + (end - corner) * (height / (height - end_height)))
+    return np.array(kept).reshape(-1, 3)

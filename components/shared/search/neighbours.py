@@ -26,7 +26,7 @@ from quintet.components.shared.search.cells import (
 )
 from quintet.components.shared.threads import Team
 
-FEWEST = 100  # neighbours that a row has room for; memory that none is written to costs nothing
+FEWEST = 100  # neighbours that a row has space for; memory that none is written to costs nothing
 MOST = 4000  # neighbours, beyond which memory is given back
 
 
@@ -83,14 +83,14 @@ def search(
     searched : Searched
     reach2 : float, m2
     per_row : int
-        Neighbours that each row has room for, taken together.
+        Neighbours that each row has space for, taken together.
     lists : Lists
         Written.
 
     Returns
     -------
     bool
-        Whether there was room.
+        Whether there was space.
     """
     points, split, start_one, start_two, grid = searched
     begin_of, middle_of, end_of, found = lists
@@ -130,7 +130,7 @@ def neighbours_within(
     split: int,
     team: Team,
     query_points: Points | None = None,
-    room: NDArray[np.int32] | None = None,
+    buffer: NDArray[np.int32] | None = None,
 ) -> NeighbourLists:
     """List what is nearer than a reach.
 
@@ -144,7 +144,7 @@ def neighbours_within(
     team : Team
     query_points : (any, 3) float array, m
         Places that look for the first group in place of the second group's.
-    room : (any,) int32 array
+    buffer : (any,) int32 array
         Memory of lists no longer wanted: fresh one costs as much as half of the search.
 
     Returns
@@ -163,11 +163,11 @@ def neighbours_within(
     start = points if query_points is None else np.concatenate([points[:split], query_points])
     searched = Searched(np.ascontiguousarray(points.T), split, start_one, start_two, grid)
     begin, middle, end = (np.empty(rows, np.int64) for _ in range(3))
-    if room is None or len(room) > MOST * rows:
-        room = np.empty(0, np.int32)
+    if buffer is None or len(buffer) > MOST * rows:
+        buffer = np.empty(0, np.int32)
     while True:
-        per_row = len(room) // rows
-        lists = Lists(begin, middle, end, room)
+        per_row = len(buffer) // rows
+        lists = Lists(begin, middle, end, buffer)
         if all(team.run(search, rows, start, cell, searched, reach * reach, per_row, lists)):
-            return NeighbourLists(room, begin, middle, end)
-        room = np.empty(rows * max(FEWEST, 2 * per_row), np.int32)
+            return NeighbourLists(buffer, begin, middle, end)
+        buffer = np.empty(rows * max(FEWEST, 2 * per_row), np.int32)

@@ -31,7 +31,7 @@ class DynamicBoundary:
     def join(self, state: State, static: Fields) -> None:
         """Nothing to do: samples have their densities."""
 
-    def place(self, state: State, fields: Fields) -> None:
+    def follow_samples(self, state: State, fields: Fields) -> None:
         """Nothing to do: samples look from where they are."""
 
     def load(self, state: State) -> None:

@@ -63,7 +63,7 @@ class LubricationFilms:
             spacing = self.params.spacing
             self.films = find_films(state, self.samples, spacing, self.constants)
 
-    def push(self, state: State, lists: Lists, dt: float) -> None:
+    def advance(self, state: State, lists: Lists, dt: float) -> None:
         """Advance the films by a step [s], and add their push to the samples' force."""
         if len(state.film):
             advance(self.films, state, lists, dt, self.params, self.constants)
@@ -89,11 +89,13 @@ def advance(
     outside = np.minimum(outside, density * (LARGEST * params.sound_speed) ** 2)
     driving = max(float(outside[films.rim].max(initial=0.0)), 1.0)
     bound = width * films.size * np.sqrt(2.0 / (density * driving))
-    mobility = np.minimum(width**3 / (12.0 * WATER), bound)
+    transmissivity = np.minimum(width**3 / (12.0 * WATER), bound)
     pressure, share, before = state.film[films.sample].T.copy()
     known = before > 0.0
     stored = np.where(known, share * before, 0.0)
-    places = FilmPlaces(films.rim, films.begin, films.near, width, foot, outside, stored, mobility)
+    places = FilmPlaces(
+        films.rim, films.begin, films.near, width, foot, outside, stored, transmissivity
+    )
     x, y, z = weight.tolist()
     solve_reynolds(places, spacing**2 / dt, (x, y, z), SWEEPS, pressure, share)
     state.film[:] = 0.0
@@ -118,7 +120,7 @@ class FilmPlaces(NamedTuple):
     position: Array  # (m, 3) m
     outside: Array  # (m,) Pa
     stored: Array  # (m,) m, water per area at the step's beginning
-    mobility: Array  # (m,) m4 s/kg, K = w³/(12μ), bounded
+    transmissivity: Array  # (m,) m4 s/kg, K = w³/(12μ), bounded
 
 
 @njit(**FAST)
@@ -143,7 +145,7 @@ def solve_reynolds(
     ----------
     Elrod, ASME J. Lubr. Technol. 103 (1981) 350.
     """
-    rim, begin, near, width, position, outside, stored, mobility = places
+    rim, begin, near, width, position, outside, stored, transmissivity = places
     for i in range(rim.shape[0]):
         if rim[i]:
             pressure[i] = outside[i]
@@ -155,7 +157,7 @@ def solve_reynolds(
             brought, paths = 0.0, 0.0
             for k in range(begin[i], begin[i + 1]):
                 j = near[k]
-                path = 0.5 * (mobility[i] + mobility[j])
+                path = 0.5 * (transmissivity[i] + transmissivity[j])
                 head = 0.0
                 for d in range(3):
                     head += weight[d] * (position[i, d] - position[j, d])

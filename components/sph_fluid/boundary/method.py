@@ -23,7 +23,7 @@ class BoundaryMethod(Protocol):
     def join(self, state: State, static: Fields) -> None:
         """Make surface samples ready that links bring."""
 
-    def place(self, state: State, fields: Fields) -> None:
+    def follow_samples(self, state: State, fields: Fields) -> None:
         """Follow samples that were placed."""
 
     def load(self, state: State) -> None:

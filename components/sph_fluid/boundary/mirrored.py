@@ -57,7 +57,7 @@ class MirroredBoundary:
             self.stiffness = features.contact_stiffness(self.params)
             self.contact = self.stiffness.numbers._replace(partial=True)
 
-    def place(self, state: State, fields: Fields) -> None:
+    def follow_samples(self, state: State, fields: Fields) -> None:
         """Follow mirror points; set the stiffness of the potential where samples are now."""
         state.mirror_point[self.samples.row - state.fluid] = fields["surface.mirror"]
         if len(self.by_potential):
@@ -77,9 +77,9 @@ class MirroredBoundary:
         """Furthest [m] that a sample's mirror point is from where the lists were made."""
         if not len(self.samples.row):
             return 0.0
-        here = self.samples.row - state.fluid
+        sample_rows = self.samples.row - state.fluid
         before = state.reference[state.particles :]
-        return longest(state.mirror_point.take(here, 0) - before.take(here, 0))
+        return longest(state.mirror_point.take(sample_rows, 0) - before.take(sample_rows, 0))
 
     def query_points(self, state: State) -> tuple[Array | None, Whole]:
         """Mirror points; samples, which the fluid pushes, look from where they are as well."""
@@ -97,9 +97,9 @@ class MirroredBoundary:
     def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
         """Write density as if the fluid went on into walls and samples."""
         own = np.full(len(state.mirror_point), NOT_LISTED)
-        here = self.samples.row - state.fluid
-        own[here] = self.samples.listed
-        own[here[self.by_potential]] = BY_POTENTIAL
+        sample_rows = self.samples.row - state.fluid
+        own[sample_rows] = self.samples.listed
+        own[sample_rows[self.by_potential]] = BY_POTENTIAL
         arrays = (own, state.mirror_point, state.position_density, state.velocity_pressure, lists)
         numbers = (self.gradient, constants(self.params))
         team.run(extrapolate_density, len(own), state.fluid, *arrays, *numbers)

@@ -151,8 +151,8 @@ def fit_density(row, x, y, z, to, position, lists, constants, packed):  # type: 
     begin, _, end, neighbour = lists
     if begin[row] == end[row]:
         return 0.0, 0.0, 0.0
-    far = out_of_reach(x, constants.smoothing.length), y, z, constants.density
-    count = pack_rows(begin[row], end[row], neighbour, position, far, packed)
+    padding = out_of_reach(x, constants.smoothing.length), y, z, constants.density
+    count = pack_rows(begin[row], end[row], neighbour, position, padding, packed)
     inverse = 1.0 / constants.smoothing.length
     moments = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     b, bx, by, bz = 0.0, 0.0, 0.0, 0.0

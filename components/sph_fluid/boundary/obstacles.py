@@ -65,9 +65,9 @@ def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
     if params.boundary.walls is None:
         return np.ones((2, 3), bool)
-    room = ROUNDING * params.spacing
-    lower = np.array(box[0]) > np.array(params.boundary.walls[0]) + room
-    upper = np.array(box[1]) < np.array(params.boundary.walls[1]) - room
+    tolerance = ROUNDING * params.spacing
+    lower = np.array(box[0]) > np.array(params.boundary.walls[0]) + tolerance
+    upper = np.array(box[1]) < np.array(params.boundary.walls[1]) - tolerance
     return np.stack([lower, upper]) | _named(params.boundary.open_faces)
 
 

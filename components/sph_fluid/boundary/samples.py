@@ -32,13 +32,13 @@ class Samples:
         self.body = np.array(static["surface.body"])
         self.volume = np.array(static["surface.volume"])
         self.placed = False
-        self.find(state)
+        self.find_rows(state)
 
-    def find(self, state: State) -> None:
+    def find_rows(self, state: State) -> None:
         """Find their rows anew."""
         self.row = state.sample_rows()
 
-    def place(self, state: State, fields: Fields) -> None:
+    def move(self, state: State, fields: Fields) -> None:
         """Put them where they are in the coming step."""
         state.position_density[self.row, :3] = fields["surface.position"]
         state.velocity_pressure[self.row, :3] = fields["surface.velocity"]

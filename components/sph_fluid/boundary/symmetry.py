@@ -27,9 +27,9 @@ class Symmetry:
 
     def neighbours(
         self, state: State, reach: float, team: Team, query_points: Array | None,
-        room: NDArray[np.int32],
+        buffer: NDArray[np.int32],
     ) -> NeighbourLists:  # fmt: skip
-        """Make room for images, and lists of the fluid, then of the boundary or query points."""
+        """Make buffer for images, and lists of the fluid, then of the boundary or query points."""
         rows = state.particles
         points = self.images.find(state.reference[:rows], reach)
         is_fluid = np.arange(len(points)) < state.fluid
@@ -38,7 +38,7 @@ class Symmetry:
         state.velocity_pressure = self.images.with_room(state.velocity_pressure, rows)
         self.write_images(state)
         return neighbours_and_images(
-            points, is_fluid, state.fluid, rows, reach, team, query_points, room
+            points, is_fluid, state.fluid, rows, reach, team, query_points, buffer
         )
 
     def write_images(self, state: State) -> None:

@@ -15,7 +15,7 @@ class SymmetryPlanes(Protocol):
 
     def neighbours(
         self, state: State, reach: float, team: Team, query_points: Array | None,
-        room: NDArray[np.int32],
+        buffer: NDArray[np.int32],
     ) -> NeighbourLists:  # fmt: skip
         """Lists of the fluid, then of the boundary or query points, with images among them."""
 
@@ -43,11 +43,11 @@ class NoSymmetry:
 
     def neighbours(
         self, state: State, reach: float, team: Team, query_points: Array | None,
-        room: NDArray[np.int32],
+        buffer: NDArray[np.int32],
     ) -> NeighbourLists:  # fmt: skip
         """Lists of the fluid, then of the boundary or query points."""
         points = state.reference[: state.particles]
-        return neighbours_within(reach, points, state.fluid, team, query_points, room)
+        return neighbours_within(reach, points, state.fluid, team, query_points, buffer)
 
     def write_images(self, state: State) -> None:
         """Nothing to do: there are no images."""

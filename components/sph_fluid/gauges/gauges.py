@@ -47,7 +47,7 @@ class Gauges:
                 corner[1] for corner in params.fluid[0]
             )
         # (k m, 3 or 2) m: these, and from where images see what these see in them.
-        self.seen = symmetry.all_images(self.points)
+        self.image_points = symmetry.all_images(self.points)
         self.above = symmetry.all_images(self.spots)
         boxes = [params.boundary.walls] if params.boundary.walls else params.fluid
         self.floor = min(box[0][2] for box in boxes)  # m
@@ -68,16 +68,16 @@ class Gauges:
         return found
 
     def _pressure(self, state: State) -> Array:
-        sums = np.empty((len(self.seen), 3))
+        sums = np.empty((len(self.image_points), 3))
         weight = self.params.density * np.array(self.params.gravity)
         position, velocity = (
             state.position_density[: state.particles],
             state.velocity_pressure[: state.particles],
         )
-        add_around(self.seen, state.fluid, position, velocity, self.constants, weight, sums)
+        add_around(self.image_points, state.fluid, position, velocity, self.constants, weight, sums)
         share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T
-        room = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
-        filled = np.maximum(share, room)
+        least = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
+        filled = np.maximum(share, least)
         pressure = np.divide(load, filled, out=np.zeros(len(load)), where=share > 0.0)
         return np.maximum(pressure, self.constants.lowest)
 

@@ -63,15 +63,15 @@ class FluidLists:
         state.keep(kept[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         places = [state.position_density[:, :3], state.mirror_point]
         state.reference, state.moved = np.concatenate(places), 0.0
-        self.samples.find(state)
+        self.samples.find_rows(state)
 
     def make(
         self, state: State, boundary: BoundaryMethod, symmetry: SymmetryPlanes, team: Team
     ) -> None:
         """List what is near, from where all was when it was sorted."""
         query_points, self.samples.listed = boundary.query_points(state)
-        reach, room = self.skin.reach, self.near.list
-        self.near = symmetry.neighbours(state, reach, team, query_points, room)
+        reach, buffer = self.skin.reach, self.near.list
+        self.near = symmetry.neighbours(state, reach, team, query_points, buffer)
 
 
 def in_domain(points: Array, walls: Box | None) -> Whole:

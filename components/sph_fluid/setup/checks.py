@@ -32,7 +32,7 @@ def check(params: "SphFluidParams") -> None:
 
 
 def check_boxes(params: "SphFluidParams") -> None:
-    """Boxes of fluid have room for particles and do not overlap."""
+    """Boxes of fluid have tolerance for particles and do not overlap."""
     for number, box in enumerate(params.fluid):
         _check_corners(f"fluid[{number}]", box, params.spacing)
         for other, earlier in enumerate(params.fluid[:number]):
@@ -50,11 +50,11 @@ def check_walls(params: "SphFluidParams") -> None:
         return
     _check_corners("boundary.walls", edge.walls, params.spacing)
     low, high = edge.walls
-    room = ROUNDING * params.spacing
+    tolerance = ROUNDING * params.spacing
     for number, box in enumerate(params.fluid):
         for axis, name in enumerate("xyz"):
-            below = box[0][axis] < low[axis] - room and f"{name}-" not in edge.open_faces
-            above = box[1][axis] > high[axis] + room and f"{name}+" not in edge.open_faces
+            below = box[0][axis] < low[axis] - tolerance and f"{name}-" not in edge.open_faces
+            above = box[1][axis] > high[axis] + tolerance and f"{name}+" not in edge.open_faces
             if below or above:
                 raise ValueError(
                     f"fluid[{number}] must be inside the walls along {name}, "
@@ -72,7 +72,7 @@ def check_walls(params: "SphFluidParams") -> None:
 
 
 def check_obstacles(params: "SphFluidParams") -> None:
-    """Obstacles have room for particles and are dry inside."""
+    """Obstacles have tolerance for particles and are dry inside."""
     least = 2.0 * params.boundary.wall_offset * params.spacing
     for number, box in enumerate(params.boundary.obstacles):
         name = f"boundary.obstacles[{number}]"
@@ -197,8 +197,8 @@ def _check_corners(name: str, box: Box, spacing: float) -> None:
         )
 
 
-def _overlap(one: Box, other: Box, room: float) -> bool:
+def _overlap(one: Box, other: Box, tolerance: float) -> bool:
     return all(
-        min(one[1][axis], other[1][axis]) - max(one[0][axis], other[0][axis]) > room
+        min(one[1][axis], other[1][axis]) - max(one[0][axis], other[0][axis]) > tolerance
         for axis in range(3)
     )

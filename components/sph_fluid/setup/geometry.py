@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
+from quintet.interfaces.component import Array
+from quintet.interfaces.faces import box
 from quintet.interfaces.params import Number, Vector
 
 if TYPE_CHECKING:
@@ -44,6 +46,13 @@ def tank(params: "SphFluidParams") -> Box | None:
         (x - out.get("x-", 0.0), y - out.get("y-", 0.0), z - out.get("z-", 0.0)),
         (u + out.get("x+", 0.0), v + out.get("y+", 0.0), w + out.get("z+", 0.0)),
     )
+
+
+def wall_faces(params: "SphFluidParams") -> list[Array]:
+    """Corners (4, 3) m of each closed face of the tank, and of each face of the obstacles."""
+    edge = params.boundary
+    found = box(*edge.walls, closed_faces(params)) if edge.walls else []
+    return found + [face for one in edge.obstacles for face in box(*one, FACES)]
 
 
 def slab_thickness(params: "SphFluidParams") -> float:

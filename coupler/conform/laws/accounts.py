@@ -88,10 +88,10 @@ def views_are_pictures(trial: Trial) -> None:
         if cells is not None:
             require(
                 cells.ndim == 2
-                and cells.shape[1] in (3, 4)
+                and cells.shape[1] >= 3
                 and cells.min(initial=0) >= -1
                 and cells.max(initial=-1) < len(points),
-                f"view: cells must be (m, 3 or 4) numbers of points; found {cells.shape} up to "
+                f"view: cells must be (m, 3 or more) numbers of points; found {cells.shape} up to "
                 f"{cells.max(initial=-1)} of {len(points)} points. Correct them.",
             )
         for key, array in shown.items():

@@ -123,13 +123,13 @@ class Glue:
         shape = project(
             glued["glued_load.position"], mesh["node_glue.start"], mesh["node_glue.corner"]
         )
-        mass = shape.spread(glued["glued_load.mass"][:, None])[:, 0]
+        mass = shape.map_conservative(glued["glued_load.mass"][:, None])[:, 0]
 
         def load(_: Ends, end: Ends) -> Mapped:
-            return {FORCE[1]: shape.spread(end[self.particles][FORCE[0]])}
+            return {FORCE[1]: shape.map_conservative(end[self.particles][FORCE[0]])}
 
         def move(_: Ends, end: Ends) -> Mapped:
-            return {"glued.velocity": shape.gather(end[self.mesh]["node_glue.velocity"])}
+            return {"glued.velocity": shape.map_consistent(end[self.mesh]["node_glue.velocity"])}
 
         def free(_: Ends, end: Ends) -> Mapped:
             return {ERODED[1]: end[self.mesh][ERODED[0]][shape.face]}

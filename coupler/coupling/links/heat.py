@@ -117,9 +117,11 @@ class Heat:
 
         def hold(_: Ends, end: Ends) -> Mapped:
             temperature = end[self.mesh]["node_temperature.temperature"]
-            return {"wall_temperature.temperature": shape.gather(temperature[:, None])[:, 0]}
+            return {
+                "wall_temperature.temperature": shape.map_consistent(temperature[:, None])[:, 0]
+            }
 
         def heat(_: Ends, end: Ends) -> Mapped:
-            return {HEAT[1]: shape.spread(end[self.wall][HEAT[0]][:, None])[:, 0]}
+            return {HEAT[1]: shape.map_conservative(end[self.wall][HEAT[0]][:, None])[:, 0]}
 
         return Binding({}, (hold, heat))

@@ -79,7 +79,7 @@ def _move_bodies(
     body: str, samples: RigidMap, mirror: RigidMap | None, _: Ends, end: Ends
 ) -> Mapped:
     given = end[body]
-    position, velocity = samples.gather(*(given[key] for key in POSES))
+    position, velocity = samples.map_consistent(*(given[key] for key in POSES))
     moved = {"surface.position": position, "surface.velocity": velocity}
     if mirror is not None:
         arms = mirror.arms(given["motion.orientation"])
@@ -91,7 +91,7 @@ def _load_bodies(of: Sampling, samples: RigidMap, start: Ends, end: Ends) -> Map
     # An impulse was gathered along the way between the two poses: use their middle.
     turns = [one[of.body]["motion.orientation"] for one in (start, end)]
     arms = 0.5 * (samples.arms(turns[0]) + samples.arms(turns[1]))
-    force, torque = samples.spread(end[of.fluid]["surface_load.force"], arms)
+    force, torque = samples.map_conservative(end[of.fluid]["surface_load.force"], arms)
     return {"load.force": force, "load.torque": torque}
 
 
@@ -109,15 +109,15 @@ def _bind_faces(of: Sampling, described: Mapping[str, Fields]) -> Binding:
 
     def move(_: Ends, end: Ends) -> Mapped:
         moved = {
-            "surface.position": shape.gather(end[of.body]["faces.position"]),
-            "surface.velocity": shape.gather(end[of.body]["faces.velocity"]),
+            "surface.position": shape.map_consistent(end[of.body]["faces.position"]),
+            "surface.velocity": shape.map_consistent(end[of.body]["faces.velocity"]),
         }
         if of.mirrored:  # samples lie on the faces, each its own image
             moved["surface.mirror"] = moved["surface.position"]
         return moved
 
     def load(_: Ends, end: Ends) -> Mapped:
-        return {"node_load.force": shape.spread(end[of.fluid]["surface_load.force"])}
+        return {"node_load.force": shape.map_conservative(end[of.fluid]["surface_load.force"])}
 
     return Binding(_static(of, normal, area * spacing, np.zeros(len(area))), (move, load))
 

@@ -221,6 +221,19 @@ def test_outputs_are_copies_and_views_have_faces():
     np.testing.assert_array_equal(scene.describe()["motion.shape"], [1.0, 1.0, 1.0])
 
 
+def test_planes_are_shown_where_they_hold_bodies():
+    sides = [
+        {"point": [-0.1, 0.0, 0.0], "normal": [2.0, 0.0, 0.0], "material": "a"},
+        {"point": [0.2, 0.0, 0.0], "normal": [-1.0, 0.0, 0.0], "material": "a"},
+    ]
+    shown = build([sphere([0.0, 0.0, 1.0])], planes=[FLOOR, *sides]).walls()
+    floor, left, right = (shown["points"][cell[cell >= 0]] for cell in shown["cells"])
+    assert floor[:, 0].min() == pytest.approx(-0.1) and floor[:, 0].max() == pytest.approx(0.2)
+    assert np.allclose(left[:, 0], -0.1) and np.allclose(right[:, 0], 0.2)
+    assert left[:, 2].min() == pytest.approx(0.0, abs=1e-9) and not np.abs(floor[:, 2]).any()
+    assert build([sphere([0.0, 0.0, 1.0])]).walls() == {}
+
+
 def test_steps_are_long_while_nothing_can_touch():
     far = build([sphere([0.0, 0.0, 1.0], 0.1)], planes=[FLOOR])
     near = build([sphere([0.0, 0.0, 0.05], 0.1)], planes=[FLOOR])

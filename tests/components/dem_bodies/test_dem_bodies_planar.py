@@ -80,6 +80,7 @@ def test_bodies_describe_their_shapes_in_the_plane():
     assert (x * np.roll(z, -1) - np.roll(x, -1) * z).sum() == pytest.approx(0.06)  # from x to z
     shown = bodies.view()
     assert len(shown["points"]) == 4 and shown["cells"].tolist() == [[1, 2, 3]]
+    assert shown["radius"] == pytest.approx([0.1, 0.0, 0.0, 0.0])
 
 
 @pytest.mark.parametrize("e", [0.2, 0.6, 1.0])

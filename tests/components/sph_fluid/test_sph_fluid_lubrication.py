@@ -80,7 +80,7 @@ def test_a_film_presses_both_bodies_alike():
     for _ in range(5):
         one.step(one.stable_dt())
     before = one.state.force.copy()
-    one.films.push(one.state, one.lists.arrays, 1e-4)
+    one.films.advance(one.state, one.lists.arrays, 1e-4)
     added, between = one.state.force - before, one.films.films.facing >= 0
     upper = added[one.films.films.sample[between]].sum(axis=0)
     lower = added[np.unique(one.films.films.facing[between])].sum(axis=0)

@@ -47,6 +47,15 @@ def test_a_box_against_a_wall_is_dry_there_unless_the_face_is_open():
     assert outlet.max(axis=0)[0] == pytest.approx(1.5 - SPACING)
 
 
+def test_closed_faces_of_the_tank_and_all_of_a_box_are_shown_as_walls():
+    shown = SphFluid(params(boundary__open_faces=("z+", "x+"))).walls()
+    assert shown["cells"].shape == (4 + 6, 4)
+    tank, box = shown["points"][:16], shown["points"][16:]
+    assert (tank.min(axis=0), tank.max(axis=0)) == (pytest.approx(TANK[0]), pytest.approx(TANK[1]))
+    assert not (tank.reshape(4, 4, 3)[:, :, 0] == 1.5).all(axis=1).any()
+    assert (box.min(axis=0), box.max(axis=0)) == (pytest.approx(BOX[0]), pytest.approx(BOX[1]))
+
+
 def test_what_water_cannot_feel_is_left_out():
     big = ((0.7, 0.1, 0.2), (1.4, 0.9, 0.9))
     points = obstacle_points(params(boundary__walls=None, boundary__obstacles=(big,)))

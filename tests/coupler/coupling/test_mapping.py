@@ -1,4 +1,4 @@
-"""Operators and their transposes: motion is gathered, forces are spread, power is the same."""
+"""Operators and their transposes: motion maps consistently, forces conservatively, power is one."""
 
 import numpy as np
 import pytest
@@ -56,8 +56,8 @@ def test_rigid_power_is_the_same_on_both_sides():
     rigid, quaternion = _rigid()
     velocity, spin, place = (RANDOM.normal(size=(4, 3)) for _ in range(3))
     force = RANDOM.normal(size=(200, 3))
-    _, moving = rigid.gather(place, velocity, quaternion, spin)
-    total, torque = rigid.spread(force, rigid.arms(quaternion))
+    _, moving = rigid.map_consistent(place, velocity, quaternion, spin)
+    total, torque = rigid.map_conservative(force, rigid.arms(quaternion))
     power = np.vdot(total, velocity) + np.vdot(torque, spin)
     assert power == pytest.approx(np.vdot(force, moving), rel=1e-13)
 
@@ -65,8 +65,8 @@ def test_rigid_power_is_the_same_on_both_sides():
 def test_rigid_spread_conserves_force_and_moment():
     rigid, quaternion = _rigid()
     place, force = RANDOM.normal(size=(4, 3)), RANDOM.normal(size=(200, 3))
-    position, _ = rigid.gather(place, np.zeros((4, 3)), quaternion, np.zeros((4, 3)))
-    total, torque = rigid.spread(force, rigid.arms(quaternion))
+    position, _ = rigid.map_consistent(place, np.zeros((4, 3)), quaternion, np.zeros((4, 3)))
+    total, torque = rigid.map_conservative(force, rigid.arms(quaternion))
     np.testing.assert_allclose(total.sum(axis=0), force.sum(axis=0), atol=1e-12)
     moment = np.cross(position, force).sum(axis=0)
     np.testing.assert_allclose((np.cross(place, total) + torque).sum(axis=0), moment, atol=1e-11)
@@ -77,7 +77,7 @@ def test_rigid_rotation_is_exact():
     spin, angle = np.array([[0.3, -0.5, 0.8]]), 1.1
     quaternion = _turned(spin[0], angle)[None]
     place = np.array([[3.0, 2.0, 1.0]])
-    position, velocity = rigid.gather(place, np.zeros((1, 3)), quaternion, spin)
+    position, velocity = rigid.map_consistent(place, np.zeros((1, 3)), quaternion, spin)
     axis = spin[0] / np.linalg.norm(spin[0])
     arm = rigid.arm  # Rodrigues' formula, written out
     turned = arm * np.cos(angle) + np.cross(axis, arm) * np.sin(angle)
@@ -94,8 +94,8 @@ def test_face_power_is_the_same_on_both_sides(mesh):
     shape, _, _ = sample_faces(position, face, 0.11)
     velocity = RANDOM.normal(size=position.shape)
     force = RANDOM.normal(size=(len(shape.node), 3))
-    power = np.vdot(shape.spread(force), velocity)
-    assert power == pytest.approx(np.vdot(force, shape.gather(velocity)), rel=1e-12)
+    power = np.vdot(shape.map_conservative(force), velocity)
+    assert power == pytest.approx(np.vdot(force, shape.map_consistent(velocity)), rel=1e-12)
 
 
 @pytest.mark.parametrize("mesh", [_mesh, _triangles])
@@ -103,10 +103,12 @@ def test_constants_stay_constant_and_lines_straight(mesh):
     position, face = mesh()
     shape, _, _ = sample_faces(position, face, 0.11)
     np.testing.assert_allclose(shape.weight.sum(axis=1), 1.0, atol=1e-15)
-    np.testing.assert_allclose(shape.gather(np.full((len(position), 1), 7.0)), 7.0, rtol=1e-15)
+    np.testing.assert_allclose(
+        shape.map_consistent(np.full((len(position), 1), 7.0)), 7.0, rtol=1e-15
+    )
     slope = RANDOM.normal(size=(3, 3))
     np.testing.assert_allclose(
-        shape.gather(position @ slope), shape.gather(position) @ slope, atol=1e-13
+        shape.map_consistent(position @ slope), shape.map_consistent(position) @ slope, atol=1e-13
     )
 
 
@@ -115,9 +117,9 @@ def test_spread_conserves_force_and_moment_over_shared_nodes(mesh):
     position, face = mesh()
     shape, _, _ = sample_faces(position, face, 0.11)
     force = RANDOM.normal(size=(len(shape.node), 3))
-    nodal = shape.spread(force)
+    nodal = shape.map_conservative(force)
     np.testing.assert_allclose(nodal.sum(axis=0), force.sum(axis=0), atol=1e-12)
-    moment = np.cross(shape.gather(position), force).sum(axis=0)
+    moment = np.cross(shape.map_consistent(position), force).sum(axis=0)
     np.testing.assert_allclose(np.cross(position, nodal).sum(axis=0), moment, atol=1e-12)
 
 
@@ -135,7 +137,7 @@ def test_samples_of_plane_faces_share_their_area():
 def test_samples_keep_the_spacing():
     position = np.array([[0, 0, 0], [1, 0, 0], [1, 0.5, 0], [0, 0.5, 0.0]])
     shape, area, _ = sample_faces(position, np.array([[0, 1, 2, 3.0]]), 0.1)
-    place = shape.gather(position)
+    place = shape.map_consistent(position)
     assert len(place) == 50
     np.testing.assert_allclose(area, 0.01, rtol=1e-14)
     apart = np.linalg.norm(place[:, None] - place[None], axis=2) + np.eye(50)
@@ -146,9 +148,11 @@ def test_samples_keep_the_spacing():
 def test_points_on_faces_are_projected_onto_themselves(mesh):
     position, face = mesh()
     shape, _, normal = sample_faces(position, face, 0.13)
-    place = shape.gather(position)
-    np.testing.assert_allclose(project(place, position, face).gather(position), place, atol=1e-9)
-    above = project(place + 0.02 * normal, position, face).gather(position)
+    place = shape.map_consistent(position)
+    np.testing.assert_allclose(
+        project(place, position, face).map_consistent(position), place, atol=1e-9
+    )
+    above = project(place + 0.02 * normal, position, face).map_consistent(position)
     np.testing.assert_allclose(above, place, atol=1e-6)
 
 
@@ -158,21 +162,21 @@ def test_points_are_hung_on_the_nearest_face_however_unequal_the_faces_are():
     face = np.array([[i, i + 1, i + 5, i + 4] for i in range(3)], dtype=float)
     point = np.array([[9.5, 0.5, 0.1]])  # above the long face, nearer to the short one's centre
     shape = project(point, position, face)
-    np.testing.assert_allclose(shape.gather(position), [[9.5, 0.5, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(shape.map_consistent(position), [[9.5, 0.5, 0.0]], atol=1e-12)
 
 
 def test_points_beyond_the_rim_hang_on_the_rim():
     position = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     shape = project(np.array([[1.5, 0.3, 0.2]]), position, np.array([[0, 1, 2, 3.0]]))
-    np.testing.assert_allclose(shape.gather(position), [[1.0, 0.3, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(shape.map_consistent(position), [[1.0, 0.3, 0.0]], atol=1e-12)
     assert shape.weight.sum() == pytest.approx(1.0)
 
 
 def test_projection_of_no_points_is_empty():
     position, face = _mesh()
     shape = project(np.zeros((0, 3)), position, face)
-    assert shape.gather(position).shape == (0, 3)
-    np.testing.assert_array_equal(shape.spread(np.zeros((0, 3))), np.zeros_like(position))
+    assert shape.map_consistent(position).shape == (0, 3)
+    np.testing.assert_array_equal(shape.map_conservative(np.zeros((0, 3))), np.zeros_like(position))
 
 
 def test_shape_functions_are_one_at_their_corner():
@@ -190,7 +194,7 @@ def test_gather_is_the_transpose_of_spread():
     position, face = _mesh()
     shape, _, _ = sample_faces(position, face, 0.5)
     samples, nodes = len(shape.node), len(position)
-    gather = np.array([shape.gather(unit[:, None])[:, 0] for unit in np.eye(nodes)]).T
-    spread = np.array([shape.spread(unit[:, None])[:, 0] for unit in np.eye(samples)]).T
+    gather = np.array([shape.map_consistent(unit[:, None])[:, 0] for unit in np.eye(nodes)]).T
+    spread = np.array([shape.map_conservative(unit[:, None])[:, 0] for unit in np.eye(samples)]).T
     np.testing.assert_array_equal(gather, spread.T)
     assert isinstance(shape, ShapeMap)

@@ -7,9 +7,12 @@ import sys
 
 import numpy as np
 import pytest
+import pyvista
 
-from quintet.coupler.files.vtkhdf import VtkHdf, read_step, times
+from quintet.coupler.files.vtkhdf import VtkHdf, resume
+from quintet.coupler.files.vtkhdf_reader import read_step, scene, times, units
 from quintet.interfaces.errors import PortError, SceneError
+from quintet.interfaces.faces import CORNERS, FACES
 
 COUNTS = (5, 7, 7, 5, 0, 30, 6)
 CELLS = np.array([[0, 1, 2, 3], [0, 1, 2, -1]])
@@ -111,7 +114,8 @@ def test_a_picture_file_may_be_read_while_it_grows(tmp_path):
     path = tmp_path / "e.vtkhdf"
     file = VtkHdf(path)
     file.append(0.0, _views()[0])
-    script = f"from quintet.coupler.files.vtkhdf import times; print(len(times({str(path)!r})))"
+    importing = "from quintet.coupler.files.vtkhdf_reader import times"
+    script = f"{importing}; print(len(times({str(path)!r})))"
     read = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     file.close()
     assert read.stdout.strip() == "1", read.stderr
@@ -161,3 +165,81 @@ def test_a_step_that_is_not_there_is_refused_by_its_number(tmp_path):
     (tmp_path / "text.vtkhdf").write_text("no")
     with pytest.raises(SceneError, match="must be a VTKHDF file"):
         times(tmp_path / "text.vtkhdf")
+
+
+UNITS = {"velocity": "m/s", "pressure": "Pa", "stress": "Pa"}
+
+
+def _mixed(k):
+    """A box, two spheres beside it, a stress over the faces; at a step."""
+    rng = np.random.default_rng(k)
+    points = np.concatenate([CORNERS + 0.1 * k, rng.random((2, 3))])
+    radius = np.array([0.0] * 8 + [0.1, 0.2])
+    view = {"points": points, "velocity": rng.random((10, 3)), "radius": radius}
+    return view | {"cells": FACES, "stress": rng.random((6, 2))}
+
+
+def test_fields_over_cells_and_loose_points_read_back(tmp_path):
+    views = [_mixed(k) for k in range(3)]
+    _write(tmp_path / "a.vtkhdf", views)
+    for k, view in enumerate(views):
+        found = read_step(tmp_path / "a.vtkhdf", k)[1]
+        assert found.keys() == view.keys()
+        assert all(np.array_equal(found[key], np.float32(view[key])) for key in view)
+
+
+def test_units_and_scene_read_back_in_the_order_of_the_view(tmp_path):
+    file = VtkHdf(tmp_path / "a.vtkhdf", UNITS | {"radius": "m"}, "a – scene")
+    file.append(0.0, _mixed(0) | {"unknown": np.zeros(10)})
+    file.close()
+    found = units(tmp_path / "a.vtkhdf")
+    assert list(found.items()) == [
+        ("velocity", "m/s"), ("stress", "Pa"), ("radius", "m"), ("unknown", "")
+    ]  # fmt: skip
+    assert scene(tmp_path / "a.vtkhdf") == "a – scene"
+
+
+def test_a_file_that_goes_on_keeps_its_units(tmp_path):
+    file = VtkHdf(tmp_path / "a.vtkhdf", UNITS, "here")
+    for k in range(3):
+        file.append(0.1 * k, _mixed(k))
+    file.close()
+    resume(tmp_path / "a.vtkhdf", 0.1).close()
+    assert len(times(tmp_path / "a.vtkhdf")) == 2 and scene(tmp_path / "a.vtkhdf") == "here"
+    assert units(tmp_path / "a.vtkhdf")["stress"] == "Pa"
+
+
+def _pyvista_steps(path):
+    reader = pyvista.get_reader(str(path))
+    reader.reader.UpdateInformation()
+    for k in range(reader.reader.GetNumberOfSteps()):  # which pyvista's own reader has no name for
+        reader.reader.SetStep(k)
+        mesh = reader.read()
+        yield reader.reader.GetTimeValue(), mesh
+
+
+def test_pyvista_opens_a_cloud_at_all_steps_with_its_units(tmp_path):
+    views = _views((5, 7, 7, 5, 30, 6))
+    file = VtkHdf(tmp_path / "a.vtkhdf", UNITS, "a scene")
+    for k, view in enumerate(views):
+        file.append(0.1 * k, view)
+    file.close()
+    found = list(_pyvista_steps(tmp_path / "a.vtkhdf"))
+    assert [time for time, _ in found] == [0.1 * k for k in range(6)]
+    for view, (_, mesh) in zip(views, found, strict=True):
+        assert mesh.n_points == mesh.n_verts == len(view["points"])
+        assert np.array_equal(mesh["pressure"], view["pressure"].astype(np.float32))
+        assert list(mesh.field_data["units"]) == ["points m; velocity m/s; pressure Pa"]
+        assert list(mesh.field_data["scene"]) == ["a scene"]
+
+
+def test_pyvista_opens_faces_spheres_and_fields_over_faces_at_all_steps(tmp_path):
+    _write(tmp_path / "a.vtkhdf", [_mixed(k) for k in range(4)])
+    for k, (_, mesh) in enumerate(_pyvista_steps(tmp_path / "a.vtkhdf")):
+        view = _mixed(k)
+        assert (mesh.GetNumberOfVerts(), mesh.GetNumberOfPolys()) == (2, 6)
+        assert np.array_equal(mesh.points, view["points"].astype(np.float32))
+        assert mesh["radius"][-1] == np.float32(0.2)
+        assert np.isnan(mesh.cell_data["stress"][:2]).all()  # the spheres have none
+        assert np.array_equal(mesh.cell_data["stress"][2:], view["stress"].astype(np.float32))
+    assert k == 3

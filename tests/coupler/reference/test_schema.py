@@ -1,6 +1,7 @@
 """The JSON schema takes every scene that comes with quintet, and refuses what ``check`` refuses."""
 
 import json
+import re
 import tomllib
 from copy import deepcopy
 
@@ -90,13 +91,20 @@ def test_every_key_is_described_and_tells_its_unit():
     found = list(properties(schema))
     assert len(found) > 200
     assert [name for name, one in found if not one.get("description")] == []
-    spacing = schema["definitions"]["component sph_fluid"]["properties"]["spacing"]
+    spacing = schema["definitions"]["component.sph_fluid"]["properties"]["spacing"]
     assert spacing == {
         "description": "Between particles. Unit: m.",
         "unit": "m",
         "exclusiveMinimum": 0,
         "type": "number",
     }
+
+
+def test_references_are_addresses_that_lead_to_definitions():
+    text = json.dumps(schema := scene_schema())
+    found = set(re.findall(r'"\$ref": "#/definitions/(.*?)"', text))
+    assert found == schema["definitions"].keys()
+    assert all(re.fullmatch(r"[A-Za-z0-9_.:-]+", name) for name in found)  # no blanks: RFC 3986
 
 
 def test_the_command_prints_it_and_knows_the_classes_of_a_scene(capsys):

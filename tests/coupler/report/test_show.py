@@ -51,6 +51,13 @@ def test_show_tells_expectations_ledger_and_timing(tmp_path, capsys):
     assert "energy drift 0.01" in text and "exchange 0.4 s" in text
 
 
+def test_show_tells_that_a_coupling_is_unstable(tmp_path, capsys):
+    text = "link water-cube is unstable: by t = 0.1 s its sides took 2 J more work than they gave"
+    found = RESULTS | {"unstable": [{"link": "water-cube", "text": text}]}
+    assert f"Doubtful: {text}" in _shown(tmp_path, found, capsys)
+    assert "Doubtful" not in _shown(tmp_path, RESULTS | {"unstable": []}, capsys)
+
+
 def test_show_is_plain_when_piped(tmp_path, capsys):
     assert _shown(tmp_path, RESULTS, capsys).isascii()
 

@@ -9,7 +9,7 @@ import pytest
 from started import Started, same, write_scene
 
 from quintet.coupler.cli import main
-from quintet.coupler.files import vtkhdf
+from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.disk import seal
 from quintet.coupler.run import snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
@@ -61,7 +61,7 @@ def test_water_and_a_body_go_on_from_a_snapshot_with_the_same_bits(gone_on):
     output = ("end=0.03", "output.interval=0.01", "output.snapshots=0.012")
     first, again, window = gone_on(SMALL_DAM, *output)
     assert window == 24 and same(first, again)
-    assert len(vtkhdf.times(again / "water.vtkhdf")) == 4
+    assert len(vtkhdf_reader.times(again / "water.vtkhdf")) == 4
 
 
 @pytest.mark.parametrize("transport", ["memory", *OVER])

@@ -69,6 +69,8 @@ WRONG = {
     "table": ("[[links]]", "[[link]]", "scene.link is not known. Did you mean links?"),
     "component key": ("[components.pong]", "[components.pong]\npuase = 1.0", "components.pong.puase is not known. Did you mean pause?"),
     "nested key": ("[components.ping]", "[output]\ninterva = 1.0\n[components.ping]", "scene.output.interva is not known. Did you mean interval?"),
+    "colours": ("[components.ping]", '[output]\ncolours = ["ping.speed"]\n[components.ping]', "output.colours: ping.speed is not known. Known here: nothing."),
+    "region": ("[components.ping]", "[output]\nregion = [[0, 0, 1], [1, 1, 0]]\n[components.ping]", "scene: output.region must be the lowest and the highest corner of a box; found ((0.0, 0.0, 1.0), (1.0, 1.0, 0.0)). Correct it."),
     "missing end": ("end = 1.0", "", "scene.end is needed. Add end to it."),
     "missing name": ('name = "toy"', "", "scene.name is needed. Add name to it."),
     "text for a number": ("end = 1.0", 'end = "1.0"', "scene.end should be a valid number; found '1.0'. Correct it."),

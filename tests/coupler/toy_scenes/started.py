@@ -10,7 +10,7 @@ import sys
 import time
 from pathlib import Path
 
-from quintet.coupler.files import vtkhdf
+from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.report.diff import compare
 
 MARK = "QUINTET_TEST_RUN"
@@ -49,10 +49,10 @@ def same(one, other):
     for key in ("status", "windows", "time", "expect", "ledger"):
         assert found[0][key] == found[1][key], key
     for path in one.glob("*.vtkhdf"):
-        times = vtkhdf.times(path)
-        assert list(times) == list(vtkhdf.times(other / path.name))
+        times = vtkhdf_reader.times(path)
+        assert list(times) == list(vtkhdf_reader.times(other / path.name))
         for k in range(len(times)):
-            views = [vtkhdf.read_step(run / path.name, k)[1] for run in (one, other)]
+            views = [vtkhdf_reader.read_step(run / path.name, k)[1] for run in (one, other)]
             assert all((views[0][key] == views[1][key]).all() for key in views[0])
     return True
 

@@ -1,0 +1,190 @@
+"""Time series of a run against what is expected of them: reference curves and single values.
+
+Matplotlib is loaded by the functions that draw: a run without pictures does not need it.
+"""
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.files.recording import Recording
+from quintet.coupler.measures.expectation import (
+    DISTANCES,
+    Expectation,
+    Outcome,
+    curve,
+    reference_curve,
+)
+from quintet.coupler.measures.time_series import Curve
+from quintet.coupler.report.panels import curve_panels, save
+from quintet.interfaces.component import Field
+
+IN_UNIT = ("rms", "at", "max", "min", "mean")  # measures that have the unit of their curve
+PANELS = 12  # at most
+COMPUTED, BAND = "tab:blue", "tab:orange"
+MARKS = (("o", "black"), ("s", "tab:red"), ("^", "tab:green"), ("D", "tab:purple"))
+AXES = "xyz"
+LINE, LINES = 44, 2  # characters and lines of a source in a legend
+Outcomes = Mapping[str, Outcome]
+
+
+def comparison(
+    folder: Path,
+    expectations: Sequence[Expectation],
+    outcomes: Sequence[Outcome],
+    recording: Recording,
+    out: Path,
+    title: str = "",
+    values: bool = False,
+) -> Path | None:
+    """Draw computed curves against their references, one panel for each curve.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the scene, where the reference curves are.
+    expectations, outcomes : sequences
+        Matched by name.
+    recording : Recording
+    out : Path
+        The picture; its ending chooses the format.
+    title : str
+        Above all panels.
+    values : bool
+        Whether curves are drawn too whose only references are single values.
+
+    Returns
+    -------
+    Path or None
+        `out`, or None where there is nothing to be drawn.
+    """
+    curves: dict[tuple[Any, ...], list[Expectation]] = {}
+    for one in expectations:
+        if one.csv is not None or values:
+            curves.setdefault(_curve_of(one), []).append(one)
+    wanted = sorted(curves.values(), key=lambda ones: all(one.csv is None for one in ones))
+    if not wanted:
+        return None
+    if len(wanted) > PANELS:
+        title = f"{title}\nthe first {PANELS} of {len(wanted)} curves"
+        wanted = wanted[:PANELS]
+    results = {outcome.name: outcome for outcome in outcomes}
+    figure, panels = curve_panels(len(wanted), title.strip())
+    for panel, ones in zip(panels, wanted, strict=True):
+        _draw(panel, ones, results, recording, Path(folder))
+    return save(figure, out)
+
+
+def _curve_of(one: Expectation) -> tuple[Any, ...]:
+    """What makes a computed curve: expectations that agree in it share a panel."""
+    return (one.component, one.field, one.item, one.axis, one.offset, one.scale)
+
+
+def _draw(
+    panel: Any, ones: list[Expectation], results: Outcomes, recording: Recording, folder: Path
+) -> None:
+    computed = curve(ones[0], recording)
+    panel.plot(*computed, color=COMPUTED, linewidth=1.5, label="computed")
+    drawn: list[str] = []
+    last = max(_end(one, computed, folder) for one in ones)
+    for one in ones:
+        reference = reference_curve(one, folder)
+        mark, colour = MARKS[len(drawn) % len(MARKS)]
+        if reference is None:
+            _draw_value(panel, one, computed)
+        elif one.csv not in drawn:
+            drawn.append(str(one.csv))
+            seen = reference.times <= last
+            panel.plot(
+                reference.times[seen], reference.values[seen], mark, color=colour, markersize=3.5,
+                fillstyle="none", label=shortened(one.source),
+            )  # fmt: skip
+        if one.level is not None:
+            panel.axhline(one.level, color="grey", linewidth=0.8, linestyle="--")
+    panel.set_title("\n".join(_verdict(one, results.get(one.name)) for one in ones), fontsize=8)
+    panel.set(xlabel="t [s]", ylabel=_label(ones, recording))
+    panel.grid(alpha=0.3)
+    panel.legend(fontsize=7, frameon=False)
+
+
+def _end(one: Expectation, computed: Curve, folder: Path) -> float:
+    """Time [s] beyond which there is nothing to be compared, with a little more."""
+    known = [float(one.begin), *computed.times[-1:].tolist()]
+    reference = reference_curve(one, folder)
+    if one.end is not None:
+        known.append(one.end)
+    elif reference is not None:
+        known.append(float(reference.times[-1]))
+    return 1.05 * max(known)
+
+
+def _draw_value(panel: Any, one: Expectation, computed: Curve) -> None:
+    """Draw a single value as a mark or line with its tolerance, where the curve can show it."""
+    assert one.value is not None
+    label, value = shortened(f"expected: {one.source}"), one.value
+    style = {"color": BAND, "label": label, "markersize": 5, "capsize": 3, "zorder": 3}
+    if one.measure == "at":
+        panel.errorbar(one.begin, value, yerr=one.within, fmt="o", **style)
+    elif one.measure == "crossing":
+        panel.errorbar(value, one.level, xerr=one.within, fmt="o", **style)
+    elif one.measure in IN_UNIT:
+        last = float(computed.times[-1]) if len(computed.times) else one.begin
+        span = (one.begin, last if one.end is None else one.end)
+        if span[0] >= last:  # the run did not come so far
+            return
+        panel.plot(span, (value, value), color=BAND, linewidth=1.2, label=label)
+        low, high = value - one.within, value + one.within
+        panel.fill_between(span, low, high, color=BAND, alpha=0.25, linewidth=0)
+
+
+def shortened(text: str) -> str:
+    """Beginning of a text, as much as fits into a legend."""
+    return "\n".join(textwrap.wrap(text, LINE, max_lines=LINES, placeholder=" …"))
+
+
+def _label(ones: list[Expectation], recording: Recording) -> str:
+    """Name and unit of the curve that some expectations measure."""
+    one = ones[0]
+    field = _field(one, recording)
+    name = f"{one.component} {one.field.replace('.', ' ').replace('_', ' ')}"
+    if one.axis is not None:
+        name += f" {AXES[one.axis]}" if field.shape == (3,) else f" {one.axis}"
+    elif field.shape:
+        name = f"|{name}|"
+    items = recording.items(one.component, one.field)[0]
+    if one.item in ("mean", "max", "min"):
+        name += f", {one.item} of {items}"
+    elif items > 1:
+        name += f", item {one.item}"
+    if one.offset:
+        name = f"{name} {'+' if one.offset > 0.0 else '−'} {abs(one.offset):g} {field.unit}"
+    if abs(one.scale) == 1.0:
+        return f"{'−' if one.scale < 0.0 else ''}{name} [{field.unit}]"
+    units = {other.unit for other in ones if other.measure in IN_UNIT}
+    if len(units) == 1:
+        return f"{one.scale:.4g} × ({name}) [{units.pop()}]"
+    return f"{one.scale:.4g} × ({name} [{field.unit}])"
+
+
+def _field(one: Expectation, recording: Recording) -> Field:
+    ports = recording.ports(one.component)
+    return next(f for port in ports for f in port.fields if f"{port.name}.{f.name}" == one.field)
+
+
+def _verdict(one: Expectation, outcome: Outcome | None) -> str:
+    """Say what was measured, what was expected, and whether it was met."""
+    what = one.measure.replace("relative_rms", "relative RMS distance")
+    what = what.replace("rms", "RMS distance")
+    if one.measure == "at":
+        what = f"at {one.begin:g} s"
+    elif one.level is not None:
+        what = f"passes {one.level:g}"
+    if outcome is None or outcome.value is None:
+        return f"{one.name}: {what}: no value: NOT met"
+    expected = f"at most {outcome.within:.3g}"
+    if one.measure not in DISTANCES:
+        expected = f"expected {outcome.reference:.4g} ± {outcome.within:.2g}"
+    unit = "" if one.unit == "1" else f" {one.unit}"
+    verdict = "met" if outcome.met else "NOT met"
+    return f"{one.name}: {what} {outcome.value:.4g}, {expected}{unit}: {verdict}"

@@ -1,0 +1,164 @@
+"""Side views of a run, x to the right and z up: particles, bodies and walls at a few times.
+
+Matplotlib is loaded by the functions that draw: a run without pictures does not need it.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.report.panels import place_panels, save
+from quintet.coupler.report.view_drawing import (
+    MARK,
+    add_legend,
+    clipped_ends,
+    colour_scales,
+    diameters,
+    draw_view,
+    draw_walls,
+    is_mark,
+)
+from quintet.coupler.report.view_steps import Shown, moments, read, view_files, walls
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
+
+MARGIN, BEYOND = 0.03, 0.12  # of the picture: around all that moves; how far walls may reach
+TALL, LOWEST = 2.0, 0.22  # height over width of a panel: at most; what is lower is stretched
+FLATTEST = 0.05  # height over width of what is shown, at least
+Region = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+def side_views(
+    run: Path,
+    out: Path,
+    times: Sequence[float],
+    title: str = "",
+    colours: Sequence[str] = (),
+    region: Region | None = None,
+) -> Path:
+    """Draw the side view of a run, one panel for each time.
+
+    Parameters
+    ----------
+    run : Path
+        Folder of a run; the view file of every component in it is drawn.
+    out : Path
+        The picture; its ending chooses the format.
+    times : sequence of float, s
+        The nearest step is taken; times after the run's end are its end.
+    title : str
+        Above all panels.
+    colours : sequence of str
+        What components are coloured by: ``component.field``. Points of others take the first field
+        of their view; faces of others have a plain colour.
+    region : two corners, m, optional
+        Of the box that is shown; what is in front of it, along y, is cut away.
+
+    Returns
+    -------
+    Path
+        `out`.
+    """
+    files = view_files(run)
+    if not files or not len(times):
+        raise SceneError(f"run {run}: a picture needs a .vtkhdf file with steps, and a time.")
+    fields = dict(one.split(".", 1) for one in colours)
+    found = moments(files, times)
+    views = [[_within(read(path, time, fields), region) for path in files] for time in found]
+    still = walls(run)
+    low, high = _limits(views, still, region)
+    wide, tall = high - low
+    stretch = max(1.0, wide / tall * LOWEST)
+    said = [
+        _eye(views, region),
+        f"z drawn {stretch:.2g} times as long as x" if stretch > 1.0 else "",
+    ]
+    text = f"{title}\n{', '.join(one for one in said if one)}".strip()
+    figure, panels = place_panels(len(views), stretch * tall / wide, text)
+    scales = colour_scales(views)
+    sizes = diameters(views[0])
+    for panel, time, view in zip(panels, found, views, strict=True):
+        panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=stretch)
+        panel.set(xlabel="x [m]", ylabel="z [m]")
+        panel.set_title(f"t = {time:.4g} s", fontsize=10)
+        panel.locator_params(axis="x", nbins=_ticks(figure, panel))
+        draw_walls(panel, still)
+        draw_view(panel, view, scales, sizes)
+    for one, scale in scales.items():
+        figure.colorbar(
+            scale, ax=panels, label=one.label, extend=clipped_ends(scale, views, one),
+            shrink=0.8, aspect=30, pad=0.02,
+        )  # fmt: skip
+    add_legend(figure, views[0], bool(still))
+    return save(figure, out)
+
+
+def _ticks(figure: Any, panel: Any) -> int:
+    """Numbers that have room along the x axis of a panel."""
+    return max(2, int(1.2 * figure.get_figwidth() / panel.get_subplotspec().get_gridspec().ncols))
+
+
+def _eye(views: Sequence[Sequence[Shown]], region: Region | None) -> str:
+    """Where one looks from; nothing to say in two dimensions."""
+    y = np.concatenate([_every_corner(one)[:, 1] for view in views for one in view])
+    if not len(y) or float(np.ptp(y)) < 1e-9 * max(1.0, float(np.abs(y).max())):
+        return ""
+    cut = f", particles from y = {region[0][1]:g} to {region[1][1]:g} m" if region else ""
+    return f"side view along y{cut}"
+
+
+def _every_corner(shown: Shown) -> Array:
+    return np.concatenate([np.zeros((0, 3)), shown.points, *shown.faces])
+
+
+def _within(shown: Shown, region: Region | None) -> Shown:
+    """Leave out points in front of a region, or behind it; sort all, the farthest first."""
+    keep = np.isfinite(shown.points).all(axis=1)
+    if region is not None:
+        keep &= (shown.points[:, 1] >= region[0][1]) & (shown.points[:, 1] <= region[1][1])
+    order = np.flatnonzero(keep)
+    order = order[np.argsort(-shown.points[order, 1], kind="stable")]
+    depth = [-float(face[:, 1].mean()) for face in shown.faces]
+    faces = np.argsort(depth, kind="stable")
+    return Shown(
+        shown.name,
+        shown.quantity,
+        shown.points[order],
+        shown.radius[order],
+        None if shown.values is None else shown.values[order],
+        [shown.faces[k] for k in faces],
+        None if shown.face_values is None else shown.face_values[faces],
+    )
+
+
+def _limits(
+    views: Sequence[Sequence[Shown]], still: Sequence[Array], region: Region | None
+) -> tuple[Array, Array]:
+    """Lowest and highest corner (2,) m, x and z, of all panels: what moves, and walls around it."""
+    if region is not None:
+        return np.array(region[0])[[0, 2]], np.array(region[1])[[0, 2]]
+    every = np.concatenate([_reach(one) for view in views for one in view])
+    if not len(every):
+        raise SceneError("a picture needs at least one point; no step has any.")
+    low, high = every.min(axis=0), every.max(axis=0)
+    size = max(float((high - low).max()), 1e-6)
+    if any(is_mark(one) for one in views[0]):
+        low, high = low - 0.5 * MARK * size, high + 0.5 * MARK * size
+    if still:
+        corners = np.concatenate(still)[:, [0, 2]]
+        low = np.minimum(low, np.maximum(corners.min(axis=0), low - BEYOND * size))
+        high = np.maximum(high, np.minimum(corners.max(axis=0), high + BEYOND * size))
+    low, high = low - MARGIN * size, high + MARGIN * size
+    middle, (wide, tall) = 0.5 * (low + high), high - low
+    half = 0.5 * np.array([max(wide, tall / TALL), max(tall, wide * FLATTEST)])
+    return middle - half, middle + half
+
+
+def _reach(shown: Shown) -> Array:
+    """Points (n, 2) m, x and z, between which all of a component lies."""
+    centre, radius = shown.points[:, [0, 2]], shown.radius[:, None]
+    corners = [face[:, [0, 2]] for face in shown.faces]
+    found = np.concatenate([np.zeros((0, 2)), centre - radius, centre + radius, *corners])
+    return np.asarray(found[np.isfinite(found).all(axis=1)])

@@ -1,0 +1,186 @@
+"""What stands in a panel of a side view: walls, points, spheres, faces, and their colours.
+
+Matplotlib is loaded by the functions that draw: a run without pictures does not need it.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.report.view_steps import Quantity, Shown, spacing
+from quintet.interfaces.component import Array
+
+LIGHT = np.array([-0.4, -0.8, 0.6])  # towards the light; the eye looks along +y
+PLAIN = ("#ccaa7a", "#8fb0c9", "#b5c98f", "#c99a8f")  # of what no field colours, by component
+MAPS = ("viridis", "plasma", "cividis", "inferno")  # of quantities
+WALL, BACK = "#444444", "#9aa5ad"  # walls seen from their edge, and from their face
+CLIPPED = 0.5  # % of all values that may be beyond either end of the colours
+ENOUGH = 1000  # values, of which a few may be clipped
+OVERLAP = 1.3  # diameter of a particle over the spacing: hardly any white between them
+MARK = 0.05  # of the picture: diameter of points of which no size is known
+NAMED = 3  # points of a component that have its name beside them
+FEW = 3000  # spheres or faces that have an outline
+
+
+def is_mark(shown: Shown) -> bool:
+    """Whether points of a component are few and of no size, so that they are drawn as marks."""
+    return bool(len(shown.points)) and not shown.radius.any() and not spacing(shown.points)
+
+
+def colour_scales(views: Sequence[Sequence[Shown]]) -> dict[Quantity, Any]:
+    """Colours of each quantity, the same in all panels."""
+    # A run without pictures does not load matplotlib.
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    scales: dict[Quantity, Any] = {}
+    for one in dict.fromkeys(shown.quantity for view in views for shown in view):
+        values = _values(views, one)
+        if one is None or not len(values):
+            continue
+        clipped = CLIPPED if len(values) > ENOUGH else 0.0
+        low, high = np.percentile(values, [clipped, 100.0 - clipped])
+        low = min(low, 0.0) if values.min() >= 0.0 and low < 0.3 * high else low
+        if not high > low:
+            low, high = (0.0, 1.0) if not high else (high - abs(high), high + abs(high))
+        norm = Normalize(float(low), float(high))
+        scales[one] = ScalarMappable(norm, MAPS[len(scales) % len(MAPS)])
+    return scales
+
+
+def _values(views: Sequence[Sequence[Shown]], one: Quantity | None) -> Array:
+    """All finite values of a quantity."""
+    same = [shown for view in views for shown in view if shown.quantity == one]
+    parts = [part for shown in same for part in (shown.values, shown.face_values)]
+    values = np.concatenate([np.zeros(0), *(part for part in parts if part is not None)])
+    return np.asarray(values[np.isfinite(values)])
+
+
+def clipped_ends(scale: Any, views: Sequence[Sequence[Shown]], one: Quantity) -> str:
+    """Ends of a colour bar beyond which there are values: they have the colour of that end."""
+    values = _values(views, one)
+    ends = values.min() < scale.norm.vmin, values.max() > scale.norm.vmax
+    return {(True, True): "both", (True, False): "min", (False, True): "max"}.get(ends, "neither")
+
+
+def draw_walls(panel: Any, still: Sequence[Array]) -> None:
+    """Draw faces that stand still: those seen from their edge as lines, others as a shade."""
+    # A run without pictures does not load matplotlib.
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    flat = [face[:, [0, 2]] for face in still]
+    edge_on = [_is_flat(f) for f in flat]
+    lines = [_ends(f) for f, on in zip(flat, edge_on, strict=True) if on]
+    faces = [f for f, on in zip(flat, edge_on, strict=True) if not on]
+    panel.add_collection(PolyCollection(faces, facecolors=BACK, alpha=0.12, zorder=0), False)
+    panel.add_collection(LineCollection(lines, colors=WALL, linewidths=2.0, zorder=4), False)
+
+
+def _is_flat(corners: Array) -> bool:
+    """Whether a polygon (k, 2) m is seen from its edge."""
+    (x, z), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
+    area = 0.5 * abs(float((x * v - z * u).sum()))
+    return area < 1e-6 * float(np.ptp(corners, axis=0).max()) ** 2
+
+
+def _ends(face: Array) -> Array:
+    """Both ends (2, 2) m of a face that is seen from its edge."""
+    along = face[np.linalg.norm(face - face[0], axis=1).argmax()] - face[0]
+    places = (face - face[0]) @ along
+    return np.array([face[places.argmin()], face[places.argmax()]])
+
+
+def diameters(view: Sequence[Shown]) -> dict[str, float]:
+    """Diameters [m] of particles, by component; 0 of what are no particles."""
+    return {one.name: OVERLAP * spacing(one.points) for one in view}
+
+
+def draw_view(
+    panel: Any,
+    view: Sequence[Shown],
+    scales: Mapping[Quantity, Any],
+    sizes: Mapping[str, float],
+) -> None:
+    """Draw all components: bodies last, for what is in front of them would hide them."""
+    for place, shown in enumerate(view):
+        _draw_points(panel, shown, scales, sizes[shown.name], PLAIN[place % len(PLAIN)])
+    for place, shown in enumerate(view):
+        _draw_faces(panel, shown, scales, PLAIN[place % len(PLAIN)])
+
+
+def _draw_points(
+    panel: Any, shown: Shown, scales: Mapping[Quantity, Any], size: float, plain: str
+) -> None:
+    # A run without pictures does not load matplotlib.
+    from matplotlib.collections import EllipseCollection
+
+    if not len(shown.points):
+        return
+    edges = np.ptp([panel.get_xlim(), panel.get_ylim()], axis=1)
+    across = 2.0 * shown.radius if shown.radius.any() else np.zeros(len(shown.points))
+    across = np.where(across > 0.0, across, size or MARK * float(edges.max()))
+    outline = 0.25 if (shown.radius.any() or not size) and len(across) <= FEW else 0.0
+    circles = EllipseCollection(
+        across, across, np.zeros(len(across)), units="xy", offsets=shown.points[:, [0, 2]],
+        offset_transform=panel.transData, linewidths=outline, edgecolors="white",
+        rasterized=True, zorder=2,
+    )  # fmt: skip
+    if shown.values is not None and shown.quantity and shown.quantity in scales:
+        circles.set_facecolor(scales[shown.quantity].to_rgba(shown.values))
+    else:
+        circles.set_facecolor(plain)
+    panel.add_collection(circles, autolim=False)
+    if is_mark(shown) and len(shown.points) <= NAMED:
+        for x, _, z in shown.points:
+            panel.annotate(shown.name, (x, z), (14, 0), textcoords="offset points", va="center")
+
+
+def _draw_faces(panel: Any, shown: Shown, scales: Mapping[Quantity, Any], plain: str) -> None:
+    # A run without pictures does not load matplotlib.
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import to_rgb
+
+    if not shown.faces:
+        return
+    colour = np.tile(to_rgb(plain), (len(shown.faces), 1))
+    if shown.face_values is not None and shown.quantity and shown.quantity in scales:
+        colour = scales[shown.quantity].to_rgba(shown.face_values)[:, :3]
+    shades = colour * np.array([[_shade(face)] for face in shown.faces])
+    outline = 0.4 if len(shown.faces) <= FEW else 0.1
+    flat = [face[:, [0, 2]] for face in shown.faces]
+    faces = PolyCollection(flat, facecolors=shades, edgecolors="black", linewidths=outline)
+    faces.set_zorder(3)
+    panel.add_collection(faces, autolim=False)
+
+
+def _shade(corners: Array) -> float:
+    """Brightness of a face under diffuse light."""
+    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    cosine = abs(float(normal @ LIGHT)) / max(float(np.linalg.norm(normal)), 1e-300)
+    return 0.65 + 0.35 * min(cosine / float(np.linalg.norm(LIGHT)), 1.0)
+
+
+def add_legend(figure: Any, view: Sequence[Shown], with_walls: bool) -> None:
+    """Say below the panels which component is what."""
+    # A run without pictures does not load matplotlib.
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Any] = []
+    for place, shown in enumerate(view):
+        plain, coloured = PLAIN[place % len(PLAIN)], shown.quantity is not None
+        if shown.faces:
+            handles.append(Patch(facecolor=plain, edgecolor="black", label=shown.name))
+        elif len(shown.points):
+            by = f" (by {shown.quantity.name})" if coloured and shown.quantity else ""
+            what = "spheres" if shown.radius.any() else "particles" if len(shown.points) > 1 else ""
+            text = shown.name if what in ("", shown.name) else f"{shown.name}: {what}"
+            colour = "none" if coloured else plain
+            handles.append(
+                Line2D([], [], marker="o", linestyle="", markerfacecolor=colour,
+                       markeredgecolor="black", label=text + by)
+            )  # fmt: skip
+    if with_walls:
+        handles.append(Line2D([], [], color=WALL, linewidth=2.0, label="walls"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)

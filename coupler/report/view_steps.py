@@ -1,0 +1,133 @@
+"""What components show at the times of pictures, read from their view files."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from quintet.coupler.files import vtkhdf_reader
+from quintet.coupler.files.run_files import VIEWS, WALLS
+from quintet.interfaces.component import Array
+
+SAMPLE = 24  # points from whose nearest neighbours the spacing is estimated; fewer have none
+NAMES = {"velocity": "speed"}  # of the magnitude of a vector
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """What colours stand for."""
+
+    name: str
+    unit: str  # "" where it is not known
+
+    @property
+    def label(self) -> str:
+        """Name and unit, for a colour bar."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A component at one time: points or spheres, and faces; values where they are coloured."""
+
+    name: str
+    quantity: Quantity | None
+    points: Array  # (n, 3) m, of no face
+    radius: Array  # (n,) m, 0 where they are no spheres
+    values: Array | None  # (n,)
+    faces: list[Array]  # (k, 3) m each
+    face_values: Array | None  # (faces,)
+
+
+def view_files(run: Path) -> list[Path]:
+    """Files of a run that show components, by name, but for those of walls."""
+    files = sorted(path for path in Path(run).glob(f"*{VIEWS}") if not path.name.endswith(WALLS))
+    return [path for path in files if len(vtkhdf_reader.times(path))]
+
+
+def walls(run: Path) -> list[Array]:
+    """Corners (k, 3) m of all faces that stand still in a run."""
+    found = []
+    for path in sorted(Path(run).glob(f"*{WALLS}")):
+        if len(vtkhdf_reader.times(path)):
+            view = vtkhdf_reader.read_step(path, 0)[1]
+            found += corners_of(view)
+    return found
+
+
+def moments(files: Sequence[Path], wanted: Sequence[float]) -> list[float]:
+    """Times [s] of the steps next to those wanted, each once; none is later than the last step."""
+    known = np.unique(np.concatenate([vtkhdf_reader.times(path) for path in files]))
+    return sorted({float(known[np.abs(known - time).argmin()]) for time in wanted})
+
+
+def read(path: Path, time: float, fields: Mapping[str, str]) -> Shown:
+    """Read what a component shows at the step next to a time [s].
+
+    `fields` names what components are coloured by. Where it does not name one, points take the
+    first field of their view, and faces have no values.
+    """
+    step = int(np.abs(vtkhdf_reader.times(path) - time).argmin())
+    view, units = vtkhdf_reader.read_step(path, step)[1], vtkhdf_reader.units(path)
+    name = path.name.removesuffix(VIEWS)
+    first = "velocity" if "velocity" in units else next(iter(units), "")
+    field = fields.get(name, first if any(units.values()) or first == "velocity" else "")
+    array = view.get(field)
+    cells = view.get("cells")
+    count = len(view["points"])
+    loose = np.ones(count, bool)
+    if cells is not None:
+        loose[cells[cells >= 0]] = False
+    values = None if array is None else magnitude(array)
+    over_points = values is not None and len(values) == count
+    return Shown(
+        name,
+        None if array is None else quantity(field, array, units.get(field, "")),
+        view["points"][loose],
+        view.get("radius", np.zeros(count))[loose],
+        values[loose] if values is not None and over_points else None,
+        corners_of(view),
+        _of_faces(values, cells, over_points) if name in fields else None,
+    )
+
+
+def quantity(field: str, array: Array, unit: str) -> Quantity:
+    """Name what a field stands for; vectors are shown by their magnitude."""
+    plain = field.replace("_", " ")
+    if array.ndim > 1 and array.shape[1] > 1:
+        return Quantity(NAMES.get(field, f"magnitude of {plain}"), unit)
+    return Quantity(plain, unit)
+
+
+def magnitude(array: Array) -> Array:
+    """Values (n,) of scalars as they are, of vectors their length."""
+    flat = array.reshape(len(array), -1)
+    return flat[:, 0] if flat.shape[1] == 1 else np.linalg.norm(flat, axis=1)
+
+
+def _of_faces(values: Array | None, cells: Array | None, over_points: bool) -> Array | None:
+    """Values of faces: their own, or the mean of their corners."""
+    if values is None or cells is None:
+        return None
+    if not over_points:
+        return values
+    used = cells >= 0
+    return np.asarray((values[cells] * used).sum(axis=1) / used.sum(axis=1))
+
+
+def corners_of(view: Mapping[str, Array]) -> list[Array]:
+    """Corners (k, 3) m of each face of a view."""
+    return [view["points"][cell[cell >= 0]] for cell in view.get("cells", ())]
+
+
+def spacing(points: Array) -> float:
+    """Median distance [m] of nearest neighbours, of a sample of particles; 0 if they are few."""
+    if len(points) < SAMPLE:
+        return 0.0
+    nearest = []
+    for one in points[np.linspace(0, len(points) - 1, SAMPLE).astype(int)]:
+        distance = np.sum((points - one) ** 2, axis=1)
+        nearest.append(np.min(distance[distance > 0.0], initial=np.inf))
+    found = float(np.sqrt(np.median(nearest)))
+    return found if np.isfinite(found) else 0.0

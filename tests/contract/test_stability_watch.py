@@ -1,0 +1,62 @@
+"""A coupling that is unstable is told, with what makes it stable; a stable one is not."""
+
+import laboratory
+import pytest
+
+from quintet.coupler.coupling.stability_watch import FEWEST, StabilityWatch
+
+LINK = {
+    "kind": "direct",
+    "pairs": [["swing.swing", "burden.carried"], ["burden.lump", "swing.lump"]],
+}
+
+
+def swing(folder, burden, scheme, window=0.01, step=None, **settings):
+    """A mass on a spring that carries another; no staggered scheme holds if that is the heavier."""
+    components = {
+        "swing": {"kind": "toy_points:Swing", "dt": window},
+        "burden": {"kind": "toy_points:Burden", "mass": burden, "dt": step or window},
+    }
+    path = laboratory.scene(
+        folder, components, LINK, end=2.0, window=window, scheme=scheme, **settings
+    )
+    return laboratory.couple(path)
+
+
+@pytest.mark.parametrize("scheme", ["serial", "parallel"])
+def test_a_burden_too_heavy_for_staggered_windows_is_told_once_and_iterated_ones_hold_it(
+    tmp_path, scheme
+):
+    trace = swing(tmp_path, 2.0, scheme)
+    (text,) = trace.warnings
+    assert text.startswith("link swing-burden is unstable: by t = 0.1")
+    assert text.endswith('what went through it; set scheme = "iterated".')
+    (found,) = trace.coupling.ledger.watch.summary()
+    assert found["text"] == text and found["share"] > 0.3 and found["time"] < 0.3
+    assert swing(tmp_path, 2.0, "iterated").warnings == []
+
+
+@pytest.mark.parametrize("window", [0.02, 0.01, 0.005])
+@pytest.mark.parametrize(
+    ("burden", "scheme"), [(0.5, "serial"), (0.5, "parallel"), (2.0, "iterated")]
+)
+def test_a_burden_that_is_held_is_no_matter(tmp_path, burden, scheme, window):
+    assert swing(tmp_path, burden, scheme, window).warnings == []
+
+
+def test_windows_longer_than_the_step_of_who_pushes_are_to_be_shortened_below_it(tmp_path):
+    (text,) = swing(tmp_path, 2.0, "serial", 0.02, step=0.006).warnings
+    assert text.endswith("; shorten window from 0.02 s to 0.003 s.")
+
+
+def test_what_was_seen_outlives_a_snapshot(tmp_path):
+    trace = swing(tmp_path, 2.0, "serial")
+    watch = trace.coupling.ledger.watch
+    kept = StabilityWatch(watch.found)
+    kept.load(watch.save())
+    assert kept.save() == watch.save() and kept.found == watch.found
+
+
+def test_no_link_is_judged_by_a_jolt_at_the_start(tmp_path):
+    trace = swing(tmp_path, 2.0, "serial")
+    assert trace.coupling.ledger.watch.found["swing-burden"].time > 0.01 * (FEWEST - 0.5)

@@ -1,0 +1,76 @@
+"""Computed curves are drawn against what is expected of them, one panel for each curve."""
+
+import numpy as np
+import pytest
+
+from quintet.coupler.files.recording import Instant, Recorder, Recording
+from quintet.coupler.measures.expectation import Expectation, evaluate
+from quintet.coupler.report import comparison as drawing
+from quintet.coupler.report.comparison import comparison
+from quintet.interfaces.ports import MOTION
+
+COMMON = {
+    "component": "cubes", "field": "motion.position", "axis": 0, "unit": "m", "source": "s"
+}  # fmt: skip
+X_RMS = Expectation(name="x [rms]", measure="rms", csv="ref.csv", within=0.1, **COMMON)
+X_PASSES = Expectation(
+    name="x_$1", measure="crossing", csv="ref.csv", level=0.3, within=1, **{**COMMON, "unit": "s"}
+)
+TOP = Expectation(name="top", measure="max", value=1.0, within=0.1, **{**COMMON, "offset": 0.5})
+END = Expectation(name="end", measure="at", begin=0.9, value=0.9, within=0.1, **COMMON)
+
+
+@pytest.fixture
+def figure(monkeypatch, tmp_path):
+    with Recorder(tmp_path / "recording.h5", "", "") as recorder:
+        recorder.component("cubes", (MOTION,), {})
+        for k in range(50):
+            row = {"motion.position": np.array([[0.02 * k, 0.0, 0.0]])}
+            recorder.add("cubes", Instant(0.02 * k, k), row)
+    (tmp_path / "ref.csv").write_text("t,x\n0,0\n0.5,0.52\n0.9,0.9\n")
+    kept = []
+
+    def draw(*ones, **options):
+        monkeypatch.setattr(drawing, "save", lambda figure, out: kept.append(figure) or out)
+        with Recording(tmp_path) as recording:
+            outcomes = [evaluate(one, recording, tmp_path) for one in ones]
+            out = tmp_path / "c.png"
+            found = comparison(tmp_path, ones, outcomes, recording, out, **options)
+        return kept[-1] if found else None
+
+    return draw
+
+
+def test_expectations_of_one_curve_share_a_panel(figure):
+    (panel,) = figure(X_RMS, X_PASSES, title="a scene").axes
+    text = panel.get_title()
+    assert "x [rms]: RMS distance" in text and "x_$1: passes 0.3 0.3, expected" in text
+    computed, reference = panel.get_lines()[:2]
+    assert len(computed.get_xdata()) == 50 and len(reference.get_xdata()) == 3
+
+
+def test_curves_have_axes_with_names_and_units(figure):
+    drawn = figure(X_RMS, TOP, title="a scene", values=True)
+    assert drawn.get_suptitle() == "a scene"
+    assert [panel.get_xlabel() for panel in drawn.axes] == ["t [s]", "t [s]"]
+    names = [panel.get_ylabel() for panel in drawn.axes]
+    assert names == ["cubes motion position x [m]", "cubes motion position x + 0.5 m [m]"]
+
+
+def test_single_values_are_drawn_where_the_scene_wants_pictures(figure):
+    assert figure(TOP, END) is None
+    band, point = figure(TOP, END, values=True).axes
+    assert band.get_lines()[1].get_ydata().tolist() == [1.0, 1.0]
+    assert point.get_lines()[1].get_xydata().tolist() == [[0.9, 0.9]]
+
+
+def test_a_curve_with_a_reference_file_and_a_value_has_both(figure):
+    (panel,) = figure(X_RMS, END, values=True).axes
+    labels = [text.get_text() for text in panel.get_legend().get_texts()]
+    assert labels == ["computed", "s", "expected: s"]
+
+
+def test_a_run_that_ended_early_says_that_it_has_no_value(figure):
+    late = Expectation(name="late", measure="at", begin=3.0, value=1.0, within=0.1, **COMMON)
+    (panel,) = figure(late, values=True).axes
+    assert panel.get_title() == "late: at 3 s: no value: NOT met"

@@ -1,0 +1,205 @@
+"""Side views show what the files hold, and cost nothing to a run that wants none."""
+
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from quintet.coupler.files.vtkhdf import VtkHdf
+from quintet.coupler.report import side_views as drawing
+from quintet.coupler.report.side_views import side_views
+from quintet.coupler.report.view_steps import Quantity, moments, read, view_files
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.faces import CORNERS, FACES, box, polygons
+
+UNITS = {"velocity": "m/s", "pressure": "Pa", "stress": "Pa"}
+RED, GREEN, BLUE = range(3)
+
+
+def _cloud(path, n=40, speed=1.0, steps=3):
+    random = np.random.default_rng(2)
+    file = VtkHdf(path, UNITS)
+    for k in range(steps):
+        view = {"points": random.random((n, 3)), "velocity": np.full((n, 3), speed * k)}
+        file.append(0.1 * k, view | {"pressure": 100.0 * random.random(n)})
+    file.close()
+
+
+def _box(path, **fields):
+    file = VtkHdf(path, UNITS)
+    for k in range(3):
+        file.append(
+            0.1 * k, {"points": 0.1 * CORNERS + [1.5, 0.0, 0.1 * k], "cells": FACES, **fields}
+        )
+    file.close()
+
+
+def _walls(path, low, high, faces):
+    file = VtkHdf(path)
+    file.append(0.0, polygons(box(low, high, faces)))
+    file.close()
+
+
+@pytest.fixture
+def figure(monkeypatch, tmp_path):
+    """Draw, and return the figure as matplotlib holds it."""
+    kept = []
+
+    def draw(times, **options):
+        monkeypatch.setattr(drawing, "save", lambda figure, out: kept.append(figure) or out)
+        side_views(tmp_path, tmp_path / "a.png", times, **options)
+        return kept[-1]
+
+    return draw
+
+
+def _panels(figure):
+    return [one for one in figure.axes if one.get_xlabel()]
+
+
+def _bars(figure):
+    return [one.get_ylabel() for one in figure.axes if not one.get_xlabel()]
+
+
+def _image(path):
+    from matplotlib.image import imread
+
+    return imread(path)[..., :3]
+
+
+def test_a_run_without_pictures_imports_no_drawing():
+    names = "side_views, quintet.coupler.report.comparison"
+    script = f"import sys, quintet.coupler.report.{names}; sys.exit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
+
+
+def test_every_panel_tells_its_time_and_its_axes_with_units(tmp_path, figure):
+    _cloud(tmp_path / "water.vtkhdf")
+    drawn = figure([0.0, 0.1], title="a scene")
+    panels = _panels(drawn)
+    assert drawn.get_suptitle().startswith("a scene")
+    assert [one.get_title() for one in panels] == ["t = 0 s", "t = 0.1 s"]
+    assert {(one.get_xlabel(), one.get_ylabel()) for one in panels} == {("x [m]", "z [m]")}
+
+
+def test_no_panel_is_later_than_the_end_of_the_run(tmp_path, figure):
+    _cloud(tmp_path / "water.vtkhdf")
+    drawn = figure([0.0, 0.11, 0.3, 5.0])
+    assert [one.get_title() for one in _panels(drawn)] == ["t = 0 s", "t = 0.1 s", "t = 0.2 s"]
+
+
+def test_a_scene_chooses_what_colours_stand_for(tmp_path, figure):
+    _cloud(tmp_path / "water.vtkhdf")
+    assert _bars(figure([0.1])) == ["speed [m/s]"]
+    assert _bars(figure([0.1], colours=["water.pressure"])) == ["pressure [Pa]"]
+
+
+def test_quantities_of_one_name_and_unit_share_a_colour_bar(tmp_path, figure):
+    _cloud(tmp_path / "air.vtkhdf")
+    _cloud(tmp_path / "water.vtkhdf")
+    assert _bars(figure([0.1])) == ["speed [m/s]"]
+    assert _bars(figure([0.1], colours=["air.pressure"])) == ["pressure [Pa]", "speed [m/s]"]
+
+
+def test_faces_take_the_colour_of_their_field_only_if_the_scene_asks(tmp_path):
+    _box(tmp_path / "plate.vtkhdf", stress=np.arange(6.0))
+    (path,) = view_files(tmp_path)
+    assert read(path, 0.0, {}).face_values is None
+    asked = read(path, 0.0, {"plate": "stress"})
+    assert asked.quantity == Quantity("stress", "Pa")
+    assert asked.face_values.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+
+
+def test_faces_have_the_mean_of_their_corners(tmp_path):
+    _box(tmp_path / "plate.vtkhdf", pressure=CORNERS[:, 0])
+    (path,) = view_files(tmp_path)
+    assert read(path, 0.0, {"plate": "pressure"}).face_values.tolist() == [-1.0, 1.0, 0, 0, 0, 0]
+
+
+def test_what_is_in_front_of_the_region_is_cut_away(tmp_path, figure):
+    _cloud(tmp_path / "water.vtkhdf", 500)
+    drawn = figure([0.1], region=((0.2, 0.5, 0.0), (0.8, 1.0, 0.5)))
+    (panel,) = _panels(drawn)
+    assert panel.get_xlim() == (0.2, 0.8) and panel.get_ylim() == (0.0, 0.5)
+    (points,) = [one for one in panel.collections if hasattr(one, "get_widths")]
+    drawn_points = len(points.get_offsets())
+    with_all = read(view_files(tmp_path)[0], 0.1, {}).points
+    assert drawn_points == np.count_nonzero(with_all[:, 1] >= 0.5)
+    assert "particles from y = 0.5 to 1 m" in drawn.get_suptitle()
+
+
+def test_walls_are_drawn_and_do_not_shrink_what_moves(tmp_path, figure):
+    _cloud(tmp_path / "water.vtkhdf")
+    _walls(tmp_path / "water.walls.vtkhdf", (-9.0, 0.0, 0.0), (90.0, 1.0, 1.0), ("x-", "z-", "y+"))
+    drawn = figure([0.1])
+    (panel,) = _panels(drawn)
+    lines = [len(one.get_segments()) for one in panel.collections if hasattr(one, "get_segments")]
+    assert lines == [2]  # the wall behind is seen from its face
+    assert np.ptp(panel.get_xlim()) < 1.5
+    assert "walls" in [text.get_text() for text in drawn.legends[0].get_texts()]
+
+
+def test_a_long_tank_is_no_strip(tmp_path, figure):
+    file = VtkHdf(tmp_path / "water.vtkhdf", UNITS)
+    random = np.random.default_rng(2)
+    for k in range(6):
+        points = random.random((400, 3)) * [8.0, 0.7, 0.8]
+        file.append(0.1 * k, {"points": points, "velocity": points})
+    file.close()
+    drawn = figure([0.1 * k for k in range(6)])
+    drawn.draw_without_rendering()
+    height = _panels(drawn)[0].get_window_extent().height / drawn.dpi
+    assert height > 1.6 and drawn.get_figwidth() < 13.0 and drawn.get_figheight() < 20.0
+    assert "z drawn 1.5 times as long as x" in drawn.get_suptitle()
+
+
+def test_spheres_have_their_size(tmp_path, figure):
+    file = VtkHdf(tmp_path / "balls.vtkhdf", {"velocity": "m/s", "radius": "m"})
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    view = {"points": points, "velocity": points, "radius": np.array([0.1, 0.25])}
+    file.append(0.0, view)
+    file.close()
+    (panel,) = _panels(figure([0.0]))
+    (balls,) = [one for one in panel.collections if hasattr(one, "get_widths")]
+    assert np.allclose(np.sort(balls.get_widths()), [0.2, 0.5])
+    assert panel.get_xlim()[0] < -0.1 and panel.get_xlim()[1] > 1.25
+
+
+def test_times_are_those_of_steps(tmp_path):
+    _cloud(tmp_path / "water.vtkhdf")
+    assert moments(view_files(tmp_path), [0.04, 0.06, 0.09]) == [0.0, 0.1]
+
+
+def test_snapshots_show_particles_and_bodies_in_each_panel(tmp_path):
+    _cloud(tmp_path / "water.vtkhdf", 500)
+    _box(tmp_path / "cube.vtkhdf")
+    out = side_views(tmp_path, tmp_path / "pictures" / "all.png", [0.0, 0.11, 5.0])
+    image = _image(out)
+    solid = (image[..., RED] - image[..., BLUE] > 0.15) & (image[..., RED] < 0.85)
+    columns = np.flatnonzero(solid.any(axis=0))
+    assert solid.sum() > 1000  # the box, in its own colour
+    assert np.count_nonzero(np.diff(columns) > 50) >= 1  # in several panels
+    assert (image.max(axis=2) - image.min(axis=2) > 0.2).sum() > 2000
+
+
+@pytest.mark.parametrize("only", ["cloud", "box", "point"])
+def test_snapshots_need_neither_particles_nor_bodies(tmp_path, only):
+    if only == "box":
+        _box(tmp_path / "a.vtkhdf")
+    else:
+        _cloud(tmp_path / "a.vtkhdf", 40 if only == "cloud" else 1, speed=0.0)
+    assert side_views(tmp_path, tmp_path / "a.png", [0.1]).stat().st_size > 1000
+
+
+def test_snapshots_of_many_particles_are_quick(tmp_path):
+    _cloud(tmp_path / "water.vtkhdf", 200_000)
+    begin = time.process_time()
+    side_views(tmp_path, tmp_path / "a.png", [0.2])
+    assert time.process_time() - begin < 12.0
+
+
+def test_a_picture_of_nothing_is_refused(tmp_path):
+    with pytest.raises(SceneError, match=r"needs a \.vtkhdf file with steps"):
+        side_views(tmp_path, tmp_path / "a.png", [0.0])

@@ -1,0 +1,167 @@
+"""Packages of third parties, outside the repository: found by entry points, run as ours are.
+
+One is a class that an entry point names; the other, from a text, has a manifest.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from quintet.scenarios.two_springs import springs
+
+ROOT = Path(__file__).resolve().parents[2]
+FILES = re.compile(r"`([\w/]+\.(?:py|toml))`:\n\n```\w+\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+
+PROJECT = """
+[build-system]
+requires = ["setuptools>=77"]
+build-backend = "setuptools.build_meta"
+
+[project]
+name = "swing"
+version = "0.1"
+dependencies = ["quintet"]
+
+[project.entry-points."quintet.components"]
+swing = "swing:Swing"
+
+[tool.setuptools]
+py-modules = ["swing"]
+"""
+CASES = '''
+
+class Swing(Mass):
+    """A mass on a spring, on the ground."""
+
+    @staticmethod
+    def conform_cases():
+        """A mass at rest, with and without a ground that moves."""
+        from quintet.interfaces.manifest import ConformCase
+
+        nothing = np.zeros((1, 3))
+        ground = {"foot.position": nothing, "foot.velocity": nothing}
+        params = {"mass": 1.0, "stiffness": 9.0, "arm": [0.0, 0.0, 1.0], "start": [0.0, 0.0, 1.0]}
+        scale = {"load.force": 5.0, "foot.position": 0.1}
+        return (ConformCase("alone", params),
+                ConformCase("ridden", params, rest={"load.force": nothing, **ground}, scale=scale))
+'''
+
+
+def swings(folder):
+    """Write a package and a scene of two swings, one on the other."""
+    package = folder / "swing"
+    package.mkdir()
+    (package / "pyproject.toml").write_text(PROJECT)
+    (package / "swing.py").write_text(Path(springs.__file__).read_text() + CASES)
+    scene = Path(springs.__file__).with_name("scene.toml").read_text()
+    (folder / "swings.toml").write_text(scene.replace("springs:Mass", "swing"))
+    return package
+
+
+def moorings(folder):
+    """Write the package of a text, and its scene."""
+    package = folder / "mooring"
+    for name, inside in FILES.findall((ROOT / "interfaces/README.md").read_text()):
+        path = folder / "hanging.toml" if name == "scene.toml" else package / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(inside)
+    return package
+
+
+def unpacked(package):
+    """Lay a package out as pip would; return the folder that has it."""
+    project = tomllib.loads((package / "pyproject.toml").read_text())["project"]
+    told = package / f"{project['name']}-{project['version']}.dist-info"
+    told.mkdir()
+    (told / "METADATA").write_text(f"Name: {project['name']}\nVersion: {project['version']}\n")
+    lines = []
+    for group, points in project["entry-points"].items():
+        lines += [f"[{group}]", *(f"{key} = {value}" for key, value in points.items())]
+    (told / "entry_points.txt").write_text("\n".join(lines))
+    return str(package)
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Two packages beside those that are installed here; how to run quintet with them."""
+    folder = tmp_path_factory.mktemp("outside")
+    paths = [unpacked(package) for package in (swings(folder), moorings(folder))]
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "PYTHONSAFEPATH": "1"}
+
+    def quintet(*words, seconds=120):
+        line = [sys.executable, "-m", "quintet.coupler.cli", *map(str, words)]
+        return run(line, folder, env, seconds)
+
+    return quintet
+
+
+@pytest.fixture(scope="module")
+def by_pip(tmp_path_factory):
+    """Quintet and the two packages, installed into an environment of their own."""
+    folder = tmp_path_factory.mktemp("environment")
+    bin = folder / "venv/bin"
+    env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
+    left_out = shutil.ignore_patterns(".*", "build", "runs", "tests", "*.egg-info")
+    shutil.copytree(ROOT, folder / "quintet", ignore=left_out)
+    packages = [f"{folder / 'quintet'}[mpi]", swings(folder), moorings(folder)]
+    subprocess.run([bin / "pip", "install", "--quiet", *packages], check=True, env=env)
+
+    def quintet(*words, seconds=120):
+        return run([bin / "quintet", *map(str, words)], folder, env, seconds)
+
+    return quintet
+
+
+def run(line, folder, env, seconds):
+    done = subprocess.run(
+        line, cwd=folder, env=env, capture_output=True, text=True, timeout=seconds
+    )
+    return done.returncode, done.stdout + done.stderr, folder
+
+
+def test_an_entry_point_to_a_class_is_checked_described_and_conforms(installed):
+    status, said, _ = installed("check", "swings.toml")
+    assert status == 0 and "lower takes load (force [N, impulse])" in said
+    status, said, _ = installed("describe", "swing")
+    assert status == 0 and said.startswith("swing: A mass on a spring, on the ground\n")
+    status, said, _ = installed("conform", "swing")
+    assert status == 0 and "swing conforms; " in said, said
+
+
+@pytest.mark.zenoh
+@pytest.mark.mpi
+def test_a_class_runs_over_every_transport_to_the_same_bits(installed):
+    for transport in ("memory", "zenoh", "mpi"):
+        words = ("--transport", transport, "--set", "end=0.1", "--out", f"swings-{transport}")
+        status, said, _ = installed("run", "swings.toml", *words)
+        assert status == 1 and "swings" in said, said  # too short for what is expected of 1 s
+        if transport != "memory":
+            assert installed("diff", "swings-memory", f"swings-{transport}")[0] == 0
+
+
+@pytest.mark.parametrize("transport", OVER)
+def test_a_manifest_of_a_package_runs_and_conforms(installed, transport):
+    words = ("--transport", transport, "--out", f"hanging-{transport}")
+    status, said, _ = installed("run", "hanging.toml", *words)
+    assert status == 0, said
+
+
+@pytest.mark.parametrize("transport", OVER)
+@pytest.mark.full
+def test_packages_installed_by_pip_run_and_conform(by_pip, transport):
+    for scene in ("swings", "hanging"):
+        words = ("--transport", transport, "--out", f"{scene}-{transport}")
+        status, said, _ = by_pip("run", f"{scene}.toml", *words)
+        assert status == 0, said
+    for kind in ("swing", "mooring"):
+        status, said, _ = by_pip("conform", kind)
+        assert status == 0 and f"{kind} conforms" in said, said
+    assert "mooring" in by_pip("describe")[1]

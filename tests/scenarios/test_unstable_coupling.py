@@ -1,0 +1,113 @@
+"""A light body in long windows: its coupling is told to be unstable, and what makes it stable."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import quintet
+from quintet.coupler.cli import main
+
+ITERATED = {"scheme": "iterated", "iteration.tolerance": 1e-3, "iteration.at_limit": "continue"}
+SERIAL = {"scheme": "serial"}
+Settings = dict[str, Any]
+
+
+def square(density: float, window: float, scheme: Settings, end: float = 0.15) -> Settings:
+    """A square that weighs what it displaces as it is let go, five spacings across."""
+    return {
+        "end": end,
+        "window": window,
+        "components.water.spacing": 0.03,
+        "components.square.bodies.0.density": density,
+        "components.square.gravity": [0.0, 0.0, -9.81 * 600.0 / density],
+        **scheme,
+    }
+
+
+def told(folder: Path, settings: Settings) -> str:
+    """What a run is told about its coupling; "" if it is stable."""
+    run = quintet.run("floating_square", preset="quick", settings=settings, out=folder)
+    links = run.results["unstable"]
+    assert str(run).count("Doubtful: link water-square is unstable") == len(links)
+    return str(links[0]["text"]) if links else ""
+
+
+def advised(settings: Settings, text: str) -> Settings:
+    """The settings with what is advised."""
+    if shorter := re.search(r"shorten window from \S+ s to (\S+) s\.$", text):
+        return settings | {"window": float(shorter[1])}
+    assert text.endswith('; set scheme = "iterated".')
+    return settings | ITERATED
+
+
+@pytest.mark.parametrize(("density", "scheme"), [(200.0, SERIAL), (50.0, ITERATED)])
+def test_a_light_body_in_long_windows_is_told_and_stable_as_advised(
+    tmp_path: Path, density: float, scheme: Settings
+) -> None:
+    settings = square(density, 5e-3, scheme)
+    text = told(tmp_path / "long", settings)
+    assert text.startswith("link water-square is unstable: by t = 0.")
+    assert told(tmp_path / "advised", advised(settings, text)) == ""
+
+
+def test_a_doubtful_run_does_not_end_as_one_that_met_all(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings = square(50.0, 5e-3, ITERATED) | {"expect": []}
+    asked = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+    with pytest.raises(SystemExit) as ended:
+        main(
+            ["run", "floating_square", "--preset", "quick", *asked, "--out", str(tmp_path / "run")]
+        )
+    assert ended.value.code == 1
+    said = capsys.readouterr()
+    assert "quintet: link water-square is unstable: by t = 0." in said.err
+    assert "Doubtful: link water-square is unstable" in " ".join(said.out.split())
+
+
+STABLE = [
+    (800.0, 3e-4, SERIAL),
+    (800.0, 1.2e-3, SERIAL),
+    (800.0, 5e-3, SERIAL),
+    (200.0, 3e-4, SERIAL),
+    (200.0, 1.2e-3, SERIAL),
+    (50.0, 3e-4, SERIAL),
+    (800.0, 2e-2, ITERATED),
+    (200.0, 1e-2, ITERATED),
+    (50.0, 2.4e-3, ITERATED),
+    (10.0, 3e-4, ITERATED),
+    (3000.0, 2e-3, SERIAL),  # it sinks, and strikes the floor
+]
+UNSTABLE = [
+    (800.0, 2e-2, SERIAL),
+    (200.0, 5e-3, SERIAL),
+    (200.0, 2e-2, SERIAL),
+    (100.0, 2.4e-3, SERIAL),
+    (50.0, 6e-4, SERIAL),
+    (50.0, 1.2e-3, SERIAL),
+    (50.0, 2e-2, SERIAL),
+    (20.0, 6e-4, SERIAL),
+    (50.0, 5e-3, ITERATED),
+    (50.0, 1e-2, ITERATED),
+]
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(("density", "window", "scheme"), STABLE)
+def test_a_stable_run_is_not_told(
+    tmp_path: Path, density: float, window: float, scheme: Settings
+) -> None:
+    assert told(tmp_path, square(density, window, scheme, 0.4)) == ""
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(("density", "window", "scheme"), UNSTABLE)
+def test_every_unstable_run_is_told_and_stable_as_advised(
+    tmp_path: Path, density: float, window: float, scheme: Settings
+) -> None:
+    settings = square(density, window, scheme, 0.4)
+    text = told(tmp_path / "long", settings)
+    assert text
+    assert told(tmp_path / "advised", advised(settings, text)) == ""
