@@ -19,7 +19,8 @@ from quintet.interfaces.errors import DiskError, SceneError
 
 RESERVE = "quintet-reserve"  # in the folder of a run
 PART = ".part"  # after the name of a file that is being written
-RESERVED = 1 << 20  # bytes, for results, logs and the note of an MPI job
+RESERVED = 1 << 20  # bytes, for logs and the note of an MPI job
+OF_RESULTS = 1 << 18  # bytes
 DIGEST = 32  # bytes of the checksum at the end of a sealed file
 MARK = b"quintet blake2b\n"  # before it
 BLOCK = 1 << 20  # bytes read at once
@@ -104,23 +105,31 @@ def sync(path: Path) -> None:
         os.close(number)
 
 
-def reserve(folder: Path) -> None:
-    """Lay room aside for what a run must be able to write on a full disk."""
-    path = folder / RESERVE
-    with told(path), removed_on_failure(path), open(path, "wb") as file:
-        os.posix_fallocate(file.fileno(), 0, RESERVED)
+def reserve(folder: Path, results: str) -> None:
+    """Lay room aside for what a run must be able to write on a full disk: its results, and more."""
+    for path, size in ((folder / RESERVE, RESERVED), (folder / (results + PART), OF_RESULTS)):
+        with told(path), removed_on_failure(path), open(path, "wb") as file:
+            os.posix_fallocate(file.fileno(), 0, size)
 
 
 def give_up_reserve(folder: Path) -> None:
-    """Make the room that was laid aside free."""
+    """Make the room free that was laid aside, but for that of the results."""
     (folder / RESERVE).unlink(missing_ok=True)
 
 
 def write_at_last(path: Path, content: str) -> Path:
-    """Write what must be kept: where it belongs, or where there is room; return where."""
+    """Write results into the room laid aside for them, or elsewhere; return where.
+
+    Others may fill a disk faster than it is made free: the room of the results is never given up.
+    """
     give_up_reserve(path.parent)
+    part = path.with_name(path.name + PART)
     try:
-        write_whole(path, content)
+        with told(path), removed_on_failure(part):
+            with open(part, "r+b" if part.exists() else "wb") as file:
+                file.write(content.encode())
+                file.truncate()
+            put_in_place(part, path)
     except DiskError as error:
         elsewhere = Path(tempfile.mkdtemp(prefix="quintet-")) / path.name
         elsewhere.write_text(content)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from quintet.coupler.files.disk import reserve
+from quintet.coupler.files.run_files import RESULTS
 from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin, files_of, go_on
@@ -39,7 +40,7 @@ def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tup
 def resume_scene(scene: Scene, folder: Path, snapshot: Path) -> int:
     """Continue a run from one of its snapshots; return the exit status."""
     with go_on(folder, "run"):
-        reserve(folder)
+        reserve(folder, RESULTS)
         return _run(scene, folder, snapshot)
 
 

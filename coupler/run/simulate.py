@@ -24,7 +24,7 @@ from quintet.coupler.files.disk import (
     told,
     write_whole,
 )
-from quintet.coupler.files.run_files import LEDGER, SCENE
+from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.run import results, snapshots
@@ -96,7 +96,7 @@ def make_folder(scene: Scene, folder: Path) -> None:
     with told(folder):
         (folder / "log").mkdir(parents=True, exist_ok=True)
     write_whole(folder / SCENE, tomli_w.dumps(scene.resolved))
-    reserve(folder)
+    reserve(folder, RESULTS)
 
 
 def outcome_of(end: RunEnd) -> dict[str, Any]:
