@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from quintet.interfaces.errors import QuintetError, SceneError
+from quintet.interfaces.errors import LineError, QuintetError, SceneError
 
 if TYPE_CHECKING:
     from quintet.coupler.scene.scene import Scene
@@ -19,9 +19,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run one command and exit with its status."""
     given = parser().parse_args(arguments)
     try:
+        require_writable(getattr(given, "json", None))
         status = given.does(given)
     except SceneError as error:
-        print("\n".join(f"quintet: {mistake}" for mistake in error.mistakes), file=sys.stderr)
+        for mistake in error.mistakes:  # names may hold what would break a line
+            print(f"quintet: {' '.join(mistake.splitlines())}", file=sys.stderr)
         status = BAD
     except QuintetError as error:
         print(f"quintet: {error}", file=sys.stderr)
@@ -30,6 +32,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 0
     sys.exit(status)
+
+
+def require_writable(path: object) -> None:
+    """Refuse a file for results that cannot be written, before anything is computed for it."""
+    if not isinstance(path, Path):
+        return
+    there = path if path.exists() else path.parent
+    if path.is_dir() or not there.exists() or not os.access(there, os.W_OK):
+        raise SceneError(
+            f"--json {path}: it must be a file that can be written; there is no such folder, or it "
+            "is read-only. Name another."
+        )
 
 
 def parser() -> argparse.ArgumentParser:
@@ -168,7 +182,9 @@ def check(given: argparse.Namespace) -> int:
     # Start-up: only this command needs it.
     from quintet.coupler.scene import graph
     from quintet.coupler.scene.listing import console, print_plan
+    from quintet.coupler.scene.needs import require_memory
 
+    require_memory(scene)
     if given.graph or given.mermaid:
         print(graph.mermaid(scene) if given.mermaid else graph.drawing(scene))
     else:
@@ -259,12 +275,17 @@ def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
 def join(given: argparse.Namespace) -> int:
     """Start one component of a scene, joined to a coupler elsewhere."""
     # Start-up: only this command needs it.
+    from quintet.interfaces.lines.endpoint import check_endpoint
     from quintet.interfaces.params import unknown
     from quintet.interfaces.serving.process import main as component
 
     scene = _load(given)
     if given.name not in scene.components:
         raise SceneError(unknown(f"component {given.name}", given.name, scene.components))
+    try:
+        check_endpoint(given.at, scene.security)
+    except LineError as error:
+        raise SceneError(f"--at {error}") from error
     one = scene.components[given.name]
     arguments = ["--name", given.name, "--at", given.at]
     if scene.tls:

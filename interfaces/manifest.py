@@ -12,7 +12,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import Component, Field, Fields, Port
+from quintet.interfaces.component import Array, Component, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
@@ -20,12 +20,16 @@ Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What a run of a component will need, guessed from its parameters alone."""
+    """What a run of a component will need, guessed from its parameters alone.
+
+    It is asked for before anything is allocated, so it makes no particles: it counts them.
+    """
 
     items: int  # particles, bodies, elements
-    dt: float  # s, a typical step
-    rate: float  # items stepped per second and thread
+    dt: float  # s, a typical step; inf: any
+    rate: float = 1e6  # items stepped per second and thread
     bytes_per_item: float = 0.0
+    times: Array | None = None  # (n,) s, the only ones at which it can give; None: at any
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +96,10 @@ class ConformCase:
 class Manifest:
     """A kind: its parameters, its ports, and where its class is.
 
-    ``ports`` and ``plan`` are functions of the checked parameters; ``bench`` and ``conform`` name
-    functions that return tuples of `BenchCase` and `ConformCase`.
+    ``ports``, ``plan`` and ``initial`` are functions of the checked parameters; ``bench`` and
+    ``conform`` name functions that return tuples of `BenchCase` and `ConformCase`. ``initial``
+    tells, as far as that is known without the solver, what the component will describe and the
+    instants that it gives at the start: by these a link is checked before anything runs.
     """
 
     kind: str
@@ -102,6 +108,7 @@ class Manifest:
     component: str  # "module:Class"
     ports: Callable[[Any], Ports]
     plan: Callable[[Any], Plan] | None = None
+    initial: Callable[[Any], Fields] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
     shows: tuple[Field, ...] = ()  # as of the component

@@ -15,11 +15,13 @@ new one, a dotted path from the same table:
 import dataclasses
 import difflib
 import json
+import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, dataclass_transform, get_args
 
+import numpy as np
 from pydantic import (
     AfterValidator,
     ConfigDict,
@@ -59,6 +61,9 @@ def is_data_file(metadata: object) -> bool:
 
 
 TAG = re.compile(r"constrained-\w+|(?:literal|tuple|dict)\[.*\]")  # what pydantic adds to a place
+LARGEST = 1e30  # no quantity in SI units is as large; of ten of them a product is still finite
+DEEPEST = 32  # tables and lists within each other
+SHOWN = 200  # characters of a value in a sentence
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
@@ -84,16 +89,62 @@ def read(
     folder : Path, by default the working folder
         Where their data files lie.
     """
+    if extreme := list(extremes(given, where)):
+        return None, extreme
     try:
         # Strict checking of JSON takes lists for tuples, but no text for numbers.
         text = json.dumps(given)
         context = {"folder": folder or Path()}
-        return TypeAdapter(params).validate_json(text, strict=True, context=context), []
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            return TypeAdapter(params).validate_json(text, strict=True, context=context), []
     except ValidationError as error:
         found = _by_place(error.errors())
         return None, [_sentence(params, where, one) for one in _without_old(params, found)]
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        return None, [beyond_computing(where, given, error)]
     except (TypeError, ValueError) as error:
         return None, [f"{where}: {error}. Use numbers, text, lists and tables only."]
+
+
+def extremes(value: Any, where: str, depth: int = 0) -> Iterator[str]:
+    """Sentences about numbers that are too large to compute with, and lists that are too deep."""
+    if depth > DEEPEST:
+        yield f"{where} must be at most {DEEPEST} lists and tables deep; it is deeper. Flatten it."
+    elif isinstance(value, (Mapping, list, tuple)):
+        pairs = value.items() if isinstance(value, Mapping) else enumerate(value)
+        for key, one in pairs:
+            yield from extremes(one, f"{where}.{key}" if where else str(key), depth + 1)
+    elif isinstance(value, (int, float)) and LARGEST <= abs(value) < math.inf:
+        yield (
+            f"{where} must be below {LARGEST:.0e} in size, in SI units; found {shown(value)}. "
+            "Correct it."
+        )
+
+
+def beyond_computing(where: str, given: Any, error: Exception) -> str:
+    """Sentence about numbers that leave what can be computed, though each by itself is sound."""
+    sizes = [size for size in _sizes(given) if size > 0.0]
+    found = f"from {min(sizes):.3g} to {max(sizes):.3g}" if sizes else "none"
+    return (
+        f"{where}: its numbers must be such that what follows from them can be computed; found "
+        f"sizes {found} ({error}). Correct them; all are in SI units."
+    )
+
+
+def _sizes(value: Any) -> Iterator[float]:
+    if isinstance(value, (Mapping, list, tuple)):
+        for one in value.values() if isinstance(value, Mapping) else value:
+            yield from _sizes(one)
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        yield abs(float(value))
+
+
+def shown(value: Any) -> str:
+    """Text of a value as a sentence says what was found: of a long one its beginning."""
+    if isinstance(value, int) and abs(value) >= LARGEST:
+        return f"about 1e{round(value.bit_length() * math.log10(2.0))}"
+    text = repr(value)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
 def _by_place(mistakes: Iterable[Any]) -> list[dict[str, Any]]:
@@ -137,7 +188,7 @@ def _sentence(params: type, where: str, mistake: Any) -> str:
     if mistake["type"] == "value_error":
         return f"{where}: {mistake['ctx']['error']}"
     rule = mistake["msg"].removeprefix("Input ").rstrip(".")
-    return f"{place} {rule}; found {mistake['input']!r}. Correct it."
+    return f"{place} {rule}; found {shown(mistake['input'])}. Correct it."
 
 
 def unknown(place: str, name: str, known: Iterable[str]) -> str:

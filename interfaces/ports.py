@@ -40,6 +40,14 @@ MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,
 # Said too by fluids that let each link choose what presses between them and its samples:
 # 0 what presses at their walls, 1 a contact potential.
 CONTACT = Field("contact", (), "1")
+# Stated too by fluids that know where they begin, so that bodies which begin in the water, in an
+# obstacle or outside the tank are refused. A box is its lowest and its highest corner.
+BEGINNING = (
+    Field("wet", (2, 3), "m"),  # boxes that are full of fluid and must hold no body
+    Field("solid", (2, 3), "m"),  # obstacles
+    Field("tank", (2, 3), "m"),  # one, or none
+    Field("closed", (6,), "1"),  # 1 for each face of the tank that is closed: x- x+ y- y+ z- z+
+)
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 
 # Said by solvers in two dimensions: 2. All that they hold lies in the plane of x and z and is 1 m
@@ -47,6 +55,7 @@ SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 # surface is sampled by one row of points in the plane, each standing for 1 m of depth, and forces
 # and torques are those on 1 m. Solvers that do not say it have three dimensions.
 DIMENSIONS = Field("dimensions", (), "1")
+THICKNESS = Field("thickness", (), "m")  # along y, of a fluid of two dimensions
 
 # Shapes of rigid bodies: OTHER ones cannot be sampled; discs and polygons are of two dimensions.
 SPHERE, BOX, OTHER, DISC, POLYGON = range(5)

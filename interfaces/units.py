@@ -80,3 +80,9 @@ def dimensions(unit: str) -> dict[str, int]:
             bracket = sign if part[0] == "(" else 1 if part[0] == ")" else bracket
             sign = 1
     return {base: power for base, power in found.items() if power}
+
+
+def same(one: str, other: str) -> bool:
+    """Whether two units are one, however they are spelled: ``J/kg`` and ``m2/s2``."""
+    spelled = all(SPELLING.fullmatch(unit) for unit in (one, other))
+    return one == other or (spelled and dimensions(one) == dimensions(other))

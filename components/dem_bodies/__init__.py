@@ -52,20 +52,23 @@ from quintet.components.dem_bodies import build
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import SHOWS, ports
+from quintet.components.dem_bodies.start import initial
 from quintet.interfaces.manifest import Manifest, Plan
 
 __all__ = ["MANIFEST", "DemBodiesParams"]
 
 
 def _plan(params: DemBodiesParams) -> Plan:
-    solids = [build.solid(body) for body in params.bodies]
-    count, ω = len(solids), build.expected_frequency(params, solids)
+    bodies, count = params.placed.templates, len(params.bodies)
+    solids = [build.solid(body) for body in bodies]
+    ω = build.expected_frequency(params, bodies, solids)
     dt = DURATION * SPEED_UP / ω / params.steps_per_contact
     if count == 1 and not params.planes:  # nothing to touch
         dt = params.longest_step
     dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
     # Of a step, some time is for calling it, and some for each body: more where it is no ball.
-    balls = sum(map(build.is_ball, params.bodies))
+    each = zip(bodies, params.placed.counts, strict=True)
+    balls = sum(n for body, n in each if build.is_ball(body))
     step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
     return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)
 
@@ -77,6 +80,7 @@ MANIFEST = Manifest(
     component="quintet.components.dem_bodies.component:DemBodies",
     ports=ports,
     plan=_plan,
+    initial=initial,
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",
     shows=SHOWS,

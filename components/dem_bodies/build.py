@@ -53,6 +53,12 @@ class Solid(NamedTuple):
     size: Numbers  # (3,) m, edges of the box that holds it
 
 
+def solids(params: DemBodiesParams) -> list[Solid]:
+    """Measure all bodies; copies share what is found of the first."""
+    each = zip(params.placed.templates, params.placed.counts, strict=True)
+    return [one for body, count in each for one in count * [solid(body)]]
+
+
 def solid(body: Body) -> Solid:
     """Measure a body: a union of spheres by voxels, all others exactly."""
     if body.size is not None:
@@ -275,7 +281,9 @@ def inverse_of_free(inertia: Numbers, free: Numbers) -> Numbers:
     return np.asarray(both * np.linalg.inv(both * inertia + np.diag(1.0 - free)))
 
 
-def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
+def expected_frequency(
+    params: DemBodiesParams, bodies: Sequence[Body], solids: Sequence[Solid]
+) -> float:
     """Bound of √(S_n/m*) [rad/s] in impacts at the expected speed.
 
     For each material the lightest contact and the largest radius are taken, though they may be
@@ -283,11 +291,11 @@ def expected_frequency(params: DemBodiesParams, solids: list[Solid]) -> float:
     """
     table, names = material_pairs(params)[:, :, 0], list(params.materials)
     lightest, largest = np.zeros(len(names)), np.zeros(len(names))
-    for body, one in zip(params.bodies, solids, strict=True):
+    for body, one in zip(bodies, solids, strict=True):
         k = names.index(body.material)
         lightest[k] = max(lightest[k], largest_inverse_effective_mass(one))
         largest[k] = max(largest[k], one.radii.max())
-    boxes = any(body.shape in ("box", "polygon") for body in params.bodies)
+    boxes = any(body.shape in ("box", "polygon") for body in bodies)
     found = []
     for i in np.flatnonzero(lightest):
         for j in np.flatnonzero(lightest):

@@ -18,8 +18,8 @@ from quintet.components.dem_bodies.integration.step_limit import (
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import SHOWS, ports
-from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.view import planes_view, view
+from quintet.components.dem_bodies.start import described
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -31,12 +31,7 @@ from quintet.interfaces.component import (
     Totals,
 )
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.ports import BOX, DISC, OTHER, POLYGON, SPHERE
 
-SHAPES = {
-    "sphere": SPHERE, "box": BOX, "spheres": OTHER, "agglomerate": OTHER,
-    "disc": DISC, "polygon": POLYGON,
-}  # fmt: skip
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 TURN = 0.05  # rad in a step of a free body that is no sphere: its energy is then kept to 1e-4
 FEWEST = 8  # blocks of rows that are worth handing to another thread
@@ -71,9 +66,9 @@ class DemBodies(Component):
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params = params
         self.takes, self.gives = ports(params)
-        self.solids = [build.solid(body) for body in params.bodies]
-        number = build.balls_first(params.bodies)
-        bodies, solids = [params.bodies[k] for k in number], [self.solids[k] for k in number]
+        self.bodies, self.solids = list(params.bodies), build.solids(params)
+        number = build.balls_first(self.bodies)
+        bodies, solids = [self.bodies[k] for k in number], [self.solids[k] for k in number]
         self.model = build.model(params, bodies, solids)
         self.state = build.state(bodies, number, solids)
         self.sums = np.zeros((rows.blocks_of(len(solids) + 1), rows.SUMS))
@@ -85,8 +80,8 @@ class DemBodies(Component):
         several = resources.threads > 1 and len(self.sums) >= 2 * FEWEST
         self.team = Team(resources.threads if several else 1, FEWEST, 1)
         self.mass = np.array([one.mass for one in self.solids])  # (m,) kg
-        self.skin = build.skin(params.bodies, self.solids)  # m
-        self.frequency = build.expected_frequency(params, self.solids)  # rad/s
+        self.skin = build.skin(self.bodies, self.solids)  # m
+        self.frequency = build.expected_frequency(params, self.bodies, self.solids)  # rad/s
         self.damping = float(self.model.material_pairs[:, :, 2].max())  # ζ of the most damped
         self.contacts = np.zeros(self.count + 1, np.int64)  # of each row
         self.most_contacts = 0  # that a row can have before pairs are listed anew
@@ -94,15 +89,7 @@ class DemBodies(Component):
 
     def describe(self) -> Fields:
         """State shapes, sizes, masses, corners; unions of spheres have the box around them."""
-        bodies = self.params.bodies
-        stated: dict[str, Array] = {
-            "motion.shape": np.array([float(SHAPES[body.shape]) for body in bodies]),
-            "motion.size": np.array([one.size for one in self.solids]),
-            "motion.mass": self.mass.copy(),
-        }
-        if self.params.dimensions == 2:
-            stated |= planar.describe(bodies)
-        return stated
+        return described(self.params, self.bodies, self.solids)
 
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
@@ -285,7 +272,7 @@ class DemBodies(Component):
 
     def view(self) -> Fields:
         """Corners and faces of boxes and polygons, centres and radii of spheres, velocities."""
-        return view(self.params.bodies, self.solids, self.state)
+        return view(self.bodies, self.solids, self.state)
 
     def walls(self) -> Fields:
         """Return what is near the bodies of the planes."""

@@ -1,11 +1,12 @@
 """What a scene says about rigid bodies in contact; checked once, before anything starts."""
 
-from typing import Annotated, ClassVar, Literal, get_args
+from typing import Annotated, ClassVar, Literal, cast, get_args
 
 import numpy as np
 from pydantic import Field
 
-from quintet.components.dem_bodies.shapes import placement
+from quintet.components.dem_bodies.shapes import overlaps
+from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.description import check_body
 from quintet.components.dem_bodies.shapes.planar import check_plane
 from quintet.interfaces.params import (
@@ -258,7 +259,7 @@ class DemBodiesParams:
     """
 
     RENAMED: ClassVar = {"speed": "impact_speed", "step": "fixed_step"}
-    bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
+    bodies: Annotated[tuple[Body, ...], Field(min_length=1)]  # once checked, with all copies
     materials: dict[str, Material]
     planes: tuple[Plane, ...] = ()
     dimensions: Literal[2, 3] = 3
@@ -285,10 +286,15 @@ class DemBodiesParams:
         for k, pair in enumerate(self.pairs):
             for name in pair.between:
                 self._known(f"pairs[{k}].between", name)
-        object.__setattr__(self, "bodies", placement.with_copies(self.bodies))
+        object.__setattr__(self, "bodies", Bodies(self.bodies))
         check_plane(self)
         check_pairs(self.pairs)
-        placement.check(self.bodies, self.planes)
+        overlaps.check(self.placed, self.planes)
+
+    @property
+    def placed(self) -> Bodies:
+        """The same bodies with their copies, as what they are once they are checked."""
+        return cast(Bodies, self.bodies)
 
     def _known(self, where: str, name: str) -> None:
         if name not in self.materials:

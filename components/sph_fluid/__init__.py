@@ -68,6 +68,7 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS, ports
 from quintet.components.sph_fluid.setup.particle_count import particles
+from quintet.components.sph_fluid.setup.start import stated
 from quintet.interfaces.manifest import Manifest, Plan
 
 __all__ = ["MANIFEST", "SphFluidParams"]
@@ -89,6 +90,7 @@ MANIFEST = Manifest(
     component="quintet.components.sph_fluid.component:SphFluid",
     ports=ports,
     plan=_plan,
+    initial=stated,
     bench="quintet.components.sph_fluid.bench:cases",
     conform="quintet.components.sph_fluid.conform:cases",
     shows=SHOWS,

@@ -17,6 +17,7 @@ from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS, ports
 from quintet.components.sph_fluid.setup.geometry import wall_faces
+from quintet.components.sph_fluid.setup.start import stated
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import OrderError, StepError
@@ -49,14 +50,8 @@ class SphFluid(Component):
         self.gauges = features.gauges(params, self.symmetry)
 
     def describe(self) -> Fields:
-        """At which spacing, and how deep, surfaces should be sampled."""
-        depth = self.params.boundary.sample_depth * self.params.spacing
-        planar = {"surface.dimensions": np.array([2.0])} if self.params.dimensions == 2 else {}
-        return planar | {
-            "surface.spacing": np.array([self.params.spacing]),
-            "surface.depth": np.array([self.constants.smoothing.support]),
-            "surface.inset": np.array([depth]),
-        }
+        """State how surfaces should be sampled, and where water, tank and obstacles are."""
+        return stated(self.params)
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""

@@ -6,7 +6,14 @@ from quintet.components.sph_fluid.boundary.planar import planar_surface
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import CONTACT, MIRRORED_SURFACE, SURFACE, SURFACE_LOAD, VELOCITY
+from quintet.interfaces.ports import (
+    BEGINNING,
+    CONTACT,
+    MIRRORED_SURFACE,
+    SURFACE,
+    SURFACE_LOAD,
+    VELOCITY,
+)
 
 PRESSURE = Port("pressure_gauge", (Field("pressure", (), "Pa"),))
 LEVEL = Port("level_gauge", (Field("height", (), "m"),))
@@ -35,6 +42,7 @@ def surface(params: SphFluidParams) -> Port:
     Dynamic boundary particles know no other contact; films know no potential.
     """
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
+    port = replace(port, states=(*port.states, *BEGINNING))
     if params.dimensions == 2:
         port = planar_surface(port)
     fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films

@@ -5,15 +5,23 @@ given path whatever the loads on them, and can give these; ``echo`` sends back w
 measure the exchange.
 """
 
-from quintet.components.stand_ins.params import (
-    EchoParams,
-    PrescribedParams,
-    ReplayParams,
-    recorded_ports,
-)
+from quintet.components.stand_ins.params import EchoParams, PrescribedParams, ReplayParams
 from quintet.components.stand_ins.params import echo_ports as _echo_ports
 from quintet.components.stand_ins.params import prescribed_ports as _prescribed_ports
+from quintet.components.stand_ins.recorded import recorded_plan, recorded_ports, recorded_start
+from quintet.interfaces.component import Fields
 from quintet.interfaces.manifest import Manifest
+from quintet.interfaces.ports import MOTION
+
+
+def _prescribed(params: PrescribedParams) -> Fields:
+    # Only a scene that has one imports it.
+    from quintet.components.stand_ins.prescribed import Prescribed
+
+    made = Prescribed(params)
+    motion = frozenset(f"motion.{one.name}" for one in MOTION.fields)
+    return {**made.describe(), **made.give(motion)}
+
 
 REPLAY = Manifest(
     kind="replay",
@@ -21,6 +29,8 @@ REPLAY = Manifest(
     params=ReplayParams,
     component="quintet.components.stand_ins.replay:Replay",
     ports=recorded_ports,
+    plan=recorded_plan,
+    initial=recorded_start,
     conform="quintet.components.stand_ins.conform:replay",
 )
 PRESCRIBED = Manifest(
@@ -29,6 +39,7 @@ PRESCRIBED = Manifest(
     params=PrescribedParams,
     component="quintet.components.stand_ins.prescribed:Prescribed",
     ports=_prescribed_ports,
+    initial=_prescribed,
     conform="quintet.components.stand_ins.conform:prescribed",
 )
 ECHO = Manifest(

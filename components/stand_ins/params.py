@@ -1,13 +1,11 @@
 """Parameters of the stand-ins."""
 
-from pathlib import Path
 from typing import ClassVar, Literal
 
 from quintet.interfaces.component import Field, Port
-from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.params import Count, Number, Positive, PositiveVector, Vector, parameters
-from quintet.interfaces.ports import LOAD, MOTION, PLANAR_MOTION, from_json
+from quintet.interfaces.ports import LOAD, MOTION, PLANAR_MOTION
 
 PLANAR = ("disc", "polygon")
 PASSED = Port("passed", (Field("value", (3,), "m"),))
@@ -157,31 +155,3 @@ def prescribed_ports(params: PrescribedParams) -> Ports:
 def echo_ports(params: EchoParams) -> Ports:
     """It takes and gives one field of three numbers an item."""
     return (PASSED,), (RETURNED,)
-
-
-def recording_file(path: str) -> Path:
-    """File of a recording that is given as a file or as a run's folder."""
-    found = Path(path)
-    return found / "recording.h5" if found.is_dir() else found
-
-
-def recorded_ports(params: ReplayParams) -> Ports:
-    """Ports that the recorded component gave; it takes nothing back."""
-    # Only a replay reads recordings.
-    import h5py
-
-    path = recording_file(params.recording)
-    if not path.is_file():
-        raise SceneError(
-            f"recording {params.recording}: there is no such file. Run the scene first, or name "
-            "the run to replay, as in --swap NAME=replay@DIR."
-        )
-    with h5py.File(path, "r", locking=False) as file:
-        known = list(file["components"])
-        if params.component not in known:
-            raise SceneError(
-                f"recording {params.recording}: component {params.component} is not in it. It has "
-                f"{', '.join(known)}."
-            )
-        listed = str(file[f"components/{params.component}"].attrs["ports"])
-    return (), from_json(listed)

@@ -3,7 +3,8 @@
 import h5py
 import numpy as np
 
-from quintet.components.stand_ins.params import ReplayParams, recorded_ports, recording_file
+from quintet.components.stand_ins.params import ReplayParams
+from quintet.components.stand_ins.recorded import recorded_ports, recording_file
 from quintet.interfaces.component import Component, Fields, Keys, fields_of
 from quintet.interfaces.errors import StepError
 

@@ -49,6 +49,11 @@ class Transfer:
     sums: tuple[tuple[str, str], ...] = ()
     works_on: tuple[tuple[str, str, str], ...] = ()
 
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Both components."""
+        return self.giver, self.taker
+
 
 @dataclass(frozen=True, slots=True)
 class Demands:
@@ -118,6 +123,17 @@ class Link(Protocol):
 
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Make the maps, from what both sides say of themselves."""
+
+
+def refused_starts(links: Sequence[Link], initial: Mapping[str, Fields]) -> list[str]:
+    """Say what links refuse of how components begin; those with a method ``refuses``.
+
+    `initial` has, as far as they are known, each component's static fields and its instants at the
+    start: the scene is checked by what manifests tell, and what is built once more.
+    """
+    return [
+        sentence for link in links for sentence in getattr(link, "refuses", lambda _: [])(initial)
+    ]
 
 
 def requires(ports: Ports, name: str, takes: Port | None, gives: Port | None) -> list[str]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from quintet.coupler.coupling.answers import AnswerSums
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
-from quintet.coupler.coupling.exchange import Exchange, WindowInputs
+from quintet.coupler.coupling.exchange import Exchange, WindowInputs, refused_starts
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.plan import CouplingPlan
@@ -26,6 +26,7 @@ from quintet.coupler.coupling.schedule import (
 from quintet.coupler.coupling.schemes import advance
 from quintet.coupler.coupling.windows import Windows
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.inputs import Inputs
 
 
@@ -197,6 +198,9 @@ def join_ports(
     outputs = {
         name: one.give(wanted[name], exchange.gives[name]) for name, one in participants.items()
     }
+    initial = {name: {**described[name], **given} for name, given in outputs.items()}
+    if refused := refused_starts(exchange.links, initial):
+        raise SceneError(refused)
     exchange.count_rows(outputs)
     for name, one in participants.items():
         one.sums = AnswerSums(exchange.takes[name], exchange.gives[name], exchange.sharing(name))

@@ -9,7 +9,7 @@ from typing import Any
 
 from quintet.coupler.coupling.answers import AnswerSums, check_answer, check_outputs
 from quintet.interfaces.component import Array, Field, Fields
-from quintet.interfaces.errors import LineError, MessageError, QuintetError
+from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message, Shapes, require_finite
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.serving.serve import sendable
@@ -83,7 +83,11 @@ class Participant:
         except (LineError, MessageError) as error:
             raise ComponentFailed(self.name, self.window, str(error)) from error
         if message.order == "failed":
-            said = sendable(f"{message.header.get('error')}: {message.header.get('text')}")
+            text = sendable(str(message.header.get("text")))
+            if message.header.get("error") == SceneError.__name__ and self.shapes is None:
+                # It has not begun: the scene is refused, by who knows the rule.
+                raise SceneError(f"components.{self.name}: {text}")
+            said = f"{sendable(str(message.header.get('error')))}: {text}"
             trace = sendable(str(message.header.get("traceback", "")))
             raise ComponentFailed(self.name, self.window, said, trace)
         return message

@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.coupler.coupling import body_samples, planar_samples
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.ports import BOX, DISC, POLYGON, SPHERE
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +40,18 @@ def asked_sampling(stated: Fields) -> Sampling:
     spacing, depth = float(stated["surface.spacing"][0]), float(stated["surface.depth"][0])
     inset = float(stated.get("surface.inset", [0.5 * spacing])[0])
     return Sampling(spacing, depth, inset, stated.get("surface.dimensions", [3.0])[0] == 2.0)
+
+
+def unsampled(name: str, bodies: Fields, planar: bool) -> list[str]:
+    """Say that a body has a shape that cannot be sampled."""
+    known = {DISC: "disc", POLYGON: "polygon"} if planar else {SPHERE: "sphere", BOX: "box"}
+    wrong = [k for k, shape in enumerate(bodies["motion.shape"]) if int(shape) not in known]
+    names = " or ".join(f"{code} ({text})" for code, text in known.items())
+    return [
+        f"a body's shape must be {names} to be sampled; found {int(bodies['motion.shape'][k])} of "
+        f"body {k} of {name}. Give it one of these shapes, or leave it out of the link."
+        for k in wrong[:1]
+    ]
 
 
 def body_widths(bodies: Fields, planar: bool) -> Array:

@@ -15,12 +15,12 @@ import numpy as np
 
 from quintet.coupler.files.disk import told
 from quintet.coupler.files.hdf5 import OF_DATASET, OF_FILE, create, room
+from quintet.coupler.files.run_files import RECORDING as NAME
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import PortError, SceneError
 from quintet.interfaces.params import unknown
 from quintet.interfaces.ports import from_json, to_json
 
-NAME = "recording.h5"
 BATCH = 64  # rows written at once, at most; a power of two
 BATCH_BYTES = 8 << 20  # of all fields of a component together
 CHUNK_BYTES = 1 << 20

@@ -7,11 +7,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from quintet.coupler.files.disk import PART, RESERVE, write_whole
-from quintet.coupler.files.recording import NAME as RECORDING
 from quintet.interfaces.errors import SceneError
 
 FORMAT = 1
 MARKER, LOCK = "quintet-run.json", "quintet-run.lock"
+RECORDING = "recording.h5"
 RESULTS, LEDGER, SCENE = "results.json", "ledger.csv", "scene.toml"
 RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")

@@ -14,7 +14,7 @@ from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch.mpi_job import write_processes
 from quintet.coupler.launch.processes import GRACE, Watch, start
 from quintet.coupler.scene.scene import Scene
-from quintet.interfaces.errors import LineError, QuintetError
+from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message
 from quintet.interfaces.lines.transport import FramedLine
 from quintet.interfaces.serving.malloc import keep_freed_memory
@@ -66,6 +66,8 @@ class InMemory:
         for name, one in scene.components.items():
             try:
                 component = build(one.manifest, settings(scene, name))
+            except SceneError as error:
+                raise SceneError(f"components.{name}: {error}") from error
             except (Exception, SystemExit) as error:
                 trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
                 raise ComponentFailed(name, 0, str(error), trace) from error
@@ -87,7 +89,10 @@ class OverZenoh:
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.participants: dict[str, Participant] = {}
         self.watches: dict[str, Watch] = {}
-        self.session = Session(endpoint, True, "coupler", scene.security)
+        try:
+            self.session = Session(endpoint, True, "coupler", scene.security)
+        except LineError as error:
+            raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
         run = secrets.token_hex(4)
         lines = {name: ZenohLine(self.session, run, name) for name in scene.components}
         try:

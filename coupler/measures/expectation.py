@@ -5,7 +5,7 @@ measured, and the same measure is taken of the reference: a number, or a curve i
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -16,9 +16,10 @@ import pydantic
 from quintet.coupler.measures import time_series
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
-from quintet.interfaces.component import Field, Port
+from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import NotNegative, Number, Positive, parameters, unknown
+from quintet.interfaces.params import NotNegative, Number, Positive, parameters, shown, unknown
+from quintet.interfaces.units import same
 
 if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for it
     from quintet.coupler.files.recording import Recording
@@ -26,6 +27,7 @@ if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for
 Measure = Literal["rms", "relative_rms", "crossing", "at", "max", "min", "mean", "period", "decay"]
 DISTANCES = ("rms", "relative_rms")  # to a curve
 Index = Annotated[int, pydantic.Field(ge=0)]
+MEASURED_IN = {"crossing": "s", "period": "s", "decay": "1/s", "relative_rms": "1"}
 ROUNDING = 1e-9  # of a time: what a run's last window may lack
 
 
@@ -161,7 +163,9 @@ def check(
     else:
         ports = gives[expectation.component]
         fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
-        mistakes += _check_field(expectation, fields)
+        mistakes += _check_field(expectation, fields) or _check_unit(
+            expectation, fields[expectation.field]
+        )
     if expectation.csv is not None:
         try:
             reference_value(expectation, folder)
@@ -180,6 +184,37 @@ def _check_field(expectation: Expectation, fields: Mapping[str, Field]) -> list[
         allowed = f"0 to {shape[0] - 1}" if len(shape) == 1 else "left out"
         return [f"{where}: axis of {expectation.field} must be {allowed}; found {axis}."]
     return []
+
+
+def lacking_items(
+    expectations: Iterable[Expectation], outputs: Mapping[str, Fields]
+) -> Iterator[str]:
+    """Say which items are expected that a component does not have.
+
+    `outputs` has those of each component that are known, by its name.
+    """
+    for one in expectations:
+        array = outputs.get(one.component, {}).get(one.field)
+        if array is not None and isinstance(one.item, int) and one.item >= len(array):
+            yield (
+                f"expectation {one.name}: item must be below {len(array)}, as many as "
+                f"{one.component} has of {one.field}; found {one.item}. Correct it."
+            )
+
+
+def _check_unit(expectation: Expectation, field: Field) -> list[str]:
+    """Compare the unit with that of what is measured; a scale may make any of any."""
+    unit = MEASURED_IN.get(expectation.measure, field.unit if expectation.scale == 1.0 else "")
+    if not unit or same(unit, expectation.unit):
+        return []
+    remedy = f"Give value and within in {unit}"
+    if expectation.measure not in MEASURED_IN:
+        remedy += f", or the scale that makes {expectation.unit} of {unit}"
+    what = expectation.field if expectation.measure not in MEASURED_IN else expectation.measure
+    return [
+        f"expectation {expectation.name}: unit must be {unit}, that of {what}; found "
+        f"{shown(expectation.unit)}. {remedy}."
+    ]
 
 
 def curve(expectation: Expectation, recording: "Recording") -> Curve:

@@ -28,9 +28,11 @@ def read(path: Path, where: str, second: float = 1.0) -> Curve:
     second : float, s
         One unit of the file's times.
     """
+    if path.exists() and not path.is_file():
+        raise SceneError(f"{where} must be a text file beside the scene; {path} is none. Name it.")
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:  # a name with a zero, bytes that are no text
         raise SceneError(
             f"{where} must be a text file beside the scene; {error}. Put it there."
         ) from error

@@ -131,8 +131,11 @@ def check(
     """
     # Components import this package, and none needs the coupler: it is loaded on use.
     from quintet.coupler.scene.listing import Plan
+    from quintet.coupler.scene.needs import require_memory
 
-    return Plan(_scene(scene, preset, settings, swap, transport))
+    made = _scene(scene, preset, settings, swap, transport)
+    require_memory(made)
+    return Plan(made)
 
 
 def load(folder: str | PathLike[str]) -> "Run":

@@ -12,12 +12,14 @@ from quintet.coupler.coupling.windows import Windows, in_ticks
 from quintet.coupler.files.recording import NAME, Instant, Recorder
 from quintet.coupler.files.run_files import view_file, walls_file
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
+from quintet.coupler.measures.expectation import lacking_items
 from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.snapshots import save
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import only_fields
 
 WALLS = "walls."  # what fields of walls begin with, beside those of the view
@@ -66,6 +68,8 @@ class OutputWriter:
 
     def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:
         """See `Observer.begin`."""
+        if lacking := list(lacking_items(self.scene.expect, coupling.outputs)):
+            raise SceneError(lacking)
         self.begun = True
         discard_former(self.folder)  # all checks are passed
         self.done, self._now = self._windows.done, self._windows.now

@@ -8,9 +8,11 @@ from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin, files_of, go_on
 from quintet.coupler.run.simulate import make_folder, simulate
+from quintet.coupler.scene.needs import require_memory
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.lines.endpoint import require_free
 
 
 def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tuple[Path, int]:
@@ -23,8 +25,7 @@ def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tup
     force : bool
         Replace a former run in the folder: only what it wrote, once the new one has begun.
     """
-    if scene.transport == "mpi":
-        find_launcher()  # before a former run is touched
+    check_machine(scene)  # before a former run is touched
     with begin("run", scene.file.name, files_of(scene), out, force) as place:
         try:
             make_folder(scene, place.path)
@@ -39,9 +40,19 @@ def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tup
 
 def resume_scene(scene: Scene, folder: Path, snapshot: Path) -> int:
     """Continue a run from one of its snapshots; return the exit status."""
+    check_machine(scene)
     with go_on(folder, "run"):
         reserve(folder, RESULTS)
         return _run(scene, folder, snapshot)
+
+
+def check_machine(scene: Scene) -> None:
+    """Refuse what this machine does not have: memory, an endpoint that is free, a launcher."""
+    require_memory(scene, scene.elsewhere)
+    if scene.transport == "mpi":
+        find_launcher()
+    elif scene.transport == "zenoh" and scene.endpoint:
+        require_free(scene.endpoint)
 
 
 def _run(scene: Scene, folder: Path, snapshot: Path | None) -> int:

@@ -5,11 +5,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from quintet.coupler.coupling import plan
-from quintet.coupler.coupling.exchange import Exchange, Link
+from quintet.coupler.coupling.exchange import Exchange, Link, refused_starts
 from quintet.coupler.coupling.iteration_settings import unknown_fields
 from quintet.coupler.coupling.plan import CouplingPlan
+from quintet.coupler.measures.expectation import Expectation, lacking_items
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
-from quintet.interfaces.params import read, unknown
+from quintet.interfaces.component import Fields
+from quintet.interfaces.params import read, shown, unknown
 
 
 def lay_out(
@@ -59,7 +61,7 @@ def _groups(
     table: Any, components: dict[str, ComponentPlan], mistakes: list[str]
 ) -> dict[str, GroupSettings]:
     if not isinstance(table, dict) or not all(isinstance(one, dict) for one in table.values()):
-        mistakes.append(f"groups must be tables; found {table!r}. Write [groups.NAME].")
+        mistakes.append(f"groups must be tables; found {shown(table)}. Write [groups.NAME].")
         return {}
     found = {}
     for name, given in table.items():
@@ -107,6 +109,21 @@ def refused(
         where = f"groups.{one.name}.iteration" if one.name else "iteration"
         wrong += unknown_fields(one.iteration, takes, where)
     return wrong
+
+
+def begins_wrong(
+    components: dict[str, ComponentPlan], links: list[Link], expect: list[Expectation]
+) -> list[str]:
+    """What links and expectations refuse of how components begin, where their kinds can tell."""
+    linked = [name for link in links for one in link.transfers for name in one.ends]
+    initial: dict[str, Fields] = {}
+    for name in dict.fromkeys([*linked, *(one.component for one in expect)]):
+        try:
+            initial[name] = components[name].initial()
+        except Exception as error:  # of any kind: what it does here is its author's
+            said = f"{type(error).__name__}: {error}"
+            return [f"components.{name}: how it begins cannot be told ({said}). Correct it."]
+    return [*refused_starts(links, initial), *lacking_items(expect, initial)]
 
 
 def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> list[str]:

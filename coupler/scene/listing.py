@@ -93,8 +93,8 @@ def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:
     exchange = scene.exchange()
     where = f"group {plan.name}" if plan.name else "run"
     members = ", ".join(plan.members)
-    plans = {name: one.plan() for name, one in scene.components.items()}
-    steps = {name: one.dt for name, one in plans.items() if one is not None}
+    plans = {name: one.planned for name, one in scene.components.items()}
+    steps = {n: one.dt for n, one in plans.items() if one is not None and math.isfinite(one.dt)}
     joined = {name for ends in plan.transfers(exchange).values() for name in ends}
     equal = plan.equal(exchange)
     known = [steps[name] for name in joined or set(plan.members) if name in steps]
@@ -119,11 +119,13 @@ def _processes(scene: Scene) -> str:
 
 
 def _needs(one: ComponentPlan, end: float) -> tuple[str, str, str, str]:
-    plan = one.plan()
+    plan = one.planned
     if plan is None:
         return "", "", "", ""
-    seconds = plan.items * math.ceil(end / plan.dt) / (plan.rate * one.threads)
     memory = f"{plan.items * plan.bytes_per_item / 1e6:.0f} MB" if plan.bytes_per_item else ""
+    if math.isinf(plan.dt):
+        return f"{plan.items}", "any", memory, ""
+    seconds = float(plan.items) * math.ceil(end / plan.dt) / (plan.rate * one.threads)
     return f"{plan.items}", f"{plan.dt:.2g} s", memory, f"{seconds:.0f} s"
 
 

@@ -1,24 +1,25 @@
-"""Overrides of a scene file: presets, single settings, replaced components."""
+"""Overrides of a scene file: presets and single settings."""
 
 import os
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import Any
 
 import tomli_w
 
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.manifest import known_kinds
-from quintet.interfaces.params import unknown
+from quintet.interfaces.params import shown, unknown
 
 
 def put_preset(table: dict[str, Any], preset: str) -> list[str]:
     """Apply a preset of the scene; return the mistakes."""
     presets = table.get("presets", {})
     if not isinstance(presets, dict) or not isinstance(presets.get(preset, {}), dict):
-        return [f"presets.{preset} must be a table of paths and values. Write [presets.{preset}]."]
+        return [
+            f"presets.{preset} must be a table of paths and values; found {shown(presets)}. Write "
+            f"[presets.{preset}]."
+        ]
     if preset not in presets:
         return [unknown(f"preset {preset}", preset, presets)]
     return [m for path, value in presets[preset].items() for m in put(table, path, value)]
@@ -31,7 +32,7 @@ def put_set(table: dict[str, Any], setting: str) -> list[str]:
         return [f"--set needs PATH=VALUE; found {setting!r}. Give it as in --set window=1e-3."]
     try:
         value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         value = text  # a word needs no quotes on the command line
     return put(table, path, value)
 
@@ -43,8 +44,8 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
     for number, head in enumerate(heads):
         place = ".".join(heads[: number + 1])
         if isinstance(at, list):
-            if not (head.isdigit() and int(head) < len(at)):
-                return [f"{place}: must be a number below {len(at)}; found {head!r}."]
+            if not is_index(head, at):
+                return [f"{place}: must be a number below {len(at)}; found {head!r}. Correct it."]
             at = at[int(head)]
         elif isinstance(at, dict) and (head in at or _may_be_made(heads[: number + 1])):
             at = at.setdefault(head, {})
@@ -54,6 +55,11 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
         return [f"{path} cannot be set: {'.'.join(heads)} is not a table."]
     at[last] = value
     return []
+
+
+def is_index(text: str, among: list[Any]) -> bool:
+    """Whether a text is the number of an item of a list."""
+    return text.isdecimal() and len(text) < 10 and int(text) < len(among)
 
 
 def _may_be_made(heads: list[str]) -> bool:
@@ -101,23 +107,3 @@ def run_arguments(
     line += ["--transport", transport] if transport else []
     line += [word for swap in swaps for word in ("--swap", swap)]
     return [*line, *(word for setting in settings for word in ("--set", setting))]
-
-
-def put_swap(table: dict[str, Any], swap: str) -> list[str]:
-    """Replace a component: ``NAME=KIND`` or ``NAME=replay@RUN``; return the mistakes."""
-    name, equals, kind = swap.partition("=")
-    if not equals:
-        return [f"--swap needs NAME=KIND; found {swap!r}. Give it as in --swap NAME=replay."]
-    kind, _, source = kind.partition("@")
-    components = table.get("components", {})
-    if name not in components:
-        return [unknown(f"--swap {swap}: component {name}", name, components)]
-    if ":" not in kind and kind not in known_kinds():
-        return [unknown(f"--swap {swap}: kind {kind}", kind, known_kinds())]
-    if kind == "replay":
-        recording = source or f"runs/{table.get('name', '')}"
-        new = {"recording": str(Path(recording).resolve()), "component": name}
-    else:
-        new = table.get("stand_ins", {}).get(name, {}).get(kind, {})
-    components[name] = {"kind": kind, **new}
-    return []

@@ -1,23 +1,22 @@
 """Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
 
 import tomllib
-from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import fields
 from functools import partial
 from importlib.resources import files
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.coupling.exchange import Link
-from quintet.coupler.coupling.links import known_links, maker
 from quintet.coupler.measures.expectation import Expectation, check
 from quintet.coupler.scene import variants
-from quintet.coupler.scene.groups import lay_out, refused, unknown_outputs
-from quintet.coupler.scene.overrides import put_preset, put_set, put_swap
+from quintet.coupler.scene.component_tables import read_components, require_components
+from quintet.coupler.scene.groups import begins_wrong, lay_out, refused, unknown_outputs
+from quintet.coupler.scene.link_tables import read_links
+from quintet.coupler.scene.needs import refused_times
+from quintet.coupler.scene.overrides import put_preset, put_set
 from quintet.coupler.scene.scene import (
-    NAME,
-    ComponentKeys,
     ComponentPlan,
     Scene,
     SceneFile,
@@ -25,12 +24,14 @@ from quintet.coupler.scene.scene import (
     wrong_name,
 )
 from quintet.coupler.scene.stability_table import Scope
+from quintet.coupler.scene.swap import put_swap
 from quintet.coupler.scene.tables import SceneTables
-from quintet.interfaces.errors import LineError, QuintetError, SceneError
+from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
-from quintet.interfaces.manifest import Manifest, find, known_kinds, look_in
-from quintet.interfaces.params import read, unknown
+from quintet.interfaces.manifest import look_in
+from quintet.interfaces.params import DEEPEST, extremes, read, shown, unknown
 
+MOST_TOLD = 20  # mistakes of one kind
 TABLES = tuple(one.name for one in fields(SceneTables))
 
 
@@ -86,7 +87,7 @@ def load(
         mistakes += put_set(table, setting)
     if transport:
         table["transport"] = transport
-    if mistakes:
+    if mistakes := mistakes or list(islice(extremes(table, ""), MOST_TOLD)):
         raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
     made = _check(path, table, preset)
     asked = {"preset": preset, "settings": list(settings), "swaps": list(swaps)}
@@ -99,8 +100,13 @@ def parse(path: Path) -> dict[str, Any]:
     try:
         with open(path, "rb") as file:
             return tomllib.load(file)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise SceneError(f"{path.name}: a scene must be valid TOML: {error}.") from error
+    except RecursionError as error:
+        raise SceneError(
+            f"{path.name}: a scene must be valid TOML, its lists and tables at most {DEEPEST} "
+            "deep; found more. Flatten them."
+        ) from error
 
 
 def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
@@ -108,9 +114,10 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
     own = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, own, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
-    components = _components(table.get("components"), path.parent, mistakes)
-    wrong = set(table.get("components") or ()) - set(components)  # told of already
-    links = _links(_tables(table, "links", mistakes), components, wrong, mistakes)
+    given = require_components(path, table, mistakes)
+    components = read_components(given, path.parent, mistakes)
+    wrong = set(given) - set(components)  # told of already
+    links = read_links(_tables(table, "links", mistakes), components, wrong, mistakes)
     expect = _expect(_tables(table, "expect", mistakes), components, wrong, path.parent, mistakes)
     coupling = None
     if file is not None:
@@ -120,6 +127,8 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
             components = {name: components[name] for name in coupling.components()}
             mistakes += refused(coupling, components, links)
             mistakes += unknown_outputs(file, components)
+            mistakes += refused_times(file, components, coupling, links)
+            mistakes += [] if mistakes else begins_wrong(components, links, expect)
         if file.window != "auto" and file.window > file.end:
             mistakes.append(
                 f"scene.window must not exceed scene.end ({file.end:g} s); found {file.window:g} s."
@@ -179,112 +188,8 @@ def _tables(table: dict[str, Any], key: str, mistakes: list[str]) -> list[dict[s
     found = table.get(key, [])
     if isinstance(found, list) and all(isinstance(one, dict) for one in found):
         return found
-    mistakes.append(f"{key} must be a list of tables; found {found!r}. Write [[{key}]].")
+    mistakes.append(f"{key} must be a list of tables; found {shown(found)}. Write [[{key}]].")
     return []
-
-
-def _components(table: Any, folder: Path, mistakes: list[str]) -> dict[str, ComponentPlan]:
-    if not isinstance(table, dict) or not table:
-        mistakes.append("components: a scene needs at least one. Add [components.NAME].")
-        return {}
-    found = {}
-    for name, given in table.items():
-        if not NAME.fullmatch(name) or name == "coupler":
-            mistakes.append(
-                f"components: a name must be letters, digits, _ or -, and not coupler; found "
-                f"{name!r}. Rename it."
-            )
-        elif not isinstance(given, dict):
-            mistakes.append(f"components.{name} must be a table; found {given!r}. Give it a kind.")
-        elif one := _component(name, dict(given), folder, mistakes):
-            found[name] = one
-    return found
-
-
-def _component(
-    name: str, given: dict[str, Any], folder: Path, mistakes: list[str]
-) -> ComponentPlan | None:
-    where = f"components.{name}"
-    if not isinstance(kind := given.get("kind"), str):
-        known = ", ".join(sorted(known_kinds()))
-        mistakes.append(f"{where}.kind must be a name; found {kind!r}. Known here: {known}.")
-        return None
-    of_all = {one.name for one in fields(ComponentKeys)} & given.keys()
-    common, wrong = read(ComponentKeys, {key: given.pop(key) for key in of_all}, where)
-    mistakes += wrong
-    if common is None:
-        return None
-    manifest = _manifest(where, kind, mistakes)
-    if manifest is None:
-        return None
-    params, wrong = read(manifest.params, given, where, folder)
-    if wrong:
-        mistakes += wrong
-        return None
-    try:
-        takes, gives = manifest.ports(params)
-    except QuintetError as error:
-        mistakes.append(f"{where}: {error}")
-        return None
-    except Exception as error:  # of any kind: what it does here is its author's
-        said = f"{type(error).__name__}: {error}"
-        mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
-        return None
-    return ComponentPlan(name, kind, manifest, given, params, takes, gives, common.threads)
-
-
-def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:
-    try:
-        return find(kind)
-    except KeyError:
-        mistakes.append(unknown(f"{where}.kind {kind}", kind, known_kinds()))
-    except QuintetError as error:
-        mistakes.append(f"{where}.{error}")
-    except Exception as error:  # of any kind: the module is its author's
-        said = f"{type(error).__name__}: {error}"
-        mistakes.append(f"{where}.kind {kind} cannot be imported ({said}). Name a module:Class.")
-    return None
-
-
-def _links(
-    table: list[dict[str, Any]],
-    components: dict[str, ComponentPlan],
-    wrong: set[str],
-    mistakes: list[str],
-) -> list[Link]:
-    ports = {name: (one.takes, one.gives) for name, one in components.items()}
-    found: list[Link] = []
-    known = known_links()
-    for number, given in enumerate(table):
-        kind = str(given.get("kind", ""))
-        lists = [given.get("between", []), given.get("pairs", [])]
-        if kind not in known:
-            mistakes.append(unknown(f"links.{number}.kind {kind}", kind, known))
-        elif not all(map(_is_names, lists)):
-            mistakes.append(f"links.{number}: components and ports are names; found {lists!r}.")
-        elif not wrong & set(_named(lists)):
-            try:
-                found.append(maker(kind)(number, given, ports))
-            except SceneError as error:
-                mistakes += error.mistakes
-    for name, count in Counter(link.name for link in found).items():
-        if count > 1:
-            mistakes.append(f"links: {count} have the name {name}. Give each its own.")
-    return found
-
-
-def _is_names(value: Any) -> bool:
-    """Whether there are names in a list, and in the lists in it, and nothing else."""
-    return isinstance(value, str) or (isinstance(value, list) and all(map(_is_names, value)))
-
-
-def _named(value: Any) -> Iterator[str]:
-    """Components that stand in a link's lists, whatever else is wrong with them."""
-    if isinstance(value, list):
-        for one in value:
-            yield from _named(one)
-    elif isinstance(value, str):
-        yield value.split(".")[0]
 
 
 def _expect(

@@ -3,7 +3,9 @@
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
+
+import pydantic
 
 from quintet.coupler.coupling.exchange import Exchange, Link
 from quintet.coupler.coupling.iteration_settings import IterationSettings
@@ -11,10 +13,10 @@ from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import Refinement
-from quintet.interfaces.component import Field, Port
+from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
-from quintet.interfaces.params import Count, NotNegative, Number, Positive, Vector, parameters
+from quintet.interfaces.params import NotNegative, Number, Positive, Vector, parameters
 from quintet.interfaces.serving.port_view import port_fields
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")  # of a component or group: it names files and lines
@@ -36,7 +38,7 @@ class ComponentKeys:
     """
 
     kind: str
-    threads: Count = 1
+    threads: Annotated[int, pydantic.Field(ge=1, le=1024)] = 1
 
 
 @parameters
@@ -166,15 +168,16 @@ class ComponentPlan:
     takes: tuple[Port, ...]
     gives: tuple[Port, ...]
     threads: int = 1
+    planned: Plan | None = None  # what running it will need, where its kind can tell
+
+    def initial(self) -> Fields:
+        """What is known of it before it is built; see `Manifest`."""
+        return self.manifest.initial(self.checked) if self.manifest.initial else {}
 
     @property
     def shows(self) -> tuple[Field, ...]:
         """Fields of its view, as far as is known without it."""
         return self.manifest.shows or port_fields(self.gives)
-
-    def plan(self) -> Plan | None:
-        """What running it will need, where its kind can tell."""
-        return self.manifest.plan(self.checked) if self.manifest.plan else None
 
 
 @dataclass(slots=True)

@@ -22,7 +22,15 @@ import pydantic
 from quintet.coupler.measures.expectation import Index
 from quintet.coupler.scene.study_table import MakeVariant, Table, folder_name, value_at
 from quintet.interfaces.component import Port
-from quintet.interfaces.params import NotNegative, Number, Positive, parameters, read, unknown
+from quintet.interfaces.params import (
+    NotNegative,
+    Number,
+    Positive,
+    parameters,
+    read,
+    shown,
+    unknown,
+)
 
 SAMPLES = 200  # rows of the ledger in a short run
 FEWEST_WINDOWS = 20  # in a run whose window is varied: windows are whole, so the last is rounded
@@ -256,7 +264,7 @@ def _limit(
     for path in one.parameter:
         value, wrong = value_at(variant, path)
         if not wrong and (isinstance(value, bool) or not isinstance(value, (int, float))):
-            wrong = f"{path} must be a number to be scaled; found {value!r}. Name another."
+            wrong = f"{path} must be a number to be scaled; found {shown(value)}. Name another."
         mistakes += [wrong] if wrong else []
         scaled[path] = 1.0 if wrong else float(value)
     return Limit(one, name, one.end or scope.end, scaled), mistakes

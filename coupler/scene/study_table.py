@@ -14,7 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from quintet.interfaces.params import parameters, read, unknown
+from quintet.coupler.scene.overrides import is_index
+from quintet.interfaces.params import parameters, read, shown, unknown
 
 Table = dict[str, Any]
 MakeVariant = Callable[[Table], tuple[Table, list[str]]]  # settings -> scene with them, mistakes
@@ -102,7 +103,8 @@ def _size(where: str, path: str, table: Table) -> tuple[float | None, list[str]]
         return None, [f"{where}.size {wrong}"]
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
         return None, [
-            f"{where}.size {path} must be a positive number; found {value!r}. Name what is refined."
+            f"{where}.size {path} must be a positive number; found {shown(value)}. Name what "
+            "is refined."
         ]
     return (1.0 / value if isinstance(value, int) else value), []
 
@@ -111,7 +113,7 @@ def value_at(table: Table, path: str) -> tuple[Any, str]:
     """Find the value at a dotted path of a scene's tables; return it, or why there is none."""
     at: Any = table
     for part in path.split("."):
-        if isinstance(at, list) and part.isdigit() and int(part) < len(at):
+        if isinstance(at, list) and is_index(part, at):
             at = at[int(part)]
         elif isinstance(at, dict) and part in at:
             at = at[part]

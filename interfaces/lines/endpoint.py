@@ -1,11 +1,13 @@
 """The endpoint at which a coupler listens: on the loopback, or with mutual TLS."""
 
 import re
+import socket
 from dataclasses import dataclass
 
-from quintet.interfaces.errors import LineError
+from quintet.interfaces.errors import LineError, SceneError
 
-ENDPOINT = re.compile(r"(tcp|tls)/(\[[0-9A-Fa-f:]+\]|[\w.-]+):\d{1,5}")
+ENDPOINT = re.compile(r"(tcp|tls)/(\[[0-9A-Fa-f:]+\]|[\w.-]+):(\d{1,5})")
+HIGHEST = 65535  # port
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 
 
@@ -25,7 +27,12 @@ def check_endpoint(endpoint: str, security: Security | None) -> None:
         raise LineError(
             f"endpoint {endpoint!r}: must be tcp/HOST:PORT on the loopback or tls/HOST:PORT."
         )
-    protocol, host = match.groups()
+    protocol, host, port = match.groups()
+    if not 0 < int(port) <= HIGHEST:
+        raise LineError(
+            f"endpoint {endpoint!r}: the port must be from 1 to {HIGHEST}; found {port}. Choose "
+            "one that is free, or give no endpoint."
+        )
     if protocol == "tcp" and host not in LOOPBACK:
         raise LineError(
             f"endpoint {endpoint!r}: off the loopback only tls with certificates on both sides "
@@ -33,3 +40,29 @@ def check_endpoint(endpoint: str, security: Security | None) -> None:
         )
     if protocol == "tls" and security is None:
         raise LineError(f"endpoint {endpoint!r}: tls needs authority, certificate and key.")
+
+
+def require_free(endpoint: str) -> None:
+    """Refuse an endpoint at which this machine cannot listen: another run does, or it is not its.
+
+    Whoever takes it later is noticed when the line is opened.
+    """
+    match = ENDPOINT.fullmatch(endpoint)
+    if match is None:
+        return
+    host, port = match[2].strip("[]"), int(match[3])
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+        with socket.socket(family, kind, protocol) as probe:
+            # What a former run left behind, its connections closed, is in nobody's way.
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind(address)
+            probe.listen()
+    except OSError as error:
+        raise SceneError(
+            f"scene.endpoint {endpoint}: the coupler must be able to listen there; it cannot "
+            f"({error.strerror or error}). End what uses the port, name another, or give no "
+            "endpoint."
+        ) from error

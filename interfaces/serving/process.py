@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from quintet.interfaces.component import Component, Resources, make
-from quintet.interfaces.errors import LineError, QuintetError
+from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
@@ -97,7 +97,7 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
     params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
-        raise QuintetError("\n".join(mistakes))
+        raise SceneError(mistakes)
     return make(manifest.load(), params, resources)
 
 

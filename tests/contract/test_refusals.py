@@ -4,6 +4,7 @@ import json
 
 import laboratory
 import pytest
+from started import write_scene
 
 from quintet.coupler.cli import main
 from quintet.interfaces.errors import SceneError
@@ -76,3 +77,83 @@ def test_a_path_beside_a_fluid_is_exchanged_as_often_as_the_fluid_needs(tmp_path
     link = {"kind": "fsi", "between": ["gust", "path"]}
     trace = laboratory.couple(laboratory.scene(tmp_path, components, link, end=0.5))
     assert len(trace.times) - 1 >= 50
+
+
+PICKY = """
+from toys import Toy
+from quintet.interfaces.errors import SceneError
+class {name}(Toy):
+    '''Refuses its scene.'''
+    def {method}:
+        raise SceneError("items must be odd; found 4. Add one.")
+"""
+
+
+@pytest.mark.parametrize(
+    ("transport", "method"),
+    [
+        ("memory", "__init__(self, params)"),
+        ("memory", "bind(self, static, joined)"),
+        pytest.param("zenoh", "__init__(self, params)", marks=pytest.mark.zenoh),
+        pytest.param("zenoh", "describe(self)", marks=pytest.mark.zenoh),
+    ],
+)
+def test_what_a_component_refuses_is_a_mistake_of_the_scene(tmp_path, transport, method, capfd):
+    path = write_scene(tmp_path, transport, 0.01)
+    name = f"Picky{transport}{method[:4].strip('_')}"
+    (tmp_path / f"{name.lower()}.py").write_text(PICKY.format(name=name, method=method))
+    text = path.read_text().replace("toys:Toy", f"{name.lower()}:{name}", 1)
+    path.write_text(text)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(path), "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    said = capfd.readouterr().err
+    assert "components.ping: items must be odd; found 4. Add one." in said
+    assert "Traceback" not in said
+
+
+def test_an_item_that_is_not_there_is_told_before_the_first_window(tmp_path, capsys):
+    """Of bodies as the scene is checked; of what the solver alone knows as ports are joined."""
+    path = write_scene(tmp_path, end=0.01)
+    expect = """
+[[expect]]
+name = "e"
+component = "pong"
+field = "out.number"
+item = 5
+axis = 0
+measure = "max"
+value = 1.0
+within = 0.1
+unit = "m"
+source = "none"
+"""
+    path.write_text(path.read_text() + expect)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(path), "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    rule = "expectation e: item must be below 5, as many as pong has of out.number; found 5."
+    assert rule in capsys.readouterr().err
+    assert json.loads((tmp_path / "out/results.json").read_text())["windows"] == 0
+    with pytest.raises(SystemExit) as ended:
+        main(["check", "dam_break_cubes", "--set", "expect.0.item=3"])
+    assert ended.value.code == 2
+    assert "item must be below 3, as many as cubes has of motion.position; found 3." in (
+        capsys.readouterr().err
+    )
+
+
+@pytest.mark.parametrize("command", [["study", "two_springs"], ["bench", "echo"]])
+def test_a_file_for_results_that_cannot_be_written_is_told_at_once(tmp_path, capsys, command):
+    for path in (tmp_path, tmp_path / "none" / "found.json"):
+        with pytest.raises(SystemExit) as ended:
+            main([*command, "--json", str(path)])
+        assert ended.value.code == 2
+        assert f"--json {path}: it must be a file that can be written" in capsys.readouterr().err
+
+
+def test_an_endpoint_that_is_none_is_told_to_who_joins(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["join", "two_springs", "upper", "--at", "nowhere"])
+    assert ended.value.code == 2
+    assert "--at endpoint 'nowhere': must be tcp/HOST:PORT on the" in capsys.readouterr().err

@@ -1,7 +1,5 @@
-"""Where bodies stand at the start: none inside another, none below a plane."""
+"""How far bodies are from one another and from planes, as they stand at the start."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +7,6 @@ import numpy as np
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
-from quintet.components.shared.lattice import lattice_points
 from quintet.components.shared.polygons import in_space
 from quintet.interfaces.component import Array
 
@@ -20,28 +17,6 @@ ROUNDED = 0.05  # of a box's shortest edge: radius of its edges unless a scene s
 ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what touches exactly
 
 Spheres = tuple[Array, Array]  # centres (n, 3) m, radii (n,) m
-
-
-def with_copies(bodies: "Sequence[Body]") -> "tuple[Body, ...]":
-    """Put the copies of each body in its place, on their lattice."""
-    return tuple(one for body in bodies for one in copies(body))
-
-
-def copies(body: "Body") -> "Iterator[Body]":
-    """Yield one body, or all that stand on its lattice."""
-    if body.copies is None:
-        yield body
-        return
-    lattice = body.copies
-    numbers = lattice_points([np.arange(n) for n in lattice.number], x_fastest=False)
-    places = np.array(body.position) + numbers * np.array(lattice.spacing)  # (n, 3) m
-    random = np.random.default_rng(lattice.seed)
-    scattered = random.uniform(-1.0, 1.0, places.shape)
-    if body.shape in planar.SHAPES:
-        scattered[:, 1] = 0.0
-    places += lattice.scatter * scattered
-    for x, y, z in places.tolist():
-        yield replace(body, position=(x, y, z), copies=None)
 
 
 def edge_radius(body: "Body") -> float:
@@ -100,25 +75,6 @@ def bounding_radius(body: "Body") -> float:
     return float((np.linalg.norm(centres, axis=1) + radii).max())
 
 
-def check(bodies: "Sequence[Body]", planes: "Sequence[Plane]") -> None:
-    """Refuse bodies that start inside one another or below a plane."""
-    for k, body in enumerate(bodies):
-        for m, plane in enumerate(planes):
-            gap = plane_gap(body, plane)
-            if gap < -ALLOWED * bounding_radius(body):
-                raise ValueError(
-                    f"bodies[{k}] must start above planes[{m}]; it reaches {-gap:.6g} m below. "
-                    "Raise it, or turn the plane's normal to the free side."
-                )
-    for i, j in near_pairs(bodies):
-        gap = body_gap(bodies[i], bodies[j])
-        if gap < -ALLOWED * min(bounding_radius(bodies[i]), bounding_radius(bodies[j])):
-            raise ValueError(
-                f"bodies[{i}] and bodies[{j}] must not overlap at the start; they do by "
-                f"{-gap:.6g} m. Move one of them; touching is allowed."
-            )
-
-
 def plane_gap(body: "Body", plane: "Plane") -> float:
     """Distance [m] of a body's lowest point from a plane."""
     normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
@@ -128,23 +84,6 @@ def plane_gap(body: "Body", plane: "Plane") -> float:
         return float(normal @ (np.array(body.position) - origin) - down)
     centres, radii = world_spheres(body)
     return float(((centres - origin) @ normal - radii).min())
-
-
-def near_pairs(bodies: "Sequence[Body]") -> Iterator[tuple[int, int]]:
-    """Pairs of bodies whose bounding spheres overlap, by a sweep along x."""
-    middle = np.array([body.position for body in bodies])
-    radius = np.array([bounding_radius(body) for body in bodies])
-    order = np.argsort(middle[:, 0] - radius, kind="stable")
-    middle, radius = middle[order], radius[order]
-    left, right = middle[:, 0] - radius, middle[:, 0] + radius
-    for step in range(1, len(bodies)):
-        # Sorted by their left ends: once nobody reaches the step-th next, nobody reaches further.
-        if not (left[step:] < right[:-step]).any():
-            return
-        distance = np.linalg.norm(middle[step:] - middle[:-step], axis=1)
-        for k in np.flatnonzero(distance < radius[step:] + radius[:-step]):
-            i, j = sorted((int(order[k]), int(order[k + step])))
-            yield i, j
 
 
 def body_gap(a: "Body", b: "Body") -> float:

@@ -103,7 +103,9 @@ def check_polygon(where: str, body: "Body", radius: float) -> None:
 def check_plane(params: "DemBodiesParams") -> None:
     """Refuse shapes of other dimensions, and motion that would leave the plane."""
     planar = params.dimensions == 2
-    for k, body in enumerate(params.bodies):
+    templates = params.placed.templates
+    each = list(zip(params.placed.first, templates, strict=False))
+    for k, body in each:
         if (body.shape in SHAPES) != planar:
             rule = f"{' or '.join(SHAPES)}" if planar else "a shape of three dimensions"
             raise ValueError(
@@ -115,13 +117,15 @@ def check_plane(params: "DemBodiesParams") -> None:
     _require_plane("gravity", params.gravity, (1,))
     for k, plane in enumerate(params.planes):
         _require_plane(f"planes[{k}].normal", plane.normal, (1,))
-    first = params.bodies[0].position[1]
-    for k, body in enumerate(params.bodies):
-        where = f"bodies[{k}]"
-        if body.position[1] != first:
+    first = templates[0].position[1]
+    for k, body in each:
+        where, y = f"bodies[{k}]", body.position[1]
+        if body.copies is not None and body.copies.number[1] > 1:
+            where, y = f"bodies[{k + body.copies.number[2]}]", y + body.copies.spacing[1]
+        if y != first:
             raise ValueError(
                 f"{where}.position must have the y of all others, {first:g} m, in two dimensions; "
-                f"found {body.position[1]:g} m. Correct it."
+                f"found {y:g} m. Correct it."
             )
         _require_plane(f"{where}.velocity", body.velocity, (1,))
         _require_plane(f"{where}.angular_velocity", body.angular_velocity, (0, 2))

@@ -5,6 +5,7 @@ of those that the whole box has, beginning half a step from the plane, where the
 their images. (A whole box that would have particles on the plane itself gets a row more or less.)
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,6 +18,7 @@ from quintet.components.sph_fluid.state import Array
 
 FELT = 2.0  # smoothing lengths, the radius of the kernel
 ROUNDING = 1e-6  # of a spacing
+MOST_ROWS = 1e6  # along an axis, that are looked at one by one
 
 
 def obstacle_points(params: SphFluidParams) -> Array:
@@ -27,6 +29,27 @@ def obstacle_points(params: SphFluidParams) -> Array:
     """
     parts = [_points(box, params)[0] for box in params.boundary.obstacles]
     return np.concatenate([np.zeros((0, 3)), *parts])
+
+
+def count_obstacle_points(params: SphFluidParams) -> int:
+    """Count them without making them: rows along the axes, less those that water does not feel."""
+    found = 0
+    for box in params.boundary.obstacles:
+        steps, low, _, step, wet = _rows(box, params)
+        if max(steps) > MOST_ROWS:  # no machine holds as many; all of them, then
+            found += math.prod(int(one) + 1 for one in steps)
+            continue
+        whole, deep = 1, 1
+        for axis, count in enumerate(steps):
+            row = low[axis] + np.arange(int(count) + 1) * step[axis]
+            away = [row - box[0][axis], box[1][axis] - row]
+            nearest = np.min(
+                [np.where(wet[end, axis], away[end], np.inf) for end in (0, 1)], axis=0
+            )
+            whole *= len(row)
+            deep *= int((nearest >= FELT * params.smoothing_length).sum())
+        found += whole - deep
+    return found
 
 
 def obstacle_mirrors(params: SphFluidParams) -> Array:
@@ -43,6 +66,18 @@ def obstacle_mirrors(params: SphFluidParams) -> Array:
 
 def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     """Particles (n, 3) m of one obstacle, and how deep below each wet face [m]; (2, n, 3)."""
+    steps, low, high, _, wet = _rows(box, params)
+    counts = steps.astype(int) + 1
+    axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
+    points = lattice_points(axes)
+    below = [points - np.array(box[0]), np.array(box[1]) - points]
+    depth = np.where(wet[:, np.newaxis], below, np.inf)
+    felt = depth.min(axis=(0, 2)) < FELT * params.smoothing_length
+    return points[felt], depth[:, felt]
+
+
+def _rows(box: Box, params: SphFluidParams) -> tuple[Array, Array, Array, Array, NDArray[np.bool_]]:
+    """Steps (3,) along each axis, first and last place and length of a step (3,) m; wet faces."""
     wet = _wet(box, params)  # (2, 3)
     plane = ~wet & _named(params.boundary.symmetry)
     gap = np.where(plane, 0.0, np.where(wet, params.boundary.wall_offset, 0.5)) * params.spacing
@@ -51,14 +86,7 @@ def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     steps = np.round((high - low) / params.spacing - half.sum(axis=0))
     steps = np.maximum(np.where(plane.any(axis=0), 0, 1), steps)
     step = (high - low) / (steps + half.sum(axis=0))
-    low, high = low + half[0] * step, high - half[1] * step
-    counts = steps.astype(int) + 1
-    axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
-    points = lattice_points(axes)
-    below = [points - np.array(box[0]), np.array(box[1]) - points]
-    depth = np.where(wet[:, np.newaxis], below, np.inf)
-    felt = depth.min(axis=(0, 2)) < FELT * params.smoothing_length
-    return points[felt], depth[:, felt]
+    return steps, low + half[0] * step, high - half[1] * step, step, wet
 
 
 def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:

@@ -11,22 +11,22 @@ import numpy as np
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import slab_thickness
 from quintet.interfaces.component import Array, Fields, Port
-from quintet.interfaces.errors import PortError
-from quintet.interfaces.ports import DIMENSIONS
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.ports import DIMENSIONS, THICKNESS
 
 NEARLY = 1e-9  # m
 
 
 def planar_surface(port: Port) -> Port:
     """Port of surfaces that says that the fluid has two dimensions."""
-    return replace(port, states=(*port.states, DIMENSIONS))
+    return replace(port, states=(*port.states, DIMENSIONS, THICKNESS))
 
 
 def require_one_metre(params: SphFluidParams) -> None:
     """Refuse samples, which stand for 1 m along y, in a slab of another thickness."""
     thickness = slab_thickness(params)
     if abs(thickness - 1.0) > NEARLY:
-        raise PortError(
+        raise SceneError(
             "surface: in two dimensions samples stand for 1 m along y, and so must the fluid; its "
             f"boxes reach over {thickness:g} m. Let them, and the walls, reach over 1 m."
         )

@@ -2,7 +2,7 @@
 
 import math
 
-from quintet.components.sph_fluid.boundary.obstacles import obstacle_points
+from quintet.components.sph_fluid.boundary.obstacles import count_obstacle_points
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import FACES, Box, closed_faces, tank, wall_layers
 
@@ -15,9 +15,9 @@ def cells(box: Box, params: SphFluidParams) -> tuple[int, int, int]:
 
 
 def particles(params: SphFluidParams) -> int:
-    """Fluid and wall particles, counted without making any but those of obstacles."""
+    """Fluid and wall particles, counted without making any."""
     fluid = sum(math.prod(cells(box, params)) for box in params.fluid)
-    fluid += len(obstacle_points(params))
+    fluid += count_obstacle_points(params)
     box = tank(params)
     if box is None:
         return fluid

@@ -156,6 +156,10 @@ class Fsi:
         """Nothing: any steps, any scheme."""
         return Demands()
 
+    def refuses(self, initial: Mapping[str, Fields]) -> list[str]:
+        """See `exchange.refused_starts`."""
+        return self.structure.refuses(self.sampling, initial)
+
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Sample the surface at the fluid's spacing."""
         found, count = self.structure.bind(self.sampling, described), len(self.transfers)

@@ -8,20 +8,24 @@ from pydantic import BeforeValidator
 
 from quintet.coupler.coupling.exchange import Link, Ports
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import parameters, read, unknown
+from quintet.interfaces.params import parameters, read, shown, unknown
+
+
+def _is_pair(value: Any) -> bool:
+    return isinstance(value, list) and [type(one) for one in value] == [str, str]
 
 
 def _two_components(value: Any) -> tuple[Any, ...]:
-    if not isinstance(value, list) or len(value) != 2 or value[0] == value[1]:
-        raise ValueError(f"between must name two components; found {value!r}. Name both.")
+    if not _is_pair(value) or value[0] == value[1]:
+        raise ValueError(f"between must name two components; found {shown(value)}. Name both.")
     return tuple(value)
 
 
 def _port_pairs(value: Any) -> tuple[Any, ...]:
-    if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
+    if not isinstance(value, list) or not value or not all(map(_is_pair, value)):
         raise ValueError(
             "pairs must be pairs of ports, the giver first, as in "
-            f'[["a.motion", "b.foot"]]; found {value!r}. Name both of each.'
+            f'[["a.motion", "b.foot"]]; found {shown(value)}. Name both of each.'
         )
     return tuple(tuple(pair) for pair in value)
 

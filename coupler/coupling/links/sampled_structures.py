@@ -11,11 +11,19 @@ import numpy as np
 
 from quintet.coupler.coupling.exchange import Binding, Ends, Mapped
 from quintet.coupler.coupling.mapping import RigidMap, sample_faces
-from quintet.coupler.coupling.rigid_samples import asked_sampling, body_widths, sample_bodies
+from quintet.coupler.coupling.rigid_samples import Sampling as AskedSampling
+from quintet.coupler.coupling.rigid_samples import (
+    asked_sampling,
+    body_widths,
+    sample_bodies,
+    unsampled,
+)
+from quintet.coupler.coupling.start_positions import misplaced
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError
 from quintet.interfaces.ports import FACES, LOAD, MOTION, NODE_LOAD
 
+NEARLY = 1e-9  # m
 POSES = tuple(f"motion.{one.name}" for one in MOTION.fields)
 
 
@@ -40,13 +48,15 @@ class Structure:
     fills: tuple[str, ...]  # fields that their forces become
     needs: tuple[str, ...]  # fields of the structure that this takes
     works_on: tuple[tuple[str, str, str], ...]
+    refuses: Callable[[Sampling, Mapping[str, Fields]], list[str]]  # of how both begin
     bind: Callable[[Sampling, Mapping[str, Fields]], Binding]
 
 
 def _bind_bodies(of: Sampling, described: Mapping[str, Fields]) -> Binding:
     """Sample every body at the fluid's spacing."""
     asked, bodies = asked_sampling(described[of.fluid]), described[of.body]
-    _require_width(of, body_widths(bodies, asked.planar), asked.least)
+    if wrong := _refused_bodies(of, described):
+        raise LinkError("\n".join(wrong))
     found = sample_bodies(bodies, asked, of.mirrored)
     samples = RigidMap(found.arm, found.body, len(bodies["motion.shape"]))
     mirror = None
@@ -57,14 +67,37 @@ def _bind_bodies(of: Sampling, described: Mapping[str, Fields]) -> Binding:
     return Binding(static, maps, (None, partial(_moment, of.body)))
 
 
-def _require_width(of: Sampling, widths: Array, least: float) -> None:
-    for body in np.flatnonzero(widths < least)[:1]:
-        raise LinkError(
-            f"link {of.link}: a body must be at least {least:g} m across, a spacing of "
-            f"{of.fluid} and twice the depth of the outermost samples it wants; body "
-            f"{body} of {of.body} is {widths[body]:g} m. Refine the spacing "
-            f"of {of.fluid}, or leave the body out."
-        )
+def _refused_slab(of: Sampling, initial: Mapping[str, Fields]) -> list[str]:
+    """Refuse a slab in which what samples stand for, 1 m along y, is not what the fluid has."""
+    return [
+        f"link {of.link}: in two dimensions samples stand for 1 m along y, and so must {of.fluid}; "
+        f"its boxes reach over {thickness:g} m. Let them, and the walls, reach over 1 m."
+        for thickness in initial.get(of.fluid, {}).get("surface.thickness", ())
+        if abs(thickness - 1.0) > NEARLY
+    ]
+
+
+def _refused_bodies(of: Sampling, initial: Mapping[str, Fields]) -> list[str]:
+    """Refuse also bodies of shapes that cannot be sampled, thin ones, and those out of place."""
+    fluid, bodies = initial.get(of.fluid, {}), initial.get(of.body, {})
+    wrong = _refused_slab(of, initial)
+    if wrong or "surface.spacing" not in fluid or "motion.shape" not in bodies:
+        return wrong
+    asked = asked_sampling(fluid)
+    wrong = unsampled(of.body, bodies, asked.planar) or _thin(of, bodies, asked)
+    if not wrong and "motion.position" in bodies:
+        wrong = misplaced((of.fluid, of.body), fluid, bodies, asked)
+    return [f"link {of.link}: {sentence}" for sentence in wrong]
+
+
+def _thin(of: Sampling, bodies: Fields, asked: AskedSampling) -> list[str]:
+    widths, least = body_widths(bodies, asked.planar), asked.least
+    return [
+        f"a body must be at least {least:g} m across, a spacing of {of.fluid} and twice the depth "
+        f"of the outermost samples it wants; body {body} of {of.body} is {widths[body]:g} m. "
+        f"Refine the spacing of {of.fluid}, or leave the body out."
+        for body in np.flatnonzero(widths < least)[:1]
+    ]
 
 
 def _static(of: Sampling, normal: Array, volume: Array, body: Array) -> dict[str, Mapped]:
@@ -132,6 +165,7 @@ RIGID_BODIES = Structure(
         ("load.force", "motion.velocity", "motion.position"),
         ("load.torque", "motion.angular_velocity", "motion.orientation"),
     ),
+    refuses=_refused_bodies,
     bind=_bind_bodies,
 )
 FACES_OF_A_MESH = Structure(
@@ -141,5 +175,6 @@ FACES_OF_A_MESH = Structure(
     fills=("node_load.force",),
     needs=(),
     works_on=(("node_load.force", "faces.velocity", "faces.position"),),
+    refuses=_refused_slab,
     bind=_bind_faces,
 )

@@ -79,7 +79,7 @@ def test_copies_stand_on_a_lattice_and_scatter_the_same_way_each_time():
     expected = [[1.0 + x, 2.0, 3.0 + z] for x in (0.0, 0.1) for z in (0.0, 0.3, 0.6)]
     np.testing.assert_allclose(plain, expected)
     scattered = [lattice | {"scatter": 0.01, "seed": seed} for seed in (1, 1, 2)]
-    loose = [params([one | {"copies": copies}]).bodies for copies in scattered]
+    loose = [list(params([one | {"copies": copies}]).bodies) for copies in scattered]
     assert loose[0] == loose[1] != loose[2]
     moved = np.array([body.position for body in loose[0]]) - expected
     assert 0.005 < np.abs(moved).max() <= 0.01

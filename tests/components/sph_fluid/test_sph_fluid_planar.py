@@ -9,7 +9,7 @@ from fluid_params import fluid_params
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.coupler.coupling.planar_samples import fill, mirrors
 from quintet.interfaces.component import outputs_of
-from quintet.interfaces.errors import PortError
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import DIMENSIONS, DISC, POLYGON
 
 JOINED = frozenset({"surface", "surface_load"})
@@ -154,7 +154,7 @@ def test_a_fluid_says_that_it_has_two_dimensions():
 
 def test_samples_need_a_slab_of_one_metre():
     thin = SphFluid(fluid_params(**(DROP | {"fluid": (((0.0, 0.0, 0.0), (0.12, 0.1, 0.12)),)})))
-    with pytest.raises(PortError, match=r"its boxes reach over 0.1 m. Let them, and the walls"):
+    with pytest.raises(SceneError, match=r"its boxes reach over 0.1 m. Let them, and the walls"):
         plate(thin)
 
 

@@ -221,7 +221,7 @@ def test_a_reference_that_cannot_be_measured_is_a_mistake(tmp_path):
     _write(tmp_path, "t,x\n0,1\n1,2\n")
     gives = {"cubes": (MOTION, LOAD)}
     for settings, word in (
-        ({"measure": "crossing", "level": 5.0}, "must pass the level 5.0"),
+        ({"measure": "crossing", "level": 5.0, "unit": "s"}, "must pass the level 5.0"),
         ({"measure": "rms", "begin": 3.0}, "must reach into 3 to inf s; it has 0 to 1 s"),
     ):
         mistakes = check(_expectation(csv="ref.csv", **settings), gives, tmp_path)

@@ -1,0 +1,91 @@
+"""``[components.NAME]``: kind and settings of each component, checked by its manifest."""
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quintet.coupler.scene.scene import NAME, ComponentKeys, ComponentPlan
+from quintet.interfaces.errors import QuintetError, SceneError
+from quintet.interfaces.manifest import Manifest, find, known_kinds
+from quintet.interfaces.params import beyond_computing, read, shown, unknown
+
+Table = dict[str, Any]
+
+
+def require_components(path: Path, table: Table, mistakes: list[str]) -> Table:
+    """Tables of the components; without any, nothing else can be said of a scene."""
+    given = table.get("components", {})
+    if isinstance(given, dict) and given:
+        return given
+    said = "components: a scene needs at least one. Add [components.NAME]."
+    if given:
+        said = f"components must be tables; found {shown(given)}. Write [components.NAME]."
+    raise SceneError([f"{path.name}: {mistake}" for mistake in (*mistakes, said)])
+
+
+def read_components(table: Table, folder: Path, mistakes: list[str]) -> dict[str, ComponentPlan]:
+    """Read the components of a scene; those with mistakes are left out."""
+    found = {}
+    for name, given in table.items():
+        if not NAME.fullmatch(name) or name == "coupler":
+            mistakes.append(
+                f"components: a name must be letters, digits, _ or -, and not coupler; found "
+                f"{name!r}. Rename it."
+            )
+        elif not isinstance(given, dict):
+            mistakes.append(
+                f"components.{name} must be a table; found {shown(given)}. Give it a kind."
+            )
+        elif one := _component(name, dict(given), folder, mistakes):
+            found[name] = one
+    return found
+
+
+def _component(name: str, given: Table, folder: Path, mistakes: list[str]) -> ComponentPlan | None:
+    where = f"components.{name}"
+    if not isinstance(kind := given.get("kind"), str):
+        known = ", ".join(sorted(known_kinds()))
+        mistakes.append(f"{where}.kind must be a name; found {shown(kind)}. Known here: {known}.")
+        return None
+    of_all = {one.name for one in fields(ComponentKeys)} & given.keys()
+    common, wrong = read(ComponentKeys, {key: given.pop(key) for key in of_all}, where)
+    mistakes += wrong
+    if common is None:
+        return None
+    manifest = _manifest(where, kind, mistakes)
+    if manifest is None:
+        return None
+    try:
+        params, wrong = read(manifest.params, given, where, folder)
+        if wrong:
+            mistakes += wrong
+            return None
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            takes, gives = manifest.ports(params)
+            plan = manifest.plan(params) if manifest.plan else None
+    except QuintetError as error:
+        mistakes.append(f"{where}: {error}")
+        return None
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        mistakes.append(beyond_computing(where, given, error))
+        return None
+    except Exception as error:  # of any kind: what it does here is its author's
+        said = f"{type(error).__name__}: {error}"
+        mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
+        return None
+    return ComponentPlan(name, kind, manifest, given, params, takes, gives, common.threads, plan)
+
+
+def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:
+    try:
+        return find(kind)
+    except KeyError:
+        mistakes.append(unknown(f"{where}.kind {kind}", kind, known_kinds()))
+    except QuintetError as error:
+        mistakes.append(f"{where}.{error}")
+    except (Exception, SystemExit) as error:  # of any kind: the module is its author's
+        said = f"{type(error).__name__}: {error}"
+        mistakes.append(f"{where}.kind {kind} cannot be imported ({said}). Name a module:Class.")
+    return None

@@ -1,0 +1,63 @@
+"""``[[links]]``: which components are joined, each link made by its kind."""
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+from quintet.coupler.coupling.exchange import Link
+from quintet.coupler.coupling.links import known_links, maker
+from quintet.coupler.scene.scene import ComponentPlan
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import shown, unknown
+
+
+def read_links(
+    table: list[dict[str, Any]],
+    components: dict[str, ComponentPlan],
+    wrong: set[str],
+    mistakes: list[str],
+) -> list[Link]:
+    """Match the links of a scene to the ports of its components.
+
+    `wrong` are components with mistakes: of links to them nothing is said.
+    """
+    ports = {name: (one.takes, one.gives) for name, one in components.items()}
+    found: list[Link] = []
+    known = known_links()
+    for number, given in enumerate(table):
+        kind = str(given.get("kind", ""))
+        lists = [given.get("between", []), given.get("pairs", [])]
+        if kind not in known:
+            mistakes.append(unknown(f"links.{number}.kind {kind}", kind, known))
+        elif not all(map(_is_names, lists)):
+            mistakes.append(
+                f"links.{number}: components and ports are names; found {shown(lists)}."
+            )
+        elif not wrong & set(_named(lists)):
+            try:
+                found.append(maker(kind)(number, given, ports))
+            except SceneError as error:
+                mistakes += error.mistakes
+            except Exception as error:  # of any kind: what a link does here is its author's
+                said = f"{type(error).__name__}: {error}"
+                mistakes.append(
+                    f"links.{number}: kind {kind} cannot be made from this table ({said})."
+                )
+    for name, count in Counter(link.name for link in found).items():
+        if count > 1:
+            mistakes.append(f"links: {count} have the name {name}. Give each its own.")
+    return found
+
+
+def _is_names(value: Any) -> bool:
+    """Whether there are names in a list, and in the lists in it, and nothing else."""
+    return isinstance(value, str) or (isinstance(value, list) and all(map(_is_names, value)))
+
+
+def _named(value: Any) -> Iterator[str]:
+    """Components that stand in a link's lists, whatever else is wrong with them."""
+    if isinstance(value, list):
+        for one in value:
+            yield from _named(one)
+    elif isinstance(value, str):
+        yield value.split(".")[0]

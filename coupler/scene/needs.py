@@ -1,0 +1,118 @@
+"""Whether a run can be: how many windows and steps it has, and whether its memory is there."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+import psutil
+
+from quintet.coupler.coupling.exchange import Exchange, Link
+from quintet.coupler.coupling.plan import CouplingPlan
+from quintet.coupler.coupling.windows import run_windows
+from quintet.coupler.scene.scene import ComponentPlan, Scene, SceneFile
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
+
+MOST = 2**53  # windows or steps of a run: so many can be counted, and times told apart
+ROUNDING = 1e-9  # of a window, by which recorded times may differ
+LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
+GIGA = 1e9  # bytes
+
+
+def refused_times(
+    file: SceneFile,
+    components: Mapping[str, ComponentPlan],
+    coupling: CouplingPlan,
+    links: list[Link],
+) -> list[str]:
+    """Sentences about windows and steps without number, and times that a recording lacks."""
+    if wrong := list(_countless(file, components)):
+        return wrong
+    ports = {name: (one.takes, one.gives) for name, one in components.items()}
+    equal = coupling.equal(Exchange(links, ports))
+    for name in coupling.members:
+        one = components.get(name)
+        if one is not None and one.planned is not None and one.planned.times is not None:
+            window = "auto" if equal else file.window
+            wrong += _missing(one, one.planned.times, file.end, window)
+    return wrong
+
+
+def _countless(file: SceneFile, components: Mapping[str, ComponentPlan]) -> Iterator[str]:
+    if file.window != "auto" and file.end / file.window > MOST:
+        yield (
+            f"scene.end must be at most {MOST:.0e} windows; found {file.end:g} s, of windows of "
+            f"{file.window:g} s. End earlier, or lengthen scene.window."
+        )
+    for name, one in components.items():
+        plan = one.planned
+        if plan is None:
+            continue
+        if not plan.dt > 0.0 or file.end / plan.dt > MOST:
+            yield (
+                f"components.{name}: it must come to scene.end, {file.end:g} s, in at most "
+                f"{MOST:.0e} steps; its step would be {plan.dt:.3g} s. Correct its sizes, "
+                "stiffnesses and speeds, or scene.end."
+            )
+
+
+def _missing(one: ComponentPlan, times: Array, end: float, window: float | str) -> Iterator[str]:
+    """Ends of windows at which a component cannot give."""
+    where = f"components.{one.name}: a replay can give at the times of its recording only"
+    last = float(times[-1]) if len(times) else 0.0
+    if end > last * (1.0 + ROUNDING):
+        yield (
+            f"{where}, which ends at {last:g} s; scene.end is {end:g} s. End there, replay a "
+            "longer run, or one of this scene."
+        )
+    elif isinstance(window, float):
+        windows = run_windows(end, window, False, False)
+        if windows.end < len(times):
+            ends = windows.tick * np.arange(1, windows.end + 1)
+            place = np.minimum(
+                np.searchsorted(times, ends - ROUNDING * windows.tick), len(times) - 1
+            )
+            lacking = np.abs(times[place] - ends) > ROUNDING * np.maximum(windows.tick, ends)
+            if not lacking.any():
+                return
+            found = f"none at {ends[lacking][0]:g} s"
+        else:
+            found = f"{max(0, len(times) - 1)} windows"
+        usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+        yield (
+            f"{where}; this run has {windows.end} windows of {windows.tick:g} s, the recording "
+            f"{found} (of {usual:g} s). Set scene.window to that of the recorded run, or replay "
+            "one of this scene."
+        )
+
+
+def require_memory(scene: Scene, elsewhere: Iterable[str] = ()) -> None:
+    """Refuse a scene whose components, those that start here, need more memory than there is."""
+    plans = {name: one.planned for name, one in scene.components.items() if name not in elsewhere}
+    needs = {
+        name: (float(one.items), float(one.items) * one.bytes_per_item)
+        for name, one in plans.items()
+        if one is not None
+    }
+    whole, there = sum(need for _, need in needs.values()), machine_memory()
+    if whole <= there:
+        return
+    parts = ", ".join(
+        f"{name} {need / GIGA:.3g} GB for {items:.3g}" for name, (items, need) in needs.items()
+    )
+    raise SceneError(
+        f"{scene.path.name}: components must fit into this machine's memory of "
+        f"{there / GIGA:.3g} GB; planned are {whole / GIGA:.3g} GB ({parts} particles, bodies or "
+        "elements). Coarsen the spacing, or start components on other hosts."
+    )
+
+
+def machine_memory() -> float:
+    """Memory of this machine, or the part of it that this process may use [bytes]."""
+    found = [float(psutil.virtual_memory().total)]
+    for limit in LIMITS:
+        try:
+            found.append(float(Path(limit).read_text()))
+        except (OSError, ValueError):  # none of this version of control groups, or "max"
+            continue
+    return min(found)
