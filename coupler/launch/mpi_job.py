@@ -25,6 +25,7 @@ from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
+from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.process import STARTER
 
 JOB_FILE = "mpi.json"  # in the log folder: processes, and the exit status of the coupler
@@ -169,6 +170,7 @@ def begin_rank(folder: Path) -> None:
         stream.flush()
         with open(folder / "log" / name, "ab") as file:
             os.dup2(file.fileno(), stream.fileno())
+    print_into_logs()
     write_processes(folder, None, [])
 
 

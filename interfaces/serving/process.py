@@ -16,6 +16,7 @@ from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
+from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.serve import Server, failure, serve
 
@@ -40,6 +41,7 @@ def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -
     given = parser.parse_args(arguments)
     if given.log:
         redirect(given.log)
+    print_into_logs()
     look_in(given.look_in)
     sys.exit(run(manifest or find(given.kind), given))
 
@@ -135,9 +137,8 @@ def shared_files() -> list[str]:
 
 
 def say(text: str) -> None:
-    """Print one line to the component's log; a disk that is full ends nothing here."""
-    with contextlib.suppress(OSError):
-        print(text, flush=True)
+    """Print one line to the component's log."""
+    print(text, flush=True)
 
 
 if __name__ == "__main__":

@@ -36,7 +36,7 @@ def disk(request, tmp_path):
 
 def started(folder, disk, transport, settings, end=0.4):
     """A run on the disk, slow enough to be overtaken."""
-    toy = "items = 400\nseen = true\npause = 3e-3"
+    toy = "items = 400\nseen = true\npause = 3e-3\ntalks = true"
     scene = write_scene(folder, transport, end, ping="items = 400", pong=toy)
     chosen = [word for one in settings for word in ("--set", one)]
     return Started(scene, *chosen, out=disk.place / "out", within=disk.within), scene, chosen

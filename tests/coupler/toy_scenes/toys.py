@@ -24,6 +24,7 @@ class Toy(Component):
         pause: float = 0.0  # s, of every step
         substeps: Count = 1  # of a window of 1 ms
         seen: bool = False  # whether it has a view
+        talks: bool = False  # whether it prints a line at every step
         fails_at: int = -1
         fails_by: Literal["raise", "long", "odd", "sys.exit", "exit", "kill", "stop", "nan"] = (
             "raise"
@@ -48,6 +49,8 @@ class Toy(Component):
 
     def step(self, dt):
         time.sleep(self.params.pause)
+        if self.params.talks:
+            print("a step", flush=True)
         if self.steps == self.params.fails_at:
             self.fail()
         self.push = np.sin(self.value + self.steps)
