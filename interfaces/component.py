@@ -140,6 +140,11 @@ class Component(ABC):
     gives: tuple[Port, ...] = ()
     shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
 
+    @classmethod
+    def ports_of(cls, params: Any) -> tuple[tuple[Port, ...], tuple[Port, ...]]:
+        """Ports that it takes and gives with these parameters, known before it is made."""
+        return cls.takes, cls.gives
+
     def describe(self) -> Fields:
         """Static fields of the ports it gives, and what it states at those it takes."""
         return {}
@@ -154,6 +159,9 @@ class Component(ABC):
         joined : set of str
             Names of its ports that have a partner.
         """
+
+    def prime(self, fields: Fields) -> None:  # noqa: B027  (most need none)
+        """Learn what the inputs that are instants are as the run begins; once, after `bind`."""
 
     @abstractmethod
     def stable_dt(self) -> float:
@@ -204,6 +212,10 @@ class Component(ABC):
     def walls(self) -> Fields:
         """What stands still around it, for pictures: ``points`` and ``cells`` as in a view."""
         return {}
+
+    def notes(self) -> tuple[str, ...]:
+        """Sentences that the user should read: all so far, in the order in which they came up."""
+        return ()
 
     def items(self) -> int:
         """How many particles, bodies or elements it advances per step."""

@@ -68,12 +68,22 @@ def about(params: type) -> str:
 
 
 def documented(params: type) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of the names in the docstring's section of parameters."""
+    """Return unit and meaning of the names in the docstring's section of parameters.
+
+    What a class derives from says that of its own.
+    """
+    found: dict[str, tuple[str, str]] = {}
+    for one in reversed(params.__mro__[:-1]):
+        found |= _documented(one)
+    return found
+
+
+def _documented(params: type) -> dict[str, tuple[str, str]]:
     text = inspect.cleandoc(params.__dict__.get("__doc__") or "")
     parts = SECTION.split(text)
     body = dict(zip(parts[1::2], parts[2::2], strict=True)).get("Parameters", "")
     found = {}
-    for entry in re.split(r"\n(?=\S)", body.strip("\n")):
+    for entry in re.split(r"\n(?=\S)", body.strip("\n")) if body else ():
         head, _, meaning = entry.partition("\n")
         names, _, unit = head.partition(" : ")
         for name in names.split(","):

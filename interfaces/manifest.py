@@ -167,8 +167,8 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
             "none. Write `@parameters class Params` inside it."
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
-    takes, gives = cls.takes, cls.gives
-    return Manifest(kind, title, params, path, lambda _: (takes, gives), shows=cls.shows)
+    plan, initial = (getattr(cls, name, None) for name in ("plan_of", "initial_of"))
+    return Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
 
 
 def known_kinds() -> dict[str, str]:

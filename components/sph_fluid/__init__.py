@@ -67,20 +67,11 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS, ports
-from quintet.components.sph_fluid.setup.particle_count import particles
+from quintet.components.sph_fluid.setup.particle_count import plan
 from quintet.components.sph_fluid.setup.start import stated
-from quintet.interfaces.manifest import Manifest, Plan
+from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "SphFluidParams"]
-
-
-def _plan(params: SphFluidParams) -> Plan:
-    # One part in ten: how much velocities add to the speed of sound.
-    dt = params.courant * params.smoothing_length / (1.1 * params.sound_speed)
-    twice = params.integration == "symplectic"  # two passes over longer lists
-    listed = (58.0 if twice else 45.0) * params.smoothing**3  # neighbours, with their margin
-    rate = 2e6 * 150 / listed * (0.5 if twice else 1.0) * (0.8 if params.mirrored else 1.0)
-    return Plan(particles(params), dt, rate=rate, bytes_per_item=180 + 4 * listed)
 
 
 MANIFEST = Manifest(
@@ -89,7 +80,7 @@ MANIFEST = Manifest(
     params=SphFluidParams,
     component="quintet.components.sph_fluid.component:SphFluid",
     ports=ports,
-    plan=_plan,
+    plan=plan,
     initial=stated,
     bench="quintet.components.sph_fluid.bench:cases",
     conform="quintet.components.sph_fluid.conform:cases",

@@ -59,7 +59,7 @@ def tank(inside: tuple[int, int, int], fluid: tuple[int, int, int], sound: float
         "viscosity": {"artificial": 0.1},
         "sound_speed": sound * math.sqrt(9.81 * SPACING * fluid[2]),
         "fluid": [[start, [SPACING * n for n in fluid]]],
-        "boundary": {"walls": [start, [SPACING * n for n in inside]]},
+        "boundary": {"method": "dbc", "walls": [start, [SPACING * n for n in inside]]},
     }
 
 

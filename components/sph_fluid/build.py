@@ -8,8 +8,8 @@ from quintet.components.shared.lattice import cell_centres, lattice_points
 from quintet.components.sph_fluid.boundary.obstacles import obstacle_points
 from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import Box, levels, tank
-from quintet.components.sph_fluid.setup.particle_count import cells, layers_beyond
+from quintet.components.sph_fluid.setup.geometry import Box, cells, levels, tank
+from quintet.components.sph_fluid.setup.particle_count import layers_beyond
 from quintet.components.sph_fluid.state import Array, State
 
 OFFSETS = np.array([0.0, 0.5 * (math.sqrt(5.0) - 1.0), math.sqrt(2.0) - 1.0])  # 1, per row in y, z

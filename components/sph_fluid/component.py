@@ -17,23 +17,48 @@ from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS, ports
 from quintet.components.sph_fluid.setup.geometry import wall_faces
+from quintet.components.sph_fluid.setup.mass import mass_notes
+from quintet.components.sph_fluid.setup.particle_count import plan
 from quintet.components.sph_fluid.setup.start import stated
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import OrderError, StepError
 from quintet.interfaces.faces import polygons
+from quintet.interfaces.manifest import Plan, Ports
 
 LOADS = frozenset({"surface_load.force"})
 
 
 class SphFluid(Component):
-    """A weakly compressible fluid in a tank, and the surfaces that move in it."""
+    """A weakly compressible fluid in a tank, and the surfaces that move in it.
+
+    A class of one's own may derive from it, with a `Params` that derives from `SphFluidParams`: in
+    a scene it is a kind, ``module:Class``, with all ports and gauges of this one.
+    """
+
+    Params: type[SphFluidParams] = SphFluidParams
+
+    @classmethod
+    def ports_of(cls, params: SphFluidParams) -> Ports:
+        """Surfaces, loads and the gauges that are switched on."""
+        return ports(params)
+
+    @classmethod
+    def plan_of(cls, params: SphFluidParams) -> Plan:
+        """What a run will need."""
+        return plan(params)
+
+    @classmethod
+    def initial_of(cls, params: SphFluidParams) -> Fields:
+        """What it states before it is built."""
+        return stated(params)
 
     shows = SHOWS
 
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
-        self.params, (self.takes, self.gives) = params, ports(params)
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.team, self.constants = Team(resources.threads), constants(params)
+        self.told = list(mass_notes(params))
         self.state, self.samples = build.state(params), Samples()
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)
@@ -45,7 +70,7 @@ class SphFluid(Component):
         self.pairs = Interaction(params, *joined, precision, self.samples)
         self.integration = features.integration(params)
         self.courant = features.courant_limit(params)
-        self.films = features.lubrication_films(params, self.samples)
+        self.films: features.Films | None = None  # before there are surfaces
         self.filter = features.shepard_filter(params)
         self.gauges = features.gauges(params, self.symmetry)
 
@@ -60,8 +85,16 @@ class SphFluid(Component):
                 require_one_metre(self.params)
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
+            self.films = features.lubrication_films(self.params, self.samples)
             if self.films:
-                self.films.join(self.state)
+                self.films.join(self.state, static)
+
+    def prime(self, fields: Fields) -> None:
+        """Remove fluid inside the bodies joined, where a scene asks for it."""
+        if self.params.remove_inside_bodies and len(self.samples.row):
+            self.told += features.remove_inside_bodies(
+                self.state, self.samples, fields, self.params
+            )
 
     def stable_dt(self) -> float:
         """Largest step [s]; Monaghan & Kos 1999 and Morris 1997, from the rates of the last one."""
@@ -105,7 +138,7 @@ class SphFluid(Component):
         self.boundary.resize(self.state, self.symmetry)
         self.pairs.resize(self.state)
         if self.films:
-            self.films.resize(self.state)
+            self.films.resize(self.state, self.lists.arrays)
 
     def _compute_rates(self) -> None:
         """Accelerations and rates of density, of the state as it is."""
@@ -149,6 +182,8 @@ class SphFluid(Component):
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
         self.samples.find_rows(self.state)
         self.boundary.load(self.state)
+        if self.films:
+            self.films.load(self.state)
         if len(self.state.reference):
             self._list()
 
@@ -162,6 +197,10 @@ class SphFluid(Component):
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
         return diagnostics.view(self.state)
+
+    def notes(self) -> tuple[str, ...]:
+        """What was not as a scene may have meant it: masses, films that are missing."""
+        return (*self.told, *(self.films.notes if self.films else ()))
 
     def walls(self) -> Fields:
         """Return the tank's closed faces, and the obstacles in it."""

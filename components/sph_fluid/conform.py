@@ -7,7 +7,8 @@ import numpy as np
 from quintet.interfaces.component import Fields
 from quintet.interfaces.manifest import ConformCase
 
-DROP = {
+DROP: dict[str, Any] = {
+    "boundary": {"method": "dbc"},
     "spacing": 0.05,
     "sound_speed": 20.0,
     "gravity": [0.0, 0.0, 0.0],

@@ -15,6 +15,7 @@ from quintet.components.sph_fluid.integration.method import Integration
 from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precision
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
+from quintet.interfaces.component import Fields
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
@@ -66,10 +67,46 @@ def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
     return Symmetry(params)
 
 
-def lubrication_films(params: SphFluidParams, samples: Samples) -> "LubricationFilms | None":
+class Films(Protocol):
+    """Films in narrow gaps, or what waits for a place for one."""
+
+    notes: list[str]  # what the user should read
+
+    def join(self, state: State, static: Fields) -> None:
+        """Make room for films at samples that links bring."""
+
+    def load(self, state: State) -> None:
+        """Follow a state that was loaded."""
+
+    def resize(self, state: State, lists: Lists) -> None:
+        """Find the films of a state with new lists."""
+
+    def advance(self, state: State, lists: Lists, dt: float) -> None:
+        """Advance the films by a step [s], and add their push to the samples' force."""
+
+
+def lubrication_films(params: SphFluidParams, samples: Samples) -> Films | None:
+    """Films in narrow gaps: from the start, where they are needed, or never."""
+    if params.boundary.lubrication_films == "auto":
+        # Left out of scenes that say whether they want films.
+        from quintet.components.sph_fluid.boundary.films_where_needed import FilmsWhereNeeded
+
+        return FilmsWhereNeeded(params, samples)
+    return make_films(params, samples) if params.boundary.lubrication_films else None
+
+
+def remove_inside_bodies(
+    state: State, samples: Samples, fields: Fields, params: SphFluidParams
+) -> list[str]:
+    """Remove fluid inside bodies, where their samples are at the start; say how much."""
+    # Left out of scenes whose fluid has room for the bodies.
+    from quintet.components.sph_fluid.boundary.removal import remove
+
+    return remove(state, samples, fields, params)
+
+
+def make_films(params: SphFluidParams, samples: Samples) -> "LubricationFilms":
     """Films in narrow gaps."""
-    if not params.boundary.lubrication_films:
-        return None
     # Left out of scenes without films.
     from quintet.components.sph_fluid.boundary.lubrication import LubricationFilms
 

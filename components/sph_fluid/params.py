@@ -68,7 +68,8 @@ class Boundary:
     wall_viscosity_factor : 1
         Share of the viscosity that acts between the fluid and walls or samples: 0 lets it slip.
     lubrication_films
-        Whether films press in gaps that are too narrow for particles alone; with mdbc.
+        Whether films press in gaps that are too narrow for particles alone; with mdbc, in three
+        dimensions. With auto from when a wet body comes near to a wall or to another.
     roughness : m
         Least width that a film has between faces that touch.
     potential_stiffness : Pa
@@ -85,7 +86,7 @@ class Boundary:
         "gaps": "lubrication_films",
     }
 
-    method: Literal["dbc", "mdbc", "potential"] = "dbc"
+    method: Literal["dbc", "mdbc", "potential"] = "mdbc"
     walls: Box | None = None
     open_faces: tuple[Face, ...] = ("z+",)
     symmetry: tuple[UprightFace, ...] = ()
@@ -94,7 +95,7 @@ class Boundary:
     wall_offset: Positive = 0.5
     sample_depth: NotNegative = 0.5
     wall_viscosity_factor: Fraction = 1.0
-    lubrication_films: bool = False
+    lubrication_films: bool | Literal["auto"] = "auto"
     roughness: Positive = 5e-4
     potential_stiffness: Positive | None = None
     potential_exponent: Exponent = 1
@@ -128,9 +129,10 @@ class Gauges:
 class SphFluidParams:
     """A fluid that fills boxes, in an open tank; SI.
 
-    Edges are cut into round(edge / spacing) cells with a particle in the middle of each; every
-    particle has mass density · spacing³. In two dimensions, x and z, all boxes are one slab
-    between frictionless planes, a single layer of particles.
+    Edges are cut into round(edge / spacing) cells with a particle in the middle of each; all
+    particles have the same mass, that of the boxes at `density` over their number. In two
+    dimensions, x and z, all boxes are one slab between frictionless planes, a single layer of
+    particles.
 
     Parameters
     ----------
@@ -140,6 +142,8 @@ class SphFluidParams:
         Artificial, ten times the largest velocity or more, and at least 10 √(g depth).
     fluid : m
         Boxes full of fluid, each by its lowest and highest corner.
+    remove_inside_bodies
+        Whether fluid that is inside joined bodies at the start is removed; with mdbc.
     dimensions
         In two: x and z.
     kernel
@@ -207,6 +211,7 @@ class SphFluidParams:
     spacing: Positive
     sound_speed: Positive
     fluid: tuple[Box, ...]
+    remove_inside_bodies: bool = False
     dimensions: Literal[2, 3] = 3
     kernel: Literal["cubic", "wendland"] = "cubic"
     smoothing: Smoothing = 1.5

@@ -45,7 +45,7 @@ def surface(params: SphFluidParams) -> Port:
     port = replace(port, states=(*port.states, *BEGINNING))
     if params.dimensions == 2:
         port = planar_surface(port)
-    fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films
+    fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films is True
     return port if fixed else replace(port, static=(*port.static, CONTACT))
 
 

@@ -208,7 +208,7 @@ def join_ports(
     for name, one in participants.items():
         numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == name]
         instants = _instants(exchange, name, numbers, outputs)
-        one.call("prime", instants, shares=exchange.shares(name))
+        one.prime(instants, shares=exchange.shares(name))
         coupling.ledger.primed(name, instants)
 
 

@@ -1,6 +1,7 @@
 """One component as the run loop sees it, wherever it runs."""
 
 import statistics
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
@@ -55,6 +56,7 @@ class Participant:
         self.window = 0  # the next
         self.stable = 0.0  # s, largest step from its present state
         self.timing = Timing()
+        self.notes: list[str] = []  # what the user should read of it
         self.shapes: Shapes | None = None  # of its outputs, once known
         self.sums: AnswerSums | None = None  # of which its answers tell, once its ports are joined
         self._order = ""  # the last
@@ -103,6 +105,16 @@ class Participant:
         self.timing.items = int(answer.header["items"])
         self.stable = float(answer.header["stable"])
 
+    def prime(self, fields: Fields, **header: Any) -> None:
+        """Tell it what holds as the run begins."""
+        self._note(self.call("prime", fields, **header))
+
+    def _note(self, message: Message) -> None:
+        """Show the user what it has to say."""
+        for note in message.header.get("notes", ()):
+            self.notes.append(str(note))
+            print(f"quintet: note of {self.name}: {note}", file=sys.stderr, flush=True)
+
     def start(self, dt: float, fields: Fields, ends: list[str], **header: Any) -> None:
         """Order the next window, of a length `dt` [s]."""
         self.send_order("advance", fields, dt=dt, ends=ends, **header)
@@ -120,6 +132,7 @@ class Participant:
         timing.windows += 1
         timing.recent.append(took)
         self.stable = float(header["stable"])
+        self._note(message)
         self.window += 1
         return message
 

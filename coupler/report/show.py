@@ -63,6 +63,9 @@ def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | No
     for line in (_balance(found), _shares(found)):
         if line:
             screen.print(line)
+    for name, notes in (found.get("notes") or {}).items():
+        for note in notes:
+            screen.print(Text(f"note of {name}: {note}"))
     if fault := found.get("fault"):
         screen.print(_fault(fault))
 

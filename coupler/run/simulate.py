@@ -158,6 +158,7 @@ def conclude(
         "ledger": ledger,
         "repetitions": costs.repetitions,
         "unconverged": costs.unconverged,
+        "notes": {name: one.notes for name, one in participants.items() if one.notes},
         "timing": results.timing(participants, wall, costs.mapping),
         "machine": results.machine(),
         "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),

@@ -54,6 +54,7 @@ class Server:
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
         self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
         self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
+        self._told = 0  # notes
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
             "describe": self._describe,
@@ -101,7 +102,8 @@ class Server:
         require_finite(message.fields, "as the run begins")
         self.outputs.shares = message.header.get("shares", {})
         self.inputs.arrive(message.fields, (), 1.0)
-        return {}, {}
+        self.component.prime(message.fields)
+        return {"notes": self._notes()}, {}
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()
@@ -126,7 +128,15 @@ class Server:
             "busy": time.perf_counter() - began,
             "cpu": time.process_time() - spent,
         }
+        if notes := self._notes():
+            answer["notes"] = notes
         return answer, fields
+
+    def _notes(self) -> list[str]:
+        """Notes of the component that were not yet told."""
+        found = [str(note) for note in self.component.notes()]
+        told, self._told = self._told, len(found)
+        return found[told:]
 
     def _integral(self, key: str) -> bool:
         return key in self.inputs.impulses

@@ -40,6 +40,7 @@ from quintet.components.sph_fluid.laws import Constants
 from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
 
 FADING = 0.85  # spacings below WIDEST over which films fade out, as particles get in and press
 WATER = 1e-3  # Pa s, its viscosity
@@ -52,12 +53,16 @@ class LubricationFilms:
 
     def __init__(self, params: SphFluidParams, samples: Samples) -> None:
         self.params, self.samples, self.constants = params, samples, constants(params)
+        self.notes: list[str] = []
 
-    def join(self, state: State) -> None:
+    def join(self, state: State, static: Fields) -> None:
         """Make room for films at all samples."""
         state.film = np.zeros((len(self.samples.row), 3))
 
-    def resize(self, state: State) -> None:
+    def load(self, state: State) -> None:
+        """Nothing to do: films are found with the lists."""
+
+    def resize(self, state: State, lists: Lists) -> None:
         """Find the films of a state with new lists."""
         if len(state.film):
             spacing = self.params.spacing

@@ -5,6 +5,8 @@ to the gauge's height as in still water, over the room Σ V_j W_j that the walls
 fills that room up to a seventh it is the mean over the fluid instead, which knows no gaps between
 particles. A face that a drop strikes feels but its share, as the real one's sensor does; without
 fluid near it a gauge reads 0. Dynamic walls keep the fluid off: there it is always the mean.
+Where fluid fills less than half of the room there is none to pull: a gauge above the surface, or
+before the front, reads nothing below 0 even of a fluid that bears tension.
 
 A level is where the share of volume Σ_j V_j W_j, seen from above, first rises through one half;
 beside a wall, where it is nowhere 1, through half of its largest value. Lone drops are passed
@@ -31,7 +33,7 @@ from quintet.interfaces.component import Fields
 
 FULL = 0.85  # of the room that walls leave: so much is filled where there is but fluid
 FINE = 0.25  # spacings between the heights at which the share of volume is looked at
-SURFACE = 0.5  # share of volume at the surface
+SURFACE = 0.5  # share of the room at the surface
 DROP = 2.0  # particles on one spot whose share of volume is not yet a surface
 
 
@@ -79,7 +81,8 @@ class Gauges:
         least = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
         filled = np.maximum(share, least)
         pressure = np.divide(load, filled, out=np.zeros(len(load)), where=share > 0.0)
-        return np.maximum(pressure, self.constants.lowest)
+        least = np.where(share < SURFACE * (1.0 - walls), 0.0, self.constants.lowest)
+        return np.maximum(pressure, least)
 
     def _height(self, state: State) -> Array:
         z, spacing = state.position_density[: state.fluid, 2], self.params.spacing

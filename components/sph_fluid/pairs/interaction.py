@@ -19,9 +19,9 @@ from quintet.components.sph_fluid.kernels import (
 from quintet.components.sph_fluid.pairs.constants import pair_law
 from quintet.components.sph_fluid.pairs.precision import Precision
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.geometry import cells, tank
+from quintet.components.sph_fluid.setup.mass import EVEN, particle_volume
 from quintet.components.sph_fluid.state import Array, State
-
-EVEN = 1e-9  # of a particle's volume: what differs from it by less is as large
 
 
 class Interaction:
@@ -47,7 +47,7 @@ class Interaction:
 
     def resize(self, state: State) -> None:
         """Make room for what is written of a state with new lists."""
-        self.volume = relative_volume(self.samples, len(state.position_density), self.params)
+        self.volume = relative_volume(self.samples, state, self.params)
         if len(self.volume):
             self.symmetry.write_values(self.volume, state.particles)
         self.precision.resize(state, self.params.density)
@@ -91,15 +91,31 @@ class Interaction:
             team.run(move_by, state.fluid, time, velocity, state.position_density)
 
 
-def relative_volume(samples: Samples, count: int, params: SphFluidParams) -> Array:
-    """Volumes of `count` rows over a particle's; (0,) if all are alike.
+def relative_volume(samples: Samples, state: State, params: SphFluidParams) -> Array:
+    """Volumes (n,) of all rows over that of a particle of the fluid; (0,) if all are alike.
 
     Where the spacing does not divide a body, its samples stand closer, or less close, than the
     fluid's particles; as heavy as those they would displace more, or less, than the body does.
+    The same holds of the walls of a fluid whose own edges it does not divide.
     """
-    share = samples.volume / params.spacing**params.dimensions
-    if np.abs(share - 1.0).max(initial=0.0) < EVEN:
+    one_volume = particle_volume(params)
+    share, wall = samples.volume / one_volume, 1.0
+    if one_volume != params.spacing**params.dimensions:
+        wall = wall_volume(params) / one_volume
+    if np.abs(share - 1.0).max(initial=abs(wall - 1.0)) < EVEN:
         return np.zeros(0)
-    found = np.ones(count)
+    found = np.ones(len(state.position_density))
+    found[state.fluid : state.particles] = wall
     found[samples.row] = share
     return found
+
+
+def wall_volume(params: SphFluidParams) -> float:
+    """Volume [m3] of a cell of the walls, area [m2] in two dimensions; spacing's without any."""
+    outside = tank(params)
+    if outside is None:
+        return float(params.spacing**params.dimensions)
+    edges = [(b - a) / n for a, b, n in zip(*outside, cells(outside, params), strict=True)]
+    if params.dimensions == 2:
+        edges[1] = 1.0
+    return math.prod(edges)

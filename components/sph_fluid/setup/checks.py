@@ -9,6 +9,7 @@ from quintet.components.sph_fluid.setup.geometry import (
     depth,
     hydrostatic_gravity,
 )
+from quintet.components.sph_fluid.setup.mass import check_mass
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.params import SphFluidParams
@@ -21,6 +22,7 @@ def check(params: "SphFluidParams") -> None:
     if not params.fluid:
         raise ValueError("fluid must have at least one box; found none. Add a box.")
     check_boxes(params)
+    check_mass(params)
     check_walls(params)
     check_obstacles(params)
     check_sound(params)
@@ -160,20 +162,26 @@ def check_methods(params: "SphFluidParams") -> None:
             f"wall_offset {edge.wall_offset} and sample_depth {edge.sample_depth}. Remove them, "
             "or use dbc."
         )
-    if edge.lubrication_films and edge.method != "mdbc":
+    films = edge.lubrication_films is True
+    if films and edge.method != "mdbc":
         raise ValueError(
             "boundary.lubrication_films needs boundary.method mdbc, whose samples know the "
             f"pressure at a gap's rim; found {edge.method}. Set method, or leave films out."
         )
-    if edge.symmetry and edge.lubrication_films:
+    if edge.symmetry and films:
         raise ValueError(
             "boundary.lubrication_films knows no planes of symmetry; found films and symmetry "
             f"{edge.symmetry}. Leave one out."
         )
-    if params.dimensions == 2 and edge.lubrication_films:
+    if params.dimensions == 2 and films:
         raise ValueError(
             "boundary.lubrication_films needs three dimensions, in which water flows into a film "
             "from its rim; found dimensions 2. Set dimensions to 3, or leave films out."
+        )
+    if params.remove_inside_bodies and edge.method != "mdbc":
+        raise ValueError(
+            "remove_inside_bodies needs boundary.method mdbc, whose samples say where the surface "
+            f"is; found {edge.method}. Set method, or cut the fluid."
         )
     if edge.potential_stiffness is not None and edge.method == "dbc":
         raise ValueError(

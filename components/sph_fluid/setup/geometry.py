@@ -23,6 +23,13 @@ Smoothing = Annotated[float, Field(ge=1.0, le=3.0)]
 FACES = get_args(Face)
 
 
+def cells(box: Box, params: "SphFluidParams") -> tuple[int, int, int]:
+    """Whole number of particles along each edge of a box."""
+    low, high = box
+    x, y, z = (max(1, round((b - a) / params.spacing)) for a, b in zip(low, high, strict=True))
+    return (x, y, z) if params.dimensions == 3 else (x, 1, z)
+
+
 def closed_faces(params: "SphFluidParams") -> tuple[Face, ...]:
     """Faces at which the tank has wall particles."""
     edge = params.boundary

@@ -1,17 +1,27 @@
-"""How many particles a scene asks for, without making them; needs numpy alone."""
+"""What a fluid will need: its particles, counted without making them, and time; numpy alone."""
 
 import math
 
 from quintet.components.sph_fluid.boundary.obstacles import count_obstacle_points
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import FACES, Box, closed_faces, tank, wall_layers
+from quintet.components.sph_fluid.setup.geometry import (
+    FACES,
+    cells,
+    closed_faces,
+    tank,
+    wall_layers,
+)
+from quintet.interfaces.manifest import Plan
 
 
-def cells(box: Box, params: SphFluidParams) -> tuple[int, int, int]:
-    """Whole number of particles along each edge of a box."""
-    low, high = box
-    x, y, z = (max(1, round((b - a) / params.spacing)) for a, b in zip(low, high, strict=True))
-    return (x, y, z) if params.dimensions == 3 else (x, 1, z)
+def plan(params: SphFluidParams) -> Plan:
+    """What a run will need."""
+    # One part in ten: how much velocities add to the speed of sound.
+    dt = params.courant * params.smoothing_length / (1.1 * params.sound_speed)
+    twice = params.integration == "symplectic"  # two passes over longer lists
+    listed = (58.0 if twice else 45.0) * params.smoothing**3  # neighbours, with their margin
+    rate = 2e6 * 150 / listed * (0.5 if twice else 1.0) * (0.8 if params.mirrored else 1.0)
+    return Plan(particles(params), dt, rate=rate, bytes_per_item=180 + 4 * listed)
 
 
 def particles(params: SphFluidParams) -> int:

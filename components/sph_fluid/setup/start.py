@@ -15,7 +15,8 @@ def stated(params: SphFluidParams) -> dict[str, Array]:
         "spacing": np.array([params.spacing]),
         "depth": np.array([2.0 * length]),  # the radius of the kernel
         "inset": np.array([edge.sample_depth * params.spacing]),
-        "wet": _corners(params.fluid),
+        # What bodies stand in is removed where a scene asks for it.
+        "wet": _corners(() if params.remove_inside_bodies else params.fluid),
         "solid": _corners(edge.obstacles),
         "tank": _corners(() if edge.walls is None else (edge.walls,)),
         "closed": np.array([[float(face in closed) for face in FACES]]),

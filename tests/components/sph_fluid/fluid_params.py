@@ -27,8 +27,10 @@ def nested(settings: dict[str, Any]) -> dict[str, Any]:
 
 
 def fluid_params(**given: Any) -> SphFluidParams:
-    """Check settings by dotted names."""
-    text = json.dumps(nested(given))
+    """Check settings by dotted names; walls are dynamic particles unless they say otherwise."""
+    table = nested(given)
+    table.setdefault("boundary", {}).setdefault("method", "dbc")
+    text = json.dumps(table)
     params: SphFluidParams = TypeAdapter(SphFluidParams).validate_json(text)
     return params
 

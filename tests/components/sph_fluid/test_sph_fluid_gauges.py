@@ -72,12 +72,33 @@ def test_a_dry_gauge_reads_zero_and_one_that_a_drop_strikes_its_share():
     assert found == pytest.approx([70.0 * share / 0.85, 0.0], rel=1e-3)
 
 
-def test_pressure_is_not_read_below_where_it_is_cut():
-    # Carried on to above the surface, that of still water is below zero.
+@pytest.mark.parametrize("tension", [False, True])
+@pytest.mark.parametrize("method", ["dbc", "mdbc"])
+def test_a_gauge_reads_nothing_until_fluid_reaches_it(tension, method):
+    # Carried on to above the surface, the pressure of still water is below zero.
+    above = tuple((0.1, 0.1, 0.16 + k * SPACING) for k in (0.5, 1.0, 2.0, 2.9))
+    before = tuple((0.2 + k * SPACING, 0.1, 0.08) for k in (0.6, 1.0, 2.0, 2.9))
+    fluid = fluid_with(
+        boundary__method=method,
+        negative_pressure=tension,
+        gauges__pressure_gauges=above + before,
+    )
+    rows = slice(fluid.state.fluid)
+    fluid.state.velocity_pressure[rows, 3] -= 2000.0 / fluid.state.position_density[rows, 3] ** 2
+    np.testing.assert_array_equal(outputs_of(fluid)["pressure_gauge.pressure"], 0.0)
+
+
+def test_tension_is_read_inside_the_fluid_alone_where_it_bears_any():
     for tension in (False, True):
-        fluid = fluid_with(negative_pressure=tension, gauges__pressure_gauges=((0.1, 0.1, 0.18),))
-        found = outputs_of(fluid)["pressure_gauge.pressure"][0]
-        assert -196.3 < found < -50.0 if tension else found == 0.0
+        fluid = fluid_with(
+            gravity=(0.0, 0.0, 0.0),
+            negative_pressure=tension,
+            gauges__pressure_gauges=((0.1, 0.1, 0.08),),
+        )
+        density = fluid.state.position_density[: fluid.state.fluid, 3]
+        fluid.state.velocity_pressure[: fluid.state.fluid, 3] = -500.0 / density**2
+        found = outputs_of(fluid)["pressure_gauge.pressure"]
+        assert found == pytest.approx([-500.0 if tension else 0.0], rel=1e-6)
 
 
 @pytest.mark.parametrize(("height", "within"), [(0.16, 0.1), (0.06, 0.1), (0.04, 0.25)])

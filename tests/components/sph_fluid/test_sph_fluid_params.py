@@ -17,6 +17,7 @@ GOOD: dict[str, Any] = {
     "spacing": 0.1,
     "sound_speed": 60.0,
     "fluid": [[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]],
+    "boundary.method": "dbc",
     "boundary.walls": [[0.0, 0.0, 0.0], [2.0, 1.0, 2.0]],
 }
 

@@ -1,0 +1,84 @@
+"""Films that begin when a wet body comes near to a wall or another body; numpy until then."""
+
+import numpy as np
+
+from quintet.components.shared.search.neighbours import Lists
+from quintet.components.sph_fluid import features
+from quintet.components.sph_fluid.boundary.nearby_bodies import (
+    bodies_of,
+    bounds,
+    near_each_other,
+    near_walls,
+)
+from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.films import why_no_films
+from quintet.components.sph_fluid.state import State
+from quintet.interfaces.component import Fields
+
+WIDEST = 1.25  # spacings, of a gap that has a film, as in `film_geometry.py`
+INSET = 1.0  # spacings, of a body's outermost samples below its surface, on corners too
+TOUCHING = 0.5  # spacings, between a body and a wall below which water that they keep out is missed
+
+
+class FilmsWhereNeeded:
+    """The films of one fluid, once there is a place for one; a note where there can be none."""
+
+    def __init__(self, params: SphFluidParams, samples: Samples) -> None:
+        self.params, self.samples = params, samples
+        self.lacking = why_no_films(params)
+        self.made: features.Films | None = None
+        self.notes: list[str] = []
+
+    def join(self, state: State, static: Fields) -> None:
+        """Find whether samples that links bring can have films."""
+        if np.any(static.get("surface.contact", 0.0)):
+            self.lacking = "a link chooses the contact potential, which knows none"
+
+    def load(self, state: State) -> None:
+        """Have films if a state that was loaded has them."""
+        self.made = self._make() if len(state.film) else None
+
+    def _make(self) -> "features.Films":
+        return features.make_films(self.params, self.samples)
+
+    def resize(self, state: State, lists: Lists) -> None:
+        """Begin, once a body is near enough; find the films of a state with new lists."""
+        if self.made is None and len(self.samples.row):
+            self._look(state, lists)
+        if self.made is not None:
+            self.made.resize(state, lists)
+
+    def _look(self, state: State, lists: Lists) -> None:
+        """Make films where a body needs one, or say why it has none."""
+        begin, _, end, _ = lists
+        number, body = bodies_of(self.samples)
+        listed = self.samples.listed
+        wet = np.bincount(body, end[listed] > begin[listed], len(number)) > 0.0
+        if not wet.any():
+            return
+        # Where all was when the lists were made, so that a state that is loaded finds the same.
+        places, spacing = state.reference[self.samples.row], self.params.spacing
+        boxes = bounds(places, body, len(number))
+        if not self.lacking:
+            reach = (WIDEST + INSET) * spacing
+            near = near_walls(boxes, self.params, reach)
+            near |= near_each_other(boxes, reach + INSET * spacing)
+            if (near & wet).any():
+                self.made = self._make()
+                self.made.join(state, {})
+        elif not self.notes:
+            reach = (TOUCHING + self.params.boundary.sample_depth) * spacing
+            for one in np.flatnonzero(near_walls(boxes, self.params, reach) & wet)[:1]:
+                self.notes.append(
+                    f"body {number[one]:g} touches a wall under water, and no film of water "
+                    f"presses between them, since {self.lacking}: it weighs on the wall what the "
+                    "water above it weighs too much. Set boundary.method to mdbc in three "
+                    "dimensions without planes of symmetry, or lubrication_films to false if this "
+                    "is meant."
+                )
+
+    def advance(self, state: State, lists: Lists, dt: float) -> None:
+        """Advance the films by a step [s], if there are any, and add their push."""
+        if self.made is not None:
+            self.made.advance(state, lists, dt)

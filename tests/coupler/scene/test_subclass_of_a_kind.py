@@ -1,0 +1,101 @@
+"""A class of one's own, derived from a kind that comes with quintet, is a kind too."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import quintet
+from quintet.interfaces.errors import SceneError
+
+OWN = '''
+"""Water that is stirred, and says how much it turns."""
+
+import numpy as np
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.interfaces.component import Field, Port
+from quintet.interfaces.params import Number, parameters
+
+SPIN = Port("spin_gauge", (Field("angular_momentum", (3,), "N m s"),))
+KEY = "spin_gauge.angular_momentum"
+
+
+class Stirred(SphFluid):
+    """A fluid that starts turning about the z axis."""
+
+    @parameters
+    class Params(SphFluidParams):
+        """What a scene says of it."""
+
+        stirring: Number = 0.0  # rad/s
+
+    @classmethod
+    def ports_of(cls, params):
+        takes, gives = super().ports_of(params)
+        return takes, (*gives, SPIN)
+
+    def __init__(self, params, resources):
+        super().__init__(params, resources)
+        place, motion = self.state.position_density, self.state.velocity_pressure
+        motion[: self.state.fluid, 0] = -params.stirring * place[: self.state.fluid, 1]
+        motion[: self.state.fluid, 1] = params.stirring * place[: self.state.fluid, 0]
+
+    def give(self, wanted):
+        found = dict(super().give(wanted - {KEY}))
+        if KEY in wanted:
+            found[KEY] = self.totals().angular_momentum[np.newaxis]
+        return found
+'''
+SCENE = """
+name = "stirred"
+end = 2e-3
+window = 1e-3
+transport = "memory"
+[components.water]
+kind = "{name}:Stirred"
+spacing = 0.05
+sound_speed = 20.0
+gravity = [0.0, 0.0, 0.0]
+stirring = 0.5
+fluid = [[[-0.1, -0.1, 0.0], [0.1, 0.1, 0.2]]]
+gauges = {{ pressure_gauges = [[0.0, 0.0, 0.1]], level_gauges = [[0.0, 0.0]], motion_gauge = true }}
+[output]
+fields = ["water.pressure_gauge.pressure", "water.level_gauge.height", "water.motion_gauge.speed",
+  "water.spin_gauge.angular_momentum"]
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    name = "stirred_water_of_a_test"
+    (tmp_path / f"{name}.py").write_text(OWN)
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE.format(name=name))
+    return path
+
+
+def test_a_fluid_of_ones_own_keeps_its_gauges_and_has_another(scene: Path, tmp_path: Path) -> None:
+    run = quintet.run(str(scene), out=str(tmp_path / "run"))
+    assert run.status == "done"
+    speed = np.asarray(run.fields["water.motion_gauge.speed"])
+    assert speed[0, 0] == pytest.approx(0.5 * np.hypot(0.075, 0.075))
+    level = np.asarray(run.fields["water.level_gauge.height"])
+    assert level[:, 0] == pytest.approx(0.2, abs=0.01)
+    spin = np.asarray(run.fields["water.spin_gauge.angular_momentum"])[:, 0, 2]
+    inertia = 8.0 * (0.025**2 + 0.075**2)  # kg m2, of the particles
+    assert spin == pytest.approx(np.full(3, 0.5 * inertia), rel=1e-6)
+
+
+def test_its_own_parameters_are_checked_and_its_plan_is_known(scene: Path) -> None:
+    assert "64" in str(quintet.check(str(scene)))
+    with pytest.raises(SceneError, match="stirring should be a valid number; found 'much'"):
+        quintet.check(str(scene), settings={"components.water.stirring": "much"})
+    with pytest.raises(SceneError, match=r"components.water.spacing should be greater than 0"):
+        quintet.check(str(scene), settings={"components.water.spacing": -1.0})
+
+
+def teardown_module() -> None:
+    sys.modules.pop("stirred_water_of_a_test", None)

@@ -1,0 +1,39 @@
+"""A body on the floor under water weighs there what Archimedes says, as a user would set it up."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Run = Callable[..., dict]
+
+SCENE = str(Path(__file__).parent / "body_on_floor.toml")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("shape", "mass"), [("sphere", 0.5236), ("box", 1.0)])
+def test_it_weighs_its_weight_less_its_buoyancy(run_scene: Run, shape: str, mass: float) -> None:
+    found = run_scene(SCENE, *(["--preset", "box"] if shape == "box" else []))
+    assert found["by_name"]["contact"]["met"], found["expect"]
+    # Of the fluid that it stood in as much is removed as the lattice has places in it.
+    (note,) = found["notes"]["water"]
+    assert "body 0 stood in the fluid" in note and "kg, were removed" in note
+    removed = float(note.split(" kg")[0].split()[-1])
+    assert removed == pytest.approx(mass, rel=0.25 if shape == "sphere" else 1e-9)
+
+
+def test_without_films_it_is_told_what_is_missing(run_scene: Run) -> None:
+    plain = ["--set", "end=0.004", "--set", "components.water.remove_inside_bodies=false"]
+    cut = "[[[0.0, 0.0, 0.0], [0.1, 0.3, 0.2]], [[0.1, 0.0, 0.1], [0.3, 0.3, 0.2]]]"
+    plain += ["--set", f"components.water.fluid={cut}"]
+    found = run_scene(
+        SCENE, "--preset", "box", *plain, "--set", "components.water.boundary.method=dbc"
+    )
+    (note,) = found["notes"]["water"]
+    assert "body 0 touches a wall under water, and no film of water presses" in note
+    assert "boundary.method dbc knows none" in note
+    quiet = run_scene(
+        SCENE, "--preset", "box", *plain, "--set", "components.water.boundary.method=dbc",
+        "--set", "components.water.boundary.lubrication_films=false",
+    )  # fmt: skip
+    assert quiet["notes"] == {}
