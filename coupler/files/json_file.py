@@ -23,11 +23,7 @@ class JsonFile:
             Of the table that the command leaves, or of each in its list.
         """
         self.path = path
-        if path is None:
-            return
-        if not path.parent.is_dir():
-            raise SceneError(f"--json {path}: there is no folder {path.parent}. Make it first.")
-        if path.is_dir() or (path.exists() and not _is_of(path, keys)):
+        if path and path.exists() and not _is_of(path, keys):
             raise SceneError(
                 f"--json {path}: it must be new, or what this command left there before; it is "
                 "something else. Name another file."

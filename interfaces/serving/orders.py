@@ -49,6 +49,7 @@ NAMES: Rule = is_names, "a list of names"
 FLAG: Rule = lambda value: isinstance(value, bool), "true or false"
 OF_ALL: dict[str, Rule] = {"window": COUNT, "depth": COUNT}
 OPTIONAL: dict[str, dict[str, Rule]] = {
+    "go": {"folder": (lambda value: isinstance(value, str) and "\0" not in value, "a folder")},
     "bind": {
         "joined": NAMES,
         "wanted": NAMES,
@@ -61,6 +62,10 @@ OPTIONAL: dict[str, dict[str, Rule]] = {
     },
 }
 REQUIRED: dict[str, dict[str, Rule]] = {
+    "go": {
+        "threads": (lambda value: is_count(value) and value > 0, "a whole number from 1"),
+        "params": (lambda value: isinstance(value, dict), "a table"),
+    },
     "advance": {"window": COUNT, "dt": (_is_length, "a positive number"), "ends": NAMES},
 }
 

@@ -18,6 +18,7 @@ from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
 from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.malloc import keep_freed_memory
+from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.serve import Server, failure, serve
 
 JOINING = 600.0  # s until every other component has joined
@@ -96,6 +97,7 @@ def linger(line: Line) -> None:
 
 def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     """Check the parameters, then import the solver and make the component."""
+    check_order("go", header)
     resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
     params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:

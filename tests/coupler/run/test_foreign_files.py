@@ -51,8 +51,6 @@ def test_json_goes_to_no_foreign_file(here, capsys, command, kind):
     assert status(*COMMANDS[command], "--json", kind) == 2
     only_sentence(capsys, f"--json {kind}: it must be new, or what this command left there before")
     assert content(here) == before
-    assert status(*COMMANDS[command], "--json", "none/found.json") == 2
-    only_sentence(capsys, "--json none/found.json: there is no folder none. Make it first.")
 
 
 def test_json_that_the_same_command_left_is_replaced(here):

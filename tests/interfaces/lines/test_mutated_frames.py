@@ -7,17 +7,18 @@ from functools import partial
 
 import numpy as np
 import pytest
-from frames import mutated
+from frames import in_header, mutated, taken_apart
 from started import write_scene
 
 from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
-from quintet.coupler.launch.connect import InMemory
+from quintet.coupler.launch.connect import InMemory, free_port
 from quintet.coupler.run.loop import run
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import QuintetError
 from quintet.interfaces.lines.memory import MemoryLine
-from quintet.interfaces.lines.message import decode
+from quintet.interfaces.lines.message import decode, encode
+from quintet.interfaces.lines.zenoh import Session, ZenohLine
 from quintet.interfaces.serving.process import build
 from quintet.interfaces.serving.serve import Server, answer
 
@@ -138,6 +139,41 @@ def test_a_component_answers_every_order_in_a_sentence(scene, sent, count):
     assert ended > 0.5 * count
 
 
+@pytest.mark.parametrize("count", COUNTS)
+def test_a_component_is_built_from_nothing_else_than_its_parameters(scene, count):
+    random, refused = np.random.default_rng(14), 0
+    go = encode({"order": "go", **GO, "params": {}, "folder": "/none"}, {}, None)
+    for _ in range(count // 4):
+        header, _ = taken_apart(in_header(go, random))
+        try:
+            build(scene.components["pong"].manifest, header)
+        except QuintetError as error:
+            refused += 1
+            assert len(str(error)) < 1 << 14
+    assert refused > 0.1 * count
+
+
+@pytest.mark.zenoh
+@pytest.mark.parametrize("count", [200, pytest.param(20_000, marks=pytest.mark.full)])
+def test_a_live_endpoint_refuses_them_alike(sent, count):
+    random, refused = np.random.default_rng(15), 0
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    ours = Session(endpoint, True, "coupler", None)
+    line = ZenohLine(ours, "", "pong")
+    other = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
+    other.wait_for_partner(10.0)
+    for _ in range(count):
+        other._put(mutated(sent[1][random.integers(len(sent[1]))], random))
+        try:
+            line.receive(30.0)
+        except QuintetError as error:
+            refused += 1
+            assert "nothing arrived" not in str(error)
+    other.close()
+    ours.close()
+    assert refused > 0.9 * count
+
+
 GO = {"params": {"items": 5, "substeps": 3}, "threads": 1}
 
 
@@ -157,8 +193,8 @@ class Changing:
 
 @pytest.mark.parametrize("count", COUNTS)
 def test_the_coupler_meets_every_answer_in_a_sentence(scene, sent, count):
-    random, ended = np.random.default_rng(13), 0
-    for _ in range(count // 4):
+    random, ended, count = np.random.default_rng(13), 0, count // 20
+    for _ in range(count):
         which = random.integers(len(sent[1]))
         began = time.monotonic()
         try:
