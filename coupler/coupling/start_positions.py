@@ -22,7 +22,10 @@ CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))  # of a box of edges 1
 NONE = np.zeros((0, 2, 3))
 PLANAR, SPATIAL = [0, 2], [0, 1, 2]  # axes of two dimensions and of three
 SAID = {  # of boxes that no body may begin in: what they are, and what to do
-    "wet": ("water", "Make the water of boxes around the body, or move it."),
+    "wet": (
+        "water",
+        "Move it, make the water of boxes around it, or let the fluid set remove_inside_bodies.",
+    ),
     "solid": ("obstacles", "Move one of them."),
 }
 

@@ -90,7 +90,7 @@ def section_lines(section: Section, width: int | None) -> Iterator[str]:
 
 
 def _wrapped(text: str, width: int | None, indent: str) -> Iterator[str]:
-    for part in text.split("\n\n"):
+    for part in filter(None, text.split("\n\n")):
         line = indent + " ".join(part.split())
         yield from textwrap.wrap(line, width, subsequent_indent=indent) if width else [line]
 

@@ -54,47 +54,51 @@ def drawing(scene: Scene) -> str:
         rows.append(f"└{'─' * (width + 1)}┘")
     found = list(edges(scene))
     ends = [(place[e.giver, "gives", e.given], place[e.taker, "takes", e.taken]) for e in found]
-    text = _with_lines(rows, ends)
     told = [f"{e.link}: {e.giver}.{e.given} → {e.taker}.{e.taken}" for e in found]
-    return "\n".join([*text, *told])
+    return "\n".join([*_joined(rows, ends), *told])
 
 
-def _with_lines(rows: list[str], ends: list[tuple[int, int]]) -> list[str]:
-    """Add a line beside the rows for each pair of a row where it starts and one where it ends.
-
-    Short ones run inside; those that leave the same row, or meet in it, share what they can.
-    """
-    left = max(map(len, rows), default=0) + 2
-    order = sorted(range(len(ends)), key=lambda n: abs(ends[n][0] - ends[n][1]))
-    lanes: list[list[int]] = []  # of each lane, the lines in it
-    for number in order:
-        low, high = sorted(ends[number])
-        for lane in lanes:
-            if all(high < min(ends[o]) or low > max(ends[o]) for o in lane):
-                lane.append(number)
-                break
-        else:
-            lanes.append([number])
-    strokes = [[0] * (3 * len(lanes)) for _ in rows]
-    for column, lane in enumerate(lanes):
-        for number in lane:
-            (start, end), at = ends[number], 3 * column + 2
-            low, high = sorted((start, end))
-            for row in range(low, high + 1):
-                strokes[row][at] |= (1 if row > low else 0) | (2 if row < high else 0)
-            for row in (start, end):
-                strokes[row][at] |= 4
-                for left_of in range(at):
-                    strokes[row][left_of] |= 12
+def _joined(rows: list[str], ends: list[tuple[int, int]]) -> list[str]:
+    """Add a line beside the rows for each pair of a row where it starts and one where it ends."""
+    left = max(map(len, rows)) + 2
     heads = {end for _, end in ends}
-    joined = {row for pair in ends for row in pair}
+    from_boxes = {row for pair in ends for row in pair}
     drawn = []
-    for number, text in enumerate(rows):
-        if number in joined:
+    for number, (text, strokes) in enumerate(zip(rows, _strokes(len(rows), ends), strict=True)):
+        if number in from_boxes:
             text += ("◄" if number in heads else "─") + "─" * (left - len(text) - 1)
-        tail = "".join(STROKES.get(one, " ") for one in strokes[number])
+        tail = "".join(STROKES.get(one, " ") for one in strokes)
         drawn.append((f"{text:<{left}}" + tail).rstrip())
     return drawn
+
+
+def _strokes(rows: int, ends: list[tuple[int, int]]) -> list[list[int]]:
+    """For each row and column, the ways in which a line leaves it; see `STROKES`."""
+    lanes = _lanes(ends)
+    strokes = [[0] * (3 * len(lanes)) for _ in range(rows)]
+    for column, lane in enumerate(lanes):
+        at = 3 * column + 2
+        for low, high in map(sorted, lane):
+            for row in range(low, high + 1):
+                strokes[row][at] |= (1 if row > low else 0) | (2 if row < high else 0)
+            for row in (low, high):
+                strokes[row][at] |= 4
+                for nearer in range(at):
+                    strokes[row][nearer] |= 12
+    return strokes
+
+
+def _lanes(ends: list[tuple[int, int]]) -> list[list[tuple[int, int]]]:
+    """Share out lines among lanes, in which none lies beside another; short ones run inside."""
+    lanes: list[list[tuple[int, int]]] = []
+    for pair in sorted(ends, key=lambda pair: abs(pair[0] - pair[1])):
+        for lane in lanes:
+            if all(max(pair) < min(other) or min(pair) > max(other) for other in lane):
+                lane.append(pair)
+                break
+        else:
+            lanes.append([pair])
+    return lanes
 
 
 def mermaid(scene: Scene) -> str:
@@ -103,19 +107,19 @@ def mermaid(scene: Scene) -> str:
     lines = ["flowchart LR"]
     for name, one in scene.components.items():
         lines.append(f'    {number[name]}["{name}<br/>{one.kind}"]')
-    for depth, inner in enumerate(scene.coupling.inner()):
-        lines += _subgraph(inner, number, f"g{depth}")
+    for inner in scene.coupling.inner():
+        lines += _subgraph(inner, number)
     for edge in edges(scene):
         said = f"{edge.link}: {edge.given} → {edge.taken}"
         lines.append(f'    {number[edge.giver]} -- "{said}" --> {number[edge.taker]}')
     return "\n".join(lines)
 
 
-def _subgraph(plan: CouplingPlan, number: dict[str, str], mark: str) -> Iterator[str]:
-    yield f'    subgraph {mark}["{plan.name}: {plan.scheme}"]'
+def _subgraph(plan: CouplingPlan, number: dict[str, str]) -> Iterator[str]:
+    yield f'    subgraph group_{plan.name}["{plan.name}: {plan.scheme}"]'
     for name, inner in plan.members.items():
         if inner is None:
             yield f"    {number[name]}"
         else:
-            yield from _subgraph(inner, number, f"{mark}_{len(mark)}")
+            yield from _subgraph(inner, number)
     yield "    end"

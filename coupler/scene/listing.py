@@ -17,7 +17,6 @@ from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Port
 
-WIDTH = 110  # characters, of a plan as text
 UNWRAPPED = 10_000  # characters, more than any line has
 
 
@@ -58,7 +57,7 @@ class Plan:
     scene: Scene
 
     def __str__(self) -> str:
-        screen = Console(file=io.StringIO(), width=WIDTH, highlight=False, markup=False)
+        screen = Console(file=io.StringIO(), width=UNWRAPPED, highlight=False, markup=False)
         print_plan(self.scene, screen)
         return screen.file.getvalue()  # type: ignore[attr-defined]
 

@@ -84,7 +84,7 @@ def test_mermaid_has_a_node_for_each_component_and_an_arrow_for_each_way(tmp_pat
         "flowchart LR",
         '    c0["ping<br/>toys:Toy"]',
         '    c1["pong<br/>toys:Toy"]',
-        '    subgraph g0["both: serial"]',
+        '    subgraph group_both["both: serial"]',
         "    c0",
         "    c1",
         "    end",

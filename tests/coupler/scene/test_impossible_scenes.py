@@ -232,3 +232,12 @@ def test_a_replay_without_a_run_is_of_the_latest_one(capsys, tmp_path):
     assert ended.value.code == 0
     resolved = (runs / "toy-4" / "scene.toml").read_text()
     assert f'recording = "{runs / "toy-10"}"' in resolved
+
+
+def test_water_that_leaves_room_for_bodies_may_hold_them(capsys):
+    """What cannot begin says how it can: with the key that it names the same scene is sound."""
+    place = ["floating_cube", "--set", f"{CUBE}.position=[0.225,0.225,0.2]"]
+    assert "or let the fluid set remove_inside_bodies." in refused(capsys, "check", *place)
+    with pytest.raises(SystemExit) as ended:
+        main(["check", *place, "--set", "components.water.remove_inside_bodies=true"])
+    assert ended.value.code == 0

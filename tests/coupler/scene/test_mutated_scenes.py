@@ -1,7 +1,6 @@
 """Mutated scenes are checked in short time and little memory; mistakes are told in sentences."""
 
 import json
-import os
 import resource
 import signal
 import subprocess
@@ -16,6 +15,7 @@ from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 
 LONGEST = 30  # s, of one check
+COMPILED = 900  # s, of one run with empty caches, on a machine that does other things too
 MOST = 200e6  # bytes, that one check may add
 SEED = 20261122
 
@@ -74,8 +74,10 @@ def start(mutant, out):
     short = 3.0 * (window if window != "auto" else min(steps, default=scene.file.end / 300.0))
     command = [sys.executable, "-m", "quintet.coupler.cli", "run", str(mutant.path)]
     command += [*mutant.arguments, "--transport", "memory", "--out", str(out)]
-    command += ["--set", f"end={min(short, scene.file.end)!r}", "--set", "output.pictures=[]"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env={**os.environ})
+    changes = [f"end={min(short, scene.file.end)!r}", "output.pictures=[]"]
+    changes += ["study=[]", "stability=[]"]  # whose windows may be longer
+    command += [word for change in changes for word in ("--set", change)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=COMPILED)
     return done.returncode, done.stderr
 
 
@@ -111,7 +113,7 @@ def test_a_few_mutated_scenes_are_refused_in_sentences(capsys, tmp_path):
 @pytest.mark.full
 def test_3000_mutated_scenes_are_refused_in_sentences(capsys, tmp_path):
     sound = check_all(capsys, tmp_path, 3000, SEED + 1)
-    started = [mutant for mutant in sound if small(mutant)][::12]
+    started = [mutant for mutant in sound if small(mutant)][::16]
     assert len(started) >= 20
     found = {}
     for number, mutant in enumerate(started):
