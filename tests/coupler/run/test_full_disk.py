@@ -14,7 +14,7 @@ from quintet.coupler.files.disk import RESERVE
 from quintet.coupler.run.snapshots import snapshots
 
 SOON = 5.0  # s, with what reading the results of a machine under load takes
-SNAPSHOTS = "output.snapshots=0.05"
+SNAPSHOTS = "output.snapshots=0.15"  # one, and for a while none
 WRITERS = {  # file, and what makes it grow
     "recording.h5": [SNAPSHOTS],
     "ledger.csv": [SNAPSHOTS, "output.record=false", "output.totals=0.001"],
@@ -47,7 +47,7 @@ def growing(folder, name):
     if name == "snapshot-":
         return folder / found[-1].name if (found := snapshots(folder)) else None
     path = folder / name
-    large = path.is_file() and path.stat().st_size > 1 << 15 and snapshots(folder)
+    large = path.is_file() and path.stat().st_size > 1 << 14 and snapshots(folder)
     return path if large else None
 
 

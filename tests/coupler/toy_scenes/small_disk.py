@@ -3,6 +3,7 @@
 import contextlib
 import resource
 import subprocess
+import time
 from pathlib import Path
 
 SIZE = 64  # MB
@@ -27,11 +28,13 @@ class SmallDisk:
         return Path(f"/proc/{self.holder.pid}/root{path}")
 
     def fill(self, *_):
-        """Leave no byte free."""
+        """Leave no byte free, also of what a run has made sure of for a moment only."""
         with open(self.seen(self.place / "ballast"), "wb", buffering=0) as file:
-            with contextlib.suppress(OSError):
-                while True:
-                    file.write(bytes(CHUNK))
+            for _ in range(20):
+                with contextlib.suppress(OSError):
+                    while True:
+                        file.write(bytes(CHUNK))
+                time.sleep(0.005)
 
     def empty(self):
         """Make room again."""
