@@ -226,9 +226,9 @@ def run(given: argparse.Namespace) -> int:
     if given.inside_mpi:
         return _run_rank(scene, out or Path(), snapshot)
     if snapshot and out:
-        folder, status = out, resume_scene(scene, out, snapshot)
+        folder, status = out, resume_scene(scene, out, snapshot, own_process=True)
     else:
-        folder, status = run_scene(scene, out, given.force)
+        folder, status = run_scene(scene, out, given.force, own_process=True)
     if status != BAD and (folder / report.NAME).is_file():
         report.show(folder)
         print(f"left in {os.path.relpath(folder)}", flush=True)
@@ -244,7 +244,7 @@ def _run_rank(scene: "Scene", folder: Path, snapshot: Path | None) -> int:
     begin_rank(folder)
     status = simulate(scene, folder, snapshot)
     end_rank(folder, status)
-    return status
+    return 0  # who started the job reads the status; MPI takes any other for a failure
 
 
 def _begun(given: argparse.Namespace) -> tuple["Scene", Path | None, None]:

@@ -6,7 +6,7 @@ entry-point group ``quintet.components``, or as ``module:Class``.
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any
 from quintet.interfaces.component import Array, Component, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 
+PATIENCE = 60.0  # s, where neither a kind nor a scene says
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
 
 
@@ -111,6 +112,7 @@ class Manifest:
     initial: Callable[[Any], Fields] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
+    patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
     shows: tuple[Field, ...] = ()  # as of the component
 
     def load(self) -> type[Any]:
@@ -168,7 +170,8 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
     plan, initial = (getattr(cls, name, None) for name in ("plan_of", "initial_of"))
-    return Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
+    made = Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
+    return replace(made, patience=getattr(cls, "patience", PATIENCE))
 
 
 def known_kinds() -> dict[str, str]:

@@ -22,6 +22,8 @@ from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.launch.connect import connect
 from quintet.coupler.launch.mpi_job import begin_rank, end_rank, run_under_mpi
+from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
 
@@ -82,7 +84,7 @@ def inside_mpi(folder: Path) -> int:
 
 def exchange(scene: Scene, folder: Path, windows: int) -> None:
     """Join the component, time its windows, and write the result to a file."""
-    connection = connect(scene, folder / "run", lambda: False)
+    connection = connect(scene, folder / "run", Watchdog(StopRequest()))
     part = connection.participants["echo"]
     part.call("describe")
     part.bind({}, works=[])

@@ -1,21 +1,22 @@
 """One component as the run loop sees it, wherever it runs."""
 
+import contextlib
 import statistics
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from quintet.coupler.coupling.answers import AnswerSums, check_answer, check_outputs
 from quintet.interfaces.component import Array, Field, Fields
 from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
-from quintet.interfaces.lines.message import Message, Shapes, require_finite
-from quintet.interfaces.lines.transport import Line
+from quintet.interfaces.lines.message import Message, Shapes, order_of, require_finite
+from quintet.interfaces.lines.transport import FramedLine
 from quintet.interfaces.serving.serve import sendable
 
-PATIENCE = 3600.0  # s for one answer of a component that is seen to be working
+LONGEST_WAIT = 86400.0  # s for one answer, also of a component that nobody watches
 
 
 class ComponentFailed(QuintetError):
@@ -49,41 +50,57 @@ class Timing:
 class Participant:
     """A component behind a line: orders go out, answers come back checked."""
 
-    def __init__(self, name: str, line: Line) -> None:
+    def __init__(self, name: str, line: FramedLine) -> None:
         self.name, self.line = name, line
         self.components = {name: self}
-        self.asking: Callable[[], None] = lambda: None  # called when a wait begins
+        self.order = ""  # the last that it got
+        self.built = False  # whether it has answered an order
+        self.waited_since = 0.0  # s of the monotonic clock, while it keeps the coupler waiting
+        # What ended the run meanwhile, if a watch has ended it.
+        self.verdict: Callable[[], BaseException | None] = lambda: None
         self.window = 0  # the next
         self.stable = 0.0  # s, largest step from its present state
         self.timing = Timing()
         self.notes: list[str] = []  # what the user should read of it
         self.shapes: Shapes | None = None  # of its outputs, once known
         self.sums: AnswerSums | None = None  # of which its answers tell, once its ports are joined
-        self._order = ""  # the last
         self._asked = 0.0
+        self._answered = True  # whether the answer to the last order is known
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
+
+    @contextlib.contextmanager
+    def keeping_others_waiting(self) -> Iterator[None]:
+        """Note since when the coupler waits for it, for who watches it meanwhile."""
+        self.waited_since = time.monotonic()
+        try:
+            yield
+        finally:
+            self.waited_since = 0.0
 
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
-        self._asked, self._order = time.perf_counter(), order
-        self.asking()
+        self._asked = time.perf_counter()
+        self.order, self._answered = order, False
         try:
-            self.line.send({"order": order, "window": self.window, **header}, fields or {})
+            with self.keeping_others_waiting():
+                self.line.send({"order": order, "window": self.window, **header}, fields or {})
         except LineError as error:
-            raise ComponentFailed(self.name, self.window, str(error)) from error
+            raise self._failure(error) from error
 
     def receive(self, expected: Shapes | None = None, finite: bool = True) -> Message:
         """Wait for the answer."""
         try:
-            message = self.line.receive(PATIENCE, expected)
+            with self.keeping_others_waiting():
+                message = self.line.receive(LONGEST_WAIT, expected)
             if message.order != "failed":
-                check_answer(self._order, message)
-            if self.sums and self._order == "advance" and message.order != "failed":
+                check_answer(self.order, message)
+            if self.sums and self.order == "advance" and message.order != "failed":
                 self.sums.check(message)
             if finite:
                 require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
-            raise ComponentFailed(self.name, self.window, str(error)) from error
+            raise self._failure(error) from error
+        self._answered = self.built = True
         if message.order == "failed":
             text = sendable(str(message.header.get("text")))
             if message.header.get("error") == SceneError.__name__ and self.shapes is None:
@@ -93,6 +110,29 @@ class Participant:
             trace = sendable(str(message.header.get("traceback", "")))
             raise ComponentFailed(self.name, self.window, said, trace)
         return message
+
+    def _failure(self, error: QuintetError) -> BaseException:
+        return self.verdict() or ComponentFailed(self.name, self.window, str(error))
+
+    def has_failed(self) -> bool:
+        """Whether the answer that has arrived, but was not yet asked for, tells of a failure."""
+        if self._answered or (frame := self.line.peek()) is None:
+            return False
+        self._answered = True  # not to be looked at again
+        try:
+            return order_of(frame) == "failed"
+        except MessageError:  # as whoever receives it will say
+            return True
+
+    def await_hello(self, seconds: float, connect: Callable[[float], None]) -> Message:
+        """Wait until the component has connected, and for its first message."""
+        try:
+            with self.keeping_others_waiting():
+                connect(seconds)
+                return self.line.receive(seconds)
+        except LineError as error:
+            cause = f"did not join: {error}"
+            raise self.verdict() or ComponentFailed(self.name, 0, cause) from error
 
     def call(self, order: str, fields: Fields | None = None, **header: Any) -> Message:
         """Send an order and wait for the answer."""

@@ -204,11 +204,12 @@ class VtkHdf:
     def _add_step(self, time: float, count: int) -> None:
         is_new = count not in self._parts
         part = self._parts.setdefault(count, len(self._parts))
-        if is_new:
-            self._put(self._root["NumberOfPoints"], part, count)
+        if is_new:  # exact: of a file with one step VTK takes each entry for a piece of its own
+            self._root["NumberOfPoints"].resize(part + 1, axis=0)
+            self._root["NumberOfPoints"][part] = count
             for name in TOPOLOGIES:
                 for table in ("NumberOfCells", "NumberOfConnectivityIds"):
-                    _reserve(self._root[name][table], part)
+                    self._root[name][table].resize(part + 1, axis=0)
             if self._is_cloud:
                 self._reserve_vertices(count)
         for name, value in (("PartOffsets", part), ("PointOffsets", self._rows)):

@@ -1,31 +1,30 @@
 """Connecting the components of a scene: in memory, over zenoh or over MPI."""
 
 import contextlib
+import os
 import secrets
 import socket
 import time
-import traceback
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
-from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.coupling.participant import LONGEST_WAIT, ComponentFailed, Participant
+from quintet.coupler.launch import stack
 from quintet.coupler.launch.mpi_job import write_processes
-from quintet.coupler.launch.processes import GRACE, Watch, start
-from quintet.coupler.scene.scene import Scene
+from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
+from quintet.coupler.launch.watch import Watch
+from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.scene.scene import ComponentPlan, Scene
+from quintet.interfaces.component import Component
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message
-from quintet.interfaces.lines.transport import FramedLine
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.process import build, shared_files
-from quintet.interfaces.serving.serve import Server, answer
+from quintet.interfaces.serving.serve import Server, answer, failure
 
-if TYPE_CHECKING:
-    from quintet.interfaces.lines.zenoh import ZenohLine
-
-JOINING = 180.0  # s until a component that we started says hello
-JOINING_BY_HAND = 3600.0  # s until one does that somebody starts elsewhere
+JOINING_BY_HAND = 3600.0  # s until a component says hello that somebody starts elsewhere
+ABORTING = 0.2  # s for components to end by themselves when a run fails
 
 
 class Connection(Protocol):
@@ -37,70 +36,92 @@ class Connection(Protocol):
         """Close all connections; components finish in order if all is well, else they are ended."""
 
 
-def connect(scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> Connection:
-    """Start and join all components of a scene, over its transport."""
+def connect(scene: Scene, folder: Path, watchdog: Watchdog) -> Connection:
+    """Start and join all components of a scene, over its transport; have them watched."""
     keep_freed_memory()
     if scene.transport == "memory":
-        return InMemory(scene)
+        return InMemory(scene, watchdog)
     if scene.transport == "mpi":
-        return OverMpi(scene, folder, interrupted)
-    return OverZenoh(scene, folder, interrupted)
+        return OverMpi(scene, folder, watchdog)
+    return OverZenoh(scene, folder, watchdog)
 
 
 def settings(scene: Scene, name: str) -> dict[str, Any]:
-    """Header of the order that gives a component its parameters."""
+    """What a component is told before it is built."""
     one = scene.components[name]
-    folder = str(scene.folder.resolve())
-    return {"order": "go", "params": one.params, "threads": one.threads, "folder": folder}
+    return {
+        "params": one.params,
+        "threads": one.threads,
+        "folder": str(scene.folder.resolve()),
+    }
 
 
 class InMemory:
     """All components in the coupler's own process."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, watchdog: Watchdog) -> None:
         # Only the transport that a run uses is loaded.
         from quintet.interfaces.lines.memory import MemoryLine
 
         self.participants: dict[str, Participant] = {}
+        self.watchdog = watchdog
         run = secrets.token_hex(4)
-        for name, one in scene.components.items():
-            try:
-                component = build(one.manifest, settings(scene, name))
-            except SceneError as error:
-                raise SceneError(f"components.{name}: {error}") from error
-            except (Exception, SystemExit) as error:
-                trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
-                raise ComponentFailed(name, 0, str(error), trace) from error
-            line = MemoryLine(run, name)
-            line.handle = partial(answer, Server(component, name), line.far)
-            self.participants[name] = Participant(name, line)
+        try:
+            for name, one in scene.components.items():
+                line = MemoryLine(run, name)
+                participant = self.participants[name] = Participant(name, line)
+                watch = Watch(name, os.getpid(), where=stack.of_main_thread)
+                self.watchdog.add(participant, watch, scene.patience(name))
+                with participant.keeping_others_waiting():
+                    component = _built(one, settings(scene, name))
+                line.handle = partial(answer, Server(component, name), line.far)
+        except BaseException:
+            self.watchdog.close()
+            raise
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
+        self.watchdog.close()
+
+
+def _built(one: ComponentPlan, header: dict[str, Any]) -> Component:
+    try:
+        return build(one.manifest, header)
+    except SceneError as error:
+        raise SceneError(f"components.{one.name}: {error}") from error
+    except (Exception, SystemExit) as error:
+        told = failure(error)
+        raise ComponentFailed(one.name, 0, told["text"], told["traceback"]) from error
 
 
 class OverZenoh:
     """One process per component, started here or joined by hand."""
 
-    def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
+    def __init__(self, scene: Scene, folder: Path, watchdog: Watchdog) -> None:
         # Only the transport that a run uses is loaded: zenoh starts threads.
         from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.participants: dict[str, Participant] = {}
+        self.watchdog = watchdog
         self.watches: dict[str, Watch] = {}
         try:
             self.session = Session(endpoint, True, "coupler", scene.security)
         except LineError as error:
             raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
-        run = secrets.token_hex(4)
-        lines = {name: ZenohLine(self.session, run, name) for name in scene.components}
+        self.run = secrets.token_hex(8)
+        lines = {name: ZenohLine(self.session, self.run, name) for name in scene.components}
         try:
-            for name in scene.components:
+            for name, line in lines.items():
+                self.watches[name] = Watch(name)
                 if name not in scene.elsewhere:
                     self._start(scene, name, endpoint, folder)
+                self.participants[name] = Participant(name, line)
+                self.watchdog.add(self.participants[name], self.watches[name], scene.patience(name))
             for name, line in lines.items():
-                self._await_hello(scene, name, line, interrupted)
+                seconds = JOINING_BY_HAND if name in scene.elsewhere else LONGEST_WAIT
+                hello = self.participants[name].await_hello(seconds, line.wait_for_partner)
+                accept(scene, self.participants[name], hello, self.watches[name], folder)
         except BaseException:
             self.close(False)
             raise
@@ -120,93 +141,79 @@ class OverZenoh:
             arguments += ["--tls", *scene.tls]
         for place in scene.import_folders:
             arguments += ["--look-in", place]
-        log = folder / "log" / f"{name}.log"
-        process = start(arguments, log, one.threads)
-        self.watches[name] = Watch(name, process.pid, process)
-
-    def _await_hello(
-        self, scene: Scene, name: str, line: "ZenohLine", interrupted: Callable[[], bool]
-    ) -> None:
-        watch = self.watches.get(name)
-        # Before its first message a component imports and connects, and may compute little.
-        line.watch = lambda: (
-            "the run was interrupted"
-            if interrupted()
-            else ("" if watch is None or watch.alive() else watch.ending())
-        )
-        seconds = JOINING if watch else JOINING_BY_HAND
-        try:
-            line.wait_for_partner(seconds)
-            hello = line.receive(seconds)
-        except LineError as error:
-            raise ComponentFailed(name, 0, f"did not join: {error}") from error
-        accept(scene, name, line, hello, watch, self.participants)
+        process = start(arguments, log_of(folder, name), one.threads, self.run)
+        self.watches[name].pid, self.watches[name].process = process.pid, process
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
-        end_all(self.participants, list(self.watches.values()), well)
+        self.watchdog.expect_ends()
+        end_all(self.participants, list(self.watches.values()), well, self.watchdog)
+        self.watchdog.close()
+        end_marked(RUN, self.run)
         self.session.close()
 
 
 class OverMpi:
     """One rank per component; this process is rank 0."""
 
-    def __init__(self, scene: Scene, folder: Path, interrupted: Callable[[], bool]) -> None:
+    def __init__(self, scene: Scene, folder: Path, watchdog: Watchdog) -> None:
         # Only the transport that a run uses is loaded: mpi4py starts MPI.
         from quintet.interfaces.lines import mpi
 
         mpi.self_check(1 + len(scene.components))
         run = secrets.token_hex(4)
         self.participants: dict[str, Participant] = {}
+        self.watchdog = watchdog
         self.watches: dict[str, Watch] = {}
         write_processes(folder, None, shared_files())
-        for rank, name in enumerate(scene.components, start=1):
-            line = mpi.MpiLine(run, "coupler", name, rank)
-            line.watch = lambda: "the run was interrupted" if interrupted() else ""
-            try:
-                hello = line.receive(JOINING)
-            except LineError as error:
-                raise ComponentFailed(name, 0, f"did not join: {error}") from error
-            here = hello.header.get("host") == socket.gethostname()
-            watch = Watch(name, int(hello.header["pid"])) if here else None
-            if watch:
-                self.watches[name] = watch
-            accept(scene, name, line, hello, watch, self.participants)
-        watches = self.watches.values()
-        shared = [path for watch in watches for path in watch.shared]
-        write_processes(folder, [watch.pid for watch in watches], [*shared_files(), *shared])
+        try:
+            for rank, name in enumerate(scene.components, start=1):
+                one = Participant(name, mpi.MpiLine(run, "coupler", name, rank))
+                watch = self.watches[name] = Watch(name)
+                self.watchdog.add(one, watch, scene.patience(name))
+                hello = one.await_hello(LONGEST_WAIT, lambda seconds: None)
+                self.participants[name] = one
+                accept(scene, one, hello, watch, folder)
+        except BaseException:
+            self.close(False)
+            raise
+        pids = [watch.pid for watch in self.watches.values() if watch.pid]
+        shared = [path for watch in self.watches.values() for path in watch.shared]
+        write_processes(folder, pids, [*shared_files(), *shared])
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
+        self.watchdog.expect_ends()
         if well:
             finish(self.participants)
-            return
-        # A dead rank would keep MPI from ending in order: end the others ourselves.
-        for watch in self.watches.values():
-            watch.end(0.0)
+        self.watchdog.close()
+        if not well:
+            # A dead rank would keep MPI from ending in order: end the others ourselves.
+            for watch in self.watches.values():
+                watch.end(0.0)
 
 
-def accept(
-    scene: Scene,
-    name: str,
-    line: FramedLine,
-    hello: Message,
-    watch: Watch | None,
-    participants: dict[str, Participant],
-) -> None:
+def accept(scene: Scene, one: Participant, hello: Message, watch: Watch, folder: Path) -> None:
     """Accept a component: check its kind, watch its process, send its parameters."""
-    expected = scene.components[name].manifest.kind
-    if hello.order != "hello" or hello.header.get("kind") != expected:
+    expected = scene.components[one.name].manifest.kind
+    header = hello.header
+    if hello.order != "hello" or header.get("kind") != expected:
         raise ComponentFailed(
-            name, 0, f"{expected} must say hello; found {hello.header.get('kind')!r}. Start that."
+            one.name, 0, f"{expected} must say hello; found {header.get('kind')!r}. Start that."
         )
-    one = participants[name] = Participant(name, line)
-    if watch:
-        told = map(Path, map(str, hello.header.get("shared", [])))
+    if header.get("host") == socket.gethostname():
+        watch.pid = int(header["pid"])
+        told = map(Path, map(str, header.get("shared", [])))
         watch.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
-        watch.usual = lambda: one.timing.usual
-        line.watch, one.asking = watch, watch.reset
-    line.send(settings(scene, name), {})
+        watch.where = partial(
+            stack.of_process, watch.pid, int(header["stack"]), log_of(folder, one.name)
+        )
+    one.send_order("go", **settings(scene, one.name))
+
+
+def log_of(folder: Path, name: str) -> Path:
+    """Log of a component in the folder of a run."""
+    return folder / "log" / f"{name}.log"
 
 
 def finish(participants: dict[str, Participant]) -> None:
@@ -217,15 +224,20 @@ def finish(participants: dict[str, Participant]) -> None:
         one.timing.memory = int(one.receive().header["memory"])
 
 
-def end_all(participants: dict[str, Participant], watches: list[Watch], well: bool) -> None:
+def end_all(
+    participants: dict[str, Participant], watches: list[Watch], well: bool, dog: Watchdog
+) -> None:
     """End all component processes: in order, or at once."""
     if well:
         finish(participants)
+    elif dog.verdict:  # some may not listen any more
+        for watch in watches:
+            watch.kill()
     else:
         for one in participants.values():
             with contextlib.suppress(QuintetError):
                 one.line.send({"order": "abort"}, {})
-    limit = time.monotonic() + (GRACE if well else 0.3)
+    limit = time.monotonic() + (GRACE if well and not dog.stop() else ABORTING)
     for watch in watches:
         watch.end(max(0.0, limit - time.monotonic()))
 

@@ -20,7 +20,9 @@ from pathlib import Path
 from types import FrameType
 from typing import IO
 
-from quintet.coupler.launch.processes import PYTHON, environment, tail
+import psutil
+
+from quintet.coupler.launch.processes import PYTHON, end_marked, environment, marked, tail
 from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
@@ -31,8 +33,8 @@ from quintet.interfaces.serving.process import STARTER
 JOB_FILE = "mpi.json"  # in the log folder: processes, and the exit status of the coupler
 COUPLER_OUTPUT = ("coupler.out", "coupler.err")  # there too
 LAUNCHER_LOG = "mpiexec.log"  # there too
-JOINING = 200.0  # s for all components to join; the coupler gives up on each one sooner
-ENDING = 3.0  # s for all ranks to end after the coupler has its results
+ENDING, AT_ONCE = 3.0, 0.5  # s for all ranks to end after the coupler has, if all is well or not
+LOOKING = 0.2  # s between two looks at the ranks while they start
 
 
 def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
@@ -112,7 +114,7 @@ def _await(
     signals: list[int],
 ) -> str:
     """Forward the coupler's output until the job has ended; return what went wrong, or ""."""
-    reason, limit = "", time.monotonic() + JOINING
+    reason, limit, seen, looked_at = "", float("inf"), set[str](), 0.0
     while time.monotonic() < limit:
         _forward_output(output)
         ended, found = process.poll() is not None, _read(job_file)
@@ -123,14 +125,17 @@ def _await(
         if not reason:
             if over or (coupler and not running(coupler)):
                 reason = "the coupler ended"
-            elif not joined and (ended or signals):
+            elif not joined and (ended or (signals and not coupler)):
                 reason = "the MPI job ended before all components had joined"
-            elif joined:
-                limit = float("inf")
+            elif not coupler and time.monotonic() > looked_at + LOOKING:
+                # MPI begins when all ranks are there: if one has died, the others wait for ever.
+                ranks, looked_at = set(_ranks()), time.monotonic()
+                reason = ", ".join(f"{name} ended before MPI began" for name in seen - ranks)
+                seen |= ranks
             if reason:
-                limit = time.monotonic() + ENDING
+                limit = time.monotonic() + (ENDING if found.get("status") in (0, 1) else AT_ONCE)
         time.sleep(0.02)
-    return reason or f"not all components joined within {JOINING:.0f} s"
+    return reason
 
 
 def _forward_output(output: Sequence[IO[bytes]]) -> None:
@@ -186,7 +191,9 @@ def end_rank(folder: Path, status: int) -> None:
     _write(folder, {**found, "status": status})
     sys.stdout.flush()
     sys.stderr.flush()
-    if status not in (0, 1, 130):
+    pids: list[int] = found.get("pids") or []  # type: ignore[assignment]
+    # Where a rank is dead, the others would wait for it as they leave.
+    if status not in (0, 1, 130) or not all(running(pid) for pid in pids):
         # Only a rank has MPI: who starts the launcher must not load it.
         from quintet.interfaces.lines.mpi import abort
 
@@ -202,9 +209,7 @@ def _write(folder: Path, content: dict[str, object]) -> None:
 
 def _clean_up(process: "subprocess.Popen[bytes]", found: dict[str, object]) -> None:
     """End processes that still run, and remove files of killed ranks in shared memory."""
-    for pid in _processes_of_job():
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
+    end_marked(STARTER, str(os.getpid()))
     process.wait()
     _unlink(found)
 
@@ -215,10 +220,10 @@ def _unlink(found: dict[str, object]) -> None:
             os.unlink(path)
 
 
-def _processes_of_job() -> Iterator[int]:
-    """Processes of the job on this host, known by their environment."""
-    mark = f"{STARTER}={os.getpid()}".encode()
-    for entry in Path("/proc").glob("[0-9]*/environ"):
-        with contextlib.suppress(OSError):
-            if mark in entry.read_bytes().split(b"\0"):
-                yield int(entry.parent.name)
+def _ranks() -> Iterator[str]:
+    """Names of the components whose ranks run on this host."""
+    for pid in marked(STARTER, str(os.getpid())):
+        with contextlib.suppress(psutil.Error, ValueError, IndexError):
+            words = psutil.Process(pid).cmdline()
+            if words[0] == sys.executable and "--mpi" in words:
+                yield words[words.index("--name") + 1]

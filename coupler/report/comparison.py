@@ -25,7 +25,8 @@ PANELS = 12  # at most
 COMPUTED, BAND = "tab:blue", "tab:orange"
 MARKS = (("o", "black"), ("s", "tab:red"), ("^", "tab:green"), ("D", "tab:purple"))
 AXES = "xyz"
-LINE, LINES = 44, 2  # characters and lines of a source in a legend
+LINE = 44  # characters of a line beside a panel or in its legend
+LINES = 2  # of a source in a legend
 Outcomes = Mapping[str, Outcome]
 
 
@@ -103,7 +104,8 @@ def _draw(
         if one.level is not None:
             panel.axhline(one.level, color="grey", linewidth=0.8, linestyle="--")
     panel.set_title("\n".join(_verdict(one, results.get(one.name)) for one in ones), fontsize=8)
-    panel.set(xlabel="t [s]", ylabel=_label(ones, recording))
+    panel.set_xlabel("t [s]")
+    panel.set_ylabel(textwrap.fill(_label(ones, recording), LINE), fontsize=8)
     panel.grid(alpha=0.3)
     panel.legend(fontsize=7, frameon=False)
 
@@ -163,8 +165,13 @@ def _label(ones: list[Expectation], recording: Recording) -> str:
         return f"{'−' if one.scale < 0.0 else ''}{name} [{field.unit}]"
     units = {other.unit for other in ones if other.measure in IN_UNIT}
     if len(units) == 1:
-        return f"{one.scale:.4g} × ({name}) [{units.pop()}]"
-    return f"{one.scale:.4g} × ({name} [{field.unit}])"
+        return f"{_number(one.scale)} × ({name}) [{units.pop()}]"
+    return f"{_number(one.scale)} × ({name} [{field.unit}])"
+
+
+def _number(value: float) -> str:
+    """Write a number with a true minus sign."""
+    return f"{value:.4g}".replace("-", "−")
 
 
 def _field(one: Expectation, recording: Recording) -> Field:
@@ -179,7 +186,7 @@ def _verdict(one: Expectation, outcome: Outcome | None) -> str:
     if one.measure == "at":
         what = f"at {one.begin:g} s"
     elif one.level is not None:
-        what = f"passes {one.level:g}"
+        what = f"passes {one.level:g} at"
     if outcome is None or outcome.value is None:
         return f"{one.name}: {what}: no value: NOT met"
     expected = f"at most {outcome.within:.3g}"

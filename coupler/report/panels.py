@@ -11,7 +11,7 @@ WIDEST, TALLEST = 11.0, 8.5  # inches, shape of a page, and width of all panels 
 LARGEST = 6.5  # inches, edge of a panel that shows a place
 STRIP = 0.5  # height over width of such a panel that may be twice as wide
 CURVES, HEIGHT = 5.2, 3.2  # inches, width and height of a panel of curves
-SMALLEST = 1.8  # inches, height of a panel that shows a place, if its width allows
+SMALLEST = 1.4  # inches, height of a panel that shows a place, if its width allows
 AROUND = (0.8, 0.75)  # inches, what axes take beside and below a panel, and its title
 MOST = 6  # columns
 DOTS = 120  # per inch
@@ -66,7 +66,7 @@ def _misfit(count: int, columns: int, height: float) -> float:
     wide, tall = _size(columns, height)
     shape = (columns * (wide + AROUND[0])) / (rows * (tall + AROUND[1]))
     empty, low = rows * columns / count, max(SMALLEST / tall, 1.0)
-    return abs(math.log(shape * TALLEST / WIDEST)) + math.log(empty) + 4.0 * math.log(low)
+    return abs(math.log(shape * TALLEST / WIDEST)) + 2.0 * math.log(empty) + 4.0 * math.log(low)
 
 
 def save(figure: Any, out: Path) -> Path:

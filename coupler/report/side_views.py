@@ -25,6 +25,7 @@ from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
 MARGIN, BEYOND = 0.03, 0.12  # of the picture: around all that moves; how far walls may reach
+WITHIN = 0.08  # of an edge: margin at most, as of long tanks
 TALL, LOWEST = 2.0, 0.22  # height over width of a panel: at most; what is lower is stretched
 FLATTEST = 0.05  # height over width of what is shown, at least
 Region = tuple[tuple[float, float, float], tuple[float, float, float]]
@@ -54,7 +55,8 @@ def side_views(
         What components are coloured by: ``component.field``. Points of others take the first field
         of their view; faces of others have a plain colour.
     region : two corners, m, optional
-        Of the box that is shown; what is in front of it, along y, is cut away.
+        Of the box that is shown; particles, and faces that show a field, are cut away in front of
+        it, along y.
 
     Returns
     -------
@@ -114,14 +116,20 @@ def _every_corner(shown: Shown) -> Array:
 
 
 def _within(shown: Shown, region: Region | None) -> Shown:
-    """Leave out points in front of a region, or behind it; sort all, the farthest first."""
+    """Leave out what is in front of a region, or behind it; sort all, the farthest first.
+
+    Plain bodies stay whole; faces that are coloured by a field are cut as particles are, so that
+    solids that show the faces of all their elements are seen from within.
+    """
     keep = np.isfinite(shown.points).all(axis=1)
     if region is not None:
         keep &= (shown.points[:, 1] >= region[0][1]) & (shown.points[:, 1] <= region[1][1])
     order = np.flatnonzero(keep)
     order = order[np.argsort(-shown.points[order, 1], kind="stable")]
-    depth = [-float(face[:, 1].mean()) for face in shown.faces]
-    faces = np.argsort(depth, kind="stable")
+    depth = np.array([float(face[:, 1].mean()) for face in shown.faces])
+    faces = np.argsort(-depth, kind="stable")
+    if region is not None and shown.face_values is not None:  # what shows a field inside a solid
+        faces = faces[(depth[faces] >= region[0][1]) & (depth[faces] <= region[1][1])]
     return Shown(
         shown.name,
         shown.quantity,
@@ -150,7 +158,8 @@ def _limits(
         corners = np.concatenate(still)[:, [0, 2]]
         low = np.minimum(low, np.maximum(corners.min(axis=0), low - BEYOND * size))
         high = np.maximum(high, np.minimum(corners.max(axis=0), high + BEYOND * size))
-    low, high = low - MARGIN * size, high + MARGIN * size
+    margin = np.minimum(MARGIN * size, WITHIN * (high - low))
+    low, high = low - margin, high + margin
     middle, (wide, tall) = 0.5 * (low + high), high - low
     half = 0.5 * np.array([max(wide, tall / TALL), max(tall, wide * FLATTEST)])
     return middle - half, middle + half

@@ -95,7 +95,11 @@ class OutputWriter:
     def due(self, ticks: int) -> bool:
         """See `Observer.due`."""
         often = any(self._passes(every, ticks) for every in (self._views, self._totals))
-        return often or ticks in self._windows.marks
+        return often or self._meets_picture(ticks)
+
+    def _meets_picture(self, ticks: int) -> bool:
+        """Whether the time of a picture lies between the last window's end and a time [ticks]."""
+        return any(self._now < mark <= ticks for mark in self._windows.marks)
 
     def _passes(self, every: int, ticks: int) -> bool:
         """Whether a multiple of `every` lies between the last window's end and a time [ticks]."""
@@ -106,7 +110,7 @@ class OutputWriter:
         windows = self._windows
         now, self.done, self.time = windows.now, windows.done, windows.time
         self._record(coupling)
-        if self._passes(self._views, now) or now in windows.marks:
+        if self._passes(self._views, now) or self._meets_picture(now):
             self._note(coupling)
         elif self._passes(self._totals, now):
             coupling.ledger.note(self.time, dict(coupling.ledger.totals))

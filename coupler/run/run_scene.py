@@ -15,7 +15,9 @@ from quintet.interfaces.errors import QuintetError
 from quintet.interfaces.lines.endpoint import require_free
 
 
-def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tuple[Path, int]:
+def run_scene(
+    scene: Scene, out: Path | None = None, force: bool = False, own_process: bool = False
+) -> tuple[Path, int]:
     """Run a scene from its start; return the folder of the run and the exit status.
 
     Parameters
@@ -24,12 +26,14 @@ def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tup
         A new or empty folder; ``runs/NAME``, or the next number that is free, if not given.
     force : bool
         Replace a former run in the folder: only what it wrote, once the new one has begun.
+    own_process : bool
+        Whether this process may be left from within, if a solver in it does not come back.
     """
     check_machine(scene)  # before a former run is touched
     with begin("run", scene.file.name, files_of(scene), out, force) as place:
         try:
             make_folder(scene, place.path)
-            status = _run(scene, place.path, None)
+            status = _run(scene, place.path, None, own_process)
         except QuintetError:
             place.undo()
             raise
@@ -38,12 +42,12 @@ def run_scene(scene: Scene, out: Path | None = None, force: bool = False) -> tup
     return place.path, status
 
 
-def resume_scene(scene: Scene, folder: Path, snapshot: Path) -> int:
+def resume_scene(scene: Scene, folder: Path, snapshot: Path, own_process: bool = False) -> int:
     """Continue a run from one of its snapshots; return the exit status."""
     check_machine(scene)
     with go_on(folder, "run"):
         reserve(folder, RESULTS)
-        return _run(scene, folder, snapshot)
+        return _run(scene, folder, snapshot, own_process)
 
 
 def check_machine(scene: Scene) -> None:
@@ -55,8 +59,8 @@ def check_machine(scene: Scene) -> None:
         require_free(scene.endpoint)
 
 
-def _run(scene: Scene, folder: Path, snapshot: Path | None) -> int:
+def _run(scene: Scene, folder: Path, snapshot: Path | None, own_process: bool) -> int:
     if scene.transport == "mpi":
         target = ["--resume", str(folder)] if snapshot else ["--out", str(folder)]
         return run_under_mpi(["run", *run_arguments(**scene.asked), *target], scene, folder)
-    return simulate(scene, folder, snapshot)
+    return simulate(scene, folder, snapshot, own_process)

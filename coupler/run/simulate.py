@@ -4,6 +4,7 @@ import contextlib
 import os
 import shlex
 import sys
+import threading
 import traceback
 from functools import partial
 from pathlib import Path
@@ -27,6 +28,7 @@ from quintet.coupler.files.disk import (
 from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
+from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
@@ -43,52 +45,107 @@ class Closable(Protocol):
         """Write what is left; a second call does nothing."""
 
 
-def simulate(scene: Scene, folder: Path, snapshot: Path | None = None) -> int:
-    """Run a scene in a prepared folder, or from a snapshot in it; return the exit status."""
-    clock, stop = results.Clock(), StopRequest()
-    exchange = scene.exchange()
-    size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
-    ledger = Ledger(exchange, folder / LEDGER, size)
-    logs = {
-        name: ConvergenceLog(folder / log_file(name), lengths.get(name, 0))
-        for name in scene.coupling.iterated()
-    }
-    first = snapshots.window_of(snapshot) if snapshot else None
-    writer = OutputWriter(scene, folder, stop, logs, first)
-    files: tuple[Closable, ...] = (writer, ledger, *logs.values())
-    outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
-    connection: Connection | None = None
-    participants: dict[str, Participant] = {}
-    costs, lost = Costs(), False
+def simulate(
+    scene: Scene, folder: Path, snapshot: Path | None = None, own_process: bool = False
+) -> int:
+    """Run a scene in a prepared folder, or from a snapshot in it; return the exit status.
+
+    Where the process is our own, it is left from a thread if its main thread does not come back.
+    """
+    stop = StopRequest()
+    watchdog = Watchdog(stop, own=scene.transport == "memory")
+    made = Running(scene, folder, snapshot, stop, watchdog)
+    if own_process:
+        stop.leave = made.leave
     try:
-        with stop.listening():
-            connection = connect(scene, folder, stop)
-            participants = connection.participants
-            coupling = assemble(scene.coupling, participants, exchange, ledger, logs, costs)
-            resume = partial(snapshots.restore, path=snapshot) if snapshot else lambda _: None
-            end = run(coupling, scene.file.end, writer, scene.asked_outputs(), resume)
-            for one in files:
-                one.close()
-            outcome |= outcome_of(end)
-            connection.close(True)
-            connection = None
-    except KeyboardInterrupt:
-        outcome |= {"status": "interrupted", "windows": writer.done, "time": writer.time}
+        with stop.listening(lambda: watchdog.verdict is not None):
+            made.run()
+    except KeyboardInterrupt as error:
+        return made.end(watchdog.verdict or error)
     except Exception as error:  # any failure is reported in the results
-        error = of_disk(error, folder)
-        lost = isinstance(error, DiskError)
-        outcome |= refused(error, writer) or failed(error, scene, folder, writer)
-    finally:
-        if connection:
-            connection.close(False)
-        for one in files:
-            with contextlib.suppress(DiskError):  # told already: it ended the run
-                one.close()
-    if stop.asked and outcome["status"] != "done" and not lost:
-        outcome["status"] = "interrupted"
-    outcome["unstable"] = ledger.watch.summary()
-    summary = ledger.summary()
-    return conclude(scene, folder, outcome, participants, summary, costs, clock())
+        return made.end(error)
+    return made.end(None)
+
+
+class Running:
+    """A run under way: its files, its components, and how it ends."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        folder: Path,
+        snapshot: Path | None,
+        stop: StopRequest,
+        watchdog: Watchdog,
+    ) -> None:
+        self.scene, self.folder, self.snapshot = scene, folder, snapshot
+        self.stop, self.watchdog, self.clock = stop, watchdog, results.Clock()
+        self.exchange = scene.exchange()
+        size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
+        self.ledger = Ledger(self.exchange, folder / LEDGER, size)
+        self.logs = {
+            name: ConvergenceLog(folder / log_file(name), lengths.get(name, 0))
+            for name in scene.coupling.iterated()
+        }
+        first = snapshots.window_of(snapshot) if snapshot else None
+        self.writer = OutputWriter(scene, folder, stop, self.logs, first)
+        self.files: tuple[Closable, ...] = (self.writer, self.ledger, *self.logs.values())
+        self.costs = Costs()
+        self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
+        self.participants: dict[str, Participant] = {}
+        self._connection: Connection | None = None
+        self._ending = threading.Lock()
+
+    def run(self) -> None:
+        """Join the components and couple them to the end, or until a signal ends it."""
+        scene = self.scene
+        self._connection = connection = connect(scene, self.folder, self.watchdog)
+        self.participants = connection.participants
+        coupling = assemble(
+            scene.coupling, self.participants, self.exchange, self.ledger, self.logs, self.costs
+        )
+        path = self.snapshot
+        resume = partial(snapshots.restore, path=path) if path else lambda _: None
+        end = run(coupling, scene.file.end, self.writer, scene.asked_outputs(), resume)
+        for one in self.files:
+            one.close()
+        connection.close(True)
+        self._connection = None
+        self.outcome |= outcome_of(end)
+
+    def end(self, error: BaseException | None) -> int:
+        """End it, with what went wrong if something did; write the results; tell the status."""
+        with self._ending:
+            writer, lost = self.writer, False
+            if isinstance(error, KeyboardInterrupt) or isinstance(
+                self.watchdog.verdict, KeyboardInterrupt
+            ):
+                ended = {"status": "interrupted", "windows": writer.done, "time": writer.time}
+                self.outcome |= ended
+            elif isinstance(error, Exception):
+                error = of_disk(error, self.folder)
+                lost = isinstance(error, DiskError)
+                self.outcome |= refused(error, writer) or failed(
+                    error, self.scene, self.folder, writer
+                )
+            if self._connection:
+                self._connection.close(False)
+            for one in self.files:
+                with contextlib.suppress(DiskError):  # told already: it ended the run
+                    one.close()
+            if self.stop.asked and self.outcome["status"] != "done" and not lost:
+                self.outcome["status"] = "interrupted"
+            self.outcome["unstable"] = self.ledger.watch.summary()
+            return conclude(self)
+
+    def leave(self) -> None:
+        """End from another thread: the main one is in a solver that does not come back."""
+        if self._ending.acquire(blocking=False):  # else it has come back
+            self._ending.release()
+            status = self.end(self.watchdog.verdict)
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(status)
 
 
 def make_folder(scene: Scene, folder: Path) -> None:
@@ -137,16 +194,9 @@ def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -
     return {"status": "failed", "fault": found, "windows": writer.done, "time": writer.time}
 
 
-def conclude(
-    scene: Scene,
-    folder: Path,
-    outcome: dict[str, Any],
-    participants: dict[str, Participant],
-    ledger: dict[str, Any],
-    costs: Costs,
-    wall: float,
-) -> int:
+def conclude(made: Running) -> int:
     """Evaluate the expectations, write the results, draw; return the exit status."""
+    scene, folder, outcome = made.scene, made.folder, made.outcome
     ended = outcome["status"] in ("done", "interrupted")
     found = results.outcomes(scene, folder) if ended else []
     content = {
@@ -155,11 +205,11 @@ def conclude(
         "transport": scene.transport,
         **outcome,
         "expect": results.expectations(found),
-        "ledger": ledger,
-        "repetitions": costs.repetitions,
-        "unconverged": costs.unconverged,
-        "notes": {name: one.notes for name, one in participants.items() if one.notes},
-        "timing": results.timing(participants, wall, costs.mapping),
+        "ledger": made.ledger.summary(),
+        "repetitions": made.costs.repetitions,
+        "unconverged": made.costs.unconverged,
+        "notes": {name: one.notes for name, one in made.participants.items() if one.notes},
+        "timing": results.timing(made.participants, made.clock(), made.costs.mapping),
         "machine": results.machine(),
         "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
     }
@@ -173,11 +223,11 @@ def conclude(
         return results.BAD
     if outcome["status"] == "failed":
         return results.FAILED
+    if outcome["status"] == "interrupted":
+        return results.INTERRUPTED
     try:
         results.draw(scene, folder, found)
     except DiskError as error:
         print(f"quintet: {error}", file=sys.stderr, flush=True)
-    if outcome["status"] == "interrupted":
-        return results.INTERRUPTED
     sound = all(one.met for one in found) and not outcome["unstable"]
     return results.DONE if sound else results.UNMET

@@ -27,7 +27,8 @@ from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 
 KEPT = 2  # snapshots of a run
-FREE = ("transport", "endpoint", "tls", "minutes")  # may differ when a run goes on: no bit does
+# Keys that may differ when a run goes on: no bit does.
+FREE = ("transport", "endpoint", "tls", "minutes", "patience")
 
 
 def snapshots(folder: Path) -> list[Path]:

@@ -78,7 +78,7 @@ class OutputSettings:
         others points take the first field, as speed, and faces none.
     region : m
         Lowest and highest corner of the box that pictures show; particles in front of it, along y,
-        are left out. If not given all is shown.
+        are left out, and so are faces that show a field. If not given all is shown.
     totals : s
         Between two rows of the ledger; 0: with the views.
     snapshots : s
@@ -135,6 +135,9 @@ class SceneFile:
         Files of authority, certificate and key, for an endpoint off the loopback.
     minutes : min
         Rough run time of the scene as it stands, for ``quintet list``.
+    patience : s
+        How long a component may keep others waiting beyond three usual windows before it is ended;
+        0: as its kind says, 60 s if it does not.
     iteration
         How windows are repeated, under the scheme iterated.
     output
@@ -152,6 +155,7 @@ class SceneFile:
     endpoint: str = ""
     tls: tuple[str, ...] = ()
     minutes: Number = 0.0
+    patience: NotNegative = 0.0
     iteration: IterationSettings = IterationSettings()
     output: OutputSettings = OutputSettings()
 
@@ -218,6 +222,10 @@ class Scene:
     def security(self) -> Security | None:
         """The same, as the lines take it."""
         return Security(*self.tls) if self.tls else None
+
+    def patience(self, name: str) -> float:
+        """How long a component may keep the others waiting beyond three usual windows [s]."""
+        return self.file.patience or self.components[name].manifest.patience
 
     @property
     def folder(self) -> Path:

@@ -77,6 +77,11 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
     )
 
 
+def order_of(frame: Frame) -> str:
+    """Order or answer that a message carries."""
+    return str(_header(frame)[0].get("order"))
+
+
 def _header(frame: Frame) -> tuple[dict[str, Any], int]:
     """Decode the header; return it with the offset of the first array."""
     if len(frame) < PREFIX.size:

@@ -74,6 +74,7 @@ class FramedLine(ABC):
         self._sent = 0
         self._received = 0
         self._scratch: bytearray | None = None
+        self._ahead: Frame | None = None  # looked at, not yet received
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """See `Line.send`."""
@@ -84,7 +85,7 @@ class FramedLine(ABC):
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
         """See `Line.receive`."""
-        message = decode(wait(self._poll, seconds, self._reason), expected)
+        message = decode(wait(self._next, seconds, self._reason), expected)
         seq, run = message.header.get("seq"), message.header.get("run")
         if seq != self._received:
             raise LineError(
@@ -99,6 +100,16 @@ class FramedLine(ABC):
         if run != self.run and run != "":
             raise LineError(f"a message of run {reprlib.repr(run)} arrived in run {self.run!r}.")
         return message
+
+    def peek(self) -> Frame | None:
+        """Return the next frame if it has arrived; it stays the next to be received."""
+        if self._ahead is None:
+            self._ahead = self._poll()
+        return self._ahead
+
+    def _next(self) -> Frame | None:
+        frame, self._ahead = self._ahead, None
+        return self._poll() if frame is None else frame
 
     def _reason(self) -> str:
         broken = self._broken()

@@ -2,13 +2,15 @@
 
 import argparse
 import contextlib
+import faulthandler
 import os
 import signal
 import sys
 import time
-import traceback
 from pathlib import Path
 from typing import Any
+
+import psutil
 
 from quintet.interfaces.component import Component, Resources, make
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
@@ -19,10 +21,11 @@ from quintet.interfaces.params import read
 from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.orders import check_order
-from quintet.interfaces.serving.serve import Server, failure, serve
+from quintet.interfaces.serving.serve import LONGEST_WAIT, Server, failure, serve
 
-JOINING = 600.0  # s until every other component has joined
 LINGERING = 10.0  # s
+# Asks a component where in its code it is: one of the signals that no library uses for itself.
+STACK_SIGNAL = signal.SIGRTMIN + 7
 LOOK_IN = "look for module:Class here too, after all that is installed; may be repeated"
 STARTER = "QUINTET_STARTER"  # set where a run was started by another process here: which one
 
@@ -59,12 +62,15 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     """Join, build, serve; return the exit status."""
     # Ctrl-C reaches the whole terminal; the coupler answers it and tells the components.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Both work while a solver computes, and while it holds the interpreter's lock.
+    faulthandler.enable()
+    faulthandler.register(STACK_SIGNAL, all_threads=False)
     keep_freed_memory()
     say(f"{given.name}: {manifest.title}, process {os.getpid()}")
     try:
         line = over_mpi(given.name) if given.mpi else over_zenoh(given)
         line.send({"order": "hello", "kind": manifest.kind, **about_me()}, {})
-        order = line.receive(JOINING)
+        order = line.receive(LONGEST_WAIT)  # others may join later, or be started by hand
     except QuintetError as error:
         say(f"{given.name}: {error}")
         return 3
@@ -79,9 +85,11 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
             status = 0
     except LineError as error:
         say(f"{given.name}: the coupler: {error}")
+        end_children()  # nobody else does
     except (Exception, SystemExit) as error:
-        traceback.print_exc()
-        line.send(failure(error), {})
+        told = failure(error)
+        say(str(told["traceback"]) or str(error))
+        line.send(told, {})
     if status:
         linger(line)
     line.close()
@@ -128,7 +136,19 @@ def launched_here() -> bool:
 
 def about_me() -> dict[str, Any]:
     """What the coupler needs to watch this process, and to clean up after it."""
-    return {"pid": os.getpid(), "host": os.uname().nodename, "shared": shared_files()}
+    return {
+        "pid": os.getpid(),
+        "host": os.uname().nodename,
+        "shared": shared_files(),
+        "stack": int(STACK_SIGNAL),
+    }
+
+
+def end_children() -> None:
+    """Kill all processes that this one has started and that still run."""
+    for child in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            child.kill()
 
 
 def shared_files() -> list[str]:

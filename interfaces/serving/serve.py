@@ -5,6 +5,7 @@ Substeps, interpolation and the summing of impulses are done here, once for all 
 
 import math
 import reprlib
+import sys
 import time
 import traceback
 from collections.abc import Callable
@@ -25,8 +26,9 @@ from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
 MOST = 1e9  # steps in a window; more would never end
-LONGEST = 1 << 16  # characters of an error's text or traceback
-PATIENCE = 3600.0  # s between two orders; the coupler's death is noticed at once
+LONGEST_TEXT = 1 << 16  # characters of an error's text or traceback
+# s between two orders, in which others may build or compute; the coupler's death ends the wait.
+LONGEST_WAIT = 86400.0
 
 
 def divide(left: float, stable: float) -> int:
@@ -269,6 +271,9 @@ def peak_memory() -> int:
 
 def failure(error: BaseException) -> dict[str, Any]:
     """Put an error into the header that tells the coupler of it."""
+    if isinstance(error, MemoryError):
+        # What the failed functions hold is released, or there is none left to tell of it.
+        traceback.clear_frames(error.__traceback__)
     own = isinstance(error, QuintetError)
     said = str(error)
     if isinstance(error, SystemExit):
@@ -284,10 +289,10 @@ def failure(error: BaseException) -> dict[str, Any]:
 def sendable(text: str) -> str:
     """Text that a header can hold: valid UTF-8, and of a long one its beginning and its end."""
     text = text.encode("utf-8", "backslashreplace").decode("utf-8")
-    if len(text) <= LONGEST:
+    if len(text) <= LONGEST_TEXT:
         return text
-    left_out = len(text) - LONGEST
-    return f"{text[: LONGEST // 2]} … {left_out} characters … {text[-LONGEST // 2 :]}"
+    left_out, half = len(text) - LONGEST_TEXT, LONGEST_TEXT // 2
+    return f"{text[:half]} … {left_out} characters … {text[-half:]}"
 
 
 def answer(server: Server, line: Line, message: Message) -> bool:
@@ -295,9 +300,9 @@ def answer(server: Server, line: Line, message: Message) -> bool:
     try:
         header, fields = server.handle(message)
     except (Exception, SystemExit) as error:
-        if not isinstance(error, QuintetError):
-            traceback.print_exc()  # into the component's log, before the coupler looks there
-        line.send(failure(error), {})
+        told = failure(error)
+        print(told["traceback"], end="", file=sys.stderr, flush=True)  # into the component's log
+        line.send(told, {})
         return False
     line.send({"order": "done", **header}, fields)
     return message.order != "finish"
@@ -306,7 +311,7 @@ def answer(server: Server, line: Line, message: Message) -> bool:
 def serve(server: Server, line: Line) -> bool:
     """Answer the coupler until it says finish; tell whether all went well."""
     while True:
-        message = line.receive(PATIENCE)
+        message = line.receive(LONGEST_WAIT)
         if message.order == "abort":
             return False
         if not answer(server, line, message):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from quintet.coupler.files.recording import Recording
 from quintet.scenarios.two_springs import springs
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,9 +32,10 @@ dependencies = ["quintet"]
 
 [project.entry-points."quintet.components"]
 swing = "swing:Swing"
+adapter = "adapter:Adapter"
 
 [tool.setuptools]
-py-modules = ["swing"]
+py-modules = ["swing", "adapter"]
 """
 CASES = '''
 
@@ -52,14 +54,92 @@ class Swing(Mass):
         return (ConformCase("alone", params),
                 ConformCase("ridden", params, rest={"load.force": nothing, **ground}, scale=scale))
 '''
+ADAPTER = '''
+"""A program of its own, started anew for every step, moves it on by a metre."""
+
+import subprocess
+import sys
+
+import numpy as np
+
+from quintet.interfaces.component import Component, Port
+from quintet.interfaces.params import NotNegative, parameters
+from quintet.interfaces.ports import POSITION
+
+PROGRAM = """
+import sys, time
+way, seconds, x = sys.argv[1], *map(float, sys.argv[2:])
+end = time.monotonic() + seconds
+while time.monotonic() < end:
+    time.sleep(1.0 if way == "waits" else 0.0)
+print(x + 1.0)
+"""
+
+
+class Adapter(Component):
+    """What a program computes."""
+
+    takes = ()
+    gives = (Port("motion", (POSITION,)),)
+
+    @parameters
+    class Params:
+        """How long its program takes.
+
+        Parameters
+        ----------
+        seconds : s
+            Of the clock, for each step.
+        way
+            Whether the program computes all the time, or waits.
+        """
+
+        seconds: NotNegative
+        way: str = "computes"
+
+    def __init__(self, params):
+        self.params, self.x = params, 0.0
+
+    def stable_dt(self):
+        return 1.0
+
+    def take(self, fields):
+        pass
+
+    def step(self, dt):
+        words = [self.params.way, str(self.params.seconds), str(self.x)]
+        line = [sys.executable, "-c", PROGRAM, *words]
+        self.x = float(subprocess.run(line, check=True, capture_output=True, text=True).stdout)
+
+    def give(self, wanted):
+        return {"motion.position": np.full((1, 3), self.x)} if wanted else {}
+
+    def save(self):
+        return {"x": np.array(self.x)}
+
+    def load(self, state):
+        self.x = float(state["x"])
+'''
+ADAPTED = """
+name = "adapted"
+end = 2.0
+window = 1.0
+transport = "{transport}"
+output.fields = ["program.motion.position"]
+[components.program]
+kind = "adapter"
+seconds = {seconds}
+way = "{way}"
+"""
 
 
 def swings(folder):
-    """Write a package and a scene of two swings, one on the other."""
+    """Write a package of two modules, and a scene of two swings, one on the other."""
     package = folder / "swing"
     package.mkdir()
     (package / "pyproject.toml").write_text(PROJECT)
     (package / "swing.py").write_text(Path(springs.__file__).read_text() + CASES)
+    (package / "adapter.py").write_text(ADAPTER)
     scene = Path(springs.__file__).with_name("scene.toml").read_text()
     (folder / "swings.toml").write_text(scene.replace("springs:Mass", "swing"))
     return package
@@ -165,3 +245,29 @@ def test_packages_installed_by_pip_run_and_conform(by_pip, transport):
         status, said, _ = by_pip("conform", kind)
         assert status == 0 and f"{kind} conforms" in said, said
     assert "mooring" in by_pip("describe")[1]
+
+
+def adapted(quintet, transport, seconds, way):
+    """Run a component whose every step waits for a program; its positions."""
+    folder = quintet("--version")[2]
+    name = f"{way}-{transport}-{seconds}"
+    scene = folder / f"{name}.toml"
+    scene.write_text(ADAPTED.format(transport=transport, seconds=seconds, way=way))
+    status, said, _ = quintet("run", scene.name, "--out", name, seconds=4 * seconds + 60)
+    assert status == 0, said
+    with Recording(folder / name) as recording:
+        return recording.history("program", "motion.position", 0)[:, 0].tolist()
+
+
+@pytest.mark.slow
+@pytest.mark.zenoh
+def test_a_step_may_run_a_program(installed):
+    # Longer than a process may be silent before it is said who keeps the others waiting.
+    assert adapted(installed, "zenoh", 6, "waits") == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("transport", OVER)
+@pytest.mark.parametrize("way", ["computes", "waits"])
+def test_a_step_may_run_a_program_for_half_a_minute(installed, transport, way):
+    assert adapted(installed, transport, 30, way) == [0.0, 1.0, 2.0]

@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+import pyvista
 
 from quintet.coupler.cli import main
 from quintet.coupler.files.recording import Recording
+from quintet.coupler.files.vtkhdf_reader import scene as read_scene
+from quintet.coupler.files.vtkhdf_reader import times
 from quintet.coupler.report.diff import compare
 
 SCENE = str(Path(__file__).parent / "small_dam.toml")
@@ -84,3 +87,19 @@ def test_a_prescribed_cube_runs(tmp_path: Path) -> None:
 def test_views_are_left_for_every_component(live: tuple[Path, dict]) -> None:
     views = ["cube.vtkhdf", "cube.walls.vtkhdf", "water.vtkhdf", "water.walls.vtkhdf"]
     assert sorted(path.name for path in live[0].glob("*.vtkhdf")) == views
+
+
+def test_pyvista_opens_all_views_at_all_steps(live: tuple[Path, dict]) -> None:
+    for path in live[0].glob("*.vtkhdf"):
+        reader = pyvista.get_reader(str(path)).reader
+        reader.UpdateInformation()
+        assert reader.GetNumberOfSteps() == len(times(path)) > 0
+        for k, time in enumerate(times(path)):
+            reader.SetStep(k)
+            reader.Update()
+            mesh = pyvista.wrap(reader.GetOutput())
+            assert reader.GetTimeValue() == time and mesh.n_points and mesh.n_cells
+            assert list(mesh.field_data["scene"]) == [read_scene(path)] == ["small_dam"]
+            if path.name == "water.vtkhdf":
+                told = "points m; velocity m/s; density kg/m3; pressure Pa"
+                assert list(mesh.field_data["units"]) == [told]

@@ -233,6 +233,13 @@ def test_pyvista_opens_a_cloud_at_all_steps_with_its_units(tmp_path):
         assert list(mesh.field_data["scene"]) == ["a scene"]
 
 
+@pytest.mark.parametrize("cells", [None, CELLS])
+def test_pyvista_opens_a_file_with_one_step(tmp_path, cells):
+    _write(tmp_path / "a.vtkhdf", _views((4,), cells))
+    ((time, mesh),) = _pyvista_steps(tmp_path / "a.vtkhdf")
+    assert isinstance(mesh, pyvista.PolyData) and mesh.n_points == 4 and time == 0.0
+
+
 def test_pyvista_opens_faces_spheres_and_fields_over_faces_at_all_steps(tmp_path):
     _write(tmp_path / "a.vtkhdf", [_mixed(k) for k in range(4)])
     for k, (_, mesh) in enumerate(_pyvista_steps(tmp_path / "a.vtkhdf")):

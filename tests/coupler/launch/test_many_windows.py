@@ -20,9 +20,11 @@ import sys, time
 from pathlib import Path
 import numpy as np
 from quintet.coupler.launch.connect import connect
+from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import load
 folder, count = Path(sys.argv[1]), int(sys.argv[2])
-connection = connect(load(str(folder / "scene.toml")), folder, lambda: False)
+connection = connect(load(str(folder / "scene.toml")), folder, Watchdog(StopRequest()))
 part = connection.participants["echo"]
 part.call("describe")
 part.bind({}, works=[], joined=["passed", "returned"], wanted=["returned.value"])

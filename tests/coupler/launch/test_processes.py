@@ -1,4 +1,4 @@
-"""A watched process that ended or does nothing is told from one that works."""
+"""Of a watched process it is told what it does, and how it ended."""
 
 import os
 import signal
@@ -6,17 +6,31 @@ import subprocess
 import sys
 import time
 
+import psutil
 import pytest
 from started import write_scene
 
-from quintet.coupler.launch import mpi_job, processes
-from quintet.coupler.launch.processes import Watch, environment, tail
+from quintet.coupler.launch import mpi_job
+from quintet.coupler.launch.processes import end_marked, environment, marked, tail
+from quintet.coupler.launch.watch import Watch
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.lines.process_status import processor_time, running, state
+from quintet.interfaces.lines.process_status import running
 
 SLEEPS = "import time; time.sleep(60)"
 WORKS = "while True: pass"
+CHILD_WORKS = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {WORKS!r}])"
+CHILDREN_WORK = """
+import subprocess, sys
+while True:
+    subprocess.run([sys.executable, '-c', 'for n in range(1_000_000): pass'])
+"""
+# A process that starts another waits, as for a disk, until that one has opened its files.
+WAITS_FOR_DISK = """
+os.mkfifo('pipe')
+opens = [(os.POSIX_SPAWN_OPEN, 0, 'pipe', os.O_RDONLY, 0)]
+os.posix_spawn('/bin/true', ['true'], {}, file_actions=opens)
+"""
 TOUCHES = """
 import time
 while True:
@@ -28,9 +42,7 @@ while True:
 
 
 @pytest.fixture
-def watched(monkeypatch):
-    monkeypatch.setattr(processes, "QUIET_EXTRA", 0.6)
-    monkeypatch.setattr(processes, "INTERVAL", 0.2)
+def watched():
     started = []
 
     def start(code):
@@ -40,51 +52,66 @@ def watched(monkeypatch):
 
     yield start
     for process in started:
+        if process.poll() is None:
+            for child in psutil.Process(process.pid).children(recursive=True):
+                child.kill()
         process.kill()
         process.wait()
 
 
-def reason_within(watch, seconds):
-    """What the watch says within a time."""
+def activity_within(watch, seconds, words):
+    """What the watch says that a process does, until it says so or a time is over."""
     limit = time.monotonic() + seconds
-    while time.monotonic() < limit:
-        if reason := watch():
-            return reason
+    watch.begin()
+    while time.monotonic() < limit and words not in watch.activity:
+        watch.read()
         time.sleep(0.02)
-    return ""
+    return watch.described()
 
 
-def test_a_process_that_does_nothing_is_noticed(watched):
-    watch = watched(SLEEPS)
-    began = time.monotonic()
-    reason = reason_within(watch, 3.0)
-    assert 0.6 <= time.monotonic() - began < 1.5
-    assert reason.startswith("stopped responding: no answer and no processor time for")
-    assert f"process {watch.pid} is sleeping" in reason
+def ending_within(watch, seconds):
+    """How the watch says that a process ended."""
+    limit = time.monotonic() + seconds
+    while time.monotonic() < limit and watch.alive():
+        time.sleep(0.02)
+    return watch.ending()
 
 
-def test_a_stopped_process_is_called_so(watched):
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (SLEEPS, "sleeping"),
+        (WORKS, "computing"),
+        (TOUCHES, "computing"),
+        (CHILD_WORKS, "waiting for its children, which compute"),
+        (CHILDREN_WORK, "waiting for its children, which compute"),
+        (WAITS_FOR_DISK, "waiting for a disk"),
+    ],
+)
+def test_what_a_process_does_is_told(watched, tmp_path, code, words):
+    watch = watched(f"import os; os.chdir({str(tmp_path)!r})\n{code}")
+    assert activity_within(watch, 10.0, words) == f"process {watch.pid} is {words}"
+
+
+def test_a_process_is_stopped_when_it_is_found_so_twice(watched):
     watch = watched(WORKS)
+    assert not watch.stopped()
     os.kill(watch.pid, signal.SIGSTOP)
-    assert f"(process {watch.pid} is stopped)" in reason_within(watch, 3.0)
+    while psutil.Process(watch.pid).status() != psutil.STATUS_STOPPED:
+        time.sleep(0.01)
+    assert not watch.stopped() and watch.stopped()
+    os.kill(watch.pid, signal.SIGCONT)
+    while psutil.Process(watch.pid).status() == psutil.STATUS_STOPPED:
+        time.sleep(0.01)
+    assert not watch.stopped()
 
 
-@pytest.mark.parametrize("code", [WORKS, TOUCHES], ids=["all the time", "a tenth of the time"])
-def test_a_process_that_works_is_left_alone(watched, code):
-    assert reason_within(watched(code), 2.0) == ""
-
-
-def test_a_process_may_be_as_silent_as_it_usually_is(watched):
-    watch = watched(SLEEPS)
-    watch.usual = lambda: 1.0
-    assert reason_within(watch, 2.0) == ""
-
-
-def test_a_new_wait_begins_anew(watched):
-    watch = watched(SLEEPS)
-    for _ in range(4):
-        watch.reset()
-        assert reason_within(watch, 0.4) == ""
+def test_of_a_process_on_another_host_nothing_is_known():
+    watch = Watch("water")
+    watch.read()
+    watch.kill()
+    assert watch.alive() and not watch.stopped()
+    assert watch.described() == "its process is on another host"
 
 
 @pytest.mark.parametrize(
@@ -97,20 +124,20 @@ def test_a_new_wait_begins_anew(watched):
     ],
 )
 def test_how_a_process_ended_is_said(watched, code, words):
-    assert words in reason_within(watched(code), 5.0)
+    assert words in ending_within(watched(code), 5.0)
 
 
 def test_a_process_that_is_not_our_child_is_gone_when_it_is():
     process = subprocess.Popen([sys.executable, "-c", SLEEPS])
     watch = Watch("water", process.pid)
-    assert watch.alive() and running(process.pid) and state(process.pid) in "RS"
+    assert watch.alive() and running(process.pid)
     process.kill()
     while running(process.pid):
         time.sleep(0.01)
-    assert state(process.pid) == "Z"  # not yet awaited, and gone all the same
-    assert "is gone: it ended or was killed" in watch()
+    assert not watch.alive()  # not yet awaited, and gone all the same
+    assert "is gone: it ended or was killed" in watch.ending()
     process.wait()
-    assert state(process.pid) == "" and processor_time(process.pid) == 0.0
+    assert not running(process.pid)
 
 
 def test_ending_leaves_no_process_and_no_file(watched, tmp_path):
@@ -119,6 +146,21 @@ def test_ending_leaves_no_process_and_no_file(watched, tmp_path):
     watch.shared = [str(left), str(tmp_path / "never was")]
     watch.end(0.1)
     assert not watch.alive() and not left.exists()
+
+
+def test_all_that_a_process_has_started_is_found_and_ended(tmp_path):
+    apart = f"import os; os.setsid(); print('apart', flush=True); {SLEEPS}"
+    code = f"import subprocess, sys; subprocess.Popen([sys.executable, '-c', {apart!r}])"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        env={**os.environ, "QUINTET_TEST_MARK": str(tmp_path)},
+        stdout=subprocess.PIPE,
+    )
+    assert process.stdout.readline() == b"apart\n" and process.wait() == 0
+    assert len(list(marked("QUINTET_TEST_MARK", str(tmp_path)))) == 1
+    end_marked("QUINTET_TEST_MARK", str(tmp_path))
+    assert not [pid for pid in marked("QUINTET_TEST_MARK", str(tmp_path)) if running(pid)]
+    process.stdout.close()
 
 
 def test_a_component_gets_its_threads_and_the_import_path_without_where_we_are(monkeypatch):

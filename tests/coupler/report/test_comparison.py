@@ -7,6 +7,7 @@ from quintet.coupler.files.recording import Instant, Recorder, Recording
 from quintet.coupler.measures.expectation import Expectation, evaluate
 from quintet.coupler.report import comparison as drawing
 from quintet.coupler.report.comparison import comparison
+from quintet.coupler.scene.read import load
 from quintet.interfaces.ports import MOTION
 
 COMMON = {
@@ -44,9 +45,16 @@ def figure(monkeypatch, tmp_path):
 def test_expectations_of_one_curve_share_a_panel(figure):
     (panel,) = figure(X_RMS, X_PASSES, title="a scene").axes
     text = panel.get_title()
-    assert "x [rms]: RMS distance" in text and "x_$1: passes 0.3 0.3, expected" in text
+    assert "x [rms]: RMS distance" in text and "x_$1: passes 0.3 at 0.3, expected" in text
     computed, reference = panel.get_lines()[:2]
     assert len(computed.get_xdata()) == 50 and len(reference.get_xdata()) == 3
+
+
+@pytest.mark.parametrize("preset", ["quick", "standard"])
+def test_curves_of_the_main_job_have_one_panel_each(preset):
+    scene = load("dam_break_cubes", preset)
+    assert sum(one.csv is not None for one in scene.expect) == 2
+    assert len({drawing._curve_of(one) for one in scene.expect if one.csv is not None}) == 1
 
 
 def test_curves_have_axes_with_names_and_units(figure):

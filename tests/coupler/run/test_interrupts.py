@@ -30,6 +30,7 @@ def running(folder, transport):
 def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
     if transport == "memory":  # its log is the terminal's
         run = Started(write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3"))
+        run.wait_until(lambda: (run.folder / "recording.h5").is_file())
         time.sleep(1.5)
     else:
         run = running(tmp_path, transport)

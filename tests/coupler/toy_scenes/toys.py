@@ -26,10 +26,7 @@ class Toy(Component):
         seen: bool = False  # whether it has a view
         talks: bool = False  # whether it prints a line at every step
         fails_at: int = -1
-        fails_by: Literal["raise", "long", "odd", "sys.exit", "exit", "kill", "stop", "nan"] = (
-            "raise"
-        )
-        moment: str = ""  # file for the time of the failure
+        fails_by: Literal["raise", "long", "odd", "sys.exit", "kill"] = "raise"
 
     takes = (Port("in", NUMBER),)
     gives = (Port("out", NUMBER),)
@@ -59,9 +56,6 @@ class Toy(Component):
             print("step 50", flush=True)
 
     def fail(self):
-        if self.params.moment:
-            with open(self.params.moment, "w") as file:
-                file.write(repr(time.time()))
         match self.params.fails_by:
             case "raise":
                 raise ArithmeticError("asked to raise")
@@ -71,14 +65,8 @@ class Toy(Component):
                 raise ArithmeticError("asked to say \udcff")
             case "sys.exit":
                 sys.exit(0)
-            case "exit":
-                os._exit(0)
             case "kill":
                 os.kill(os.getpid(), signal.SIGKILL)
-            case "stop":
-                os.kill(os.getpid(), signal.SIGSTOP)
-            case "nan":
-                self.value = np.full_like(self.value, np.nan)
 
     def give(self, wanted):
         return {"out.number": self.value.copy(), "out.push": self.push.copy()}

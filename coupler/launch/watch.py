@@ -1,0 +1,133 @@
+"""One watched process: whether it lives, what it does, and where in its code it is."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import psutil
+
+from quintet.interfaces.lines.process_status import running
+
+BUSY = 0.02  # share of a core below which a process does not compute
+INTERVAL = 0.5  # s between two readings of processor times
+
+
+@dataclass(slots=True)
+class Watch:
+    """Watches a process of this host; of one elsewhere nothing is known.
+
+    Parameters
+    ----------
+    pid : int
+        0: on another host.
+    process : Popen or None
+        When it is our own child.
+    shared : list of str
+        Files in shared memory that it maps.
+    where : function
+        Tells where in its code it is, the innermost call first; "" if it does not say.
+    """
+
+    name: str
+    pid: int = 0
+    process: subprocess.Popen[bytes] | None = None
+    shared: list[str] = field(default_factory=list)
+    where: Callable[[], str] = lambda: ""
+    activity: str = ""  # what it did since the last reading
+    _read_at: float = 0.0
+    _times: tuple[float, float] = (0.0, 0.0)  # s, of its own and of its children
+    _stopped: int = 0  # readings that found it so, one after the other
+
+    def alive(self) -> bool:
+        """Whether the process still runs."""
+        if self.process:
+            return self.process.poll() is None
+        return self.pid == 0 or running(self.pid)
+
+    def ending(self) -> str:
+        """Describe how the process ended."""
+        code = self.process.returncode if self.process else None
+        if code is None:
+            return f"process {self.pid} is gone: it ended or was killed"
+        if code < 0:
+            return f"process {self.pid} was killed by signal {-code} ({signal.Signals(-code).name})"
+        return f"process {self.pid} ended by itself with status {code}, before it was told to"
+
+    def stopped(self) -> bool:
+        """Whether the process was stopped, and is not being debugged; asked again and again."""
+        try:
+            found = bool(self.pid) and psutil.Process(self.pid).status() == psutil.STATUS_STOPPED
+        except psutil.Error:
+            found = False
+        self._stopped = self._stopped + 1 if found else 0
+        return self._stopped > 1
+
+    def begin(self) -> None:
+        """Begin to find out what the process does: from now on."""
+        self.activity, self._read_at = "", 0.0
+
+    def read(self) -> None:
+        """Find out what the process did since the last reading, now and then."""
+        now = time.monotonic()
+        if not self.pid or now - self._read_at < INTERVAL:
+            return
+        with contextlib.suppress(psutil.Error):
+            process = psutil.Process(self.pid)
+            times = _processor_times(process)
+            if self._read_at:
+                own, children = (
+                    (new - old) / (now - self._read_at)
+                    for new, old in zip(times, self._times, strict=True)
+                )
+                self.activity = _activity(process.status(), own, children)
+            self._read_at, self._times = now, times
+
+    def described(self) -> str:
+        """What the process does, in words."""
+        if not self.pid:
+            return "its process is on another host"
+        return f"process {self.pid} is {self.activity or 'running'}"
+
+    def end(self, grace: float) -> None:
+        """Wait for the process to end, then kill it; remove its files in shared memory."""
+        limit = time.monotonic() + grace
+        while self.alive() and time.monotonic() < limit:
+            time.sleep(0.01)
+        self.kill()
+        if self.process:
+            self.process.wait()
+        for path in self.shared:
+            with contextlib.suppress(OSError):
+                os.unlink(path)
+
+    def kill(self) -> None:
+        """Kill the process."""
+        if self.pid and self.alive():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self.pid, signal.SIGKILL)
+
+
+def _processor_times(process: psutil.Process) -> tuple[float, float]:
+    """Processor time of a process and of all its children, those that ended included [s]."""
+    own = process.cpu_times()
+    children = own.children_user + own.children_system
+    for child in process.children(recursive=True):
+        with contextlib.suppress(psutil.Error):
+            times = child.cpu_times()
+            children += times.user + times.system + times.children_user + times.children_system
+    return own.user + own.system, children
+
+
+def _activity(status: str, own: float, children: float) -> str:
+    """What a process does, from its state and the shares of a core that are used."""
+    if status == psutil.STATUS_STOPPED:
+        return "stopped"
+    if status == psutil.STATUS_DISK_SLEEP:
+        return "waiting for a disk"
+    if own > BUSY:
+        return "computing"
+    return "waiting for its children, which compute" if children > BUSY else "sleeping"

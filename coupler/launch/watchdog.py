@@ -1,0 +1,227 @@
+"""The watchdog of a run: a thread that sees who died and who keeps the others waiting.
+
+It decides; the thread that couples carries it out when it next looks, or is made to look. What
+a component may take is never known, so that a false alarm is worse than a late one: nothing is
+limited while a component is built or compiles its kernels, and nobody is ended who has not kept
+the others waiting for his patience beyond three of his usual windows. A stopped process is ended
+at once: nothing goes on by itself there.
+"""
+
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.launch import stack
+from quintet.coupler.launch.watch import Watch
+
+LOOKING = 0.05  # s between two looks at all components
+LONGEST_LOOK = 1.0  # s; if more has passed, this process itself was stopped meanwhile
+USUAL, EXTRA = 3.0, 5.0  # told after 3 usual windows and 5 s
+DEAD = 0.3  # s until a death is told; before, whoever waits for the component knows more
+ENDING, SAVING = 0.9, 1.3  # s to end a window, and to save, after an end was asked for
+OBEYING, AT_ONCE = 0.5, 0.15  # s for the thread that couples to carry out a verdict
+POKE = signal.SIGURG  # makes the main thread look; without a handler it does nothing
+
+
+class Request(Protocol):
+    """Whether a run is asked to end."""
+
+    def __call__(self) -> bool:
+        """Return whether to end."""
+
+    def at_once(self) -> bool:
+        """Return whether to end without waiting for anything."""
+
+    @property
+    def leave(self) -> Callable[[], None] | None:
+        """Ends this process, with all that is left to do; None where it may not be ended."""
+
+
+@dataclass(slots=True)
+class Watched:
+    """One component, and for how long it has kept the others waiting."""
+
+    participant: Participant
+    watch: Watch
+    patience: float  # s
+    since: float = 0.0  # when the wait began, as the participant has it
+    waited: float = 0.0  # s
+    tell_at: float = 0.0  # s of waiting
+    end_at: float = 0.0  # s of waiting
+    told: bool = False
+    dead_since: float = 0.0
+    may_end: bool = False  # it was told to finish
+
+    def begin(self, since: float) -> None:
+        """Begin a new wait."""
+        self.since, self.waited, self.told = since, 0.0, False
+        self.watch.begin()
+        usual = USUAL * self.participant.timing.usual
+        self.end_at = usual + self.patience
+        self.tell_at = min(usual + EXTRA, self.end_at) if self.participant.built else self.end_at
+
+
+@dataclass(slots=True)
+class Watchdog:
+    """Watches all components of a run while they are joined to the coupler.
+
+    Parameters
+    ----------
+    stop : Request
+        Asks for the end of the run.
+    own : bool
+        Whether components run in the main thread of this process.
+    """
+
+    stop: Request
+    own: bool = False
+    verdict: BaseException | None = None  # why the run is to end
+    _all: dict[str, Watched] = field(default_factory=dict)
+    _asked_at: float = 0.0
+    _judged_at: float = 0.0
+    _peeked_at: float = 0.0
+    _last: float = 0.0
+    _closed: threading.Event = field(default_factory=threading.Event)
+    _thread: threading.Thread | None = None
+
+    def add(self, participant: Participant, watch: Watch, patience: float) -> None:
+        """Watch a component too."""
+        one = self._all[participant.name] = Watched(participant, watch, patience)
+        participant.verdict = lambda: self.verdict
+        participant.line.watch = lambda: self.check(one)
+        if self._thread is None:
+            self._last = time.monotonic()
+            self._thread = threading.Thread(target=self._run, name="watchdog", daemon=True)
+            self._thread.start()
+
+    def check(self, awaited: Watched) -> str:
+        """Say why an answer will not come; raise what ends the run. For the thread that couples."""
+        if self.verdict:
+            raise self.verdict
+        now = time.monotonic()
+        if now - self._peeked_at > 2 * LOOKING:
+            self._peeked_at = now + LONGEST_LOOK  # what is received now looks here too
+            for one in self._all.values():
+                if one is not awaited and one.participant.has_failed():
+                    one.participant.receive()  # raises its failure
+            self._peeked_at = now
+        return "" if awaited.watch.alive() else awaited.watch.ending()
+
+    def expect_ends(self) -> None:
+        """From now on components may end."""
+        for one in self._all.values():
+            one.may_end = True
+
+    def close(self) -> None:
+        """Watch no more."""
+        self._closed.set()
+        if self._thread and self._thread is not threading.current_thread():
+            self._thread.join(1.0)
+
+    def _run(self) -> None:
+        while not self._closed.wait(LOOKING):
+            now = time.monotonic()
+            passed, self._last = min(now - self._last, LONGEST_LOOK), now
+            if self.verdict:
+                self._enforce(now)
+                continue
+            self._look_for_stop(now)
+            for one in list(self._all.values()):
+                self._look_for_death(one, now)
+                self._look_for_wait(one, passed)
+
+    def _look_for_stop(self, now: float) -> None:
+        if not self.stop():
+            return
+        self._asked_at = self._asked_at or now
+        waited = [one.participant for one in self._all.values() if one.participant.waited_since]
+        saves = any(one.order in ("save", "finish") for one in waited)
+        late = bool(waited) and now - self._asked_at > (SAVING if saves else ENDING)
+        if late or self.stop.at_once():
+            self._judge(KeyboardInterrupt())
+
+    def _look_for_death(self, one: Watched, now: float) -> None:
+        if one.may_end or one.watch.alive():
+            return
+        one.dead_since = one.dead_since or now
+        if now - one.dead_since > DEAD:
+            joined = "" if one.participant.order else "did not join: "
+            self._judge(self._failed(one, joined + one.watch.ending()))
+
+    def _look_for_wait(self, one: Watched, passed: float) -> None:
+        participant, watch = one.participant, one.watch
+        since = participant.waited_since
+        if since != one.since:
+            if one.told:
+                say(f"{participant.name} goes on after {one.waited:.1f} s")
+            one.begin(since)
+        if not since:
+            return
+        one.waited += passed
+        if not self.own and watch.stopped():
+            watch.activity = "stopped"
+            self._judge(self._failed(one, f"stopped responding: {watch.described()}"))
+            return
+        if one.waited > 0.2 * one.tell_at:
+            watch.read()
+        if one.waited > min(one.tell_at, one.end_at):
+            self._tell_or_end(one)
+
+    def _tell_or_end(self, one: Watched) -> None:
+        calls = one.watch.where()
+        if one.participant.waited_since != one.since:
+            return  # it has answered
+        participant, doing = one.participant, one.watch.described()
+        place = participant.window
+        if stack.compiles(calls):
+            doing = doing.replace("computing", "compiling")
+        what = f"for {one.waited:.1f} s in window {place}" if participant.built else "to be built"
+        usual = f", usually {participant.timing.usual:.2g} s" if participant.timing.usual else ""
+        where = stack.innermost(calls)
+        over = one.waited > one.end_at
+        if over and participant.built and not stack.compiles(calls):
+            at = f", at {where[0].removeprefix('  File ')}" if where else ""
+            cause = f"stopped responding: kept the others waiting {what}{usual}; {doing}{at}"
+            self._judge(self._failed(one, cause, calls))
+            return
+        if over:
+            one.end_at += one.patience
+        one.told, one.tell_at = True, 2.0 * one.waited
+        say(f"{participant.name} keeps the others waiting {what}{usual}: {doing}", where)
+
+    def _failed(self, one: Watched, cause: str, calls: str = "") -> ComponentFailed:
+        return ComponentFailed(one.participant.name, one.participant.window, cause, calls)
+
+    def _judge(self, verdict: BaseException) -> None:
+        """Decide that the run ends."""
+        if self.verdict is None:
+            self.verdict, self._judged_at = verdict, self._last
+            self._poke()
+
+    def _enforce(self, now: float) -> None:
+        """Make the thread that couples carry out the verdict, or do without it."""
+        if now - self._judged_at < (AT_ONCE if self.stop.at_once() else OBEYING):
+            return
+        self._judged_at = now
+        self._poke()
+        if not self.own:
+            for one in self._all.values():
+                one.watch.kill()
+        elif self.stop.at_once() or isinstance(self.verdict, ComponentFailed):
+            if self.stop.leave:
+                self.stop.leave()
+
+    def _poke(self) -> None:
+        ident = threading.main_thread().ident
+        if self.own and ident and signal.getsignal(POKE) is not signal.SIG_DFL:
+            signal.pthread_kill(ident, POKE)
+
+
+def say(text: str, lines: list[str] | None = None) -> None:
+    """Print what the user should know now."""
+    print("\n".join([f"\nquintet: {text}", *(lines or [])]), file=sys.stderr, flush=True)

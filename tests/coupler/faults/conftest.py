@@ -1,0 +1,25 @@
+"""What tests of faults share: a scene with a component that does as it is told."""
+
+import shutil
+
+import pytest
+from started import TOYS, Started, write_scene
+
+
+@pytest.fixture
+def faulty(tmp_path):
+    """Start a scene whose second component is of a class of toy_faults.py."""
+    started = []
+
+    def start(kind, transport, pong, top="", end=0.1):
+        shutil.copy(TOYS.with_name("toy_faults.py"), tmp_path)
+        scene = write_scene(tmp_path, transport, end, pong=pong)
+        text = f"{top}\n{scene.read_text()}"
+        scene.write_text(f"toy_faults:{kind}".join(text.rsplit("toys:Toy", 1)))
+        started.append(Started(scene))
+        return started[-1]
+
+    yield start
+    for run in started:
+        run.end()
+        run.process.communicate()

@@ -1,0 +1,199 @@
+"""Every fault over every transport: what a run then does, as a table.
+
+``python tests/coupler/faults/fault_matrix.py`` tries all of them and writes the table into
+coupler/README.md. The tests hold each to the same rules.
+"""
+
+import re
+import shutil
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Thread
+
+ROOT = Path(__file__).resolve().parents[3]
+TOYS = ROOT / "tests/coupler/toy_scenes"
+if __name__ == "__main__":
+    sys.path.insert(0, str(TOYS))
+
+from started import Started, write_scene  # noqa: E402
+
+TABLE = ROOT / "coupler/README.md"
+BEGIN, END = "<!-- faults -->", "<!-- end of faults -->"
+TRANSPORTS = ("memory", "zenoh", "mpi")
+AT = 60  # window in which it fails
+SOON = 1.0  # s within which a death is told
+TOLD = 5.0  # s, and 3 usual windows, within which a hang is
+ENDED = 1.5  # s after that until the run is over
+DEATHS = "is gone: it ended or was killed"  # over MPI, where it is no child of the coupler
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One way to fail.
+
+    `kind` is what becomes of the process: it says so itself, it is dead, stopped, or it hangs.
+    """
+
+    name: str
+    kind: str
+    cause: str
+    transports: tuple[str, ...] = TRANSPORTS
+    over_mpi: str = ""  # the cause, where it differs
+
+
+PROCESSES = ("zenoh", "mpi")
+HANGS = "stopped responding: kept the others waiting for"
+FAULTS = [
+    Fault("exception", "said", "ArithmeticError: asked to raise"),
+    Fault("sys.exit", "said", "SystemExit: asked Python to exit, with status 0"),
+    Fault("os._exit", "dead", "ended by itself with status 0", PROCESSES, DEATHS),
+    Fault("SIGKILL", "dead", "was killed by signal 9 (SIGKILL)", PROCESSES, DEATHS),
+    Fault("SIGSTOP", "stopped", "stopped responding: process", PROCESSES),
+    Fault("deadlock", "hangs", HANGS, PROCESSES),
+    Fault("endless loop", "hangs", HANGS),
+    Fault("compiled loop", "hangs", HANGS),
+    Fault("polling loop", "hangs", HANGS),
+    Fault("NaN", "said", "every number of out.number must be finite; item 0 is [nan nan nan]"),
+    Fault("wrong shape", "said", "out.number"),
+    Fault("out of memory", "said", "MemoryError: "),
+]
+CASES = [(one, transport) for one in FAULTS for transport in one.transports]
+
+
+@dataclass
+class Outcome:
+    """What a run did."""
+
+    status: int
+    results: dict
+    err: str
+    told: float  # s after the fault until the screen said who keeps the others waiting
+    said: float  # s until it said what failed
+    took: float  # s until the run had ended
+    left: list = field(default_factory=list)
+
+
+def fail(fault, transport, folder, patience):
+    """Run a scene of two components, one of which fails."""
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy(TOYS / "toy_faults.py", folder)
+    moment = folder / "moment"
+    pong = f'fails_at = {AT}\nfails_by = "{fault.name}"\nmoment = "{moment}"'
+    pong += f"\nchild = {str(transport != 'memory').lower()}"
+    scene = write_scene(folder, transport, 100.0, pong=pong)
+    text = scene.read_text().replace(
+        "[components.ping]", f"patience = {patience}\n[components.ping]"
+    )
+    scene.write_text("toy_faults:Faulty".join(text.rsplit("toys:Toy", 1)))
+    run = Started(scene)
+    lines = []
+
+    def read(stream):
+        for line in stream:
+            lines.append((time.time(), line))
+
+    readers = [Thread(target=read, args=[one]) for one in (run.process.stdout, run.process.stderr)]
+    for one in readers:
+        one.start()
+    try:
+        status = run.process.wait(60.0 + patience)
+    finally:
+        ended = time.time()
+        left = [*run.processes(), *run.left_in_shared_memory()]
+        run.end()
+        for one in readers:
+            one.join(5.0)
+        run.process.stdout.close()
+        run.process.stderr.close()
+    assert moment.is_file(), f"it came to no fault: {lines}"
+    at = float(moment.read_text())
+    told = next((then for then, line in lines if "keeps the others waiting" in line), ended)
+    said = next((then for then, line in lines if "failed in window" in line), ended)
+    err = "".join(line for _, line in lines)
+    there = (run.folder / "results.json").is_file()
+    results = run.results if there else {}
+    return Outcome(status, results, err, told - at, said - at, ended - at, left)
+
+
+def wrong(fault, transport, patience, found, slack=0.5):
+    """Rules that a run broke; a loaded machine may need some seconds more."""
+    broken = []
+
+    def must(true, rule):
+        if not true:
+            broken.append(rule)
+
+    must(found.status == 3, f"status 3; found {found.status}")
+    must(found.results.get("status") == "failed", "results.json must say failed")
+    blamed = found.results.get("fault", {})
+    must(blamed.get("component") == "pong", f"culprit pong; found {blamed.get('component')}")
+    must(blamed.get("window") == AT, f"window {AT}; found {blamed.get('window')}")
+    cause = (transport == "mpi" and fault.over_mpi) or fault.cause
+    must(cause in blamed.get("cause", ""), f"cause {cause}; found {blamed.get('cause')}")
+    must(f"quintet: pong failed in window {AT}: " in found.err, "the screen must say so")
+    must(not found.left, f"nothing left; found {found.left}")
+    if fault.kind == "hangs":
+        limit = min(TOLD, patience) + slack
+        first = min(found.told, found.said)
+        must(first < limit, f"told within {limit} s; found {first:.2f}")
+        limit = patience + 1.0 + slack
+        must(patience < found.said < limit, f"ended after {patience} s; found {found.said:.2f}")
+        must("in fail" in blamed.get("traceback", ""), "its stack")
+        must("toy_faults.py" in found.err, "its stack on the screen")
+    else:
+        must(found.said < SOON + slack, f"told within {SOON} s; found {found.said:.2f}")
+    late = found.took - found.said
+    must(late < ENDED + slack, f"over {ENDED} s later; found {late:.2f}")
+    return broken
+
+
+def cell(fault, transport, patience, found):
+    """What the table says of one run."""
+    if broken := wrong(fault, transport, patience, found):
+        return "; ".join(broken)
+    if fault.kind == "hangs":
+        return f"{found.told:.1f} s, {found.said:.1f} s"
+    return f"{found.said:.2f} s"
+
+
+def table(patience):
+    """Try everything; return the rows."""
+    rows = [
+        f"| fault | {' | '.join(TRANSPORTS)} | the cause, as reported |",
+        "|---" * (len(TRANSPORTS) + 2) + "|",
+    ]
+    for fault in FAULTS:
+        cells, cause = [], ""
+        for transport in TRANSPORTS:
+            if transport not in fault.transports:
+                cells.append("")
+                continue
+            with tempfile.TemporaryDirectory() as folder:
+                found = fail(fault, transport, Path(folder) / "run", patience)
+            cells.append(cell(fault, transport, patience, found))
+            if transport != "mpi" or not cause:
+                cause = found.results.get("fault", {}).get("cause", "")
+            print(fault.name, transport, cells[-1], flush=True)
+        rows.append(f"| {fault.name} | {' | '.join(cells)} | {shortened(cause)} |")
+    return rows
+
+
+def shortened(cause):
+    """A cause without what differs from run to run."""
+    cause = re.sub(r"process \d+", "its process", cause)
+    cause = re.sub(r'File "[^"]*/', 'File "', cause).replace("|", "/").replace("\n", " ")
+    return cause if len(cause) < 160 else cause[:157] + "..."
+
+
+def main(patience=8.0):
+    """Write the table."""
+    rows = "\n".join(table(patience))
+    before, _, rest = TABLE.read_text().partition(BEGIN)
+    TABLE.write_text(f"{before}{BEGIN}\n{rows}\n{END}{rest.partition(END)[2]}")
+
+
+if __name__ == "__main__":
+    main()

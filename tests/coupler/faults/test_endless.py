@@ -1,0 +1,65 @@
+"""Signals end every run, whatever a component does."""
+
+import os
+import signal
+import time
+
+import pytest
+
+HANGS = ("deadlock", "endless loop", "compiled loop", "polling loop")
+AT_ONCE = 2.0  # s
+LOADED = 3.0  # s that a loaded machine may add
+SHORT = [("deadlock", "zenoh", "SIGINT"), ("endless loop", "mpi", "SIGTERM")]
+ALL = [
+    (by, transport, number)
+    for by in HANGS
+    for transport in ("zenoh", "mpi")
+    for number in ("SIGINT", "SIGTERM")
+]
+
+
+def hanging(start, folder, transport, by):
+    """A run with a component that hangs."""
+    moment = folder / "moment"
+    pong = f'fails_at = 60\nfails_by = "{by}"\nmoment = "{moment}"'
+    run = start("Faulty", transport, pong, end=100.0)
+    run.wait_until(moment.is_file, 60.0)
+    time.sleep(0.2)
+    return run
+
+
+def end(run, *numbers):
+    """Ask a run to end, again and again; return after how long it has."""
+    began = time.monotonic()
+    for number in numbers:
+        os.kill(run.process.pid, getattr(signal, number))
+        time.sleep(0.2)
+    run.out, run.err = run.process.communicate(timeout=20)
+    took = time.monotonic() - began
+    print(f"ended after {took:.2f} s")
+    assert run.process.returncode == 130
+    assert run.results["status"] == "interrupted" and run.results["windows"] == 60
+    assert "fault" not in run.results
+    assert f"{numbers[0]}: ending after this window" in run.err
+    assert not run.processes() and not run.left_in_shared_memory()
+    return took
+
+
+@pytest.mark.parametrize(("by", "transport", "number"), SHORT)
+def test_one_signal_ends_a_run_that_hangs(faulty, tmp_path, by, transport, number):
+    assert end(hanging(faulty, tmp_path, transport, by), number) < AT_ONCE + LOADED
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(("by", "transport", "number"), ALL)
+def test_it_does_so_in_time(faulty, tmp_path, by, transport, number):
+    assert end(hanging(faulty, tmp_path, transport, by), number) < AT_ONCE
+
+
+def test_over_memory_one_signal_interrupts_python(faulty, tmp_path):
+    assert end(hanging(faulty, tmp_path, "memory", "polling loop"), "SIGTERM") < AT_ONCE + LOADED
+
+
+def test_over_memory_two_signals_end_compiled_code(faulty, tmp_path):
+    run = hanging(faulty, tmp_path, "memory", "compiled loop")
+    assert end(run, "SIGINT", "SIGINT") < AT_ONCE + LOADED
