@@ -210,6 +210,10 @@ def join_ports(
         instants = _instants(exchange, name, numbers, outputs)
         one.prime(instants, shares=exchange.shares(name))
         coupling.ledger.primed(name, instants)
+    for one in participants.values():
+        one.order_prepare()  # all at the same time, for some compile
+    for one in participants.values():
+        one.prepared()
 
 
 def _instants(

@@ -34,6 +34,7 @@ class Timing:
     compute: float = 0.0  # s, as the component itself measured
     cpu: float = 0.0  # s of processor time in its windows, all threads
     wait: float = 0.0  # s that the coupler waited for it
+    prepare: float = 0.0  # s, what it did before its first window, such as compiling
     first: float = 0.0  # s, its first window
     steps: int = 0
     windows: int = 0  # that were ordered, repetitions counted
@@ -143,7 +144,16 @@ class Participant:
         """Join its ports: who reads what, and with what forces do work."""
         answer = self.call("bind", static, **header)
         self.timing.items = int(answer.header["items"])
-        self.stable = float(answer.header["stable"])
+
+    def order_prepare(self) -> None:
+        """Order that it compile, or whatever else it does before its first step; no limit holds."""
+        self.built = False
+        self.send_order("prepare")
+
+    def prepared(self) -> None:
+        """Wait until that is done."""
+        header = self.receive().header
+        self.stable, self.timing.prepare = float(header["stable"]), float(header["seconds"])
 
     def prime(self, fields: Fields, **header: Any) -> None:
         """Tell it what holds as the run begins."""

@@ -73,7 +73,7 @@ def timing(participants: dict[str, Participant], wall: float, mapping: float) ->
             "memory": one.memory or None,
         }
         exchange += max(0.0, one.wait - one.compute)
-        compile_time += max(0.0, one.first - one.usual)
+        compile_time += one.prepare + max(0.0, one.first - one.usual)
     return {
         "wall": wall,
         "compile": compile_time,

@@ -33,6 +33,7 @@ from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.run.start_report import StartReport
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import DiskError, LinkError, QuintetError, SceneError
@@ -93,12 +94,15 @@ class Running:
         self.costs = Costs()
         self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
         self.participants: dict[str, Participant] = {}
+        self._start = StartReport(log_files(scene, folder))
+        self.writer.on_begin = self._start.close
         self._connection: Connection | None = None
         self._ending = threading.Lock()
 
     def run(self) -> None:
         """Join the components and couple them to the end, or until a signal ends it."""
         scene = self.scene
+        self._start.show()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
         self.participants = connection.participants
         coupling = assemble(
@@ -116,6 +120,7 @@ class Running:
     def end(self, error: BaseException | None) -> int:
         """End it, with what went wrong if something did; write the results; tell the status."""
         with self._ending:
+            self._start.close()
             writer, lost = self.writer, False
             if isinstance(error, KeyboardInterrupt) or isinstance(
                 self.watchdog.verdict, KeyboardInterrupt
@@ -146,6 +151,14 @@ class Running:
             sys.stdout.flush()
             sys.stderr.flush()
             os._exit(status)
+
+
+def log_files(scene: Scene, folder: Path) -> dict[str, Path]:
+    """Logs of the components that are processes of their own on this host."""
+    if scene.transport == "memory":
+        return {}
+    here = [name for name in scene.components if name not in scene.elsewhere]
+    return {name: folder / "log" / f"{name}.log" for name in here}
 
 
 def make_folder(scene: Scene, folder: Path) -> None:

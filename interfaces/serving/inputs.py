@@ -85,6 +85,13 @@ class Inputs:
             array.flags.writeable = False
         return given
 
+    def at_start(self) -> dict[str, Array]:
+        """Instants as they are at the window's beginning."""
+        given = {key: array.view() for key, array in self.start.items()}
+        for array in given.values():
+            array.flags.writeable = False
+        return given
+
     def _mean_rate(self, key: str, rate: str, begin: float, end: float, window: float) -> Array:
         if self.fields[key].kind != "rotation":
             moved = self._at(key, end, window) - self._at(key, begin, window)

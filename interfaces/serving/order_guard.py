@@ -11,6 +11,7 @@ LEGAL: dict[str, dict[str, str]] = {
     "ready": {
         "give": "ready",
         "prime": "ready",
+        "prepare": "ready",
         "advance": "ready",
         "keep": "ready",
         "rewind": "ready",

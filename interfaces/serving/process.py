@@ -20,6 +20,7 @@ from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
 from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.malloc import keep_freed_memory
+from quintet.interfaces.serving.notices import listen, notice
 from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.serve import LONGEST_WAIT, Server, failure, serve
 
@@ -66,6 +67,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     faulthandler.enable()
     faulthandler.register(STACK_SIGNAL, all_threads=False)
     keep_freed_memory()
+    listen(say)
     say(f"{given.name}: {manifest.title}, process {os.getpid()}")
     try:
         line = over_mpi(given.name) if given.mpi else over_zenoh(given)
@@ -110,7 +112,10 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
         raise SceneError(mistakes)
-    return make(manifest.load(), params, resources)
+    notice("importing the solver")
+    solver = manifest.load()
+    notice("building")
+    return make(solver, params, resources)
 
 
 def over_zenoh(given: argparse.Namespace) -> Line:

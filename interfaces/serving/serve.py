@@ -62,6 +62,7 @@ class Server:
             "describe": self._describe,
             "bind": self._bind,
             "prime": self._prime,
+            "prepare": self._prepare,
             "give": self._give,
             "advance": self._advance,
             "keep": self._keep,
@@ -92,7 +93,7 @@ class Server:
                 raise OrderError(f"order bind: {reprlib.repr(position)} is not taken here.")
             if force in self.outputs.through and velocity in taken:
                 self.outputs.works.append((force, velocity, position))
-        return {"items": self.component.items(), "stable": self.stable()}, {}
+        return {"items": self.component.items()}, {}
 
     def stable(self) -> float:
         """Largest step that the component allows now [s]."""
@@ -106,6 +107,12 @@ class Server:
         self.inputs.arrive(message.fields, (), 1.0)
         self.component.prime(message.fields)
         return {"notes": self._notes()}, {}
+
+    def _prepare(self, _: Message) -> Answer:
+        began = time.perf_counter()
+        self.component.prepare(self.inputs.at_start())
+        self._stable = None
+        return {"stable": self.stable(), "seconds": time.perf_counter() - began}, {}
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()

@@ -232,13 +232,13 @@ def test_an_error_goes_back_over_the_line_with_its_traceback(capsys):
         raise ArithmeticError("no such thing")
 
     server.component.stable_dt = broken
-    for order in ("describe", "bind"):
+    for order in ("describe", "bind", "prepare"):
         line.send({"order": order}, {})
-    assert line.receive(0.0).order == "done"
+    assert [line.receive(0.0).order for _ in range(2)] == ["done", "done"]
     failed = line.receive(0.0)
     assert failed.order == "failed" and failed.header["error"] == "ArithmeticError"
     assert "no such thing" in failed.header["text"] and "in broken" in failed.header["traceback"]
-    assert going == [True, False]
+    assert going == [True, True, False]
     assert "no such thing" in capsys.readouterr().err  # and into the component's log
 
 
