@@ -66,7 +66,8 @@ NUMBER: Rule = _is_number, "a number"
 TIME: Rule = _is_time, "a time in s"
 SUMS: Rule = _is_sums, "sums of fields"
 ANSWERS: dict[str, dict[str, Rule]] = {
-    "bind": {"items": COUNT, "stable": NUMBER},
+    "bind": {"items": COUNT},
+    "prepare": {"stable": NUMBER, "seconds": TIME},
     "advance": {
         "steps": COUNT,
         "stable": NUMBER,

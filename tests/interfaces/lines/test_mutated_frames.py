@@ -52,9 +52,17 @@ def scene(tmp_path_factory):
     return load(str(write_scene(tmp_path_factory.mktemp("scene"), end=0.003, ping=TOY, pong=TOY)))
 
 
+class Unwatched:
+    """Watches nobody: a thread for each of thousands of runs would take all the time."""
+
+    def add(self, *_): ...
+
+    def close(self): ...
+
+
 def run_of(scene, tap=lambda line: None):
     """Run a scene in memory, with its lines tapped; return the lines."""
-    connection = InMemory(scene)
+    connection = InMemory(scene, Unwatched())
     lines = [one.line for one in connection.participants.values()]
     for line in lines:
         tap(line)
