@@ -22,6 +22,9 @@ def state(params: SphFluidParams) -> State:
     wall = np.concatenate([wall_points(params), obstacle_points(params)])
     pairs = zip(boxes, params.fluid, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
+    if params.shapes:
+        more = shape_points(params)
+        boxes, dense = boxes + more, dense + shape_density(more, params)
     made = State.empty(sum(map(len, boxes)), len(wall))
     made.position_density[:, :3] = np.concatenate([*boxes, wall])
     made.position_density[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
@@ -29,10 +32,43 @@ def state(params: SphFluidParams) -> State:
     if params.wave is not None:
         moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
         made.velocity_pressure[: len(moves), :3] = moves
+    if params.initial is not None:
+        _write_initial(made, params)
     if params.acoustic_damper > 0.0:
         made.minus_rho_div_u = np.zeros(made.particles)
     made.largest_acceleration = math.hypot(*params.gravity)
     return made
+
+
+def shape_points(params: SphFluidParams) -> list[Array]:
+    """Particles (n, 3) m of each shape that is no box."""
+    # Left out of scenes whose fluid is in boxes.
+    from quintet.components.sph_fluid.setup.shape_filling import fill_shape
+
+    return [fill_shape(one, params.spacing, params.dimensions == 2) for one in params.shapes]
+
+
+def shape_density(points: list[Array], params: SphFluidParams) -> list[Array]:
+    """Density (n,) kg/m3 of each shape: under its highest point at rest, or ρ₀."""
+    return [
+        hydrostatic(some, shape.box, params)
+        if shape.hydrostatic
+        else np.full(len(some), params.density)
+        for some, shape in zip(points, params.shapes, strict=True)
+    ]
+
+
+def _write_initial(made: State, params: SphFluidParams) -> None:
+    """Write velocity and density as a scene gives them."""
+    # Left out of scenes whose fluid starts at rest.
+    from quintet.components.sph_fluid.setup.initial_fields import initial_density, initial_velocity
+
+    points = made.position_density[: made.fluid, :3]
+    velocity, density = initial_velocity(points, params), initial_density(points, params)
+    if velocity is not None:
+        made.velocity_pressure[: made.fluid, :3] = velocity
+    if density is not None:
+        made.position_density[: made.fluid, 3] = density
 
 
 def fill_box(box: Box, params: SphFluidParams) -> Array:

@@ -7,6 +7,7 @@ from pydantic import NonNegativeInt
 
 from quintet.components.sph_fluid.setup import geometry
 from quintet.components.sph_fluid.setup.checks import check
+from quintet.components.sph_fluid.setup.expressions import Expression
 from quintet.components.sph_fluid.setup.geometry import (
     Axis,
     Box,
@@ -16,8 +17,16 @@ from quintet.components.sph_fluid.setup.geometry import (
     Spot,
     UprightFace,
 )
+from quintet.components.sph_fluid.setup.shapes import FluidShape
 from quintet.components.sph_fluid.setup.standing_wave import StandingWave
-from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
+from quintet.interfaces.params import (
+    DataFile,
+    Fraction,
+    NotNegative,
+    Positive,
+    Vector,
+    parameters,
+)
 
 
 @parameters
@@ -126,6 +135,32 @@ class Gauges:
 
 
 @parameters
+class InitialFields:
+    """How the fluid moves at the start, and how dense it is.
+
+    Expressions are of x, y and z [m], as "0.1 * sin(2 * pi * x)": numbers, pi, + - * / **, sin,
+    cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, atan2, hypot, min, max, where(a < b, c, d).
+    A table is a CSV file whose first line names its columns: of x, y, z [m] those that it depends
+    on, of u, v, w [m/s] and density [kg/m3] what it gives. Its rows are the points of a rectangular
+    grid; between them it is linear, beyond them as at its edge.
+
+    Parameters
+    ----------
+    velocity : m/s
+        Along x, y and z, each a number or an expression.
+    density : kg/m3
+        A number or an expression, within 10 % of ρ₀: pressure follows from it by Tait's equation,
+        the mass of particles does not. Without it pressure is hydrostatic.
+    table
+        Name of a table, beside the scene.
+    """
+
+    velocity: tuple[Expression, Expression, Expression] | None = None
+    density: Expression | None = None
+    table: DataFile | None = None
+
+
+@parameters
 class SphFluidParams:
     """A fluid that fills boxes, in an open tank; SI.
 
@@ -142,6 +177,10 @@ class SphFluidParams:
         Artificial, ten times the largest velocity or more, and at least 10 √(g depth).
     fluid : m
         Boxes full of fluid, each by its lowest and highest corner.
+    shapes
+        Fluid in other shapes.
+    initial
+        Velocity and density of the fluid at the start, where it is not at rest.
     remove_inside_bodies
         Whether fluid that is inside joined bodies at the start is removed; with mdbc.
     dimensions
@@ -210,7 +249,9 @@ class SphFluidParams:
 
     spacing: Positive
     sound_speed: Positive
-    fluid: tuple[Box, ...]
+    fluid: tuple[Box, ...] = ()
+    shapes: tuple[FluidShape, ...] = ()
+    initial: InitialFields | None = None
     remove_inside_bodies: bool = False
     dimensions: Literal[2, 3] = 3
     kernel: Literal["cubic", "wendland"] = "cubic"

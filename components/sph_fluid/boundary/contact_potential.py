@@ -37,7 +37,12 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.laws import Constants, ContactPotential, WallRepulsion
 from quintet.components.sph_fluid.pairs.constants import constants, wall_repulsion
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import depth, levels, slab_thickness
+from quintet.components.sph_fluid.setup.geometry import (
+    depth,
+    fluid_boxes,
+    levels,
+    slab_thickness,
+)
 from quintet.components.sph_fluid.state import Array, State, Whole
 
 SAFE = 0.2  # of √(m/(∂F/∂d)): the step
@@ -101,7 +106,7 @@ def pressure_at_rest(points: Array, params: SphFluidParams, body: Array | None =
     """
     gravity = params.hydrostatic_gravity
     size = math.hypot(*gravity)
-    top = max(levels(box, gravity)[1] for box in params.fluid)  # m, against gravity
+    top = max(levels(box, gravity)[1] for box in fluid_boxes(params))  # m, against gravity
     found = np.maximum(params.density * (size * top + points @ np.array(gravity)), 0.0)
     if body is None:
         return np.asarray(found)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import slab_thickness
+from quintet.components.sph_fluid.setup.geometry import fluid_boxes, slab_thickness
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import DIMENSIONS, THICKNESS
@@ -34,7 +34,7 @@ def require_one_metre(params: SphFluidParams) -> None:
 
 def in_plane(fields: Fields, params: SphFluidParams) -> dict[str, Array]:
     """Positions and velocities (n, 3) of samples in the fluid's own plane, wherever theirs is."""
-    low, high = params.fluid[0][0][1], params.fluid[0][1][1]
+    (_, low, _), (_, high, _) = fluid_boxes(params)[0]
     found = {key: np.array(array) for key, array in fields.items()}
     for key, array in found.items():
         array[:, 1] = 0.0 if key == "surface.velocity" else low + 0.5 * (high - low)

@@ -7,6 +7,7 @@ from quintet.components.sph_fluid.setup.geometry import (
     Box,
     closed_faces,
     depth,
+    fluid_boxes,
     hydrostatic_gravity,
 )
 from quintet.components.sph_fluid.setup.mass import check_mass
@@ -19,7 +20,7 @@ ROUNDING = 1e-6  # of a spacing
 
 def check(params: "SphFluidParams") -> None:
     """Refuse what cannot be computed."""
-    if not params.fluid:
+    if not params.fluid and not params.shapes:
         raise ValueError("fluid must have at least one box; found none. Add a box.")
     check_boxes(params)
     check_mass(params)
@@ -29,6 +30,16 @@ def check(params: "SphFluidParams") -> None:
     check_slab(params)
     check_symmetry(params)
     check_methods(params)
+    if params.shapes:
+        # Left out of scenes whose fluid is in boxes.
+        from quintet.components.sph_fluid.setup.shape_checks import check_shapes
+
+        check_shapes(params)
+    if params.initial is not None:
+        # Left out of scenes whose fluid starts at rest.
+        from quintet.components.sph_fluid.setup.initial_fields import check_initial
+
+        check_initial(params, fluid_boxes(params))
     if params.wave is not None:
         params.wave.check(params.fluid, params.gravity)
 
@@ -53,13 +64,15 @@ def check_walls(params: "SphFluidParams") -> None:
     _check_corners("boundary.walls", edge.walls, params.spacing)
     low, high = edge.walls
     tolerance = ROUNDING * params.spacing
-    for number, box in enumerate(params.fluid):
+    named = [(f"fluid[{number}]", box) for number, box in enumerate(params.fluid)]
+    named += [(f"shapes[{number}]", shape.box) for number, shape in enumerate(params.shapes)]
+    for whose, box in named:
         for axis, name in enumerate("xyz"):
             below = box[0][axis] < low[axis] - tolerance and f"{name}-" not in edge.open_faces
             above = box[1][axis] > high[axis] + tolerance and f"{name}+" not in edge.open_faces
             if below or above:
                 raise ValueError(
-                    f"fluid[{number}] must be inside the walls along {name}, "
+                    f"{whose} must be inside the walls along {name}, "
                     f"{low[axis]} to {high[axis]} m; found {box[0][axis]} to "
                     f"{box[1][axis]} m. Move the box, or add the face to boundary.open_faces."
                 )
@@ -107,7 +120,7 @@ def check_sound(params: "SphFluidParams") -> None:
 def check_slab(params: "SphFluidParams") -> None:
     """In two dimensions all is one slab."""
     walls = params.boundary.walls
-    boxes = [*params.fluid, *([] if walls is None else [walls])]
+    boxes = [*fluid_boxes(params), *([] if walls is None else [walls])]
     sides = {(low[1], high[1]) for low, high in boxes}
     if params.dimensions == 2 and (len(sides) > 1 or params.gravity[1] != 0.0):
         raise ValueError(

@@ -30,6 +30,11 @@ def cells(box: Box, params: "SphFluidParams") -> tuple[int, int, int]:
     return (x, y, z) if params.dimensions == 3 else (x, 1, z)
 
 
+def fluid_boxes(params: "SphFluidParams") -> tuple[Box, ...]:
+    """Boxes of fluid, and those around its other shapes."""
+    return *params.fluid, *(shape.box for shape in params.shapes)
+
+
 def closed_faces(params: "SphFluidParams") -> tuple[Face, ...]:
     """Faces at which the tank has wall particles."""
     edge = params.boundary
@@ -64,7 +69,7 @@ def wall_faces(params: "SphFluidParams") -> list[Array]:
 
 def slab_thickness(params: "SphFluidParams") -> float:
     """Of the slab [m] that a particle's mass is counted over; 1 in three dimensions."""
-    low, high = params.fluid[0]
+    low, high = fluid_boxes(params)[0]
     return high[1] - low[1] if params.dimensions == 2 else 1.0
 
 
@@ -91,5 +96,5 @@ def depth(params: "SphFluidParams") -> float:
     gravity = hydrostatic_gravity(params)
     if not any(gravity):
         return 0.0
-    found = [level for box in params.fluid for level in levels(box, gravity)]
+    found = [level for box in fluid_boxes(params) for level in levels(box, gravity)]
     return max(found) - min(found)

@@ -35,6 +35,16 @@ def parts(params: "SphFluidParams") -> Iterator[Part]:
         if params.dimensions == 2:
             edges[1] = 1.0
         yield Part(f"fluid[{number}]", math.prod(edges), math.prod(cells(box, params)))
+    if params.shapes:
+        # Left out of scenes whose fluid is in boxes.
+        from quintet.components.sph_fluid.setup.shape_filling import particle_count
+
+        planar = params.dimensions == 2
+        for number, shape in enumerate(params.shapes):
+            (_, low, _), (_, high, _) = shape.box
+            volume = shape.volume / (high - low if planar else 1.0)
+            count = particle_count(shape, params.spacing, planar)
+            yield Part(f"shapes[{number}]", volume, count)
 
 
 def particle_volume(params: "SphFluidParams") -> float:

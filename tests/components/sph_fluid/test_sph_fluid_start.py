@@ -1,0 +1,280 @@
+"""How fluid starts: fields by expressions and tables, shapes that are no boxes, room for bodies."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from fluid_params import fluid_params, nested
+
+from quintet.components.sph_fluid import MANIFEST, SphFluidParams
+from quintet.components.sph_fluid.boundary.removal import inside_body
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.setup.expressions import values_at
+from quintet.coupler.coupling.body_samples import fill, mirrors
+from quintet.interfaces.params import read
+from quintet.interfaces.ports import BOX, SPHERE
+
+SPACING = 0.02
+CUBE = ((0.0, 0.0, 0.0), (0.2, 0.2, 0.2))
+ROOM = {"spacing": SPACING, "sound_speed": 30.0, "gravity": (0.0, 0.0, 0.0)}
+
+
+def mistakes(folder=None, **given):
+    return "\n".join(read(SphFluidParams, nested(ROOM | given), "water", folder)[1])
+
+
+def fluid(**given):
+    return SphFluid(fluid_params(**(ROOM | given)))
+
+
+def points(one):
+    return one.state.position_density[: one.state.fluid, :3]
+
+
+def test_velocity_and_density_are_fields_of_the_place():
+    one = fluid(
+        fluid=(CUBE,),
+        initial__velocity=("-2 * (y - 0.1)", "2 * (x - 0.1)", 0.25),
+        initial__density="1000 + where(z < 0.1, 5, 0) * cos(pi * x / 0.2)**2",
+    )
+    x, y, z = points(one).T
+    found = one.state.velocity_pressure[: one.state.fluid, :3]
+    np.testing.assert_allclose(found, np.stack([-2 * (y - 0.1), 2 * (x - 0.1), 0.25 + 0 * x], 1))
+    density = 1000.0 + np.where(z < 0.1, 5.0, 0.0) * np.cos(math.pi * x / 0.2) ** 2
+    np.testing.assert_allclose(one.state.position_density[: one.state.fluid, 3], density)
+    # A vortex about the middle, which also drifts: of a lattice, Σ m ω r².
+    assert one.totals().momentum == pytest.approx([0.0, 0.0, 2.0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1 + 2 * 3", 7.0),
+        ("-x ** 2", -0.25),
+        ("min(x, y) + max(x, y)", 1.25),
+        ("where(x <= 0.5, 1, 2)", 1.0),
+        ("hypot(3, 4) + abs(-1) + sqrt(4) + atan2(0, 1)", 8.0),
+        ("exp(log(3)) + sinh(0) + cosh(0) + tanh(0) + tan(0) + sin(pi)", 4.0),
+    ],
+)
+def test_expressions_have_the_value_of_mathematics(text, value):
+    found = values_at(text, np.array([[0.5, 0.75, 1.0]] * 2), "v")
+    assert found == pytest.approx([value, value])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "__import__('os').system('true')",
+        "().__class__",
+        "x.real",
+        "x[0]",
+        "lambda: x",
+        "[x for x in (1,)]",
+        "f'{x}'",
+        "open('file')",
+        "sin(x, y)",
+        "sin(*x)",
+        "hypot(x, y=1)",
+        "x if y else z",
+        "x and y",
+        "True",
+        "'text'",
+        "1j",
+        "t",
+        "(x := 1)",
+        "x <",
+        "",
+        "x\x00",
+        "-" * 200 + "x",
+        "(" * 300 + "x" + ")" * 300,
+        "x + " * 400 + "x",
+    ],
+)
+def test_what_is_no_expression_is_refused_and_never_run(text):
+    sentence = mistakes(fluid=(CUBE,), initial__density=text)
+    assert "an expression must" in sentence and "\n" not in sentence, sentence
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"initial.density": "1 / (x - x)"}, "density must be finite in all of the fluid"),
+        ({"initial.velocity": [0, "log(-1 - x)", 0]}, "velocity must be finite"),
+        ({"initial.velocity": [0, "9**9**9**9", 0]}, "velocity must be finite"),
+        ({"initial.density": 1200.0}, "within 10 % of 1000 kg/m3"),
+        ({"initial.table": "none.csv"}, "file none.csv must lie beside the scene"),
+    ],
+)
+def test_fields_that_cannot_be_are_refused(given, sentence):
+    assert sentence in mistakes(fluid=(CUBE,), **given)
+
+
+def write(path: Path, text: str) -> Path:
+    (path / "start.csv").write_text(text)
+    return path
+
+
+def test_a_table_is_linear_between_its_rows(tmp_path):
+    rows = [f"{x},{z},{3 * x + z},{1000 + z}" for z in (0.2, 0.0) for x in (0.0, 0.2, 0.1)]
+    folder = write(tmp_path, "x, z, u, density\n" + "\n".join(rows) + "\n")
+    table = nested(ROOM | {"fluid": (CUBE,), "initial.table": "start.csv"})
+    params, wrong = read(SphFluidParams, table, "water", folder)
+    assert not wrong
+    one = SphFluid(params)
+    x, _, z = points(one).T
+    velocity = one.state.velocity_pressure[: one.state.fluid, :3]
+    np.testing.assert_allclose(velocity[:, 0], 3.0 * x + z, atol=1e-12)
+    assert not velocity[:, 1:].any()
+    np.testing.assert_allclose(one.state.position_density[: one.state.fluid, 3], 1000.0 + z)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("x,u\n0,1\n0,2\n", "a row for each point of a rectangular grid"),
+        ("x,z,u\n0,0,1\n1,1,2\n", "a row for each point of a rectangular grid"),
+        ("x,speed\n0,1\n", "must have columns of finite numbers"),
+        ("x,u\n0,nan\n", "must have columns of finite numbers"),
+        ("x,u\n0,much\n", "lines of numbers"),
+        ("", "lines of numbers"),
+    ],
+)
+def test_a_table_that_is_none_is_refused(tmp_path, text, sentence):
+    folder = write(tmp_path, text)
+    assert sentence in mistakes(folder, fluid=(CUBE,), initial__table="start.csv")
+
+
+SPHERE_SHAPE = {"shape": "sphere", "centre": [0.1, 0.1, 0.1], "diameter": 0.17}
+SHAPES = [
+    (SPHERE_SHAPE, math.pi / 6.0 * 0.17**3),
+    (
+        {"shape": "cylinder", "centre": [0.0, 0.0, 0.1], "diameter": 0.13, "height": 0.2},
+        math.pi / 4.0 * 0.13**2 * 0.2,
+    ),
+    (
+        {
+            "shape": "prism",
+            "axis": "y",
+            "corners": [[0.0, 0.0], [0.3, 0.0], [0.3, 0.07], [0.1, 0.07], [0.0, 0.2]],
+            "ends": [0.0, 0.1],
+        },
+        0.1 * (0.3 * 0.07 + 0.5 * 0.13 * 0.1),
+    ),
+]
+
+
+@pytest.mark.parametrize(("shape", "volume"), SHAPES, ids=["sphere", "cylinder", "prism"])
+def test_a_shape_weighs_what_it_holds_and_stays_inside(shape, volume):
+    one = fluid(shapes=(shape,))
+    assert one.totals().mass == pytest.approx(1000.0 * volume, rel=1e-9)
+    # Nearly as many particles as volumes of a cube.
+    assert one.state.fluid == pytest.approx(volume / SPACING**3, rel=0.1)
+    low, high = np.array(one.params.shapes[0].box)
+    assert ((points(one) > low - 0.5 * SPACING) & (points(one) < high + 0.5 * SPACING)).all()
+    assert MANIFEST.plan is not None and MANIFEST.plan(one.params).items == one.items()
+
+
+def test_particles_of_a_sphere_lie_in_it():
+    away = np.linalg.norm(points(fluid(shapes=(SPHERE_SHAPE,))) - 0.1, axis=1)
+    assert away.max() < 0.5 * 0.17 + 0.5 * SPACING
+    assert np.sqrt((away**2).mean()) == pytest.approx(math.sqrt(0.6) * 0.085, rel=0.02)
+
+
+def test_a_shape_in_a_slab_is_a_disc():
+    disc = {"shape": "cylinder", "axis": "y", "centre": [0.3, 0.5, 0.5], "diameter": 0.2}
+    box = ((0.0, 0.0, 0.0), (0.6, 1.0, 0.2))
+    one = fluid(dimensions=2, fluid=(box,), shapes=(disc | {"height": 1.0},))
+    assert one.totals().mass == pytest.approx(1000.0 * (0.12 + math.pi * 0.01), rel=1e-9)
+
+
+def test_a_surface_from_a_file_is_filled(tmp_path):
+    mesh = trimesh.creation.icosphere(subdivisions=3, radius=1.0)
+    mesh.export(tmp_path / "ball.stl")
+    ball = {"shape": "mesh", "file": "ball.stl", "scale": 0.1, "position": [0.3, 0.2, 0.1]}
+    params, wrong = read(SphFluidParams, nested(ROOM | {"shapes": [ball]}), "water", tmp_path)
+    assert not wrong
+    one = SphFluid(params)
+    assert one.totals().mass == pytest.approx(1000.0 * 1e-3 * float(mesh.volume), rel=1e-6)
+    away = np.linalg.norm(points(one) - [0.3, 0.2, 0.1], axis=1)
+    assert away.max() < 0.1 + 0.5 * SPACING
+    assert one.totals().momentum == pytest.approx([0.0] * 3)
+    assert points(one).mean(axis=0) == pytest.approx([0.3, 0.2, 0.1], abs=0.1 * SPACING)
+
+
+def test_a_column_starts_hydrostatic_and_a_drop_without_weight():
+    column, drop = SHAPES[1][0], SPHERE_SHAPE | {"centre": [0.4, 0.0, 0.3], "hydrostatic": False}
+    one = fluid(shapes=(column, drop), gravity=(0.0, 0.0, -9.81))
+    place = points(one)
+    density = one.state.position_density[: one.state.fluid, 3]
+    falls = place[:, 0] > 0.2
+    assert (density[falls] == 1000.0).all()
+    pressure = 900.0 * 1000.0 / 7.0 * ((density[~falls] / 1000.0) ** 7 - 1.0)
+    np.testing.assert_allclose(pressure, 9810.0 * (0.2 - place[~falls, 2]), rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"shapes": [{"shape": "sphere", "diameter": 1.0}]}, "a sphere needs centre and diameter"),
+        (
+            {"shapes": [SPHERE_SHAPE | {"diameter": 0.1}], "fluid": [CUBE]},
+            r"shapes[0] must not overlap fluid[0]",
+        ),
+        ({"shapes": [SPHERE_SHAPE, SPHERE_SHAPE]}, r"shapes[1] must not overlap shapes[0]"),
+        ({"shapes": [SPHERE_SHAPE], "dimensions": 2}, "a cylinder or a prism along y"),
+        (
+            {"shapes": [SPHERE_SHAPE], "boundary.walls": [[0.05, 0.0, 0.0], [1.0, 1.0, 1.0]]},
+            "shapes[0] must be inside the walls along x",
+        ),
+        (
+            {"shapes": [SHAPES[2][0] | {"corners": [[0, 0], [1, 1], [1, 0], [0, 1]]}]},
+            "does not cross itself",
+        ),
+        ({"shapes": [SHAPES[2][0] | {"ends": [0.1, 0.0]}]}, "the lower and the upper end"),
+        ({}, "fluid must have at least one box"),
+    ],
+)
+def test_shapes_that_cannot_be_are_refused(given, sentence):
+    assert sentence in mistakes(**given)
+
+
+def at_rest(shape, size, centre):
+    arm, normal, volume = fill(shape, size, SPACING, 3.0 * SPACING)
+    image = mirrors(shape, size, arm, normal)
+    return centre + arm, centre + image, volume
+
+
+@pytest.mark.parametrize("shape", [SPHERE, BOX])
+def test_what_is_inside_a_body_is_found_by_its_samples(shape):
+    size, centre = np.full(3, 0.17), np.array([0.2, 0.21, 0.19])
+    place, image, _ = at_rest(shape, size, centre)
+    some = np.random.default_rng(3).uniform(0.0, 0.4, (20000, 3))
+    if shape == SPHERE:
+        depth = 0.085 - np.linalg.norm(some - centre, axis=1)
+    else:
+        depth = 0.085 - np.abs(some - centre).max(axis=1)
+    found = inside_body(some, place, image, SPACING)
+    assert found[depth > 0.0].all()
+    assert not found[depth < -0.15 * SPACING].any()
+
+
+def test_fluid_inside_bodies_is_removed_and_its_mass_told():
+    one = fluid(fluid=(CUBE,), remove_inside_bodies=True, boundary__method="mdbc")
+    size, centre = np.full(3, 0.08), np.array([0.1, 0.1, 0.1])
+    place, image, volume = at_rest(BOX, size, centre)
+    static = {"surface.volume": volume, "surface.body": np.zeros(len(volume))}
+    one.bind({"surface.normal": place, **static}, frozenset({"surface"}))
+    fields = {"surface.position": place, "surface.velocity": 0.0 * place, "surface.mirror": image}
+    one.prime(fields)
+    assert one.notes() == (
+        "body 0 stood in the fluid: 64 particles inside it, 0.512 kg, were removed",
+    )
+    assert one.totals().mass == pytest.approx(8.0 - 0.512)
+    assert np.abs(points(one) - 0.1).max(axis=1).min() > 0.04
+    for _ in range(5):
+        one.take(fields)
+        one.step(one.stable_dt())
+    assert one.totals().mass == pytest.approx(8.0 - 0.512)
