@@ -273,7 +273,7 @@ def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
         raise SceneError("--resume replaces nothing. Remove --force.")
     folder = given.resume.resolve()
     check_ours(folder, "run")
-    snapshot = snapshots.latest(folder)
+    snapshot = snapshots.latest(folder, given.inside_mpi)
     scene = _load(given) if given.scene else snapshots.scene_of(snapshot, given.transport)
     snapshots.check_same(scene, folder)
     return scene, folder, snapshot

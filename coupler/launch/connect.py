@@ -216,7 +216,8 @@ def accept(scene: Scene, one: Participant, hello: Message, watch: Watch, folder:
         )
     if header.get("host") == socket.gethostname():
         watch.pid = int(header["pid"])
-        watch.shared = [str(path) for path in header.get("shared", [])]
+        told = map(Path, map(str, header.get("shared", [])))
+        watch.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
         watch.where = partial(
             stack.of_process, watch.pid, int(header["stack"]), log_of(folder, one.name)
         )

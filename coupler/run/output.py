@@ -1,5 +1,6 @@
 """Output during a run: recording, views, ledger, snapshots."""
 
+import contextlib
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -139,7 +140,7 @@ class OutputWriter:
     def _keep(self, coupling: Coupling) -> None:
         """Make a snapshot, with all rows written that the run had until then."""
         if self._recorder:
-            self._recorder.flush()
+            self._recorder.sync()
         save(coupling, self.scene, self.folder, self.logs)
         self._kept = time.monotonic()
 
@@ -191,9 +192,7 @@ class OutputWriter:
 
     def close(self) -> None:
         """Close all files, however the run ended."""
-        if self._progress:
-            self._progress.close()
-        if self._recorder:
-            self._recorder.close()
-        for file in self._files.values():
-            file.close()
+        with contextlib.ExitStack() as stack:  # all, even if one cannot be written
+            for one in (*self._files.values(), self._recorder, self._progress):
+                if one:
+                    stack.callback(one.close)

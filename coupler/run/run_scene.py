@@ -3,6 +3,8 @@
 import os
 from pathlib import Path
 
+from quintet.coupler.files.disk import reserve
+from quintet.coupler.files.run_files import RESULTS
 from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin, files_of, go_on
@@ -46,6 +48,7 @@ def resume_scene(scene: Scene, folder: Path, snapshot: Path, own_process: bool =
     """Continue a run from one of its snapshots; return the exit status."""
     check_machine(scene)
     with go_on(folder, "run"):
+        reserve(folder, RESULTS)
         print(headline(scene, folder), flush=True)
         return _run(scene, folder, snapshot, own_process)
 

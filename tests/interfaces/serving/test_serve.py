@@ -195,7 +195,7 @@ def test_orders_out_of_turn_and_windows_that_are_no_numbers_are_refused():
     server = served([1.0])
     with pytest.raises(OrderError, match="window 0 is next; window 4 was ordered"):
         advance(server, 4)
-    with pytest.raises(OrderError, match="a window has a whole number; found 'one'"):
+    with pytest.raises(OrderError, match="window must be a whole number from 0; found 'one'"):
         server.handle(Message({"order": "advance", "window": "one"}))
 
 
