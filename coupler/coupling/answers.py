@@ -91,6 +91,9 @@ def check_answer(order: str, answer: Message) -> None:
         raise MessageError(
             f"the answer to {order} must be done or failed; found {reprlib.repr(answer.order)}."
         )
+    notes = answer.header.get("notes", [])
+    if not (isinstance(notes, list) and all(isinstance(one, str) for one in notes)):
+        raise MessageError(f"the answer to {order}: notes must be a list of texts.")
     for key, (is_right, words) in ANSWERS.get(order, {}).items():
         value = answer.header.get(key)
         if not is_right(value):

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from quintet.interfaces.component import Component, Field, Port, Totals
+from quintet.interfaces.errors import PortError
 from quintet.interfaces.manifest import BenchCase, Manifest
 from quintet.interfaces.params import Count, parameters
 
@@ -41,6 +42,8 @@ class Toy(Component):
         return 1e-3 / self.params.substeps
 
     def take(self, fields):
+        if any(field.shape != self.value.shape for field in fields.values()):
+            raise PortError(f"a toy takes fields of shape {self.value.shape} only")
         self.value = 0.9 * self.value + 0.1 * fields.get("in.number", self.value)
         self.value = self.value + 1e-3 * fields.get("in.push", self.push)
 
