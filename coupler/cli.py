@@ -12,6 +12,7 @@ from quintet.interfaces.errors import LineError, QuintetError, SceneError
 if TYPE_CHECKING:
     from quintet.coupler.scene.scene import Scene
 
+LONGEST = 2000  # characters of a sentence
 BAD = 2  # exit status of bad input: nothing was started
 
 
@@ -22,8 +23,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         require_writable(getattr(given, "json", None))
         status = given.does(given)
     except SceneError as error:
-        for mistake in error.mistakes:  # names may hold what would break a line
-            print(f"quintet: {' '.join(mistake.splitlines())}", file=sys.stderr)
+        for mistake in error.mistakes:
+            print(f"quintet: {sentence(mistake)}", file=sys.stderr)
         status = BAD
     except QuintetError as error:
         print(f"quintet: {error}", file=sys.stderr)
@@ -32,6 +33,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 0
     sys.exit(status)
+
+
+def sentence(mistake: str) -> str:
+    """Write a mistake on one line, whatever names are in it; of a very long one both ends."""
+    line = " ".join(mistake.splitlines())
+    return line if len(line) <= LONGEST else f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
 
 
 def require_writable(path: object) -> None:
@@ -266,7 +273,7 @@ def _resumed(given: argparse.Namespace) -> tuple["Scene", Path, Path]:
         raise SceneError("--resume replaces nothing. Remove --force.")
     folder = given.resume.resolve()
     check_ours(folder, "run")
-    snapshot = snapshots.latest(folder)
+    snapshot = snapshots.latest(folder, given.inside_mpi)
     scene = _load(given) if given.scene else snapshots.scene_of(snapshot, given.transport)
     snapshots.check_same(scene, folder)
     return scene, folder, snapshot

@@ -163,6 +163,17 @@ class Component(ABC):
     def prime(self, fields: Fields) -> None:  # noqa: B027  (most need none)
         """Learn what the inputs that are instants are as the run begins; once, after `bind`."""
 
+    def prepare(self, fields: Fields) -> None:  # noqa: B027  (most need none)
+        """Do what takes long before the first step, such as compiling; the state stays as it is.
+
+        All components of a run do so at the same time, and its clock starts afterwards.
+
+        Parameters
+        ----------
+        fields : mapping of arrays
+            Inputs at the start, as `take` gets them.
+        """
+
     @abstractmethod
     def stable_dt(self) -> float:
         """Largest step that the present state allows [s]: told after every window."""

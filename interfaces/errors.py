@@ -38,6 +38,10 @@ class LineError(QuintetError):
     """A connection broke, lost a message, or stayed silent past its deadline."""
 
 
+class DiskError(QuintetError):
+    """A file that cannot be written: its disk is full, gone, or may only be read."""
+
+
 class RunError(QuintetError):
     """A run that failed on the way; carries the folder with its results and logs."""
 

@@ -25,7 +25,8 @@ FLOORS = {
         {"serving"},
     ],
     "coupler": [
-        {"coupling", "files"},
+        {"files"},
+        {"coupling"},
         {"measures"},
         {"scene"},
         {"launch", "report", "reference"},

@@ -11,9 +11,12 @@ velocity of a box's corner too, and nearly for a box that falls flat on four of 
 
 A box is what a sphere of radius `edge_radius` sweeps when its centre moves through a smaller box:
 its faces are exact. Two boxes touch where a corner of one is near the other (8 + 8 spheres against
-rounded boxes) and where two edges cross; that is all that convex polyhedra can do. Spheres and
-their unions touch boxes by their exact distance. Contacts along an edge or face thus need no row of
-small spheres, whose bumps would add to the friction.
+rounded boxes) and where two edges cross; that is all that convex polyhedra can do. A sharp edge
+yields until it is blunt: contacts of boxes and polygons have at least the radius of a default edge
+radius, and that of a body a tenth as thick as it is long, however sharp or thin they are; so they
+may be deeper than edges are round (`contact/sharp.py`). Spheres and their unions touch boxes by
+their exact distance. Contacts along an edge or face thus need no row of small spheres, whose bumps
+would add to the friction.
 
 An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
 cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.

@@ -25,6 +25,7 @@ from quintet.components.dem_bodies.shapes.placement import (
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.dem_bodies.state import (
     COLUMNS,
+    DEEPEST_PAIR,
     OMEGA,
     RADIUS,
     REPORTED,
@@ -107,13 +108,28 @@ def skin(bodies: Sequence[Body], solids: Sequence[Solid]) -> float:
 
 
 def contact_length(body: Body, one: Solid) -> float:
-    """Smallest contact radius [m]; of a box at least that of a rounded, less slender one."""
+    """Smallest radius [m] by which a body bears; of a box at least that of a less slender one."""
     radius = float(one.radii.min())
     if body.corners is not None:
         return max(radius, ROUNDED * max(planar.shortest_edge(body), THIN * float(one.size.max())))
     if body.size is None:
         return radius
     return max(radius, ROUNDED * max(min(body.size), THIN * max(body.size)))
+
+
+def contact_radii(body: Body, one: Solid) -> Numbers:
+    """Radii (s,) m by which the spheres of a body bear: of corners, that of a blunt edge."""
+    if body.size is None and body.corners is None:
+        return one.radii
+    return np.full(len(one.radii), contact_length(body, one))
+
+
+def half_thickness(body: Body) -> float:
+    """Half the least width [m] of a box or polygon."""
+    if body.size is not None:
+        return 0.5 * min(body.size)
+    corner = planar.corners(body)
+    return float(-planar.polygon_distance(corner, np.zeros((1, 2)))[0])
 
 
 def material_pairs(params: DemBodiesParams) -> Numbers:
@@ -168,6 +184,7 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
     names = {name: k for k, name in enumerate(params.materials)}
     n = len(bodies) + 1
     half, rounded = np.zeros((n, 3)), np.zeros(n)
+    bearing, thickness = np.zeros(n), np.full(n, np.inf)
     counts, edges = np.zeros(n + 1, np.int64), np.zeros(n + 1, np.int64)
     for k, body in enumerate(bodies):
         counts[k + 1] = len(solids[k].radii)
@@ -177,6 +194,8 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
             edges[k + 1] = len(EDGES)
         elif body.corners is not None:
             rounded[k] = edge_radius(body)
+        if rounded[k] > 0.0:
+            bearing[k], thickness[k] = contact_length(body, solids[k]), half_thickness(body)
     material = [names[body.material] for body in bodies] + [0]
     balls = [is_ball(body) for body in bodies]
     first = np.cumsum(counts)
@@ -197,6 +216,9 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
         others=np.flatnonzero(~np.array(balls)),
         half_extent=half,
         edge_radius=rounded,
+        body_contact_radius=bearing,
+        half_thickness=thickness,
+        sharp=bearing > rounded,
         polygon=np.array([*(body.corners is not None for body in bodies), False]),
         bounding_radius=np.array([bounding_radius(body) for body in bodies]),
         material=np.array(material),
@@ -205,6 +227,9 @@ def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) 
         sphere_row=np.repeat(np.arange(n), counts[1:]),
         sphere_centre=np.vstack([one.centres for one in solids]),
         sphere_radius=np.concatenate([one.radii for one in solids]),
+        contact_radius=np.concatenate(
+            [contact_radii(body, one) for body, one in zip(bodies, solids, strict=True)]
+        ),
         edge_begin=np.cumsum(edges),
         edge_ends=np.vstack(boxes) if boxes else np.zeros((0, 2), np.int64),
         plane=np.column_stack([normals, (normals * points).sum(axis=1)]),
@@ -257,7 +282,8 @@ def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> Sta
     motion[:-1, RADIUS] = [bounding_radius(body) for body in bodies]
     motion[:-1, VELOCITY : VELOCITY + 3] = [body.velocity for body in bodies]
     motion[:-1, OMEGA : OMEGA + 3] = [body.angular_velocity for body in bodies]
-    rows = np.array([*number, n - 1])
+    rows, report = np.array([*number, n - 1]), np.zeros(REPORTED)
+    report[DEEPEST_PAIR] = -1.0  # nothing touches as far as is known
     return State(
         body=rows,
         row=np.argsort(rows),
@@ -271,7 +297,7 @@ def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> Sta
         world_inverse_inertia=np.array([packed(world) for world in inverses] + [np.zeros(6)]),
         centre=np.zeros((spheres, 3)),
         listed_centre=np.full((spheres, 3), np.inf),
-        report=np.zeros(REPORTED),
+        report=report,
     )
 
 
@@ -294,7 +320,7 @@ def expected_frequency(
     for body, one in zip(bodies, solids, strict=True):
         k = names.index(body.material)
         lightest[k] = max(lightest[k], largest_inverse_effective_mass(one))
-        largest[k] = max(largest[k], one.radii.max())
+        largest[k] = max(largest[k], contact_radii(body, one).max())
     boxes = any(body.shape in ("box", "polygon") for body in bodies)
     found = []
     for i in np.flatnonzero(lightest):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.components.dem_bodies import build, kernels
+from quintet.components.dem_bodies import build, diagnostics, kernels
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.contact import search
 from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, no_ball_pairs
@@ -20,6 +20,7 @@ from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import SHOWS, ports
 from quintet.components.dem_bodies.shapes.view import planes_view, view
 from quintet.components.dem_bodies.start import described
+from quintet.components.dem_bodies.state import BallPairs
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -85,22 +86,39 @@ class DemBodies(Component):
         self.damping = float(self.model.material_pairs[:, :, 2].max())  # ζ of the most damped
         self.contacts = np.zeros(self.count + 1, np.int64)  # of each row
         self.most_contacts = 0  # that a row can have before pairs are listed anew
-        self._move(0.0)
+        self.begun = False  # whether the contacts of the start are known
 
     def describe(self) -> Fields:
         """State shapes, sizes, masses, corners; unions of spheres have the box around them."""
         return described(self.params, self.bodies, self.solids)
 
+    def prepare(self, fields: Fields) -> None:
+        """Compile the kernels of a step, and those that read its end."""
+        self._begin()
+        self.give(frozenset(MOTION))
+        self.totals()
+
+    def _begin(self) -> None:
+        """Detect the contacts of the start, once.
+
+        Kernels are compiled here: not before partners know what they wait for, and may compile
+        theirs meanwhile.
+        """
+        if not self.begun:
+            self.begun = True
+            self._move(0.0)
+
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
         if self.params.fixed_step is not None:
             return self.params.fixed_step
+        self._begin()
         report, longest = self.state.report, self.params.longest_step
         stiffest = math.sqrt(report[rows.STIFFEST])  # rad/s
         ω = max(self.frequency, stiffest)
         contact = DURATION * SPEED_UP / ω / self.params.steps_per_contact
         if many_contacts_step(self.most_contacts, stiffest, self.damping) < contact:
-            most = self._most_contacts(self.others.history, self.balls.history)
+            most = self._most_contacts(False)
             contact = min(contact, many_contacts_step(most, stiffest, self.damping))
         # Pairs that are not listed were further apart than the skin, and may have come nearer.
         gap = min(report[rows.SMALLEST_GAP], self.skin - 2.0 * math.sqrt(report[rows.TRAVEL]))
@@ -123,16 +141,16 @@ class DemBodies(Component):
         x, y, z = self.state.angular_velocity[0].tolist()
         return TURN / max(math.sqrt(x * x + y * y + z * z), 1e-300)
 
-    def _most_contacts(self, others: Array, balls: Array) -> int:
-        """Most contacts of any row, of the pairs with a depth in these histories."""
-        pairs, model = self.others, self.model
+    def _most_contacts(self, listed: bool) -> int:
+        """Most contacts of any row; with `listed` as if all pairs that are listed touched."""
+        pairs, balls, model = self.others, self.balls, self.model
+        history = np.ones_like(pairs.history) if listed else pairs.history
         ends = (pairs.ends, pairs.begin, model.sphere_row, model.edge_ends)
-        count_contacts(others, *ends, self.contacts)
-        return count_ball_contacts(self.balls.row, self.balls.partner, balls, self.contacts)
-
-    def _most_listed(self) -> int:
-        listed = np.ones_like(self.others.history), np.ones_like(self.balls.history)
-        return self._most_contacts(*listed)
+        count_contacts(history, *ends, self.contacts)
+        if balls is not None:
+            history = np.ones_like(balls.history) if listed else balls.history
+            count_ball_contacts(balls.row, balls.partner, history, self.contacts)
+        return int(self.contacts.max())
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; without them there is none."""
@@ -148,6 +166,7 @@ class DemBodies(Component):
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, contacts, half kick."""
+        self._begin()
         report = self.state.report
         elastic = report[rows.ELASTIC_ENERGY]
         if self.params.contact_forces:
@@ -186,7 +205,7 @@ class DemBodies(Component):
         self.balls, self.others = search.list_pairs(
             self.model, self.state, *pairs, self.skin, asked
         )
-        self.most_contacts = self._most_listed()
+        self.most_contacts = self._most_contacts(True)
         self.sums[:, rows.TRAVEL] = 0.0
 
     def _failure(self, dt: float) -> StepError:
@@ -196,6 +215,7 @@ class DemBodies(Component):
         """Copy out the motion of all bodies; if wanted, what contacts did in the last step."""
         s, n, found = self.state, self.count, dict[str, Array]()
         if not wanted.isdisjoint(CONTACT_FIELDS):
+            self._begin()
             # The mean of both ends gives the change of momentum to rounding.
             mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
             found = {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
@@ -204,7 +224,7 @@ class DemBodies(Component):
         # One piece of memory, for pieces of their own are fetched from the system at every call.
         parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
         motion = dict(zip(MOTION, (part.reshape(n, -1) for part in parts), strict=True))
-        kernels.copy_motion(s, *motion.values())
+        kernels.copy_motion(s.row, s.motion, s.orientation, *motion.values())
         return {key: array for key, array in (found | motion).items() if key in wanted}
 
     def contact_points(self) -> Fields:
@@ -219,24 +239,28 @@ class DemBodies(Component):
         """
         if not self.params.contact_forces:
             raise ValueError("contact_forces must be true to list contacts; found false. Set it.")
+        self._begin()
         return contact_points(self.model, self.state, self.balls, self.others)
 
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, what was added up."""
+        self._begin()
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         kept["others.key"] = self.others.key.copy()
         kept["others.history"] = self.others.history.copy()
-        for name in SAVED:
-            array = getattr(self.balls, name)
-            if array is not None:
-                kept[f"balls.{name}"] = array.copy()
-        kept["balls.partner"] = self.balls.partner.astype(np.int64)  # messages know no uint32
+        if self.balls is not None:
+            for name in SAVED:
+                array = getattr(self.balls, name)
+                if array is not None:
+                    kept[f"balls.{name}"] = array.copy()
+            kept["balls.partner"] = self.balls.partner.astype(np.int64)  # messages know no uint32
         total = self.accumulated
         kept["accumulated"] = np.array([total.time, total.dissipated, total.given])
         return kept
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
+        self.begun = True
         balls = np.count_nonzero(self.model.ball)
         rows.sort_rows(self.model, self.state, self.state.row[state["body"][:balls]])
         for name, array in self.state._asdict().items():
@@ -245,27 +269,32 @@ class DemBodies(Component):
         kept.key[:] = state["others.key"]
         kept.history[:] = state["others.history"]
         self.others = search.body_pairs_of(kept.key, kept)
-        begin, partner = np.array(state["balls.begin"]), state["balls.partner"].astype(np.uint32)
-        asked = self.params.contact_forces
-        self.balls = ball_pairs(self.model, begin, partner, asked)
-        for name in SAVED[2:]:
-            array = getattr(self.balls, name)
-            if array is not None:
-                array[:] = state[f"balls.{name}"]
-        self.most_contacts = self._most_listed()
+        if self.balls is not None:
+            self.balls = self._saved_pairs(state)
+        self.most_contacts = self._most_contacts(True)
         self.loaded = bool(self.state.load.any())
         self.accumulated = Accumulated(*state["accumulated"].tolist())
 
+    def _saved_pairs(self, state: Fields) -> BallPairs:
+        begin, partner = np.array(state["balls.begin"]), state["balls.partner"].astype(np.uint32)
+        pairs = ball_pairs(self.model, begin, partner, self.params.contact_forces)
+        for name in SAVED[2:]:
+            array = getattr(pairs, name)
+            if array is not None:
+                array[:] = state[f"balls.{name}"]
+        return pairs
+
     def totals(self) -> Totals:
         """Mass, momentum and energies of the bodies; internal is the contacts' elastic energy."""
+        self._begin()
         s, row, mass = self.state, self.state.row[: self.count], self.mass
         x, momentum = s.position[row], mass[:, None] * s.velocity[row]
-        angular_momentum = kernels.angular_momenta(self.model, s)[row]
+        angular_momentum = diagnostics.angular_momenta(self.model, s)[row]
         return Totals(
             mass=float(mass.sum()),
             momentum=momentum.sum(axis=0),
             angular_momentum=(angular_momentum + np.cross(x, momentum)).sum(axis=0),
-            kinetic=kernels.kinetic_energy(self.model, s),
+            kinetic=diagnostics.kinetic_energy(self.model, s),
             potential=-float(mass @ (x @ self.model.gravity)),
             internal=float(s.report[rows.ELASTIC_ENERGY]),
         )

@@ -3,6 +3,7 @@
 import numpy as np
 
 from quintet.components.dem_bodies.contact import ball_search
+from quintet.components.dem_bodies.integration.locked_motion import write_momenta_of_locked
 from quintet.components.dem_bodies.state import (
     DEEPEST,
     DEEPEST_PAIR,
@@ -10,6 +11,7 @@ from quintet.components.dem_bodies.state import (
     BallPairs,
     BodyPairs,
     Model,
+    Numbers,
     State,
 )
 from quintet.interfaces.component import Fields
@@ -18,7 +20,7 @@ from quintet.interfaces.errors import StepError
 ALLOWED_DEPTH = 0.5  # overlap over contact radius; Hertz's law is for small ones
 
 
-def failure(state: State, balls: BallPairs, others: BodyPairs, time: float) -> StepError:
+def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: float) -> StepError:
     """Say which body is wrong at a time [s], and what to do."""
     after, bodies = f"dem_bodies, t = {time:.6g} s", len(state.body) - 1
     finite = np.isfinite(state.motion.sum(axis=1))[state.row]
@@ -39,17 +41,19 @@ def failure(state: State, balls: BallPairs, others: BodyPairs, time: float) -> S
     )
 
 
-def deepest_pair(state: State, balls: BallPairs, others: BodyPairs) -> tuple[int, int]:
+def deepest_pair(state: State, balls: BallPairs | None, others: BodyPairs) -> tuple[int, int]:
     """Bodies of the deepest contact; planes are beyond all bodies."""
-    pair, count = int(state.report[DEEPEST_PAIR]), len(balls.partner)
-    if pair < count:
+    pair, count = int(state.report[DEEPEST_PAIR]), 0 if balls is None else len(balls.partner)
+    if balls is not None and pair < count:
         return ball_search.deepest_pair(state, balls)
     touching = others.touching
     i, j = state.body[touching[touching[:, 0] == pair - count][0, 1:3]]
     return int(i), int(j)
 
 
-def contact_points(model: Model, state: State, balls: BallPairs, others: BodyPairs) -> Fields:
+def contact_points(
+    model: Model, state: State, balls: BallPairs | None, others: BodyPairs
+) -> Fields:
     """List what touched in the last step, where the forces of pairs are kept.
 
     Returns
@@ -61,11 +65,38 @@ def contact_points(model: Model, state: State, balls: BallPairs, others: BodyPai
     """
     count = int(state.report[TOUCHING])
     geometry, bodies = others.geometry[:count], state.body[others.touching[:count, 1:3]]
-    found = ball_search.touching_balls(model, state, balls)
-    return {
-        "bodies": np.vstack([found.bodies, bodies]),
-        "point": np.vstack([found.point, geometry[:, 3:6]]),
-        "normal": np.vstack([found.normal, geometry[:, :3]]),
-        "force": np.vstack([found.force, geometry[:, 8:]]),
-        "depth": np.append(found.depth, geometry[:, 6]),
+    listed = {
+        "bodies": bodies,
+        "point": geometry[:, 3:6],
+        "normal": geometry[:, :3],
+        "force": geometry[:, 8:],
+        "depth": geometry[:, 6],
     }
+    if balls is None:
+        return {key: array.copy() for key, array in listed.items()}
+    found = ball_search.touching_balls(model, state, balls)._asdict()
+    return {key: np.concatenate([found[key], array]) for key, array in listed.items()}
+
+
+def angular_momenta(model: Model, state: State) -> Numbers:
+    """Angular momentum (n, 3) [kg m²/s] of each row about its centre."""
+    momenta, ball = state.angular_momentum.copy(), model.ball
+    momenta[ball] = (1.0 / model.inverse_moment[ball])[:, None] * state.angular_velocity[ball]
+    if model.locked.any():
+        write_momenta_of_locked(model, state, momenta)
+    return momenta
+
+
+def kinetic_energy(model: Model, state: State) -> float:
+    """Kinetic energy [J] of all bodies, added up one by one: no bit depends on their number."""
+    v, ω, ball = state.velocity[:-1], state.angular_velocity[:-1], model.ball[:-1]
+    momenta = np.where(ball[:, None], ω, angular_momenta(model, state)[:-1])
+    rotation = 0.5 * inner(momenta, ω)
+    rotation[ball] /= model.inverse_moment[:-1][ball]
+    both = np.column_stack([0.5 * inner(v, v) / model.inverse_mass[:-1], rotation])
+    return float(np.cumsum(both)[-1])
+
+
+def inner(a: Numbers, b: Numbers) -> Numbers:
+    """Inner products (n,) of the rows of two arrays (n, 3)."""
+    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2])

@@ -2,14 +2,13 @@
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.balls import ball_loads
+from quintet.components.dem_bodies.contact.balls import ball_loads, begin_block
 from quintet.components.dem_bodies.contact.batch import batch_of
 from quintet.components.dem_bodies.contact.geometry import (
     row_vector,
     set_row_vector,
 )
 from quintet.components.dem_bodies.contact.pairs import contact_loads, detect_contacts
-from quintet.components.dem_bodies.integration.locked_motion import angular_momentum_of_locked
 from quintet.components.dem_bodies.integration.reductions import reduce_bodies, reduce_pairs
 from quintet.components.dem_bodies.integration.velocity_verlet import drift, end_kick
 from quintet.components.dem_bodies.state import (
@@ -22,9 +21,9 @@ from quintet.components.dem_bodies.state import (
     Model,
     Numbers,
     State,
+    Whole,
 )
 from quintet.components.shared.numba_options import EXACT
-from quintet.components.shared.rotations import dot, scaled
 
 # The stages of a step. Drift, balls and kick are shared out among threads.
 DRIFT, BALLS, OTHERS, KICK, REPORT, DONE = range(6)
@@ -33,8 +32,9 @@ LIST = -1  # in place of a stage: pairs must be listed anew first
 
 @njit(**EXACT)
 def step(
-    first: int, last: int, begin: int, end: int, model: Model, state: State, balls: BallPairs,
-    others: BodyPairs, sums: Numbers, dt: float, loaded: bool, limit: float,
+    first: int, last: int, begin: int, end: int, model: Model, state: State,
+    balls: BallPairs | None, others: BodyPairs, sums: Numbers, dt: float, loaded: bool,
+    limit: float,
 ) -> int:  # fmt: skip
     """Run the stages [begin, end) of a velocity-Verlet step for the blocks [first, last).
 
@@ -49,7 +49,7 @@ def step(
     begin, end : int
         Stages, from DRIFT up to DONE.
     model, state, balls, others
-        All bodies and their pairs.
+        All bodies and their pairs. Without `balls` what moves balls is not compiled.
     sums : (blocks, SUMS)
         Extremes and sums of each block.
     dt : float, s
@@ -65,25 +65,34 @@ def step(
     """
     alone = others.key.shape[0] == 0
     if begin <= DRIFT < end:
-        drift(first, last, model, state, sums, dt, loaded)
+        drift(first, last, model, state, balls, sums, dt, loaded)
     if begin <= BALLS < end:
         if not sums[:, TRAVEL].max() <= limit:
             return LIST
-        batch, constants_of = batch_of(balls)
-        for block in range(first, last):
-            rolling_moment = balls.rolling_moment
-            ball_loads(block, model, state, balls, rolling_moment, sums, batch, constants_of, dt)
-            # As soon as all its loads have come, while it is in the nearest cache.
-            if alone and balls.earliest[block] >= first:
-                end_kick(block, model, state, balls, sums, dt, loaded)
+        if balls is None:
+            for block in range(first, last):
+                begin_block(state, sums, block)
+        else:
+            batch, constants_of = batch_of(balls)
+            for block in range(first, last):
+                moment = balls.rolling_moment
+                ball_loads(block, model, state, balls, moment, sums, batch, constants_of, dt)
+                # As soon as all its loads have come, while it is in the nearest cache.
+                if alone and balls.earliest[block] >= first:
+                    end_kick(block, model, state, balls, sums, dt, loaded)
     if begin <= OTHERS < end:
         reduce_pairs(state.report, sums)
-        count = detect_contacts(model, state, others, balls.partner.shape[0])
+        ahead = 0
+        if balls is not None:
+            ahead = balls.partner.shape[0]
+        count = detect_contacts(model, state, others, ahead)
         state.report[TOUCHING] = count
         contact_loads(model, state, others, count, dt)
     if begin <= KICK < end:
         for block in range(first, last):
-            if not (alone and balls.earliest[block] >= first):
+            if balls is None:
+                end_kick(block, model, state, balls, sums, dt, loaded)
+            elif not (alone and balls.earliest[block] >= first):
                 end_kick(block, model, state, balls, sums, dt, loaded)
     if begin <= REPORT < end:
         reduce_bodies(state, sums)
@@ -91,45 +100,15 @@ def step(
 
 
 @njit(**EXACT)
-def kinetic_energy(model: Model, state: State) -> float:
-    """Kinetic energy [J] of all bodies."""
-    energy, motion = 0.0, state.motion
-    for i in range(model.bounding_radius.shape[0]):
-        v, ω = row_vector(motion, i, VELOCITY), row_vector(motion, i, OMEGA)
-        energy += 0.5 * dot(v, v) / model.inverse_mass[i]
-        if model.ball[i]:
-            energy += 0.5 * dot(ω, ω) / model.inverse_moment[i]
-        elif model.locked[i]:
-            energy += 0.5 * dot(angular_momentum_of_locked(model, state, i), ω)
-        else:
-            energy += 0.5 * dot(row_vector(state.angular_momentum, i), ω)
-    return energy
-
-
-@njit(**EXACT)
-def angular_momenta(model: Model, state: State) -> Numbers:
-    """Angular momentum [kg m²/s] of each row about its centre."""
-    momenta, motion = state.angular_momentum.copy(), state.motion
-    for i in range(model.bounding_radius.shape[0]):
-        if model.ball[i]:
-            moment = 1.0 / model.inverse_moment[i]
-            set_row_vector(momenta, i, 0, scaled(moment, row_vector(motion, i, OMEGA)))
-        elif model.locked[i]:
-            set_row_vector(momenta, i, 0, angular_momentum_of_locked(model, state, i))
-    return momenta
-
-
-@njit(**EXACT)
 def copy_motion(
-    state: State, position: Numbers, velocity: Numbers, orientation: Numbers,
-    angular_velocities: Numbers,
+    row: Whole, motion: Numbers, orientations: Numbers, position: Numbers, velocity: Numbers,
+    orientation: Numbers, angular_velocities: Numbers,
 ) -> None:  # fmt: skip
     """Copy out the motion of all bodies, in the scene's order."""
-    motion = state.motion
     for k in range(position.shape[0]):
-        i = state.row[k]
+        i = row[k]
         set_row_vector(position, k, 0, row_vector(motion, i))
         set_row_vector(velocity, k, 0, row_vector(motion, i, VELOCITY))
         set_row_vector(angular_velocities, k, 0, row_vector(motion, i, OMEGA))
         for d in range(4):
-            orientation[k, d] = state.orientation[i, d]
+            orientation[k, d] = orientations[i, d]

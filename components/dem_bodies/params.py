@@ -142,7 +142,8 @@ class Body:
         Edges of a box.
     edge_radius : m
         Radius of a box's edges and corners, or of a polygon's corners; less than half the shortest
-        edge of a box. 5 % of the shortest edge if not given.
+        edge of a box. 5 % of the shortest edge if not given. However sharp an edge or thin a body
+        is, it bears as one of 5 % of the shortest edge, or of 0.5 % of the longest.
     diameter : m
         Of a sphere or disc.
     corners : m

@@ -35,6 +35,9 @@ class Model(NamedTuple):
     others: Whole  # (o,) rows of the bodies that are no balls
     half_extent: Numbers  # (n, 3) m, half edges of a box less its edge radius; 0 for others
     edge_radius: Numbers  # (n,) m, of a box or polygon; 0 for others
+    body_contact_radius: Numbers  # (n,) m, of edges and faces in contact; 0 for others
+    half_thickness: Numbers  # (n,) m, half the least width of a box or polygon; ∞ for others
+    sharp: NDArray[np.bool_]  # (n,) whether contacts may be deeper than its edges are round
     polygon: NDArray[np.bool_]  # (n,) whether the body is a polygon, whose spheres are its corners
     bounding_radius: Numbers  # (m,) m, radius of a sphere about the centre that holds the body
     material: Whole  # (n,) number of the material
@@ -43,6 +46,7 @@ class Model(NamedTuple):
     sphere_row: Whole  # (s,) row; that of a ball's sphere has its own number
     sphere_centre: Numbers  # (s, 3) m, body axes
     sphere_radius: Numbers  # (s,) m
+    contact_radius: Numbers  # (s,) m, by which it bears: the same, larger at sharp corners
     edge_begin: Whole  # (n + 1,) as sphere_begin, of edges
     edge_ends: Whole  # (e, 2) spheres at the ends of each edge
     plane: Numbers  # (p, 4) unit normal and offset: normal·x = offset

@@ -3,6 +3,10 @@
 All are cached on disk and release Python's lock; division by zero gives ∞, as numpy has it.
 """
 
+from quintet.components.shared import compilation
+
+compilation.announce()
+
 # As written: for loops that must notice numbers that are not finite, or whose sums must keep
 # their order.
 EXACT = {"error_model": "numpy", "cache": True, "nogil": True}

@@ -21,7 +21,15 @@ from quintet.components.sph_fluid.setup.mass import mass_notes
 from quintet.components.sph_fluid.setup.particle_count import plan
 from quintet.components.sph_fluid.setup.start import stated
 from quintet.components.sph_fluid.state import Array, State
-from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Component,
+    Fields,
+    Keys,
+    Resources,
+    Totals,
+    fields_of,
+)
 from quintet.interfaces.errors import OrderError, StepError
 from quintet.interfaces.faces import polygons
 from quintet.interfaces.manifest import Plan, Ports
@@ -95,6 +103,14 @@ class SphFluid(Component):
             self.told += features.remove_inside_bodies(
                 self.state, self.samples, fields, self.params
             )
+
+    def prepare(self, fields: Fields) -> None:
+        """Compile all kernels: try a step, and come back."""
+        kept = self.save()
+        self.take(fields)
+        self.step(self.stable_dt())
+        self.give(frozenset(fields_of(self.gives)))
+        self.load(kept)
 
     def stable_dt(self) -> float:
         """Largest step [s]; Monaghan & Kos 1999 and Morris 1997, from the rates of the last one."""

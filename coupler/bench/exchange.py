@@ -19,6 +19,7 @@ import numpy as np
 
 from quintet.coupler.bench.raw_transport import round_trip
 from quintet.coupler.coupling.participant import Participant
+from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.launch.connect import connect
 from quintet.coupler.launch.mpi_job import begin_rank, end_rank, run_under_mpi
 from quintet.coupler.launch.watchdog import Watchdog
@@ -44,15 +45,14 @@ def run_bench(given: argparse.Namespace) -> int:
     """Measure the exchange; print the cases, and write them as JSON where asked."""
     if given.inside_mpi:
         return inside_mpi(Path(os.environ[FOLDER]))
-    found = []
+    found, wanted = [], JsonFile(given.json, ("name", "case", "rate"))
     for transport in [given.transport] if given.transport else TRANSPORTS:
         for items, windows in SIZES.items():
             with tempfile.TemporaryDirectory() as folder:
                 found.append(measure(transport, items, windows, Path(folder)))
             found[-1]["library_ms"] = 1e3 * round_trip(transport, 24 * items, windows)
             print(sentence(found[-1]), flush=True)
-            if given.json:  # after each, so that a later one that fails costs none of it
-                given.json.write_text(json.dumps(found, indent=2))
+            wanted.write(found)  # after each, so that a later one that fails costs none of it
     return 0
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from rich.table import Table
 
+from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.launch.processes import start, tail
 from quintet.coupler.report.show import console
 from quintet.interfaces.errors import QuintetError, SceneError
@@ -29,15 +30,14 @@ def run_kind(given: argparse.Namespace) -> int:
     threads = given.threads or usual_threads()
     if wrong := [count for count in threads if count < 1]:
         raise SceneError(f"--threads must be a whole number from 1; found {wrong[0]}.")
-    found = []
+    found, wanted = [], JsonFile(given.json, ("name", "case", "rate"))
     for number, case in cases:
         for count in threads:
             print(f"{case.name}, threads: {count} ... ", end="", flush=True)
             found.append(run_case(given.name, number, count))
             print(f"{found[-1]['rate']:.3g} {found[-1]['unit']} a thread", flush=True)
     console().print(table(found))
-    if given.json:
-        given.json.write_text(json.dumps(found, indent=2))
+    wanted.write(found)
     return 0
 
 

@@ -1,7 +1,6 @@
 """``quintet conform``: one line for each law, and the status by which a script knows."""
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from quintet.coupler.conform.cases import of_file, of_kind, of_scene, trials
 from quintet.coupler.conform.check import Finding, try_all
 from quintet.coupler.conform.laws import name_of
 from quintet.coupler.conform.trial import Trial
+from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.scene.kinds import named_kind
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import ConformCase, Manifest
@@ -19,6 +19,7 @@ SLOW = 1.0  # s; what takes longer says so
 
 def run_conform(given: argparse.Namespace) -> int:
     """Try the laws on a kind; 0 if all that apply are kept, else 1."""
+    wanted = JsonFile(given.json, ("kind", "conforms"))
     manifest, cases, folder = choose(given)
     found: dict[str, list[Finding]] = {}
     with trials(manifest, cases, folder) as ready:
@@ -33,7 +34,7 @@ def run_conform(given: argparse.Namespace) -> int:
     if given.json:
         entries = [{"case": k, "laws": [_entry(one) for one in v]} for k, v in found.items()]
         result = {"kind": manifest.kind, "conforms": not counts["failed"], "cases": entries}
-        given.json.write_text(json.dumps(result, indent=2))
+        wanted.write(result)
     return 1 if counts["failed"] else 0
 
 

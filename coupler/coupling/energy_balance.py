@@ -27,6 +27,11 @@ class EnergyBalance:
         start, largest = self._sums or (total, total)
         self._sums = [start, max(largest, total)]
 
+    @property
+    def largest(self) -> float:
+        """Largest energy [J] of one kind that any component had, by magnitude."""
+        return max((abs(one) for pair in self._range.values() for one in pair), default=0.0)
+
     def drift(self) -> float | None:
         """Largest rise of the sum above its start over the largest energy turned over.
 
@@ -34,8 +39,7 @@ class EnergyBalance:
         turned over but rounding: there is nothing to tell a rise against.
         """
         turned = max((most - least for least, most in self._range.values()), default=0.0)
-        held = max((abs(one) for pair in self._range.values() for one in pair), default=0.0)
-        if not turned > NEGLIGIBLE * held:
+        if not turned > NEGLIGIBLE * self.largest:
             return None
         start, largest = self._sums
         return (largest - start) / turned

@@ -273,6 +273,14 @@ class Exchange:
             if taker == name and len(rows) > 1
         }
 
+    def sharing(self, name: str) -> dict[str, int]:
+        """How many links share the work of each force that a component gives."""
+        shares = self.shares(name)
+        return {
+            force: len(shares.get(velocity.partition(".")[0], ((),)))
+            for force, velocity, _ in reversed(self.works(name))
+        }
+
     def share_of(self, link: int, name: str, port: str) -> int:
         """Place of a link among those that share a port of a component."""
         rows = self._rows.get((name, port), {})

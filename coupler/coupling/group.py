@@ -8,6 +8,7 @@ its steps; impulses that go beyond it are summed.
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from quintet.coupler.coupling.answers import AnswerSums
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.exchange import Exchange, WindowInputs, refused_starts
 from quintet.coupler.coupling.ledger import Ledger
@@ -188,22 +189,31 @@ def join_ports(
     """
     exchange, participants = coupling.exchange, coupling.components
     static = exchange.bind(described)
+    wanted = {name: exchange.wanted(name, asked.get(name, ())) for name in participants}
     for name, one in participants.items():
-        wanted = exchange.wanted(name, asked.get(name, ()))
-        header = {"works": exchange.works(name), "joined": exchange.joined(name), "wanted": wanted}
+        works, joined = exchange.works(name), exchange.joined(name)
+        header = {"works": works, "joined": joined, "wanted": wanted[name]}
         one.bind(static[name], **header)
     # Motion is known at once; forces, which follow from it, are zero before the first window.
-    outputs = {name: one.give() for name, one in participants.items()}
+    outputs = {
+        name: one.give(wanted[name], exchange.gives[name]) for name, one in participants.items()
+    }
     initial = {name: {**described[name], **given} for name, given in outputs.items()}
     if refused := refused_starts(exchange.links, initial):
         raise SceneError(refused)
     exchange.count_rows(outputs)
+    for name, one in participants.items():
+        one.sums = AnswerSums(exchange.takes[name], exchange.gives[name], exchange.sharing(name))
     _begin(coupling, outputs)
     for name, one in participants.items():
         numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == name]
         instants = _instants(exchange, name, numbers, outputs)
         one.prime(instants, shares=exchange.shares(name))
         coupling.ledger.primed(name, instants)
+    for one in participants.values():
+        one.order_prepare()  # all at the same time, for some compile
+    for one in participants.values():
+        one.prepared()
 
 
 def _instants(

@@ -7,8 +7,6 @@ sent. Work is counted on both sides from what each did itself; it agrees as well
 staggering in time lets it.
 """
 
-import csv
-import os
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -21,6 +19,7 @@ from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.coupler.coupling.stability_watch import StabilityWatch
+from quintet.coupler.files.table_file import TableFile
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.rotation import vector_between
 from quintet.interfaces.sums import column_sums, product, size
@@ -82,13 +81,9 @@ class Ledger:
         self.watch = StabilityWatch(self.accounts)
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
-        self._file = open(path, "a" if size else "w", newline="") if path else None
-        self._rows = csv.writer(self._file) if self._file else None
-        if self._file and size:
-            self._file.truncate(size)
-            self._file.seek(0, os.SEEK_END)
-        elif self._rows:
-            self._rows.writerow(COLUMNS)
+        self._table = TableFile(path, size)
+        if not size:
+            self._table.write(COLUMNS)
 
     @property
     def worst(self) -> float:
@@ -215,21 +210,17 @@ class Ledger:
         """Write a row for every link and component, at a time [s]."""
         self.totals.update(totals)
         self.energy.note(self.totals)
-        if not self._rows or not self._file:
-            return
         for account in self.accounts.values():
             residuals = [account.momentum_residual, account.angular_residual]
             work = [account.work_given, account.work_taken, account.heat]
-            self._rows.writerow([time, account.link, *residuals, *account.impulse, *work])
+            self._table.write([time, account.link, *residuals, *account.impulse, *work])
         for name, one in totals.items():
             totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in KINDS)]
-            self._rows.writerow([time, name, *[""] * 8, *totals_row])
-        self._file.flush()
+            self._table.write([time, name, *[""] * 8, *totals_row])
+        self._table.flush()
 
     def save(self) -> dict[str, Any]:
         """All that is in the books, for a snapshot, and the length of the file [bytes]."""
-        if self._file:
-            self._file.flush()
         return {
             "accounts": [_as_row(account) for account in self.accounts.values()],
             "totals": self.totals,
@@ -237,7 +228,7 @@ class Ledger:
             "watch": self.watch.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
-            "size": self._file.tell() if self._file else 0,
+            "size": self._table.flush(),
         }
 
     def load(self, state: Mapping[str, Any]) -> None:
@@ -258,10 +249,13 @@ class Ledger:
         ]
         return {"links": links, "energy_drift": self.energy.drift()}
 
+    def sync(self) -> None:
+        """Bring all that was written to the disk."""
+        self._table.sync()
+
     def close(self) -> None:
         """Close the file."""
-        if self._file:
-            self._file.close()
+        self._table.close()
 
 
 def _as_row(account: Account) -> dict[str, Any]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from quintet.coupler.coupling.exchange import Exchange
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import MessageError
 from quintet.interfaces.serving.inputs import KnownEnds, value_at
 from quintet.interfaces.sums import column_sums, size
 
@@ -132,6 +133,10 @@ class MotionAudit:
     def residual(self, name: str, given: Mapping[str, Any]) -> float:
         """Worst difference between what was given out and what should have been, relative."""
         window, span = self._window[name], float(given["span"])
+        if unknown := {*given["first"], *given["moved"]} - self._sums[name].keys():
+            raise MessageError(
+                f"{name} tells how it was moved by {min(unknown)}, which it never got."
+            )
         rates = set(self._fields[name].values())
         gaps = [0.0]
         for key, first in given["first"].items():

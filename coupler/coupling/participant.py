@@ -5,14 +5,16 @@ import statistics
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from quintet.interfaces.component import Array, Fields
+from quintet.coupler.coupling.answers import AnswerSums, check_answer, check_outputs
+from quintet.interfaces.component import Array, Field, Fields
 from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message, Shapes, order_of, require_finite
 from quintet.interfaces.lines.transport import FramedLine
+from quintet.interfaces.serving.serve import sendable
 
 LONGEST_WAIT = 86400.0  # s for one answer, also of a component that nobody watches
 
@@ -32,6 +34,7 @@ class Timing:
     compute: float = 0.0  # s, as the component itself measured
     cpu: float = 0.0  # s of processor time in its windows, all threads
     wait: float = 0.0  # s that the coupler waited for it
+    prepare: float = 0.0  # s, what it did before its first window, such as compiling
     first: float = 0.0  # s, its first window
     steps: int = 0
     windows: int = 0  # that were ordered, repetitions counted
@@ -61,6 +64,7 @@ class Participant:
         self.timing = Timing()
         self.notes: list[str] = []  # what the user should read of it
         self.shapes: Shapes | None = None  # of its outputs, once known
+        self.sums: AnswerSums | None = None  # of which its answers tell, once its ports are joined
         self._asked = 0.0
         self._answered = True  # whether the answer to the last order is known
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
@@ -89,17 +93,22 @@ class Participant:
         try:
             with self.keeping_others_waiting():
                 message = self.line.receive(LONGEST_WAIT, expected)
+            if message.order != "failed":
+                check_answer(self.order, message)
+            if self.sums and self.order == "advance" and message.order != "failed":
+                self.sums.check(message)
             if finite:
                 require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
             raise self._failure(error) from error
         self._answered = self.built = True
         if message.order == "failed":
+            text = sendable(str(message.header.get("text")))
             if message.header.get("error") == SceneError.__name__ and self.shapes is None:
                 # It has not begun: the scene is refused, by who knows the rule.
-                raise SceneError(f"components.{self.name}: {message.header.get('text')}")
-            said = f"{message.header.get('error')}: {message.header.get('text')}"
-            trace = str(message.header.get("traceback", ""))
+                raise SceneError(f"components.{self.name}: {text}")
+            said = f"{sendable(str(message.header.get('error')))}: {text}"
+            trace = sendable(str(message.header.get("traceback", "")))
             raise ComponentFailed(self.name, self.window, said, trace)
         return message
 
@@ -135,7 +144,16 @@ class Participant:
         """Join its ports: who reads what, and with what forces do work."""
         answer = self.call("bind", static, **header)
         self.timing.items = int(answer.header["items"])
-        self.stable = float(answer.header["stable"])
+
+    def order_prepare(self) -> None:
+        """Order that it compile, or whatever else it does before its first step; no limit holds."""
+        self.built = False
+        self.send_order("prepare")
+
+    def prepared(self) -> None:
+        """Wait until that is done."""
+        header = self.receive().header
+        self.stable, self.timing.prepare = float(header["stable"]), float(header["seconds"])
 
     def prime(self, fields: Fields, **header: Any) -> None:
         """Tell it what holds as the run begins."""
@@ -168,9 +186,16 @@ class Participant:
         self.window += 1
         return message
 
-    def give(self) -> dict[str, Array]:
+    def give(
+        self, wanted: Iterable[str] | None = None, gives: Mapping[str, Field] | None = None
+    ) -> dict[str, Array]:
         """Ask for the outputs at the start, and remember their shapes."""
         fields = self.call("give").fields
+        try:
+            if wanted is not None and gives is not None:
+                check_outputs(fields, wanted, gives)
+        except MessageError as error:
+            raise ComponentFailed(self.name, self.window, str(error)) from error
         self.shapes = {key: array.shape for key, array in fields.items()}
         return fields
 

@@ -24,6 +24,9 @@ LIMIT = 0.2  # of the work that went through a link: what a stable coupling make
 LATE_LIMIT = 0.3  # the same over the last windows
 SPAN = 32  # windows that count most: each older one by 1 - 1/SPAN less
 FEWEST = 12  # windows before a link is judged: a start with a jolt is over by then
+# Of the largest energy of any component: with less going through, a link decides nothing. A body at
+# rest that the fluid has not reached works on a few samples by rounding.
+NEGLIGIBLE = 1e-9
 QUIET = 0.1  # of the mean work of a window so far: with less going through, no window is judged
 
 
@@ -46,9 +49,12 @@ class Made:
         self.given, self.taken = account.work_given, account.work_taken
         self.turnover = account.turnover
 
-    def is_unstable(self, windows: int) -> bool:
-        """Whether too much of what went through was made of nothing, of late or in all."""
-        if windows < FEWEST:
+    def is_unstable(self, windows: int, negligible: float) -> bool:
+        """Whether too much of what went through was made of nothing, of late or in all.
+
+        Nothing is said while no more than what is `negligible` [J] went through.
+        """
+        if windows < FEWEST or self.turnover <= negligible:
             return False
         usual = self.turnover * min(1.0, SPAN / windows)
         loud = self.late_turnover > QUIET * usual
@@ -88,11 +94,12 @@ class StabilityWatch:
 
     def look(self, coupling: "Coupling") -> list[Unstable]:
         """Judge all links at a window's end; return what is found for the first time."""
-        new = []
-        for name, account in coupling.ledger.accounts.items():
+        new, ledger = [], coupling.ledger
+        negligible = NEGLIGIBLE * ledger.energy.largest
+        for name, account in ledger.accounts.items():
             made = self._made[name]
             made.add(account)
-            if name not in self.found and made.is_unstable(coupling.windows.done):
+            if name not in self.found and made.is_unstable(coupling.windows.done, negligible):
                 energy, turnover = made.taken - made.given, made.turnover
                 if made.made_of_late():
                     energy, turnover = made.late, made.late_turnover

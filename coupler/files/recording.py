@@ -5,6 +5,7 @@ for an impulse, its integral over that window. Nothing in the file is pickled.
 """
 
 import math
+import os
 from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -12,6 +13,8 @@ from typing import Any, NamedTuple, Self
 import h5py
 import numpy as np
 
+from quintet.coupler.files.disk import told
+from quintet.coupler.files.hdf5 import OF_DATASET, OF_FILE, create, room
 from quintet.coupler.files.run_files import RECORDING as NAME
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import PortError, SceneError
@@ -53,33 +56,46 @@ class Recorder(_Closed):
     """Write a recording; rows are collected back and written in batches."""
 
     def __init__(self, path: Path | str, run: str, scene: str, tick: float = 1.0) -> None:
-        self._file = h5py.File(path, "w", locking=False)
-        self._file.attrs["run"] = run
-        self._file.attrs["tick"] = tick  # s, in which the rows' times are counted
-        self._file["scene"] = scene  # a dataset, as an attribute ends at 64 KiB
-        self._file.create_group("components", track_order=True)
+        self._file = create(path)
         self._tracks: dict[str, _Track] = {}
+        with room(self._file, OF_FILE + len(scene.encode())):
+            self._file.attrs["run"] = run
+            self._file.attrs["tick"] = tick  # s, in which the rows' times are counted
+            self._file["scene"] = scene  # a dataset, as an attribute ends at 64 KiB
+            self._file.create_group("components", track_order=True)
 
     @classmethod
     def resume(cls, path: Path, rows: int) -> "Recorder":
         """Go on with a recording after its first rows; later ones are forgotten."""
         made = cls.__new__(cls)
-        made._file = h5py.File(path, "r+", locking=False)
         made._tracks = {}
-        for name, group in made._file["components"].items():
+        try:
+            made._file = h5py.File(path, "r+", locking=False)
+            groups = dict(made._file["components"].items())
+        except (OSError, KeyError) as error:
+            raise SceneError(
+                f"recording {path}: it is not whole ({error}), and the run cannot go on with it. "
+                "Run the scene again."
+            ) from error
+        for name, group in groups.items():
             ports = from_json(str(group.attrs["ports"]))
             made._tracks[name] = _Track(group, name, ports)
-            made._tracks[name].go_on(rows)
+        tracks = made._tracks.values()
+        with room(made._file, sum(track.largest() for track in tracks)):
+            for track in tracks:
+                track.go_on(rows)
         return made
 
     def component(self, name: str, ports: tuple[Port, ...], static: Fields) -> None:
         """Announce a component: the ports it gives, and what it described once."""
-        group = self._file["components"].create_group(name)
-        group.attrs["ports"] = to_json(ports)
-        group.create_group("fields", track_order=True)
-        for key, array in static.items():
-            group[f"static/{key}"] = np.asarray(array)
-        self._tracks[name] = _Track(group, name, ports)
+        size = sum(OF_DATASET + np.asarray(array).nbytes for array in static.values())
+        with room(self._file, size + OF_FILE):
+            group = self._file["components"].create_group(name)
+            group.attrs["ports"] = to_json(ports)
+            group.create_group("fields", track_order=True)
+            for key, array in static.items():
+                group[f"static/{key}"] = np.asarray(array)
+            self._tracks[name] = _Track(group, name, ports)
 
     def add(self, name: str, instant: Instant, fields: Fields) -> None:
         """Add the outputs of one component.
@@ -92,13 +108,30 @@ class Recorder(_Closed):
         fields : mapping of (n, *shape) arrays
             Impulses integrated over the window. Names and n stay those of the first row.
         """
-        self._tracks[name].add(instant, fields)
+        track = self._tracks[name]
+        if not track.rows:
+            track.check(fields)
+            with room(self._file, OF_DATASET * len(fields)):
+                track.begin(fields)
+        track.add(instant, fields)
+        # Whole batches begin at multiples of a chunk, so that no chunk is packed twice.
+        if track.rows % track.batch == 0:
+            self._write(track)
+
+    def _write(self, *tracks: "_Track") -> None:
+        with room(self._file, sum(track.largest() for track in tracks)):
+            for track in tracks:
+                track.write()
 
     def flush(self) -> None:
         """Write out all rows, so that the file is whole on disk."""
-        for track in self._tracks.values():
-            track.write()
-        self._file.flush()
+        self._write(*self._tracks.values())
+
+    def sync(self) -> None:
+        """Write out all rows, and bring them from memory to the disk."""
+        self.flush()
+        with told(Path(self._file.filename)):
+            os.fsync(self._file.id.get_vfd_handle())
 
     def close(self) -> None:
         """Write out all rows and end the file; a second call does nothing."""
@@ -117,7 +150,7 @@ class _Track:
             if key not in group:
                 group.create_dataset(key, (0,), dtype, maxshape=(None,), chunks=(1024,))
         self.times = group["times"]
-        self.data: dict[str, h5py.Dataset] = {}
+        self.data: dict[str, h5py.Dataset] = dict(group["fields"].items())
         self.batch_rows: dict[str, Array] = {}  # (batch, n, *shape)
         self.batch_marks = {key: np.zeros(BATCH, dtype) for key, dtype in MARKS.items()}
         self.batch = BATCH
@@ -125,8 +158,6 @@ class _Track:
         self.written = 0
 
     def add(self, instant: Instant, fields: Fields) -> None:
-        if not self.rows:
-            self._begin(fields)
         if fields.keys() != self.batch_rows.keys():
             raise PortError(
                 f"recording of {self.name}: row {self.rows} must have the fields of the first, "
@@ -144,10 +175,6 @@ class _Track:
         for marks, mark in zip(self.batch_marks.values(), instant, strict=True):
             marks[place] = mark
         self.rows += 1
-        # Whole batches begin at multiples of a chunk, so that no chunk is packed twice.
-        if self.rows % self.batch == 0:
-            self.write()
-            self.group.file.flush()
 
     def go_on(self, rows: int) -> None:
         """Keep the first rows of a file that was there."""
@@ -156,7 +183,6 @@ class _Track:
                 f"recording of {self.name}: it must have {rows} rows to go on; found "
                 f"{len(self.times)}. Run the scene again."
             )
-        self.data = dict(self.group["fields"].items())
         row = sum(8 * int(np.prod(data.shape[1:])) for data in self.data.values())
         self.batch = _rows_within(BATCH_BYTES, row)
         for key, dataset in self.data.items():
@@ -165,6 +191,15 @@ class _Track:
         for key in MARKS:
             self.group[key].resize(rows, axis=0)
         self.rows = self.written = rows
+
+    def largest(self) -> int:
+        """Bytes that the rows which are kept back may need on the disk, with what they extend."""
+        rows = self.rows - self.written
+        size = sum((8 * rows + 1024 * 8 + OF_DATASET) for _ in MARKS)
+        for data in self.data.values():
+            row = 8 * int(np.prod(data.shape[1:]))
+            size += (rows + data.chunks[0]) * row + OF_DATASET
+        return size
 
     def write(self) -> None:
         """Append the collected rows; the times last, as they say how many rows there are."""
@@ -179,7 +214,8 @@ class _Track:
             self.group[key][self.written :] = marks[:count]
         self.written = self.rows
 
-    def _begin(self, fields: Fields) -> None:
+    def check(self, fields: Fields) -> None:
+        """Refuse a first row that does not have the fields of the ports."""
         for key, array in fields.items():
             if key not in self.shapes:
                 raise PortError(unknown(f"recording of {self.name}: {key}", key, self.shapes))
@@ -188,6 +224,9 @@ class _Track:
                     f"recording of {self.name}: {key} must have shape (n, *{self.shapes[key]}); "
                     f"found {array.shape}. Correct give(), or the port."
                 )
+
+    def begin(self, fields: Fields) -> None:
+        """Lay out a data set for every field of the first row."""
         self.batch = _rows_within(BATCH_BYTES, sum(8 * array.size for array in fields.values()))
         for key, array in fields.items():
             rows = min(self.batch, _rows_within(CHUNK_BYTES, 8 * array.size))

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from quintet.coupler.files.disk import PART, RESERVE, write_whole
 from quintet.interfaces.errors import SceneError
 
 FORMAT = 1
@@ -14,7 +15,7 @@ RECORDING = "recording.h5"
 RESULTS, LEDGER, SCENE = "results.json", "ledger.csv", "scene.toml"
 RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")
-RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES)  # of every run
+RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, RESERVE)  # of every run
 SNAPSHOTS = "snapshot-*.h5"
 VIEWS, WALLS = ".vtkhdf", ".walls.vtkhdf"
 
@@ -47,9 +48,7 @@ def new_marker(kind: str, scene: str, files: Iterable[str]) -> Marker:
 
 def write_marker(folder: Path, marker: Marker) -> None:
     """Write the marker; it is there whole or not at all."""
-    part = (folder / MARKER).with_suffix(".part")
-    part.write_text(json.dumps(asdict(marker), indent=2), encoding="utf-8")
-    part.replace(folder / MARKER)
+    write_whole(folder / MARKER, json.dumps(asdict(marker), indent=2))
 
 
 def read_marker(folder: Path) -> Marker | None:
@@ -74,5 +73,7 @@ def left(folder: Path, marker: Marker) -> list[Path]:
     """Files of a run that are there, but for what its study logs; the marker's last."""
     plain = [Path(name) for name in marker.files if name != RUN_LOG]
     within = [folder / one for one in plain if not one.is_absolute() and ".." not in one.parts]
-    found = [*within, *folder.glob(SNAPSHOTS)] if marker.kind == "run" else within
+    found = [*within, *(one.with_name(one.name + PART) for one in within)]
+    if marker.kind == "run":
+        found += [*folder.glob(SNAPSHOTS), *folder.glob(SNAPSHOTS + PART)]
     return [path for path in [*found, folder / MARKER] if path.is_file() or path.is_symlink()]

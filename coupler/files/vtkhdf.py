@@ -12,12 +12,15 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from quintet.coupler.files.disk import PART, removed_on_failure
+from quintet.coupler.files.hdf5 import create, room
 from quintet.coupler.files.vtkhdf_reader import SCENE, UNITS, read_step, scene, times, units
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import PortError
 
 BLOCK = 1024  # entries by which the small tables grow; readers take the first NSteps
 CHUNK = 1 << 16  # points in the largest chunk
+TABLES = 1 << 19  # bytes of all small tables, a block of each
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
 NOTHING: Mapping[str, str] = {}
 Topology = tuple[Array, Array]  # corners of all cells, where each begins
@@ -41,14 +44,14 @@ class VtkHdf:
     def __init__(
         self, path: Path | str, units: Mapping[str, str] = NOTHING, scene: str = ""
     ) -> None:
-        # The default format version: newer ones mark the file as open, and refuse it after a kill.
-        self._file = h5py.File(path, "w", locking=False)
-        self._root = self._file.create_group("VTKHDF")
-        self._root.attrs["Version"] = np.array([2, 0])
-        self._root.attrs.create("Type", b"PolyData", dtype=h5py.string_dtype("ascii", 8))
-        self._tables = self._root.create_group("Steps")
-        self._tables.attrs["NSteps"] = np.int64(0)
-        self._values = _table(self._tables, "Values", dtype="f8")
+        self._file = create(path)
+        with room(self._file, TABLES):
+            self._root = self._file.create_group("VTKHDF")
+            self._root.attrs["Version"] = np.array([2, 0])
+            self._root.attrs.create("Type", b"PolyData", dtype=h5py.string_dtype("ascii", 8))
+            self._tables = self._root.create_group("Steps")
+            self._tables.attrs["NSteps"] = np.int64(0)
+            self._values = _table(self._tables, "Values", dtype="f8")
         self._units, self._scene = {"points": "m", **units}, scene
         self._data: dict[str, h5py.Dataset] = {}  # "points" and the fields over points
         self._cell_data: dict[str, h5py.Dataset] = {}
@@ -73,10 +76,15 @@ class VtkHdf:
             or, if these are other numbers, m. The names must not change; n may.
         """
         arrays = {k: np.asarray(v, np.float32) for k, v in view.items() if k != "cells"}
-        if not self._data:
-            self._begin(arrays, view.get("cells"))
-        _require_points({k: one for k, one in arrays.items() if k not in self._cell_data})
-        self._require_same(arrays)
+        cells = np.asarray(view.get("cells", ()))
+        with room(self._file, _largest(arrays) + 2 * cells.nbytes):
+            if not self._data:
+                self._begin(arrays, view.get("cells"))
+            _require_points({k: one for k, one in arrays.items() if k not in self._cell_data})
+            self._require_same(arrays)
+            self._append(time, arrays)
+
+    def _append(self, time: float, arrays: dict[str, Array]) -> None:
         count = len(arrays["points"])
         for key, dataset in self._data.items():
             dataset.resize(self._rows + count, axis=0)
@@ -213,7 +221,6 @@ class VtkHdf:
         self._values[self._steps] = time
         self._steps += 1
         self._tables.attrs.modify("NSteps", np.int64(self._steps))
-        self._file.flush()
 
     def _put(self, dataset: h5py.Dataset, entry: int, value: int) -> None:
         _reserve(dataset, entry)
@@ -231,13 +238,22 @@ class VtkHdf:
 
 def resume(path: Path, time: float) -> VtkHdf:
     """Continue a file after its steps up to a time [s]; later steps are dropped."""
-    before = path.replace(path.with_suffix(".before"))
-    made = VtkHdf(path, units(before), scene(before))
-    for k, when in enumerate(times(before)):
-        if when <= time:
-            made.append(*read_step(before, k))
-    before.unlink()
+    part = path.with_name(path.name + PART)
+    with removed_on_failure(part):
+        made = VtkHdf(part, units(path), scene(path))
+        for k, when in enumerate(times(path)):
+            if when <= time:
+                made.append(*read_step(path, k))
+        part.replace(path)
     return made
+
+
+def _largest(arrays: dict[str, Array]) -> int:
+    """Bytes that a step may need on the disk: its points and fields, chunks begun, vertices."""
+    rows = max((len(array) for array in arrays.values() if array.ndim), default=0)
+    widths = sum(4 * max(1, array.size // max(1, rows)) for array in arrays.values())
+    chunks = min(max(rows, 256), CHUNK) * widths
+    return 2 * sum(array.nbytes for array in arrays.values()) + chunks + 24 * rows + TABLES
 
 
 def _require_points(arrays: dict[str, Array]) -> None:

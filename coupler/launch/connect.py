@@ -3,6 +3,7 @@
 import contextlib
 import os
 import secrets
+import shlex
 import socket
 import time
 from functools import partial
@@ -15,6 +16,8 @@ from quintet.coupler.launch.mpi_job import write_processes
 from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
 from quintet.coupler.launch.watch import Watch
 from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.scene.overrides import run_arguments
+from quintet.coupler.scene.read import library
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Component
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
@@ -114,7 +117,9 @@ class OverZenoh:
         try:
             for name, line in lines.items():
                 self.watches[name] = Watch(name)
-                if name not in scene.elsewhere:
+                if name in scene.elsewhere:
+                    print(f"{name} is awaited: {join_command(scene, name, endpoint)}", flush=True)
+                else:
                     self._start(scene, name, endpoint, folder)
                 self.participants[name] = Participant(name, line)
                 self.watchdog.add(self.participants[name], self.watches[name], scene.patience(name))
@@ -151,6 +156,14 @@ class OverZenoh:
         self.watchdog.close()
         end_marked(RUN, self.run)
         self.session.close()
+
+
+def join_command(scene: Scene, name: str, endpoint: str) -> str:
+    """Command that starts a component elsewhere and joins it to the coupler at an endpoint."""
+    known = library().get(scene.path.parent.name)
+    name_or_path = {"scene": scene.path.parent.name} if known == scene.path else {}
+    asked = run_arguments(**{**scene.asked, **name_or_path})
+    return shlex.join(["quintet", "join", *asked, name, "--at", endpoint])
 
 
 class OverMpi:
@@ -203,7 +216,8 @@ def accept(scene: Scene, one: Participant, hello: Message, watch: Watch, folder:
         )
     if header.get("host") == socket.gethostname():
         watch.pid = int(header["pid"])
-        watch.shared = [str(path) for path in header.get("shared", [])]
+        told = map(Path, map(str, header.get("shared", [])))
+        watch.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
         watch.where = partial(
             stack.of_process, watch.pid, int(header["stack"]), log_of(folder, one.name)
         )

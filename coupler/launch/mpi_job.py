@@ -27,6 +27,7 @@ from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
+from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.process import STARTER
 
 JOB_FILE = "mpi.json"  # in the log folder: processes, and the exit status of the coupler
@@ -146,12 +147,14 @@ def _forward_output(output: Sequence[IO[bytes]]) -> None:
 
 @contextlib.contextmanager
 def _forward_signals(job_file: Path, process: "subprocess.Popen[bytes]") -> Iterator[list[int]]:
-    """Forward SIGINT and SIGTERM to the coupler alone, which ends the others in order."""
+    """Forward SIGINT, SIGTERM and SIGHUP to the coupler alone, which ends the others in order."""
     signals: list[int] = []
 
     def forward(number: int, _: FrameType | None) -> None:
         signals.append(number)
         pid = int(str(_read(job_file).get("coupler", 0)))
+        if number == signal.SIGHUP:  # libraries of MPI use it for themselves
+            number = signal.SIGTERM
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
 
@@ -172,6 +175,7 @@ def begin_rank(folder: Path) -> None:
         stream.flush()
         with open(folder / "log" / name, "ab") as file:
             os.dup2(file.fileno(), stream.fileno())
+    print_into_logs()
     write_processes(folder, None, [])
 
 

@@ -23,7 +23,7 @@ LOOKING = 0.05  # s between two looks at all components
 LONGEST_LOOK = 1.0  # s; if more has passed, this process itself was stopped meanwhile
 USUAL, EXTRA = 3.0, 5.0  # told after 3 usual windows and 5 s
 DEAD = 0.3  # s until a death is told; before, whoever waits for the component knows more
-ENDING, SAVING = 0.9, 1.3  # s to end a window, and to save, after an end was asked for
+ENDING, SAVING = 0.7, 1.1  # s to end a window, and to save, after an end was asked for
 OBEYING, AT_ONCE = 0.5, 0.15  # s for the thread that couples to carry out a verdict
 POKE = signal.SIGURG  # makes the main thread look; without a handler it does nothing
 

@@ -9,6 +9,7 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
 
+from quintet.coupler.files.disk import write_whole
 from quintet.coupler.reference.sections import Reference, Section, first_line, reference, subjects
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import Key
@@ -22,7 +23,7 @@ def run_describe(given: argparse.Namespace) -> int:
     """Print what a scene, a kind or a link may say, or write it into texts."""
     if given.write:
         for path in given.write:
-            path.write_text(filled(path.read_text(), str(path)))
+            write_whole(path, filled(path.read_text(), str(path)))
         return 0
     if not given.subject:
         rows = list(subjects())

@@ -13,8 +13,10 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from quintet.coupler.coupling.convergence_log import log_file
+from quintet.coupler.files.disk import PART
 from quintet.coupler.files.run_files import (
     LOCK,
+    MARKER,
     RUN_FILES,
     RUN_LOG,
     Marker,
@@ -27,8 +29,9 @@ from quintet.coupler.files.run_files import (
 )
 from quintet.coupler.launch.mpi_job import COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG
 from quintet.coupler.scene.scene import Scene
-from quintet.interfaces.errors import SceneError
+from quintet.interfaces.errors import DiskError, SceneError
 
+BEGUN = (LOCK, MARKER + PART)  # all that is there of a run that begins just now
 FORMER = "quintet-former"  # within the folder: the run that is being replaced
 SHOWN = 3  # foreign files named in a message
 
@@ -117,7 +120,11 @@ def _take(
         _set_aside(folder, former)
     marker = new_marker(kind, name.removesuffix(f"-{kind}"), [*files, *kept])
     made = RunFolder(folder, marker, bool(former))
-    write_marker(folder, made.marker)
+    try:
+        write_marker(folder, made.marker)
+    except DiskError:
+        made.undo()
+        raise
     return made
 
 
@@ -181,7 +188,7 @@ def _former(folder: Path, kind: str, force: bool) -> Marker | None:
         raise SceneError(f"--out {folder}: it must be a folder; it is a file. Name another.")
     marker = read_marker(folder)
     if marker is None:
-        found = sorted(path.name for path in folder.iterdir() if path.name != LOCK)
+        found = sorted(path.name for path in folder.iterdir() if path.name not in BEGUN)
         if found:
             names = ", ".join(found[:SHOWN]) + (", ..." if len(found) > SHOWN else "")
             raise SceneError(

@@ -1,8 +1,9 @@
 """Output during a run: recording, views, ledger, snapshots."""
 
+import contextlib
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
@@ -13,7 +14,7 @@ from quintet.coupler.files.run_files import view_file, walls_file
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
 from quintet.coupler.measures.expectation import lacking_items
 from quintet.coupler.run.folder import discard_former
-from quintet.coupler.run.progress import ProgressReport
+from quintet.coupler.run.progress import ProgressReport, Reading
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.snapshots import save
 from quintet.coupler.scene.scene import Scene
@@ -39,6 +40,7 @@ class OutputWriter:
         """Begin the files, or continue them after the first windows of an earlier run."""
         self.scene, self.folder, self.stop, self.first = scene, folder, stop, first
         self.logs, self.begun = logs, False
+        self.on_begin: Callable[[], None] = lambda: None  # called when the first window is next
         self.done, self.time = first or 0, 0.0  # windows, s
         self._kept = time.monotonic()  # when the last snapshot was made
         self._views = 0  # ticks between two views; 0: none
@@ -70,6 +72,7 @@ class OutputWriter:
         if lacking := list(lacking_items(self.scene.expect, coupling.outputs)):
             raise SceneError(lacking)
         self.begun = True
+        self.on_begin()
         discard_former(self.folder)  # all checks are passed
         self.done, self._now = self._windows.done, self._windows.now
         self.time = self._began = self._windows.time
@@ -78,7 +81,7 @@ class OutputWriter:
         if self.first is None:
             self._record(coupling)
             self._note(coupling)
-        self._progress = ProgressReport(self.scene.file.end, self.done, self.time)
+        self._progress = ProgressReport(self.scene.file.end)
 
     def _recording(self, coupling: Coupling, described: Mapping[str, Fields]) -> Recorder:
         path = self.folder / NAME
@@ -114,11 +117,17 @@ class OutputWriter:
         elif self._passes(self._totals, now):
             coupling.ledger.note(self.time, dict(coupling.ledger.totals))
         if self._progress:
-            self._progress.show(self.done, self.time, coupling.ledger.worst)
+            self._progress.show(self._reading(coupling))
         late = time.monotonic() - self._kept > SNAPSHOT_INTERVAL
         if self._passes(self._snapshots, now) if self._snapshots else late:
             self._keep(coupling)
         self._now = now
+
+    def _reading(self, coupling: Coupling) -> Reading:
+        compute = {name: one.timing.compute for name, one in coupling.components.items()}
+        repeated = any(True for _ in coupling.plan.iterated())
+        repetitions = coupling.costs.repetitions if repeated else None
+        return Reading(self.done, self.time, coupling.ledger.worst, compute, repetitions)
 
     def warn(self, text: str) -> None:
         """See `Observer.warn`."""
@@ -131,7 +140,7 @@ class OutputWriter:
     def _keep(self, coupling: Coupling) -> None:
         """Make a snapshot, with all rows written that the run had until then."""
         if self._recorder:
-            self._recorder.flush()
+            self._recorder.sync()
         save(coupling, self.scene, self.folder, self.logs)
         self._kept = time.monotonic()
 
@@ -183,9 +192,7 @@ class OutputWriter:
 
     def close(self) -> None:
         """Close all files, however the run ended."""
-        if self._progress:
-            self._progress.close()
-        if self._recorder:
-            self._recorder.close()
-        for file in self._files.values():
-            file.close()
+        with contextlib.ExitStack() as stack:  # all, even if one cannot be written
+            for one in (*self._files.values(), self._recorder, self._progress):
+                if one:
+                    stack.callback(one.close)

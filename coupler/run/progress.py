@@ -1,62 +1,157 @@
 """The progress of a run on the screen."""
 
 import importlib.util
+import math
 import sys
 import time
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.console import Console, Group
+from rich.live import Live
+from rich.progress import BarColumn, Progress, TextColumn
+from rich.text import Text
 
 LINE_INTERVAL = 5.0  # s between two lines of progress where there is no terminal
+PACE = 20.0  # s of wall time over which speeds are taken
+SPACING = 0.25  # s between two readings that are kept for that
+SOONEST = 1.0  # s of readings before there is a speed
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """How far a run has come, at the end of a window."""
+
+    windows: int
+    time: float  # s, simulated
+    residual: float = 0.0  # of momentum
+    compute: Mapping[str, float] = field(default_factory=dict)  # s that each component computed
+    repetitions: int | None = None  # of windows; None where none are repeated
+
+
+class Pace:
+    """How fast a run goes, over its last seconds.
+
+    The first window is left out: in it components may still compile.
+    """
+
+    def __init__(self) -> None:
+        self._kept: deque[tuple[float, Reading]] = deque()  # wall time [s]
+
+    def add(self, reading: Reading, now: float) -> None:
+        """Add a reading at a wall time [s]."""
+        kept = self._kept
+        if len(kept) > 1 and kept[-1][0] - kept[-2][0] < SPACING:
+            kept.pop()
+        kept.append((now, reading))
+        while len(kept) > 2 and kept[1][0] < now - PACE:
+            kept.popleft()
+
+    @property
+    def seconds(self) -> float:
+        """Wall time that the readings span [s]; 0 while it is too short to tell a speed."""
+        span = self._kept[-1][0] - self._kept[0][0] if self._kept else 0.0
+        return span if span >= SOONEST else 0.0
+
+    @property
+    def windows(self) -> float:
+        """Windows per second."""
+        return self._last.windows / self.seconds - self._first.windows / self.seconds
+
+    def left(self, end: float) -> float:
+        """Wall time until a simulated time [s]; infinite where nothing moves."""
+        gone = self._last.time - self._first.time
+        return (end - self._last.time) * self.seconds / gone if gone > 0.0 else math.inf
+
+    def shares(self) -> dict[str, float]:
+        """Share of the time that each component computed, and did not wait for others."""
+        before, seconds = self._first.compute, self.seconds
+        return {
+            name: (spent - before.get(name, 0.0)) / seconds
+            for name, spent in self._last.compute.items()
+        }
+
+    def repetitions(self) -> float | None:
+        """How often windows were repeated, on average; None where they are not."""
+        if self._last.repetitions is None:
+            return None
+        windows = self._last.windows - self._first.windows
+        return (self._last.repetitions - (self._first.repetitions or 0)) / max(windows, 1)
+
+    @property
+    def _first(self) -> Reading:
+        return self._kept[0][1]
+
+    @property
+    def _last(self) -> Reading:
+        return self._kept[-1][1]
 
 
 class ProgressReport:
-    """Windows done, simulated time, speed, time left and residual: a bar, or lines."""
+    """Simulated time, time left, speed, balance, repetitions, residual: a bar, or lines."""
 
-    def __init__(self, end: float, first: int = 0, time_then: float = 0.0) -> None:
-        self.end, self.first, self.time_then = end, first, time_then  # s, windows, s
-        self._began = self._shown = time.monotonic()
-        self._bar = self._make_bar() if shows_bar() else None
-        if self._bar:
-            self._bar.start()
-            texts = {"window": first, "speed": "", "residual": ""}
-            self._task = self._bar.add_task("", total=end, completed=time_then, **texts)  # type: ignore[arg-type]
-
-    def _make_bar(self) -> Progress:
-        columns = (
-            TextColumn("window {task.fields[window]}, t = {task.completed:.4g}/{task.total:.4g} s"),
-            BarColumn(),
-            TextColumn("{task.fields[speed]}"),
-            TimeRemainingColumn(),
-            TextColumn("{task.fields[residual]}"),
-        )
-        return Progress(*columns, refresh_per_second=4)
-
-    def show(self, window: int, simulated: float, residual: float) -> None:
-        """Show windows done, simulated time [s], speed, time left and residual."""
-        now = time.monotonic()
-        spent = max(now - self._began, 1e-9)
-        speed = (window - self.first) / spent
-        if self._bar:
-            texts = {
-                "window": window,
-                "speed": f"{speed:.3g} windows/s",
-                "residual": f"momentum {residual:.0e}",
-            }
-            self._bar.update(self._task, completed=simulated, **texts)  # type: ignore[arg-type]
-        elif now - self._shown >= LINE_INTERVAL or window == 1 or simulated >= self.end:
-            self._shown = now
-            left = (self.end - simulated) * spent / max(simulated - self.time_then, 1e-300)
-            print(
-                f"window {window}, t = {simulated:.4g} of {self.end:.4g} s, "
-                f"{speed:.3g} windows/s, {left:.0f} s left, momentum residual {residual:.0e}",
-                flush=True,
+    def __init__(self, end: float) -> None:
+        self.end, self.pace, self.windows = end, Pace(), 0
+        self._shown = -math.inf
+        self._live: Live | None = None
+        if shows_bar():
+            columns = (
+                TextColumn("{task.fields[at]}"),
+                BarColumn(),
+                TextColumn("{task.fields[to]}"),
             )
+            self._bar, self._details = Progress(*columns), Text()
+            self._task = self._bar.add_task("", total=end, at="", to="")
+            self._live = Live(Group(self._bar, self._details), refresh_per_second=4)
+            self._live.start()
+
+    def show(self, reading: Reading) -> None:
+        """Show how far the run has come at the end of a window."""
+        now = time.monotonic()
+        self.pace.add(reading, now)
+        self.windows += 1
+        ends = reading.time >= self.end
+        if self._live:
+            self._bar.update(
+                self._task,
+                completed=reading.time,
+                at=f"t = {reading.time:.4g} of {self.end:.4g} s",
+                to=time_left(self.pace, self.end),
+            )
+            self._details.plain = ", ".join(details(reading, self.pace))
+        elif now - self._shown >= LINE_INTERVAL or self.windows == 1 or ends:
+            self._shown = now
+            said = [f"t = {reading.time:.4g} of {self.end:.4g} s", time_left(self.pace, self.end)]
+            print(", ".join(filter(None, [*said, *details(reading, self.pace)])), flush=True)
 
     def close(self) -> None:
-        """Remove the bar from the terminal."""
-        if self._bar:
-            self._bar.stop()
+        """Leave the terminal as the bar is."""
+        if self._live:
+            self._live.stop()
+            self._live = None
+
+
+def time_left(pace: Pace, end: float) -> str:
+    """Wall time until the end of a run; "" while nobody can tell."""
+    seconds = pace.left(end) if pace.seconds else math.inf
+    if not math.isfinite(seconds):
+        return ""
+    if seconds < 100.0:
+        return f"{seconds:.0f} s left"
+    minutes = round(seconds / 60.0)
+    return f"{minutes // 60} h {minutes % 60} min left" if minutes >= 100 else f"{minutes} min left"
+
+
+def details(reading: Reading, pace: Pace) -> list[str]:
+    """Windows, their speed, who computes while others wait, repetitions, residual."""
+    said = [f"window {reading.windows}"]
+    if pace.seconds:
+        said += [f"{pace.windows:.3g} windows/s"]
+        said += [f"{name} computes {share:.0%}" for name, share in pace.shares().items()]
+        repeated = pace.repetitions()
+        said += [] if repeated is None else [f"windows repeated {repeated:.1f} times"]
+    return [*said, f"momentum residual {reading.residual:.0e}"]
 
 
 def shows_bar() -> bool:

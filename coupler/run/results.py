@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.files.disk import told, write_at_last
 from quintet.coupler.files.recording import Recording
-from quintet.coupler.files.run_files import PICTURES
+from quintet.coupler.files.run_files import PICTURES, RESULTS
 from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.side_views import side_views
@@ -48,10 +49,12 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
     output, title = scene.file.output, scene.headline
     if output.pictures and view_files(folder):
         colours, region = output.colours, output.region
-        side_views(folder, folder / PICTURES[0], output.pictures, title, colours, region)
+        out = folder / PICTURES[0]
+        with told(out):
+            side_views(folder, out, output.pictures, title, colours, region)
     if found:
         out, values = folder / PICTURES[1], bool(output.pictures)
-        with Recording(folder / "recording.h5") as recording:
+        with Recording(folder / "recording.h5") as recording, told(out):
             comparison(scene.folder, scene.expect, found, recording, out, title, values)
 
 
@@ -70,7 +73,7 @@ def timing(participants: dict[str, Participant], wall: float, mapping: float) ->
             "memory": one.memory or None,
         }
         exchange += max(0.0, one.wait - one.compute)
-        compile_time += max(0.0, one.first - one.usual)
+        compile_time += one.prepare + max(0.0, one.first - one.usual)
     return {
         "wall": wall,
         "compile": compile_time,
@@ -115,11 +118,8 @@ def fault(error: ComponentFailed, folder: Path, lines: list[str]) -> dict[str, A
 
 
 def write(folder: Path, content: dict[str, Any]) -> None:
-    """Write ``results.json`` atomically."""
-    path = folder / "results.json"
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(content, indent=2, default=float))
-    part.replace(path)
+    """Write ``results.json``: whole, and elsewhere where the folder's disk has no room for it."""
+    write_at_last(folder / RESULTS, json.dumps(content, indent=2, default=float))
 
 
 def expectations(found: list[Outcome]) -> list[dict[str, Any]]:

@@ -1,7 +1,10 @@
 """Running a scene over any transport: in this process, or as an MPI job started from it."""
 
+import os
 from pathlib import Path
 
+from quintet.coupler.files.disk import reserve
+from quintet.coupler.files.run_files import RESULTS
 from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin, files_of, go_on
@@ -31,6 +34,7 @@ def run_scene(
     with begin("run", scene.file.name, files_of(scene), out, force) as place:
         try:
             make_folder(scene, place.path)
+            print(headline(scene, place.path), flush=True)
             status = _run(scene, place.path, None, own_process)
         except QuintetError:
             place.undo()
@@ -44,7 +48,20 @@ def resume_scene(scene: Scene, folder: Path, snapshot: Path, own_process: bool =
     """Continue a run from one of its snapshots; return the exit status."""
     check_machine(scene)
     with go_on(folder, "run"):
+        reserve(folder, RESULTS)
+        print(headline(scene, folder), flush=True)
         return _run(scene, folder, snapshot, own_process)
+
+
+def headline(scene: Scene, folder: Path) -> str:
+    """What is about to run: scene, transport, components, folder."""
+    name = scene.file.name + (f" ({scene.preset})" if scene.preset else "")
+    parts = [
+        f"{one.name} ({one.kind}" + (f", {one.threads} threads)" if one.threads > 1 else ")")
+        for one in scene.components.values()
+    ]
+    where = os.path.relpath(folder)
+    return f"{name}: {', '.join(parts)} over {scene.transport}, into {where}"
 
 
 def check_machine(scene: Scene) -> None:

@@ -1,4 +1,4 @@
-"""Signals that end a run: SIGINT, SIGTERM, and the end of the process that started it."""
+"""Signals that end a run: SIGINT, SIGTERM, SIGHUP, and the end of the process that started it."""
 
 import contextlib
 import os
@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable, Iterator
 from types import FrameType
 
-from quintet.coupler.launch.signal_handler import handled_by
+from quintet.coupler.launch.signal_handler import ENDING, handled_by, silence, terminals
 from quintet.coupler.launch.watchdog import POKE
 from quintet.interfaces.lines.process_status import running
 from quintet.interfaces.serving.process import STARTER
@@ -24,6 +24,7 @@ class StopRequest:
     def __init__(self) -> None:
         self._starter = int(os.environ.get(STARTER, "0"))  # process that cleans up after the run
         self._signals = 0
+        self._terminals: list[int] = []  # that standard output and errors are, while we listen
         self._pipe = -1  # where their numbers arrive, while we listen
         self._lock = threading.RLock()  # a handler may come while it is held
         self.leave: Callable[[], None] | None = None  # ends this process, where that may be done
@@ -48,7 +49,9 @@ class StopRequest:
             return
         with self._lock, contextlib.suppress(BlockingIOError):
             for number in os.read(self._pipe, 64):
-                if number in (signal.SIGINT, signal.SIGTERM):
+                if number == signal.SIGHUP:  # a shell and the system both send it
+                    silence(self._terminals)
+                if number in ENDING and not (self._signals and number == signal.SIGHUP):
                     self._signals += 1
                     if self._signals == 1:
                         name = signal.Signals(number).name
@@ -56,7 +59,7 @@ class StopRequest:
 
     @contextlib.contextmanager
     def listening(self, judged: Callable[[], bool] = lambda: False) -> Iterator[None]:
-        """Handle SIGINT, SIGTERM: the first ends the run after this window, the second at once.
+        """Handle signals: the first ends the run after this window, the second at once.
 
         Where `judged`, a poke ends it too: what runs in this thread is interrupted.
         """
@@ -71,10 +74,11 @@ class StopRequest:
         if threading.current_thread() is not threading.main_thread():
             yield
             return
+        self._terminals = terminals()
         self._pipe, end = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         former = signal.set_wakeup_fd(end, warn_on_full_buffer=False)
         try:
-            with handled_by(ask, (signal.SIGINT, signal.SIGTERM, POKE)):
+            with handled_by(ask, (*ENDING, POKE)):
                 yield
         finally:
             signal.set_wakeup_fd(former)

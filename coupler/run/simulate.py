@@ -1,5 +1,6 @@
 """One run, from a checked scene to its results, failures included."""
 
+import contextlib
 import os
 import shlex
 import sys
@@ -7,7 +8,7 @@ import threading
 import traceback
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import tomli_w
 
@@ -16,7 +17,15 @@ from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs
-from quintet.coupler.files.run_files import LEDGER, SCENE
+from quintet.coupler.files.disk import (
+    REASONS,
+    disk_error,
+    give_up_reserve,
+    reserve,
+    told,
+    write_whole,
+)
+from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.launch.watchdog import Watchdog
@@ -24,9 +33,17 @@ from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.run.start_report import StartReport
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
-from quintet.interfaces.errors import LinkError, SceneError
+from quintet.interfaces.errors import DiskError, LinkError, QuintetError, SceneError
+
+
+class Closable(Protocol):
+    """A file of a run, or several."""
+
+    def close(self) -> None:
+        """Write what is left; a second call does nothing."""
 
 
 def simulate(
@@ -73,15 +90,19 @@ class Running:
         }
         first = snapshots.window_of(snapshot) if snapshot else None
         self.writer = OutputWriter(scene, folder, stop, self.logs, first)
+        self.files: tuple[Closable, ...] = (self.writer, self.ledger, *self.logs.values())
         self.costs = Costs()
         self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
         self.participants: dict[str, Participant] = {}
+        self._start = StartReport(log_files(scene, folder))
+        self.writer.on_begin = self._start.close
         self._connection: Connection | None = None
         self._ending = threading.Lock()
 
     def run(self) -> None:
         """Join the components and couple them to the end, or until a signal ends it."""
         scene = self.scene
+        self._start.show()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
         self.participants = connection.participants
         coupling = assemble(
@@ -90,7 +111,8 @@ class Running:
         path = self.snapshot
         resume = partial(snapshots.restore, path=path) if path else lambda _: None
         end = run(coupling, scene.file.end, self.writer, scene.asked_outputs(), resume)
-        self.writer.close()
+        for one in self.files:
+            one.close()
         connection.close(True)
         self._connection = None
         self.outcome |= outcome_of(end)
@@ -98,23 +120,25 @@ class Running:
     def end(self, error: BaseException | None) -> int:
         """End it, with what went wrong if something did; write the results; tell the status."""
         with self._ending:
-            writer = self.writer
+            self._start.close()
+            writer, lost = self.writer, False
             if isinstance(error, KeyboardInterrupt) or isinstance(
                 self.watchdog.verdict, KeyboardInterrupt
             ):
                 ended = {"status": "interrupted", "windows": writer.done, "time": writer.time}
                 self.outcome |= ended
             elif isinstance(error, Exception):
+                error = of_disk(error, self.folder)
+                lost = isinstance(error, DiskError)
                 self.outcome |= refused(error, writer) or failed(
                     error, self.scene, self.folder, writer
                 )
             if self._connection:
                 self._connection.close(False)
-            writer.close()
-            self.ledger.close()
-            for log in self.logs.values():
-                log.close()
-            if self.stop.asked and self.outcome["status"] != "done":
+            for one in self.files:
+                with contextlib.suppress(DiskError):  # told already: it ended the run
+                    one.close()
+            if self.stop.asked and self.outcome["status"] != "done" and not lost:
                 self.outcome["status"] = "interrupted"
             self.outcome["unstable"] = self.ledger.watch.summary()
             return conclude(self)
@@ -129,10 +153,20 @@ class Running:
             os._exit(status)
 
 
+def log_files(scene: Scene, folder: Path) -> dict[str, Path]:
+    """Logs of the components that are processes of their own on this host."""
+    if scene.transport == "memory":
+        return {}
+    here = [name for name in scene.components if name not in scene.elsewhere]
+    return {name: folder / "log" / f"{name}.log" for name in here}
+
+
 def make_folder(scene: Scene, folder: Path) -> None:
     """Prepare the folder of a run: its logs, and the scene as it runs."""
-    (folder / "log").mkdir(parents=True, exist_ok=True)
-    (folder / SCENE).write_text(tomli_w.dumps(scene.resolved), encoding="utf-8")
+    with told(folder):
+        (folder / "log").mkdir(parents=True, exist_ok=True)
+    write_whole(folder / SCENE, tomli_w.dumps(scene.resolved))
+    reserve(folder, RESULTS)
 
 
 def outcome_of(end: RunEnd) -> dict[str, Any]:
@@ -149,10 +183,19 @@ def refused(error: Exception, writer: OutputWriter) -> dict[str, Any]:
     return {"status": "refused", "cause": str(error)}
 
 
+def of_disk(error: Exception, folder: Path) -> Exception:
+    """Tell the disk of an error of the system that a full one caused."""
+    if isinstance(error, OSError) and error.errno in REASONS:
+        return disk_error(Path(error.filename or folder), error)
+    return error
+
+
 def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -> dict[str, Any]:
     """Report a failure: component, window, cause, and the last lines of its log."""
+    give_up_reserve(folder)  # what is said here may go to the same disk
     if not isinstance(error, ComponentFailed):
-        error = ComponentFailed("coupler", writer.done, str(error), traceback.format_exc())
+        trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
+        error = ComponentFailed("coupler", writer.done, str(error), trace)
     lines = tail(folder / "log" / f"{error.component}.log")
     found = results.fault(error, folder, lines)
     print(f"\nquintet: {error}", file=sys.stderr)
@@ -195,6 +238,9 @@ def conclude(made: Running) -> int:
         return results.FAILED
     if outcome["status"] == "interrupted":
         return results.INTERRUPTED
-    results.draw(scene, folder, found)
+    try:
+        results.draw(scene, folder, found)
+    except DiskError as error:
+        print(f"quintet: {error}", file=sys.stderr, flush=True)
     sound = all(one.met for one in found) and not outcome["unstable"]
     return results.DONE if sound else results.UNMET

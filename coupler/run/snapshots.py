@@ -2,10 +2,12 @@
 
 A snapshot holds the state of every component, what the coupler remembers (the last two outputs of
 each, what its couplings carry over from window to window, the ledger), and how long the files of
-the run were. Nothing in it is pickled; it is there whole or not at all.
+the run were. Nothing in it is pickled; it is there whole or not at all, and ends with a checksum,
+by which one that was cut or changed since is found: the run then goes on from the one before.
 """
 
 import json
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -17,6 +19,8 @@ import numpy as np
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.files.disk import PART, is_sound, put_in_place, removed_on_failure, seal, told
+from quintet.coupler.files.hdf5 import OF_DATASET, create, room
 from quintet.coupler.files.run_files import SNAPSHOTS
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.scene import Scene
@@ -48,21 +52,45 @@ def save(
 ) -> Path:
     """Write a snapshot at the end of a window, and remove all but the last few."""
     path = folder / f"snapshot-{coupling.windows.done}.h5"
-    part = path.with_suffix(".part")
+    part = path.with_name(path.name + PART)
     participants = coupling.components
-    with h5py.File(part, "w", locking=False) as file:
-        for name, one in participants.items():
-            _put(file, f"components/{name}", one.save())
-        _put(file, "windows", {name: one.window for name, one in participants.items()})
-        _put(file, "coupling", states(coupling))
-        _put(file, "ledger", coupling.ledger.save())
-        _put(file, "costs", asdict(coupling.costs))
-        _put(file, "logs", {name: log.size() for name, log in logs.items()})
-        _put(file, "asked", scene.asked)
-        _put(file, "tick", coupling.windows.tick)
-    part.replace(path)
+    coupling.ledger.sync()
+    for log in logs.values():
+        log.sync()
+    rest = {
+        "windows": {name: one.window for name, one in participants.items()},
+        "coupling": states(coupling),
+        "ledger": coupling.ledger.save(),
+        "costs": asdict(coupling.costs),
+        "logs": {name: log.size() for name, log in logs.items()},
+        "asked": scene.asked,
+        "tick": coupling.windows.tick,
+    }
+    with removed_on_failure(part), told(path):
+        with create(part) as file:
+            for name, one in participants.items():
+                _write(file, f"components/{name}", one.save())
+            for name, value in rest.items():
+                _write(file, name, value)
+        seal(part)
+        put_in_place(part, path)
     remove(snapshots(folder)[:-KEPT])
     return path
+
+
+def _write(file: h5py.File, name: str, value: Any) -> None:
+    with room(file, _largest(value)):
+        _put(file, name, value)
+
+
+def _largest(value: Any) -> int:
+    """Bytes that a value may need on the disk."""
+    if isinstance(value, dict):
+        return OF_DATASET + sum(map(_largest, value.values()))
+    if isinstance(value, (list, tuple)) and any(isinstance(one, np.ndarray) for one in value):
+        return OF_DATASET + sum(map(_largest, value))
+    size = value.nbytes if isinstance(value, np.ndarray) else len(json.dumps(value))
+    return OF_DATASET + int(size)
 
 
 def states(coupling: Coupling) -> dict[str, Any]:
@@ -92,17 +120,29 @@ def restore(coupling: Coupling, path: Path) -> None:
         coupling.ledger.load(_get(file, "ledger"))
         for name, cost in _get(file, "costs").items():
             setattr(coupling.costs, name, cost)
+    # Later ones were cut or changed, or are of windows that are now done again.
+    remove(one for one in snapshots(path.parent) if window_of(one) > window_of(path))
 
 
-def latest(folder: Path) -> Path:
-    """Find the snapshot from which a run goes on."""
-    found = snapshots(folder)
-    if not found:
+def latest(folder: Path, quietly: bool = False) -> Path:
+    """Find the last snapshot that is as it was written; name those that are not."""
+    wrong: list[str] = []
+    for path in reversed(snapshots(folder)):
+        if is_sound(path):
+            if wrong and not quietly:
+                said = f"quintet: {' '.join(wrong)} The run goes on from {path.name}."
+                print(said, file=sys.stderr, flush=True)
+            return path
+        wrong.append(f"{path.name} is not as it was written: it was cut or changed.")
+    if wrong:
         raise SceneError(
-            f"--resume {folder}: it has no snapshot. It was not run, came to its end, or failed "
-            "before the first one. Run the scene again."
+            f"--resume {folder}: it has no snapshot that can be used. {' '.join(wrong)} Run the "
+            "scene again."
         )
-    return found[-1]
+    raise SceneError(
+        f"--resume {folder}: it has no snapshot. It was not run, came to its end, or failed "
+        "before the first one. Run the scene again."
+    )
 
 
 def scene_of(path: Path, transport: str) -> Scene:

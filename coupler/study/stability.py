@@ -12,6 +12,8 @@ from typing import Any
 
 from rich.table import Table
 
+from quintet.coupler.files.disk import write_whole
+from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.report.show import console
 from quintet.coupler.report.work_precision import three_digits
 from quintet.coupler.run import results
@@ -71,6 +73,7 @@ class Search:
 def run_stability(given: argparse.Namespace) -> int:
     """Find every limit of the scene; print them, and write them as JSON."""
     scene = load(given.scene, given.preset, given.settings, given.swap, given.transport)
+    wanted = JsonFile(given.json, ("scene", "limits"))
     if not scene.stability:
         raise SceneError(
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
@@ -78,10 +81,10 @@ def run_stability(given: argparse.Namespace) -> int:
     name = scene.file.name
     with begin_series("stability", name, (NAME,), given.out, given.force) as place:
         discard_former(place.path)
-        return _find_all(given, scene, place.path)
+        return _find_all(given, scene, place.path, wanted)
 
 
-def _find_all(given: argparse.Namespace, scene: Scene, folder: Path) -> int:
+def _find_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: JsonFile) -> int:
     """Find every limit in a folder; return the exit status."""
     stop, limits, interrupted = StopRequest(), [], False
     with stop.listening():
@@ -95,9 +98,8 @@ def _find_all(given: argparse.Namespace, scene: Scene, folder: Path) -> int:
                     interrupted = not find_limit(search)
                     limits.append(summary(search, limit.predicted(number)))
     found = {"scene": scene.file.name, "limits": limits, "machine": results.machine()}
-    for path in (folder / NAME, given.json):
-        if path:
-            path.write_text(json.dumps(found, indent=2))
+    write_whole(folder / NAME, json.dumps(found, indent=2))
+    wanted.write(found)
     console().print(table(limits))
     if interrupted:
         return results.INTERRUPTED

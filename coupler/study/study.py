@@ -9,6 +9,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from quintet.coupler.files.disk import write_whole
+from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.measures.convergence import least_squares, richardson
 from quintet.coupler.report import show
 from quintet.coupler.report.work_precision import draw, table
@@ -29,16 +31,17 @@ Row = dict[str, Any]
 def run_study(given: argparse.Namespace) -> int:
     """Run all refinements, compare them, and recommend the cheapest that meets all expectations."""
     scene = load(given.scene, given.preset, given.settings, given.swap, given.transport)
+    wanted = JsonFile(given.json, ("scene", "rows"))
     if not scene.study:
         raise SceneError(f"{scene.path.name}: there is no [[study]]. Add one for every refinement.")
     files = (NAME, PICTURE)
     with begin_series("study", scene.file.name, files, given.out, given.force, given.keep) as place:
         place.check_runs(one.folder for one in scene.study)
         discard_former(place.path)
-        return _run_all(given, scene, place.path)
+        return _run_all(given, scene, place.path, wanted)
 
 
-def _run_all(given: argparse.Namespace, scene: Scene, folder: Path) -> int:
+def _run_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: JsonFile) -> int:
     """Run all refinements in a folder; return the exit status."""
     stop, rows = StopRequest(), []
     child = ChildRun.of(given, stop)
@@ -52,9 +55,8 @@ def _run_all(given: argparse.Namespace, scene: Scene, folder: Path) -> int:
             if rows[-1]["status"] == "interrupted" or stop():
                 break
     found = conclude(scene.file.name, rows)
-    for path in (folder / NAME, given.json):
-        if path:
-            path.write_text(json.dumps(found, indent=2))
+    write_whole(folder / NAME, json.dumps(found, indent=2))
+    wanted.write(found)
     print_summary(found, folder / PICTURE)
     return status_of(found, len(scene.study))
 

@@ -6,6 +6,7 @@ sides derive the layout from it, and check it, once.
 
 import functools
 import math
+import reprlib
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -22,6 +23,7 @@ DIMENSIONS = 4
 DTYPES = {name: np.dtype(name) for name in ("<f8", "<f4", "<i8", "<i4", "|i1", "|u1", "|b1")}
 CACHED = 64  # layouts
 MOST = 1000  # arrays in a message
+LONGEST = 1000  # characters of a field's name
 
 
 class Place(NamedTuple):
@@ -93,11 +95,15 @@ def _place(table: tuple[tuple[str, str, Shape], ...], packed: bytes) -> Layout:
 
 def _entry(entry: Any) -> tuple[str, str, Shape]:
     if not (isinstance(entry, list) and len(entry) == 3 and isinstance(entry[0], str)):
-        raise MessageError(f"an array is listed as name, type, shape; found {entry!r}.")
+        raise MessageError(f"an array is listed as name, type, shape; found {reprlib.repr(entry)}.")
     key, name, shape = entry
+    if len(key) > LONGEST:
+        raise MessageError(f"a field's name has at most {LONGEST} characters; found {len(key)}.")
     if not isinstance(name, str) or name not in DTYPES:
-        raise MessageError(f"field {key}: type {name!r} is not one of {', '.join(DTYPES)}.")
+        found = reprlib.repr(name)
+        raise MessageError(f"field {key}: type {found} is not one of {', '.join(DTYPES)}.")
     fits = isinstance(shape, list) and len(shape) <= DIMENSIONS
     if not fits or not all(type(n) is int and 0 <= n < 1 << 40 for n in shape):
-        raise MessageError(f"field {key}: {shape!r} is not a shape of at most {DIMENSIONS} sizes.")
+        found = reprlib.repr(shape)
+        raise MessageError(f"field {key}: {found} is not a shape of at most {DIMENSIONS} sizes.")
     return key, name, tuple(shape)

@@ -1,11 +1,12 @@
 """Messages: a header and arrays, encoded to bytes and decoded.
 
-A frame is a 16-byte prefix, a msgpack header with the table of the arrays packed by itself, and
-each array's bytes, aligned. Nothing is pickled. Every size, type and shape is checked before a
-byte of an array is looked at.
+A frame is a prefix, a msgpack header with the table of the arrays packed by itself, and each
+array's bytes, aligned. Nothing is pickled. The header has a checksum; every size, type and shape
+is checked before a byte of an array is looked at.
 """
 
 import struct
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -20,8 +21,8 @@ from quintet.interfaces.sums import finite
 
 Frame = Any  # bytes, a bytearray or an array of bytes: whatever has a buffer
 
-MAGIC = b"qnt2"
-PREFIX = struct.Struct("<4sIQ")  # magic, bytes of the header, bytes of the frame
+MAGIC = b"qnt3"
+PREFIX = struct.Struct("<4sIQI")  # magic, bytes of the header, bytes of the frame, CRC-32 of header
 HEADER_LIMIT = 1 << 20  # bytes
 WITHOUT_ARRAYS = ("failed", "abort")  # orders that may replace an expected message
 
@@ -46,7 +47,7 @@ def encode(header: Mapping[str, Any], fields: Fields, scratch: bytearray | None)
     first = aligned(PREFIX.size + len(packed))
     total = first + layout.size
     frame = scratch if scratch is not None and len(scratch) == total else bytearray(total)
-    PREFIX.pack_into(frame, 0, MAGIC, len(packed), total)
+    PREFIX.pack_into(frame, 0, MAGIC, len(packed), total, zlib.crc32(packed))
     frame[PREFIX.size : PREFIX.size + len(packed)] = packed
     for place, array in zip(layout.places, fields.values(), strict=True):
         if place.numbers:
@@ -85,15 +86,17 @@ def _header(frame: Frame) -> tuple[dict[str, Any], int]:
     """Decode the header; return it with the offset of the first array."""
     if len(frame) < PREFIX.size:
         raise MessageError(f"a message has at least {PREFIX.size} bytes; found {len(frame)}.")
-    magic, size, total = PREFIX.unpack_from(frame)
+    magic, size, total, checksum = PREFIX.unpack_from(frame)
     if magic != MAGIC:
         raise MessageError(f"a message must begin with {MAGIC!r}; found {magic!r}.")
     if total != len(frame):
         raise MessageError(f"the message says it has {total} bytes; {len(frame)} arrived.")
     if size > min(HEADER_LIMIT, total - PREFIX.size):
         raise MessageError(f"a header of {size} bytes does not fit a message of {total} bytes.")
+    text = memoryview(frame)[PREFIX.size : PREFIX.size + size]
+    if zlib.crc32(text) != checksum:
+        raise MessageError("the header is not as it was sent: its checksum differs.")
     try:
-        text = memoryview(frame)[PREFIX.size : PREFIX.size + size]
         header = msgpack.unpackb(text, raw=False)
     except (ValueError, msgpack.exceptions.UnpackException) as error:
         raise MessageError(f"the header is not valid msgpack: {error}") from error

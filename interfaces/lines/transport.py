@@ -5,6 +5,7 @@ transport of bytes sequence numbers, the name of the run, and a watch on the oth
 """
 
 import os
+import reprlib
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -88,13 +89,16 @@ class FramedLine(ABC):
         seq, run = message.header.get("seq"), message.header.get("run")
         if seq != self._received:
             raise LineError(
-                f"message {self._received} was expected, message {seq} arrived: messages were "
+                f"message {self._received} was expected, message {reprlib.repr(seq)} arrived: "
+                "messages were "
                 "lost or repeated. Nothing can be recovered; run again from the last snapshot."
             )
         self._received += 1
-        self.run = self.run or str(run)
+        if not isinstance(run, str):
+            raise LineError(f"a message names its run; found {reprlib.repr(run)}.")
+        self.run = self.run or run
         if run != self.run and run != "":
-            raise LineError(f"a message of run {run!r} arrived in run {self.run!r}.")
+            raise LineError(f"a message of run {reprlib.repr(run)} arrived in run {self.run!r}.")
         return message
 
     def peek(self) -> Frame | None:

@@ -10,6 +10,7 @@ ends exp(φ(t)) q₀ with a cubic Hermite polynomial φ whose end is, of all rot
 lead to the end, the one nearest to the mean angular velocity times the window.
 """
 
+import reprlib
 from collections.abc import Collection, Iterable
 from typing import NamedTuple
 
@@ -51,6 +52,8 @@ class Inputs:
                 known = ", ".join(self.fields) or "nothing"
                 raise PortError(f"field {key} is not taken here; the ports take {known}.")
             self._check(key, array)
+            if array.dtype != float:
+                array = array.astype(float)
             if key in self.impulses:
                 self.rate[key] = array / window
             elif key in ends and key in self.start:
@@ -59,7 +62,8 @@ class Inputs:
                 self.start[key] = array
 
     def _check(self, key: str, array: Array) -> None:
-        shape, rows = self.fields[key].shape, self.rows.setdefault(key, len(array))
+        shape = self.fields[key].shape
+        rows = self.rows.setdefault(key, len(array)) if array.ndim else 0
         if array.shape != (rows, *shape):
             raise PortError(f"field {key} must have shape {(rows, *shape)}; found {array.shape}.")
 
@@ -77,6 +81,13 @@ class Inputs:
         for key, rate in self.rates.items():
             if key in self.start and rate in self.start:
                 given[rate] = self._mean_rate(key, rate, begin, end, window)
+        for array in given.values():
+            array.flags.writeable = False
+        return given
+
+    def at_start(self) -> dict[str, Array]:
+        """Instants as they are at the window's beginning."""
+        given = {key: array.view() for key, array in self.start.items()}
         for array in given.values():
             array.flags.writeable = False
         return given
@@ -117,7 +128,10 @@ class Inputs:
         parts: dict[str, dict[str, Array]] = {"start": {}, "end": {}, "rate": {}}
         for name, array in state.items():
             part, _, key = name.partition("/")
-            parts[part][key] = np.array(array)
+            if part not in parts or key not in self.fields:
+                raise PortError(f"inputs have no {reprlib.repr(name)}; a saved state was expected.")
+            self._check(key, array)
+            parts[part][key] = np.array(array, float)
         self.start, self.end, self.rate = parts["start"], parts["end"], parts["rate"]
 
 

@@ -1,5 +1,7 @@
 """The legal order of a component's orders, as a pure state machine."""
 
+import reprlib
+
 from quintet.interfaces.errors import OrderError
 
 # state -> order -> next state
@@ -9,6 +11,7 @@ LEGAL: dict[str, dict[str, str]] = {
     "ready": {
         "give": "ready",
         "prime": "ready",
+        "prepare": "ready",
         "advance": "ready",
         "keep": "ready",
         "rewind": "ready",
@@ -36,7 +39,7 @@ class OrderGuard:
         if order not in legal:
             raise OrderError(
                 f"{self.name}: when {self.state}, an order must be one of "
-                f"{', '.join(legal) or 'none'}; found {order!r}."
+                f"{', '.join(legal) or 'none'}; found {reprlib.repr(order)}."
             )
         if order == "advance":
             if window != self.window:

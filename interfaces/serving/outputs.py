@@ -4,6 +4,7 @@ An impulse is the sum of force times step over the steps, so what a link carries
 what the component did, at every subcycling ratio.
 """
 
+import reprlib
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -42,7 +43,7 @@ class Outputs:
         self.wanted = frozenset(keys)
         unknown = self.wanted - self.fields.keys()
         if unknown:
-            raise PortError(f"output {min(unknown)} is wanted; no port gives it.")
+            raise PortError(f"output {reprlib.repr(min(unknown))} is wanted; no port gives it.")
         kept = [key for key in self.fields if key in self.wanted]
         self.shapes = {key: self.fields[key].shape for key in kept}
         self.impulses = [key for key in kept if self.fields[key].centring == "impulse"]
@@ -60,6 +61,11 @@ class Outputs:
             part = given[key] if self.integrals else dt * given[key]
             self.total[key] = self.total[key] + part if key in self.total else part
         for force, velocity, position in self.works:
+            for key in filter(None, (velocity, position)):
+                if key not in taken or len(taken[key]) != len(given[force]):
+                    raise PortError(
+                        f"{key} must have come, for each item of {force}, whose work it tells."
+                    )
             pushed, moved = given[force], taken[velocity]
             whole = ((0, len(pushed)),)
             shares = self.shares.get(velocity.partition(".")[0], whole)

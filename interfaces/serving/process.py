@@ -18,7 +18,10 @@ from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
+from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.malloc import keep_freed_memory
+from quintet.interfaces.serving.notices import listen, notice
+from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.serve import LONGEST_WAIT, Server, failure, serve
 
 LINGERING = 10.0  # s
@@ -43,6 +46,7 @@ def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -
     given = parser.parse_args(arguments)
     if given.log:
         redirect(given.log)
+    print_into_logs()
     look_in(given.look_in)
     sys.exit(run(manifest or find(given.kind), given))
 
@@ -63,6 +67,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     faulthandler.enable()
     faulthandler.register(STACK_SIGNAL, all_threads=False)
     keep_freed_memory()
+    listen(say)
     say(f"{given.name}: {manifest.title}, process {os.getpid()}")
     try:
         line = over_mpi(given.name) if given.mpi else over_zenoh(given)
@@ -102,11 +107,15 @@ def linger(line: Line) -> None:
 
 def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     """Check the parameters, then import the solver and make the component."""
+    check_order("go", header)
     resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
     params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
         raise SceneError(mistakes)
-    return make(manifest.load(), params, resources)
+    notice("importing the solver")
+    solver = manifest.load()
+    notice("building")
+    return make(solver, params, resources)
 
 
 def over_zenoh(given: argparse.Namespace) -> Line:

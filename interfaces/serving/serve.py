@@ -4,6 +4,7 @@ Substeps, interpolation and the summing of impulses are done here, once for all 
 """
 
 import math
+import reprlib
 import sys
 import time
 import traceback
@@ -18,6 +19,7 @@ from quintet.interfaces.lines.message import Message, require_finite
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.serving.inputs import Inputs
 from quintet.interfaces.serving.order_guard import OrderGuard
+from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.outputs import InputAudit, Outputs, Sums
 from quintet.interfaces.serving.port_view import look_at
 from quintet.interfaces.sums import column_sums
@@ -60,6 +62,7 @@ class Server:
             "describe": self._describe,
             "bind": self._bind,
             "prime": self._prime,
+            "prepare": self._prepare,
             "give": self._give,
             "advance": self._advance,
             "keep": self._keep,
@@ -72,10 +75,8 @@ class Server:
 
     def handle(self, message: Message) -> Answer:
         """Carry out one order."""
-        window = message.header.get("window", 0)
-        if not isinstance(window, int):
-            raise OrderError(f"a window has a whole number; found {window!r}.")
-        self.guard.allow(message.order, window, depth(message))
+        check_order(message.order, message.header)
+        self.guard.allow(message.order, message.header.get("window", 0), depth(message))
         return self._orders[message.order](message)
 
     def _describe(self, _: Message) -> Answer:
@@ -87,9 +88,12 @@ class Server:
         if "wanted" in header:
             self.outputs.want(header["wanted"])
         for force, velocity, position in header.get("works", []):
-            if force in self.outputs.through and velocity in self.inputs.fields:
+            taken = self.inputs.fields
+            if position and position not in taken:
+                raise OrderError(f"order bind: {reprlib.repr(position)} is not taken here.")
+            if force in self.outputs.through and velocity in taken:
                 self.outputs.works.append((force, velocity, position))
-        return {"items": self.component.items(), "stable": self.stable()}, {}
+        return {"items": self.component.items()}, {}
 
     def stable(self) -> float:
         """Largest step that the component allows now [s]."""
@@ -103,6 +107,12 @@ class Server:
         self.inputs.arrive(message.fields, (), 1.0)
         self.component.prime(message.fields)
         return {"notes": self._notes()}, {}
+
+    def _prepare(self, _: Message) -> Answer:
+        began = time.perf_counter()
+        self.component.prepare(self.inputs.at_start())
+        self._stable = None
+        return {"stable": self.stable(), "seconds": time.perf_counter() - began}, {}
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()
@@ -206,8 +216,15 @@ class Server:
         parts: dict[str, dict[str, Any]] = {"component": {}, "inputs": {}}
         for name, array in state.items():
             part, _, key = name.partition("/")
+            if part not in parts:
+                raise OrderError(f"a state has no part {reprlib.repr(part)}.")
             parts[part][key] = array
-        self.component.load(parts["component"])
+        try:
+            self.component.load(parts["component"])
+        except (LookupError, TypeError, ValueError) as error:
+            if said := unlike(parts["component"], self.component.save()):
+                raise OrderError(f"a state must be one that was saved here; {said}.") from error
+            raise
         self._stable = None
         self.inputs.load(parts["inputs"])
 
@@ -238,9 +255,19 @@ class Server:
         return header, fields
 
 
+def unlike(state: Fields, own: Fields) -> str:
+    """Say in what a state differs from one of a component's own; "" where nothing is seen."""
+    for key in sorted(state.keys() | own.keys()):
+        if key not in state or key not in own:
+            return f"{key} is {'missing' if key in own else 'not known'}"
+        if (found := np.shape(state[key])) != np.shape(own[key]):
+            return f"{key} has shape {found}, not {np.shape(own[key])}"
+    return ""
+
+
 def depth(message: Message) -> int:
     """How deep in groups the coupling is that keeps a state; 0 is the whole run."""
-    return int(message.header.get("depth", 0))
+    return int(message.header.get("depth", 0))  # checked before
 
 
 def peak_memory() -> int:

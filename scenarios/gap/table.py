@@ -98,7 +98,11 @@ def main(folders: list[str]) -> None:
     axes.axhspan(0.8, 1.2, color="0.9")
     axes.set(xlabel="gap / spacing", ylabel="pressure in the gap / outside")
     axes.legend()
-    figure.savefig(Path(folders[0]).parent / "gap.png", dpi=120, bbox_inches="tight")
+    out = Path(folders[0]).parent / "gap.png"
+    if out.exists():
+        print(f"{out} is there already: it stays as it is")
+    else:
+        figure.savefig(out, dpi=120, bbox_inches="tight")
 
 
 if __name__ == "__main__":

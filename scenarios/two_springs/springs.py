@@ -15,24 +15,12 @@ class Mass(Component):
 
     @parameters
     class Params:
-        """What a scene says of it; it starts at rest.
+        """What a scene says of it; it starts at rest."""
 
-        Parameters
-        ----------
-        mass : kg
-            Of the body at the end of the spring.
-        stiffness : N/m
-            Of the spring.
-        arm : m
-            From the foot to where the spring is at ease.
-        start : m
-            Where the mass is at the start.
-        """
-
-        mass: Positive
-        stiffness: Positive
-        arm: Vector
-        start: Vector
+        mass: Positive  # kg
+        stiffness: Positive  # N/m
+        arm: Vector  # m, from the foot to where the spring is at ease
+        start: Vector  # m
 
     def __init__(self, params: Params) -> None:
         self.mass, self.stiffness = params.mass, params.stiffness

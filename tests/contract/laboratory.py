@@ -15,7 +15,9 @@ from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows
 from quintet.coupler.launch.connect import connect
+from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run.loop import run
+from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import plain
 from quintet.coupler.scene.read import load
 from quintet.interfaces.component import Array, Component, Fields
@@ -100,11 +102,15 @@ def couple(path: Path) -> Trace:
     """Run a scene in this process, all outputs wanted."""
     checked = load(str(path))
     exchange = checked.exchange()
-    participants = connect(checked, path.parent, lambda: False).participants
+    watchdog = Watchdog(StopRequest())
+    participants = connect(checked, path.parent, watchdog).participants
     coupling = assemble(checked.coupling, participants, exchange, Ledger(exchange))
     trace = Trace(coupling, {name: component_of(one) for name, one in participants.items()})
     asked = {name: list(exchange.gives[name]) for name in participants}
-    run(coupling, checked.file.end, trace, asked)
+    try:
+        run(coupling, checked.file.end, trace, asked)
+    finally:
+        watchdog.close()
     return trace
 
 

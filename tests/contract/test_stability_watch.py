@@ -3,7 +3,7 @@
 import laboratory
 import pytest
 
-from quintet.coupler.coupling.stability_watch import FEWEST, StabilityWatch
+from quintet.coupler.coupling.stability_watch import FEWEST, Made, StabilityWatch
 
 LINK = {
     "kind": "direct",
@@ -60,3 +60,9 @@ def test_what_was_seen_outlives_a_snapshot(tmp_path):
 def test_no_link_is_judged_by_a_jolt_at_the_start(tmp_path):
     trace = swing(tmp_path, 2.0, "serial")
     assert trace.coupling.ledger.watch.found["swing-burden"].time > 0.01 * (FEWEST - 0.5)
+
+
+def test_no_link_is_judged_by_work_that_is_rounding_beside_the_energies_of_the_run():
+    made = Made(given=0.0, taken=7e-17, turnover=1e-16, late=7e-17, late_turnover=1e-16)
+    assert made.is_unstable(FEWEST, 0.0)
+    assert not made.is_unstable(FEWEST, 1e-9 * 20.0)  # J

@@ -90,13 +90,12 @@ def test_run_tells_whether_expectations_were_met(tmp_path, capsys, value, expect
     assert ("not met" in capsys.readouterr().out) is (expected == 1)
 
 
-def test_an_item_that_no_run_has_is_an_expectation_not_met(tmp_path, capsys):
+def test_an_item_that_no_component_has_is_refused_as_ports_are_joined(tmp_path, capsys):
     path = write_scene(tmp_path, end=0.02)
     path.write_text(path.read_text() + EXPECT.format(value="0.1") + "item = 99\n")
-    assert status("run", path, "--out", tmp_path / "out") == 1
-    results = json.loads((tmp_path / "out" / "results.json").read_text())
-    assert results["expect"][0]["met"] is False and results["expect"][0]["value"] is None
-    assert "there is no item 99" in capsys.readouterr().err
+    assert status("run", path, "--out", tmp_path / "out") == 2
+    sentence = "item must be below 5, as many as pong has of out.number; found 99. Correct it."
+    assert sentence in capsys.readouterr().err
 
 
 def test_results_have_all_that_they_promise(ran):

@@ -47,7 +47,9 @@ def constants_of_pairs(model: Model, row: Short, partner: Short, some: Whole) ->
         else:
             other = model.plane_material[b - rows]
         both = model.material_pairs[a, other]
-        table[s] = pair_constants(both[0], both[1], both[2], both[3], radius, 1.0 / inverse)
+        constants = pair_constants(both[0], both[1], both[2], both[3], radius, 1.0 / inverse)
+        for n in range(7):  # to write a row at once takes a second longer to compile
+            table[s, n] = constants[n]
     return table
 
 
@@ -116,8 +118,10 @@ def ball_pairs(model: Model, begin: Whole, partner: Short, asked: bool) -> BallP
     )
 
 
-def no_ball_pairs(model: Model) -> BallPairs:
-    """Pairs of balls before any are listed."""
+def no_ball_pairs(model: Model) -> BallPairs | None:
+    """Pairs of balls before any are listed; None if there are no balls."""
+    if not model.ball.any():
+        return None
     begin = np.zeros(np.count_nonzero(model.ball) + 1, np.int64)
     return ball_pairs(model, begin, np.zeros(0, np.uint32), False)
 

@@ -141,10 +141,21 @@ def pair_forces(count: int, batch: Numbers, dt: float) -> None:
 
 
 @njit(**INNER)
-def begin_block(state: State, sums: Numbers, batch: Numbers, block: int) -> None:
-    """No load and no sum yet."""
-    state.contact_load[block * BLOCK : (block + 1) * BLOCK] = 0.0
-    sums[block, GROUND_LOAD:SUMS] = 0.0
+def begin_block(state: State, sums: Numbers, block: int) -> None:
+    """No load, no contact and no sum yet."""
+    load = state.contact_load
+    for i in range(block * BLOCK, min((block + 1) * BLOCK, load.shape[0])):
+        for k in range(6):
+            load[i, k] = 0.0
+    for k in range(GROUND_LOAD, SUMS):
+        sums[block, k] = 0.0
+    sums[block, SMALLEST_GAP], sums[block, DEEPEST], sums[block, DEEPEST_PAIR] = FAR, 0.0, -1.0
+    sums[block, STIFFEST], sums[block, ELASTIC_ENERGY] = 0.0, 0.0
+
+
+@njit(**INNER)
+def begin_batch(batch: Numbers) -> None:
+    """No extremes and no energy yet."""
     for c in range(min(BATCH, batch.shape[0])):
         batch[LEAST_GAP + c] = FAR
         batch[MOST_DEPTH + c], batch[MOST_STIFFNESS + c], batch[ENERGY + c] = 0.0, 0.0, 0.0
@@ -191,7 +202,8 @@ def ball_loads(
     loads, plane, outgoing = state.contact_load.reshape(-1), model.plane, pairs.outgoing
     row, partner, constants_row = pairs.row, pairs.partner, pairs.constants_row
     constants, force, count = pairs.constants, pairs.force, pairs.begin.shape[0] - 1
-    begin_block(state, sums, batch, block)
+    begin_block(state, sums, block)
+    begin_batch(batch)
     start = pairs.begin[min(block * BLOCK, count)]
     end, slot = pairs.begin[min((block + 1) * BLOCK, count)], pairs.outgoing_begin[block]
     for k in range(start, end, BATCH):

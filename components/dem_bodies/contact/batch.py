@@ -21,7 +21,7 @@ from quintet.components.dem_bodies.state import (
     Numbers,
     Short,
 )
-from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.components.shared.rotations import Vector, cross, dot, scaled, sub
 
 BATCH = 48  # pairs that are computed at once; all their numbers fit in the nearest cache
@@ -119,7 +119,7 @@ def load_constants(
                 batch[CONSTANTS + number * BATCH + c] = constants[k, number]
 
 
-@njit(**INNER)
+@njit(**EXACT)
 def batch_of(pairs: BallPairs) -> tuple[Numbers, Short]:
     """Make room for a batch, if there are pairs: its numbers, and whose constants it has."""
     count = pairs.partner.shape[0]

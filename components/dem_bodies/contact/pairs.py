@@ -12,6 +12,14 @@ from quintet.components.dem_bodies.contact.geometry import (
     sphere_plane,
     sphere_sphere,
 )
+from quintet.components.dem_bodies.contact.sharp import (
+    SUNK,
+    box_of,
+    edge_of,
+    sunk_corner,
+    sunk_edges,
+    sunk_in_polygon,
+)
 from quintet.components.dem_bodies.integration.locked_motion import free_inverse_mass
 from quintet.components.dem_bodies.laws import contact_force, damping_weight, pair_constants
 from quintet.components.dem_bodies.state import (
@@ -75,13 +83,19 @@ def detect_contacts(model: Model, state: State, pairs: BodyPairs, ahead: int) ->
         model.material, model.sphere_row, model.sphere_radius, model.edge_radius,
     )  # fmt: skip
     centre, plane, edge = state.centre, model.plane, model.edge_ends
+    radius, bearing, thickness = (
+        model.contact_radius, model.body_contact_radius, model.half_thickness,
+    )  # fmt: skip
+    motion, axes, half = state.motion, state.axes, model.half_extent
+    local, begin_of = model.sphere_centre, model.sphere_begin
     for k in range(begin[SPHERE_PLANE], begin[SPHERE_PLANE + 1]):
         s, p = ends[k, 0], ends[k, 1]
         i, r = row[s], size[s]
         both = material[i] * kinds + model.plane_material[p]
         found = sphere_plane(row_vector(centre, s), r, row_vector(plane, p), plane[p, 3])
+        mean, low = radius[s], min(radius[s], thickness[i])
         count = add_contact(
-            report, history, touching, geometry, count, k, ahead, i, ground, both, found, r, r
+            report, history, touching, geometry, count, k, ahead, i, ground, both, found, mean, low
         )
     for k in range(begin[SPHERE_SPHERE], begin[SPHERE_SPHERE + 1]):
         s, p = ends[k, 0], ends[k, 1]
@@ -96,9 +110,19 @@ def detect_contacts(model: Model, state: State, pairs: BodyPairs, ahead: int) ->
         s, j = ends[k, 0], ends[k, 1]
         i, r = row[s], size[s]
         both, q = material[i] * kinds + material[j], edge_radius[j]
-        found, low = sphere_body(model, state, s, j), min(r, q)
+        found = sphere_body(model, state, s, j)
+        if (model.sharp[i] or model.sharp[j]) and found[0] < -SUNK * (r + q):
+            mine = box_of(motion, axes, half, edge_radius, i)
+            other = box_of(motion, axes, half, edge_radius, j)
+            if model.polygon[j]:
+                spheres = (begin_of[i], begin_of[i + 1]) if model.polygon[i] else (s, s + 1)
+                corners = begin_of[j], begin_of[j + 1]
+                found = sunk_in_polygon(centre, size, local, s, spheres, corners, other)
+            else:
+                found = sunk_corner(row_vector(centre, s), r, mine, other)
+        low = min(min(radius[s], thickness[i]), min(bearing[j], thickness[j]))
         count = add_contact(
-            report, history, touching, geometry, count, k, ahead, i, j, both, found, r, low
+            report, history, touching, geometry, count, k, ahead, i, j, both, found, radius[s], low
         )
     for k in range(begin[EDGE_EDGE], begin[EDGE_EDGE + 1]):
         e, f = ends[k, 0], ends[k, 1]
@@ -108,7 +132,14 @@ def detect_contacts(model: Model, state: State, pairs: BodyPairs, ahead: int) ->
         along = sub(row_vector(centre, edge[e, 1]), a)
         found = edge_edge(a, along, b, sub(row_vector(centre, edge[f, 1]), b), r, q)
         # Crossed cylinders: as a sphere on a plane, of the mean radius.
-        mean, low = math.sqrt(r * q), min(r, q)
+        mean = math.sqrt(bearing[i] * bearing[j])
+        low = min(min(bearing[i], thickness[i]), min(bearing[j], thickness[j]))
+        if (model.sharp[i] or model.sharp[j]) and found[0] < low:
+            mine = box_of(motion, axes, half, edge_radius, i)
+            other = box_of(motion, axes, half, edge_radius, j)
+            first = edge_of(centre, local, edge[e, 0], edge[e, 1])
+            second = edge_of(centre, local, edge[f, 0], edge[f, 1])
+            found = sunk_edges(first, mine, second, other, found)
         count = add_contact(
             report, history, touching, geometry, count, k, ahead, i, j, both, found, mean, low
         )
@@ -143,7 +174,8 @@ def bearing_depth(history: Numbers, pair: int, depth: float, closing: float, dt:
     """Depth [m] that bears load; a crossing of edges bears none where it came into being.
 
     Edges begin to cross when a corner slides over an edge, with the faces already pressed
-    together. To let that depth bear at once would make energy from nothing.
+    together, and so does a sharp corner bear as it slides onto a face. To let that depth bear at
+    once would make energy from nothing.
     """
     if history[pair, 3] == 0.0 and dt > 0.0:
         history[pair, 4] = max(0.0, depth - max(0.0, closing) * dt)
@@ -157,7 +189,7 @@ def contact_loads(model: Model, state: State, pairs: BodyPairs, count: int, dt: 
     table, inverse_mass = model.material_pairs, model.inverse_mass
     motion, loads, inverse_inertia = state.motion, state.contact_load, state.world_inverse_inertia
     touching, geometry, history = pairs.touching, pairs.geometry, pairs.history
-    kinds, edges = table.shape[0], pairs.begin[EDGE_EDGE]
+    kinds, corners, edges = table.shape[0], pairs.begin[SPHERE_BOX], pairs.begin[EDGE_EDGE]
     energy, stiffest = state.report[ELASTIC_ENERGY], state.report[STIFFEST]
     for k in range(count):
         pair, i, j, both = touching[k, 0], touching[k, 1], touching[k, 2], touching[k, 3]
@@ -173,7 +205,7 @@ def contact_loads(model: Model, state: State, pairs: BodyPairs, count: int, dt: 
         end_i = point_velocity(motion, i, END_VELOCITY, arm_i)
         end = sub(end_i, point_velocity(motion, j, END_VELOCITY, arm_j))
         before, bearing = history[pair, 3] - history[pair, 4], depth
-        if pair >= edges:
+        if pair >= edges or (pair >= corners and (model.sharp[i] or model.sharp[j])):
             bearing = bearing_depth(history, pair, depth, -dot(end, n), dt)
         history[pair, 3] = depth
         if bearing <= 0.0:

@@ -139,20 +139,20 @@ def list_balls(
 
 @njit(**EXACT)
 def list_keys(
-    model: Model, state: State, cell_keys: Whole, order: Whole, ball_cell_keys: Whole, width: float,
-    skin: float, keys: Whole,
+    model: Model, state: State, cell_keys: Whole, order: Whole, balls: Sorted | None, skin: float,
+    keys: Whole,
 ) -> int:  # fmt: skip
     """Write the keys of all pairs nearer than the skin [m]; return their number.
 
-    `cell_keys` (o,) is sorted, `order` (o,) are the rows in that order; `ball_cell_keys` (b,)
-    are those of the balls, and `width` [m] that of their cells. If there is not room for all
-    keys, only their number is right.
+    `cell_keys` (o,) is sorted, `order` (o,) are the rows in that order; `balls` are None if there
+    are none. If there is not room for all keys, only their number is right.
     """
     count = 0
     for a in range(order.shape[0]):
         i = order[a]
         count = list_planes(model, state, i, skin, keys, count)
-        count = list_balls(model, state, i, ball_cell_keys, width, skin, keys, count)
+        if balls is not None:
+            count = list_balls(model, state, i, balls.keys, balls.width, skin, keys, count)
         for z in range(-1, 2):
             for y in range(-1, 2):
                 key = cell_keys[a] + z * LAYER + y * ROW
@@ -172,7 +172,8 @@ def transfer_history(old: BodyPairs, new: BodyPairs) -> None:
         while a < old.key.shape[0] and old.key[a] < key:
             a += 1
         if a < old.key.shape[0] and old.key[a] == key:
-            new.history[b] = old.history[a]
+            for d in range(5):  # to copy a row at once takes two seconds longer to compile
+                new.history[b, d] = old.history[a, d]
 
 
 def body_pairs_of(keys: Whole, old: BodyPairs) -> BodyPairs:
@@ -197,7 +198,7 @@ def with_sorted_rows(old: BodyPairs, order: Whole) -> BodyPairs:
 
 
 def list_body_pairs(
-    model: Model, state: State, around: Sorted, old: BodyPairs, skin: float
+    model: Model, state: State, around: Sorted | None, old: BodyPairs, skin: float
 ) -> BodyPairs:
     """List anew all pairs nearer than the skin [m] that are not of balls and planes alone."""
     if not len(model.others):
@@ -205,7 +206,7 @@ def list_body_pairs(
     width = 2.0 * float(model.bounding_radius[model.others].max(initial=0.0)) + skin
     cell_keys = keys_of(state.motion, model.others, width)
     order = np.argsort(cell_keys, kind="stable")
-    given = (model, state, cell_keys[order], model.others[order], around.keys, around.width, skin)
+    given = (model, state, cell_keys[order], model.others[order], around, skin)
     keys = np.empty(2 * len(old.key) + 64, np.int64)
     count = list_keys(*given, keys)
     if count > len(keys):
@@ -215,24 +216,27 @@ def list_body_pairs(
 
 
 def list_pairs(
-    model: Model, state: State, balls: BallPairs, contacts: BodyPairs, skin: float, asked: bool
-) -> tuple[BallPairs, BodyPairs]:
+    model: Model,
+    state: State,
+    balls: BallPairs | None,
+    contacts: BodyPairs,
+    skin: float,
+    asked: bool,
+) -> tuple[BallPairs | None, BodyPairs]:
     """Sort the rows, and list anew all pairs nearer than the skin [m]."""
-    body = state.body.copy()
-    around, order = sorted_balls(model, state, skin)
-    if len(order):
+    around = None
+    if balls is not None:
+        body, (around, order) = state.body.copy(), sorted_balls(model, state, skin)
         sort_rows(model, state, order)
         balls = list_ball_pairs(model, state, around, balls, body, skin, asked)
-    contacts = list_body_pairs(model, state, around, with_sorted_rows(contacts, order), skin)
+        contacts = with_sorted_rows(contacts, order)
+    contacts = list_body_pairs(model, state, around, contacts, skin)
     set_listed_centres(model, state)
     return balls, contacts
 
 
-@njit(**EXACT)
 def set_listed_centres(model: Model, state: State) -> None:
-    """Write down where spheres are."""
-    for i in range(model.bounding_radius.shape[0]):
-        for s in range(model.sphere_begin[i], model.sphere_begin[i + 1]):
-            for k in range(3):
-                at = state.motion[i, k] if model.ball[i] else state.centre[s, k]
-                state.listed_centre[s, k] = at
+    """Write down where spheres are; balls are the first rows, and have the first spheres."""
+    balls = np.count_nonzero(model.ball)
+    state.listed_centre[:] = state.centre
+    state.listed_centre[:balls] = state.motion[:balls, :3]

@@ -12,9 +12,14 @@ the start.
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import quaternion, row_vector, set_quaternion
+from quintet.components.dem_bodies.contact.geometry import (
+    quaternion,
+    row_vector,
+    set_quaternion,
+    set_row_vector,
+)
 from quintet.components.dem_bodies.state import OMEGA, Model, Numbers, State
-from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.components.shared.rotations import (
     Matrix,
     Quaternion,
@@ -138,8 +143,11 @@ def free_inverse_mass(model: Model, i: int, n: Vector) -> float:
     return float(model.inverse_mass[i] * (x * x + y * y + z * z))
 
 
-@njit(**INNER)
-def angular_momentum_of_locked(model: Model, state: State, i: int) -> Vector:
-    """R I Rᵀ ω [kg m²/s], of which the state keeps the free components only."""
-    r = matrix(quaternion(state.orientation.reshape(-1), 4 * i))
-    return times(world_inertia(model.inertia, i, r), row_vector(state.motion, i, OMEGA))
+@njit(**EXACT)
+def write_momenta_of_locked(model: Model, state: State, momenta: Numbers) -> None:
+    """Write R I Rᵀ ω [kg m²/s], of which the state keeps the free components only, into rows."""
+    for i in range(momenta.shape[0]):
+        if model.locked[i]:
+            r = matrix(quaternion(state.orientation.reshape(-1), 4 * i))
+            found = times(world_inertia(model.inertia, i, r), row_vector(state.motion, i, OMEGA))
+            set_row_vector(momenta, i, 0, found)

@@ -2,11 +2,12 @@
 
 import math
 
-import numpy as np
 from numba import njit
 
 from quintet.components.dem_bodies.contact.geometry import FAR
 from quintet.components.dem_bodies.state import (
+    ACCELERATION2,
+    CENTRIPETAL,
     CONTACT_WORK,
     DEEPEST,
     DEEPEST_PAIR,
@@ -15,7 +16,9 @@ from quintet.components.dem_bodies.state import (
     LARGEST_ACCELERATION,
     LARGEST_SPEED,
     LOAD_WORK,
+    ROTATION2,
     SMALLEST_GAP,
+    SPIN_UP2,
     STIFFEST,
     TRAVEL,
     VELOCITY2,
@@ -44,13 +47,16 @@ def reduce_bodies(state: State, sums: Numbers) -> None:
     report, ground = state.report, state.contact_load.shape[0] - 1
     report[CONTACT_WORK], report[LOAD_WORK] = 0.0, 0.0
     report[TRAVEL] = sums[:, TRAVEL].max()
-    largest = np.zeros(5)
+    velocity2, rotation2, acceleration2, spin_up2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
     for b in range(sums.shape[0]):
         report[CONTACT_WORK] += sums[b, CONTACT_WORK]
         report[LOAD_WORK] += sums[b, LOAD_WORK]
         for k in range(6):
             state.contact_load[ground, k] += sums[b, GROUND_LOAD + k]
-        for k in range(5):
-            largest[k] = max(largest[k], sums[b, VELOCITY2 + k])
-    report[LARGEST_SPEED] = math.sqrt(largest[0]) + math.sqrt(largest[1])
-    report[LARGEST_ACCELERATION] = math.sqrt(largest[2]) + math.sqrt(largest[3]) + largest[4]
+        velocity2 = max(velocity2, sums[b, VELOCITY2])
+        rotation2 = max(rotation2, sums[b, ROTATION2])
+        acceleration2 = max(acceleration2, sums[b, ACCELERATION2])
+        spin_up2 = max(spin_up2, sums[b, SPIN_UP2])
+        centripetal = max(centripetal, sums[b, CENTRIPETAL])
+    report[LARGEST_SPEED] = math.sqrt(velocity2) + math.sqrt(rotation2)
+    report[LARGEST_ACCELERATION] = math.sqrt(acceleration2) + math.sqrt(spin_up2) + centripetal

@@ -36,14 +36,13 @@ def count_contacts(
 
 
 @njit(**EXACT)
-def count_ball_contacts(row: Short, partner: Short, history: Numbers, count: Whole) -> int:
-    """Add the contacts of balls to `count` (n,); return the largest of any row."""
+def count_ball_contacts(row: Short, partner: Short, history: Numbers, count: Whole) -> None:
+    """Add the contacts of balls to `count` (n,)."""
     for k in range(row.shape[0]):
         if history[3, k] > 0.0:
             count[row[k]] += 1
             if partner[k] < count.shape[0]:
                 count[partner[k]] += 1
-    return int(count.max())
 
 
 def many_contacts_step(contacts: int, ω: float, ζ: float) -> float:

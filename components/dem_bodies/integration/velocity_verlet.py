@@ -75,15 +75,15 @@ def kick_work(
 
 @njit(**INNER)
 def drift_balls(
-    start: int, end: int, model: Model, motion: Numbers, contact: Numbers, load: Numbers,
-    orientation: Numbers, listed: Numbers, dt: float, loaded: bool,
+    start: int, end: int, gravity: Numbers, inverse_mass: Numbers, inverse_moment: Numbers,
+    motion: Numbers, contact: Numbers, load: Numbers, orientation: Numbers, listed: Numbers,
+    dt: float, loaded: bool,
 ) -> tuple[float, float, float]:  # fmt: skip
     """Drift of the balls in rows [start, end): works [J], largest displacement squared [m²].
 
     All arrays are flat. None is handed on in a branch, or references are counted in the loop.
     """
-    half, half_gravity = 0.5 * dt, scaled(0.5 * dt, vector(model.gravity, 0))
-    inverse_mass, inverse_moment = model.inverse_mass, model.inverse_moment
+    half, half_gravity = 0.5 * dt, scaled(0.5 * dt, vector(gravity, 0))
     work, given, furthest = 0.0, 0.0, 0.0
     for i in range(start, end):
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
@@ -172,8 +172,9 @@ def drift_body(model: Model, state: State, i: int, dt: float) -> tuple[float, fl
 
 @njit(**INNER)
 def drift(
-    first: int, last: int, model: Model, state: State, sums: Numbers, dt: float, loaded: bool
-) -> None:
+    first: int, last: int, model: Model, state: State, pairs: BallPairs | None, sums: Numbers,
+    dt: float, loaded: bool,
+) -> None:  # fmt: skip
     """Half kick, then move the bodies of the blocks [first, last) and their spheres.
 
     Velocity and angular momentum are left at the middle of the step. Dampers need a velocity at
@@ -185,6 +186,8 @@ def drift(
         Blocks of rows.
     model, state
         All bodies; motion, orientations and centres of `state` are advanced.
+    pairs : BallPairs or None
+        None if there are no balls.
     sums : (blocks, SUMS)
         Works and displacements of each block are written.
     dt : float, s
@@ -197,17 +200,21 @@ def drift(
     """
     bodies = model.bounding_radius.shape[0]
     balls = bodies - model.others.shape[0]
-    motion, contact = state.motion.reshape(-1), state.contact_load.reshape(-1)
-    load, orientation = state.load.reshape(-1), state.orientation.reshape(-1)
-    listed = state.listed_centre.reshape(-1)
+    if pairs is not None:
+        motion, contact = state.motion.reshape(-1), state.contact_load.reshape(-1)
+        load, orientation = state.load.reshape(-1), state.orientation.reshape(-1)
+        listed = state.listed_centre.reshape(-1)
     for block in range(first, last):
         start, end = block * BLOCK, min((block + 1) * BLOCK, bodies)
-        work, given, furthest = drift_balls(
-            start, min(end, balls), model, motion, contact, load, orientation, listed, dt, loaded
-        )
-        if balls < bodies:
-            for i in range(start, min(end, balls)):
-                set_row_vector(state.centre, i, 0, row_vector(state.motion, i))
+        work, given, furthest = 0.0, 0.0, 0.0
+        if pairs is not None:
+            work, given, furthest = drift_balls(
+                start, min(end, balls), model.gravity, model.inverse_mass, model.inverse_moment,
+                motion, contact, load, orientation, listed, dt, loaded,
+            )  # fmt: skip
+            if balls < bodies:
+                for i in range(start, min(end, balls)):
+                    set_row_vector(state.centre, i, 0, row_vector(state.motion, i))
         for i in range(max(start, balls), end):
             done, gave, moved = drift_body(model, state, i, dt)
             work, given, furthest = work + done, given + gave, max(furthest, moved)
@@ -232,12 +239,11 @@ def add_incoming(
 
 @njit(**INNER)
 def end_kick_balls(
-    start: int, end: int, model: Model, motion: Numbers, contact: Numbers, load: Numbers,
-    half: float, loaded: bool,
+    start: int, end: int, gravity: Numbers, inverse_mass: Numbers, inverse_moment: Numbers,
+    motion: Numbers, contact: Numbers, load: Numbers, half: float, loaded: bool,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """Half kick of the balls in rows [start, end): works [J] and how fast they move."""
-    half_gravity = scaled(half, vector(model.gravity, 0))
-    inverse_mass, inverse_moment = model.inverse_mass, model.inverse_moment
+    half_gravity = scaled(half, vector(gravity, 0))
     work, given, velocity2, rotation2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(start, end):
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
@@ -271,7 +277,7 @@ def load_accelerations(start: int, end: int, model: Model, state: State) -> tupl
 
 @njit(**INNER)
 def end_kick(
-    block: int, model: Model, state: State, pairs: BallPairs, sums: Numbers, dt: float,
+    block: int, model: Model, state: State, pairs: BallPairs | None, sums: Numbers, dt: float,
     loaded: bool,
 ) -> None:  # fmt: skip
     """Half kick of a block's rows with the new forces; how fast all move.
@@ -281,8 +287,8 @@ def end_kick(
     block : int
     model, state
         All bodies; velocities and contact loads of the block's rows are advanced.
-    pairs : BallPairs
-        Their `outgoing` loads on this block have all come.
+    pairs : BallPairs or None
+        Their `outgoing` loads on this block have all come. None if there are no balls.
     sums : (blocks, SUMS)
         Works and largest speeds of the block are written.
     dt : float, s
@@ -290,14 +296,17 @@ def end_kick(
         Whether any body has a load.
     """
     half, gravity, bodies = 0.5 * dt, vector(model.gravity, 0), model.bounding_radius.shape[0]
-    motion, contact = state.motion.reshape(-1), state.contact_load.reshape(-1)
-    load, outgoing = state.load.reshape(-1), pairs.outgoing.reshape(-1)
     start, end, balls = block * BLOCK, min((block + 1) * BLOCK, bodies), bodies
     balls -= model.others.shape[0]
-    add_incoming(start, end, contact, outgoing, pairs.incoming_begin, pairs.incoming)
-    work, given, velocity2, rotation2, centripetal = end_kick_balls(
-        start, min(end, balls), model, motion, contact, load, half, loaded
-    )
+    work, given, velocity2, rotation2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
+    if pairs is not None:
+        motion, contact = state.motion.reshape(-1), state.contact_load.reshape(-1)
+        load, outgoing = state.load.reshape(-1), pairs.outgoing.reshape(-1)
+        add_incoming(start, end, contact, outgoing, pairs.incoming_begin, pairs.incoming)
+        work, given, velocity2, rotation2, centripetal = end_kick_balls(
+            start, min(end, balls), model.gravity, model.inverse_mass, model.inverse_moment,
+            motion, contact, load, half, loaded,
+        )  # fmt: skip
     for i in range(max(start, balls), end):
         _, ω, done, gave = kick_body(model, state, i, half)
         work, given = work + done, given + gave

@@ -138,7 +138,20 @@ def keys_of(points: Points, rows: Whole, width: float) -> Whole:
 
 
 @njit(**INNER)
+def rows_below(keys: Whole, key: int) -> int:
+    """How many of sorted keys (n,) are less than one, by bisection."""
+    # numpy's own is for any numbers, and takes a second and a half to compile.
+    low, high = 0, keys.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if keys[middle] < key:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@njit(**INNER)
 def row_of_keys(keys: Whole, first: int, last: int) -> tuple[int, int]:
     """Range of what is in cells `first` to `last`, both included, among sorted keys (n,)."""
-    begin = np.searchsorted(keys, first)
-    return int(begin), int(np.searchsorted(keys, last, side="right"))
+    return rows_below(keys, first), rows_below(keys, last + 1)

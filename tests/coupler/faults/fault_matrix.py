@@ -184,8 +184,8 @@ def table(patience):
 def shortened(cause):
     """A cause without what differs from run to run."""
     cause = re.sub(r"process \d+", "its process", cause)
-    cause = re.sub(r'File "[^"]*/', 'File "', cause).replace("|", "/").replace("\n", " ")
-    return cause if len(cause) < 160 else cause[:157] + "..."
+    cause = re.sub(r'"[^"]*/', '"', cause).replace("|", "/").replace("\n", " ")
+    return cause if len(cause) < 240 else cause[:237] + "..."
 
 
 def main(patience=8.0):

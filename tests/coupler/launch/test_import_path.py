@@ -13,6 +13,7 @@ from quintet.interfaces import manifest
 
 NAMES = ("random", "numpy", "csv", "quintet", "struct", "matplotlib", "zenoh", "mpi4py", "h5py")
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+FULL = pytest.mark.full
 COMMAND = Path(sys.executable).with_name("quintet")
 
 
@@ -45,7 +46,11 @@ def briefly(scene):
     return ["run", scene, *quick, "--set", f"end={end}", *plain]
 
 
-@pytest.mark.parametrize("scene", sorted(library()))
+FEW = ("block_on_slope", "still_water", "two_springs")  # of each solver one, and a user's class
+SCENES = [pytest.param(one, marks=[] if one in FEW else FULL) for one in sorted(library())]
+
+
+@pytest.mark.parametrize("scene", SCENES)
 def test_scenes_run_beside_files_with_names_of_modules(here, scene):
     status, said = ran(*briefly(scene), "--transport", "memory", "--out", "out")
     assert status in (0, 1), said
@@ -53,8 +58,9 @@ def test_scenes_run_beside_files_with_names_of_modules(here, scene):
 
 
 @pytest.mark.parametrize("transport", OVER)
-def test_components_in_processes_run_beside_them_too(here, transport):
-    status, said = ran(*briefly("two_springs"), "--transport", transport, "--out", "out")
+@pytest.mark.parametrize("scene", ["two_springs", pytest.param("still_water", marks=FULL)])
+def test_components_in_processes_run_beside_them_too(here, scene, transport):
+    status, said = ran(*briefly(scene), "--transport", transport, "--out", "out")
     assert status in (0, 1), said
     assert "of the current folder" not in said and "done" in said
 
@@ -70,6 +76,30 @@ def test_a_study_runs_beside_them_too(here):
     path.write_text(path.read_text() + '[[study]]\nlabel = "as it is"\nsettings = {}\n')
     status, said = ran("study", path, "--out", "out")
     assert "as it is: done" in said and status in (0, 1), said
+
+
+def test_a_benchmark_and_the_laws_of_the_contract_are_tried_beside_them_too(here):
+    write_scene(here)
+    conform = ["conform", "--scene", "scene.toml", "--component", "ping"]
+    for command in (["bench", "toys:COUNTED", "--case", "small"], conform):
+        status, said = ran(*command)
+        assert status in (0, 1) and "of the current folder" not in said, said
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["bench", "exchange", "--transport", "zenoh"],
+        ["bench", "exchange", "--transport", "mpi"],
+        ["list"],
+        ["check", "dam_break_cubes", "--preset", "quick"],
+    ],
+    ids=" ".join,
+)
+def test_other_commands_run_beside_them_too(here, command):
+    status, said = ran(*command)
+    assert status == 0 and "of the current folder" not in said, said
 
 
 def test_folders_come_last_and_the_latest_first_of_them(monkeypatch):

@@ -13,10 +13,11 @@ from quintet.coupler.reference.describe import PLACE, filled
 from quintet.coupler.reference.sections import link_keys, reference, sections, subjects
 from quintet.coupler.scene.scene import SceneFile
 from quintet.coupler.scene.tables import SceneTables
+from quintet.interfaces.component import Component
 from quintet.interfaces.keys import documented, keys
 from quintet.interfaces.manifest import find, known_kinds
+from quintet.interfaces.params import Positive, parameters
 from quintet.interfaces.units import UNITS
-from quintet.scenarios.two_springs.springs import Mass
 
 ROOT = Path(__file__).resolve().parents[3]
 SUBJECTS = ["scene", *sorted(known_kinds()), *(f"link {one}" for one in sorted(known_links()))]
@@ -25,7 +26,7 @@ SEVERAL = re.compile(r"of the (field|parameter)\b|`unit`")  # the scene says whi
 
 def every_class():
     """Yield the parameter classes of scenes, links and components, with those within."""
-    outer = [SceneFile, SceneTables, Mass.Params, *map(link_keys, known_links())]
+    outer = [SceneFile, SceneTables, *map(link_keys, known_links())]
     queue = [*outer, *(find(kind).params for kind in known_kinds())]
     while queue:
         yield (one := queue.pop())
@@ -122,8 +123,24 @@ def test_describe_gives_data_for_programs(capsys):
     assert contact["type"] == '"walls" or "potential"' and contact["default"] == '"walls"'
 
 
-def test_a_class_beside_a_scene_is_described(capsys):
-    status, out, _ = said(capsys, "quintet.scenarios.two_springs.springs:Mass")
+class Mass(Component):
+    """A mass on a spring."""
+
+    @parameters
+    class Params:
+        """What a scene says of it.
+
+        Parameters
+        ----------
+        stiffness : N/m
+            Of the spring.
+        """
+
+        stiffness: Positive
+
+
+def test_a_class_is_described(capsys):
+    status, out, _ = said(capsys, f"{__name__}:Mass")
     assert status == 0
     assert re.search(r"^stiffness +N/m +number, > 0 +needed\n    Of the spring\.$", out, re.M)
 

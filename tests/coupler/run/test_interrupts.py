@@ -1,6 +1,9 @@
 """A run that is asked to end does so in order; one whose coupler is killed does not go on."""
 
+import json
 import os
+import pty
+import select
 import signal
 import time
 
@@ -8,6 +11,7 @@ import pytest
 from started import Started, write_scene
 
 from quintet.coupler.files.recording import Recording
+from quintet.coupler.run.snapshots import snapshots
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 SOON = 2.0  # s
@@ -112,3 +116,29 @@ def test_an_mpi_job_ends_when_its_coupler_is_killed(tmp_path, who):
     else:
         assert run.results["status"] == "interrupted"
     assert not run.left_in_shared_memory()
+
+
+@pytest.mark.parametrize("transport", ["memory", *OVER])
+def test_a_run_whose_terminal_is_closed_leaves_a_snapshot(tmp_path, transport):
+    path = write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3")
+    out, command = tmp_path / "out", Started.command(path)
+    pid, terminal = pty.fork()
+    if not pid:
+        os.execv(command[0], [*command, "--out", str(out)])
+    read_until(terminal, lambda: (out / "recording.h5").is_file())
+    began = time.monotonic()
+    read_until(terminal, lambda: time.monotonic() > began + 1.0)
+    os.close(terminal)
+    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 130
+    found = json.loads((out / "results.json").read_text())
+    assert found["status"] == "interrupted" and "--resume" in found["resume"]
+    assert [path.name for path in snapshots(out)] == [f"snapshot-{found['windows']}.h5"]
+
+
+def read_until(terminal, true):
+    """Read what is said to a terminal until something is true."""
+    limit = time.monotonic() + 60.0
+    while not true():
+        assert time.monotonic() < limit
+        if select.select([terminal], [], [], 0.05)[0]:
+            os.read(terminal, 1 << 12)

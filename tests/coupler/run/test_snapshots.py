@@ -1,17 +1,16 @@
 """A run that goes on from a snapshot ends with the bits of one that was never disturbed."""
 
-import json
 import os
 import shutil
 import signal
 from pathlib import Path
 
 import pytest
-from started import Started, write_scene
+from started import Started, same, write_scene
 
 from quintet.coupler.cli import main
 from quintet.coupler.files import vtkhdf_reader
-from quintet.coupler.report.diff import compare
+from quintet.coupler.files.disk import seal
 from quintet.coupler.run import snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
@@ -24,22 +23,6 @@ def status(*arguments):
     with pytest.raises(SystemExit) as ended:
         main([str(one) for one in arguments])
     return ended.value.code
-
-
-def same(one, other):
-    """Whether two runs left the same, but for the times of the clock."""
-    assert compare(one, other) is None
-    assert (one / "ledger.csv").read_bytes() == (other / "ledger.csv").read_bytes()
-    found = [json.loads((folder / "results.json").read_text()) for folder in (one, other)]
-    for key in ("status", "windows", "time", "expect", "ledger"):
-        assert found[0][key] == found[1][key], key
-    for path in one.glob("*.vtkhdf"):
-        times = vtkhdf_reader.times(path)
-        assert list(times) == list(vtkhdf_reader.times(other / path.name))
-        for k in range(len(times)):
-            views = [vtkhdf_reader.read_step(run / path.name, k)[1] for run in (one, other)]
-            assert all((views[0][key] == views[1][key]).all() for key in views[0])
-    return True
 
 
 @pytest.fixture
@@ -122,7 +105,69 @@ def test_what_cannot_go_on_is_refused(tmp_path, capsys):
     assert status("run", "--resume", out) == 2
     assert f"--resume {out}: it has no snapshot." in capsys.readouterr().err
     (out / "snapshot-5.h5").write_bytes(b"")
+    seal(out / "snapshot-5.h5")
     assert status("run", path, "--resume", out, "--set", "end=0.02") == 2
     assert "the scene must be the one that began; end has changed." in capsys.readouterr().err
     assert status("run", path, "--resume", out, "--out", out) == 2
     assert "Remove --out." in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory):
+    """A run that was killed when it had two snapshots, and one that was not."""
+    folder = tmp_path_factory.mktemp("killed")
+    path = write_scene(folder, "memory", 0.2, pong="pause = 3e-3")
+    run = Started(path, "--set", "output.snapshots=0.02")
+    run.wait_until(lambda: len(snapshots.snapshots(run.folder)) == snapshots.KEPT)
+    run.process.kill()
+    run.wait()
+    assert status("run", path, "--set", "output.snapshots=0.02", "--out", folder / "whole") == 0
+    return run.folder, folder / "whole"
+
+
+def flip_a_bit(path, place=0.5):
+    data = bytearray(path.read_bytes())
+    data[int(place * (len(data) - 1))] ^= 0x10
+    path.write_bytes(data)
+
+
+DAMAGES = {
+    "cut": lambda path: os.truncate(path, path.stat().st_size - 1000),
+    "empty": lambda path: os.truncate(path, 0),
+    "bit": flip_a_bit,
+    "last bit": lambda path: flip_a_bit(path, 1.0),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_snapshot_that_was_changed_is_named_and_the_one_before_is_used(
+    tmp_path, killed, damage, capfd
+):
+    again, whole = tmp_path / "again", killed[1]
+    shutil.copytree(killed[0], again)
+    before, last = snapshots.snapshots(again)
+    DAMAGES[damage](last)
+    assert status("run", "--resume", again) == 0
+    assert (
+        f"quintet: {last.name} is not as it was written: it was cut or changed. The run goes on "
+        f"from {before.name}.\n"
+    ) in capfd.readouterr().err
+    assert same(whole, again) and not snapshots.snapshots(again)
+
+
+def test_a_run_whose_snapshots_were_all_changed_is_refused(tmp_path, killed, capsys):
+    again = tmp_path / "again"
+    shutil.copytree(killed[0], again)
+    for path in snapshots.snapshots(again):
+        flip_a_bit(path)
+    assert status("run", "--resume", again) == 2
+    said = capsys.readouterr().err
+    assert said.count("is not as it was written: it was cut or changed.") == snapshots.KEPT
+
+
+def test_a_file_that_is_too_short_for_the_snapshot_is_refused(tmp_path, killed, capsys):
+    again = tmp_path / "again"
+    shutil.copytree(killed[0], again)
+    os.truncate(again / "ledger.csv", 10)
+    assert status("run", "--resume", again) == 2
+    assert "bytes to go on; found 10. Run the scene again." in capsys.readouterr().err

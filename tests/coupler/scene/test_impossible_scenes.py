@@ -241,3 +241,8 @@ def test_water_that_leaves_room_for_bodies_may_hold_them(capsys):
     with pytest.raises(SystemExit) as ended:
         main(["check", *place, "--set", "components.water.remove_inside_bodies=true"])
     assert ended.value.code == 0
+
+
+def test_a_sentence_is_no_longer_than_a_few_lines_whatever_names_are_in_it(capsys):
+    said = refused(capsys, "check", "two_springs", "--set", f"components.lower.kind={'x' * 9000}")
+    assert len(said) < 2100 and "components.lower.kind xxx" in said and "Known here: " in said

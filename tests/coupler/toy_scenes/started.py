@@ -10,6 +10,9 @@ import sys
 import time
 from pathlib import Path
 
+from quintet.coupler.files import vtkhdf_reader
+from quintet.coupler.report.diff import compare
+
 MARK = "QUINTET_TEST_RUN"
 TOYS = Path(__file__).with_name("toys.py")
 SCENE = """
@@ -37,15 +40,31 @@ def write_scene(folder, transport="memory", end=1.0, ping="", pong=""):
     return path
 
 
+def same(one, other):
+    """Whether two runs left the same, but for the times of the clock."""
+    assert (one / "recording.h5").exists() == (other / "recording.h5").exists()
+    assert not (one / "recording.h5").exists() or compare(one, other) is None
+    assert (one / "ledger.csv").read_bytes() == (other / "ledger.csv").read_bytes()
+    found = [json.loads((folder / "results.json").read_text()) for folder in (one, other)]
+    for key in ("status", "windows", "time", "expect", "ledger"):
+        assert found[0][key] == found[1][key], key
+    for path in one.glob("*.vtkhdf"):
+        times = vtkhdf_reader.times(path)
+        assert list(times) == list(vtkhdf_reader.times(other / path.name))
+        for k in range(len(times)):
+            views = [vtkhdf_reader.read_step(run / path.name, k)[1] for run in (one, other)]
+            assert all((views[0][key] == views[1][key]).all() for key in views[0])
+    return True
+
+
 class Started:
     """``quintet run`` of a scene, as a user starts it, in a session of its own."""
 
-    def __init__(self, scene, *arguments):
-        self.folder = scene.parent / "out"
+    def __init__(self, scene, *arguments, out=None, within=()):
+        self.folder = out or scene.parent / "out"
         self.before = set(os.listdir("/dev/shm"))
         self.mark = f"{MARK}={scene.parent}"
-        command = [sys.executable, "-m", "quintet.coupler.cli", "run", str(scene)]
-        command += ["--out", str(self.folder), *arguments]
+        command = [*within, *self.command(scene), "--out", str(self.folder), *arguments]
         self.process = subprocess.Popen(
             command,
             stdout=subprocess.PIPE,
@@ -55,6 +74,11 @@ class Started:
             env={**os.environ, MARK: str(scene.parent)},
         )
         self.out = self.err = ""
+
+    @staticmethod
+    def command(scene):
+        """What a user types."""
+        return [sys.executable, "-m", "quintet.coupler.cli", "run", str(scene)]
 
     def wait(self, seconds=60.0):
         """Wait for its end; return the exit status."""

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from quintet.interfaces.component import Component, Field, Port, Totals
+from quintet.interfaces.errors import PortError
 from quintet.interfaces.manifest import BenchCase, Manifest
 from quintet.interfaces.params import Count, parameters
 
@@ -23,6 +24,8 @@ class Toy(Component):
         items: Count = 5
         pause: float = 0.0  # s, of every step
         substeps: Count = 1  # of a window of 1 ms
+        seen: bool = False  # whether it has a view
+        talks: bool = False  # whether it prints a line at every step
         fails_at: int = -1
         fails_by: Literal["raise", "long", "odd", "sys.exit", "kill"] = "raise"
 
@@ -39,11 +42,15 @@ class Toy(Component):
         return 1e-3 / self.params.substeps
 
     def take(self, fields):
+        if any(field.shape != self.value.shape for field in fields.values()):
+            raise PortError(f"a toy takes fields of shape {self.value.shape} only")
         self.value = 0.9 * self.value + 0.1 * fields.get("in.number", self.value)
         self.value = self.value + 1e-3 * fields.get("in.push", self.push)
 
     def step(self, dt):
         time.sleep(self.params.pause)
+        if self.params.talks:
+            print("a step", flush=True)
         if self.steps == self.params.fails_at:
             self.fail()
         self.push = np.sin(self.value + self.steps)
@@ -72,11 +79,16 @@ class Toy(Component):
         return {name: array.copy() for name, array in state.items()}
 
     def load(self, state):
-        self.value, self.push = np.array(state["value"]), np.array(state["push"])
+        shape = self.value.shape
+        self.value = np.array(state["value"], float).reshape(shape)
+        self.push = np.array(state["push"], float).reshape(shape)
         self.steps = int(state["steps"])
 
     def totals(self):
         return Totals(mass=1.0)
+
+    def view(self):
+        return {"points": self.value.copy()} if self.params.seen else {}
 
     def items(self):
         return self.params.items

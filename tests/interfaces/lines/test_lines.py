@@ -48,7 +48,9 @@ def test_a_gap_or_a_repetition_is_refused(seq):
     line.lay(seq)
     line.receive(0.1)
     line.receive(0.1)
-    with pytest.raises(LineError, match=f"message 2 was expected, message {seq} arrived: messages"):
+    with pytest.raises(
+        LineError, match=f"message 2 was expected, message {seq!r} arrived: messages"
+    ):
         line.receive(0.1)
 
 

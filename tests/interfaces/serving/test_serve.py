@@ -195,7 +195,7 @@ def test_orders_out_of_turn_and_windows_that_are_no_numbers_are_refused():
     server = served([1.0])
     with pytest.raises(OrderError, match="window 0 is next; window 4 was ordered"):
         advance(server, 4)
-    with pytest.raises(OrderError, match="a window has a whole number; found 'one'"):
+    with pytest.raises(OrderError, match="window must be a whole number from 0; found 'one'"):
         server.handle(Message({"order": "advance", "window": "one"}))
 
 
@@ -232,13 +232,13 @@ def test_an_error_goes_back_over_the_line_with_its_traceback(capsys):
         raise ArithmeticError("no such thing")
 
     server.component.stable_dt = broken
-    for order in ("describe", "bind"):
+    for order in ("describe", "bind", "prepare"):
         line.send({"order": order}, {})
-    assert line.receive(0.0).order == "done"
+    assert [line.receive(0.0).order for _ in range(2)] == ["done", "done"]
     failed = line.receive(0.0)
     assert failed.order == "failed" and failed.header["error"] == "ArithmeticError"
     assert "no such thing" in failed.header["text"] and "in broken" in failed.header["traceback"]
-    assert going == [True, False]
+    assert going == [True, True, False]
     assert "no such thing" in capsys.readouterr().err  # and into the component's log
 
 

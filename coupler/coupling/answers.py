@@ -1,0 +1,151 @@
+"""What the answer to each order must hold; anything else ends the run in a sentence."""
+
+import math
+import reprlib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from quintet.interfaces.component import Field, Fields
+from quintet.interfaces.errors import MessageError
+from quintet.interfaces.lines.message import Message
+
+Rule = tuple[Callable[[Any], bool], str]  # whether a value is right, and what it must be
+LARGEST = 1 << 62
+TOTALS = {
+    "mass": 0,
+    "momentum": 3,
+    "angular_momentum": 3,
+    "kinetic": 0,
+    "potential": 0,
+    "internal": 0,
+}
+
+
+def _is_count(value: Any) -> bool:
+    return type(value) is int and 0 <= value < LARGEST
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) in (int, float) and not math.isnan(value)
+
+
+def _is_time(value: Any) -> bool:
+    return _is_number(value) and 0 <= value < math.inf
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, list) and all(type(one) in (int, float) for one in value)
+
+
+def _is_sums(value: Any) -> bool:
+    return isinstance(value, dict) and all(map(_is_list, value.values()))
+
+
+def _is_motion(value: Any) -> bool:
+    return (
+        isinstance(value, dict)
+        and value.keys() == {"first", "moved", "span"}
+        and _is_sums(value["first"])
+        and _is_sums(value["moved"])
+        and _is_time(value["span"])
+    )
+
+
+def _are_totals(value: Any) -> bool:
+    if not isinstance(value, dict) or value.keys() != TOTALS.keys():
+        return False
+    return all(
+        type(value[key]) in (int, float) if not count else _is_list(value[key])
+        for key, count in TOTALS.items()
+    )
+
+
+COUNT: Rule = _is_count, "a whole number from 0"
+NUMBER: Rule = _is_number, "a number"
+TIME: Rule = _is_time, "a time in s"
+SUMS: Rule = _is_sums, "sums of fields"
+ANSWERS: dict[str, dict[str, Rule]] = {
+    "bind": {"items": COUNT},
+    "prepare": {"stable": NUMBER, "seconds": TIME},
+    "advance": {
+        "steps": COUNT,
+        "stable": NUMBER,
+        "busy": TIME,
+        "cpu": TIME,
+        "sent": SUMS,
+        "received": SUMS,
+        "applied": SUMS,
+        "inputs": (_is_motion, "sums of the motion that came"),
+        "totals": (lambda value: value is None or _are_totals(value), "totals, or nothing"),
+    },
+    "load": {"stable": NUMBER},
+    "view": {"totals": (_are_totals, "totals")},
+    "finish": {"memory": COUNT},
+}
+
+
+def check_answer(order: str, answer: Message) -> None:
+    """Refuse an answer that lacks what the order asks for, or has what it may not."""
+    if answer.order != "done":
+        raise MessageError(
+            f"the answer to {order} must be done or failed; found {reprlib.repr(answer.order)}."
+        )
+    notes = answer.header.get("notes", [])
+    if not (isinstance(notes, list) and all(isinstance(one, str) for one in notes)):
+        raise MessageError(f"the answer to {order}: notes must be a list of texts.")
+    for key, (is_right, words) in ANSWERS.get(order, {}).items():
+        value = answer.header.get(key)
+        if not is_right(value):
+            found = reprlib.repr(value)
+            raise MessageError(f"the answer to {order}: {key} must be {words}; found {found}.")
+
+
+def check_outputs(fields: Fields, wanted: Iterable[str], gives: Mapping[str, Field]) -> None:
+    """Refuse outputs at the start that are not those that are wanted, or are of another shape."""
+    if wrong := set(wanted) ^ fields.keys():
+        name = reprlib.repr(min(wrong))
+        raise MessageError(f"the answer to give must have all fields that are wanted; see {name}.")
+    for key, array in fields.items():
+        if array.dtype.kind not in "fiu" or array.shape[1:] != gives[key].shape or not array.ndim:
+            raise MessageError(
+                f"the answer to give: {key} must be numbers of shape (n, *{gives[key].shape}); "
+                f"found {array.dtype} of shape {array.shape}."
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerSums:
+    """Fields of a component of whose sums its answers tell."""
+
+    takes: Mapping[str, Field]
+    gives: Mapping[str, Field]
+    links: Mapping[str, int]  # force given -> links among which its work is divided
+
+    def check(self, answer: Message) -> None:
+        """Refuse sums of fields that are not there, or of another length than the field's."""
+        header = answer.header
+        for key, array in answer.fields.items():
+            if array.dtype.kind not in "fiu":
+                raise MessageError(f"the answer to advance: {key} must be numbers.")
+        for place, known in (
+            ("sent", self.gives),
+            ("received", self.takes),
+            ("applied", self.takes),
+        ):
+            self._check(place, header[place], known)
+        for place in ("first", "moved"):
+            self._check(place, header["inputs"][place], self.takes)
+
+    def _check(
+        self, place: str, sums: Mapping[str, list[float]], known: Mapping[str, Field]
+    ) -> None:
+        for key, found in sums.items():
+            name, _, of = key.partition("/")
+            whole = math.prod(known[name].shape) if name in known else -1
+            right = {"": whole, "size": 1, "moment": 3, "work": self.links.get(name, -1)}
+            if name not in known or len(found) != right.get(of, -1):
+                raise MessageError(
+                    f"the answer to advance: {reprlib.repr(key)} of {len(found)} numbers is no sum "
+                    f"of what was {place}."
+                )

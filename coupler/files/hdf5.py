@@ -1,0 +1,57 @@
+"""HDF5 files on a disk that may be full: room is made sure of before anything is written.
+
+HDF5 cannot take a write back: one that fails leaves a file that cannot be opened, and a library
+that ends the process when it closes the file. So the room for a piece is allocated first, on which
+a full disk is found, with the file still as it was when it was whole last.
+"""
+
+import contextlib
+import os
+import resource
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+
+from quintet.coupler.files.disk import disk_error
+
+OF_DATASET = 1 << 14  # bytes of HDF5's own, at most, that a piece adds to a data set
+OF_FILE = 1 << 16  # and to the file
+
+
+def create(path: Path | str) -> h5py.File:
+    """Make a file, in the default format version: newer ones refuse a file after a kill."""
+    try:
+        return h5py.File(path, "w", locking=False)
+    except OSError as error:
+        raise disk_error(Path(path), error) from error
+
+
+@contextlib.contextmanager
+def room(file: h5py.File, size: int) -> Iterator[None]:
+    """Write a piece of so many bytes to a file, whole and flushed, or close the file without it."""
+    handle, before, size = file.id.get_vfd_handle(), file.id.get_filesize(), size + OF_FILE
+    try:
+        os.posix_fallocate(handle, before, size)
+        yield
+        file.flush()
+        os.ftruncate(handle, file.id.get_filesize())
+    except (OSError, RuntimeError) as error:  # both are raised where HDF5 cannot write
+        path = Path(file.filename)
+        with contextlib.suppress(OSError):
+            os.ftruncate(handle, before)
+        abandon(file)
+        raise disk_error(path, error, size) from error
+
+
+def abandon(file: h5py.File) -> None:
+    """Close a file as it is on the disk; what HDF5 still has to write is lost in memory."""
+    sink = os.memfd_create("abandoned")
+    os.dup2(sink, file.id.get_vfd_handle())
+    os.close(sink)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))  # it holds for memory as well
+    try:
+        file.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))

@@ -1,0 +1,83 @@
+"""What a run does before its first window, on the screen: who is imported, built, compiled."""
+
+import contextlib
+import threading
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+from rich.live import Live
+from rich.text import Text
+
+from quintet.coupler.launch.processes import tail
+from quintet.coupler.run.progress import shows_bar
+from quintet.interfaces.serving.notices import listen
+
+LINE_INTERVAL = 2.0  # s between two lines where there is no terminal
+SHOWN = 60  # characters of what one component says
+
+
+class StartReport:
+    """Shows the last line of each component's log, or its notices in this process.
+
+    Parameters
+    ----------
+    logs : mapping
+        Logs of the components that are processes of their own on this host.
+    """
+
+    def __init__(self, logs: Mapping[str, Path]) -> None:
+        self.logs = logs
+        self._said = ""  # by components in this process
+        self._began = time.monotonic()
+        self._over = threading.Event()
+        self._live: Live | None = None
+        self._printer: threading.Thread | None = None
+
+    def show(self) -> None:
+        """Begin to show."""
+        listen(self._hear)
+        if shows_bar():
+            text = self._text
+            self._live = Live(get_renderable=text, refresh_per_second=4, transient=True)
+            self._live.start()
+        else:
+            self._printer = threading.Thread(target=self._print, daemon=True)
+            self._printer.start()
+
+    def close(self) -> None:
+        """Show no more; a second call does nothing."""
+        listen(None)
+        self._over.set()
+        if self._printer:
+            self._printer.join()
+            self._printer = None
+        if self._live:
+            self._live.stop()
+            self._live = None
+
+    def _hear(self, text: str) -> None:
+        self._said = text
+
+    def doing(self) -> str:
+        """What every component is at."""
+        said = [f"{name}: {last_line(log)}" for name, log in self.logs.items()]
+        return "; ".join([*said, *filter(None, [self._said])])
+
+    def _text(self) -> Text:
+        return Text(f"{time.monotonic() - self._began:3.0f} s  {self.doing()}")
+
+    def _print(self) -> None:
+        shown = ""
+        while not self._over.wait(LINE_INTERVAL):
+            doing = self.doing()
+            if doing != shown:
+                with contextlib.suppress(OSError):  # nobody reads it any more
+                    print(self._text().plain, flush=True)
+            shown = doing
+
+
+def last_line(log: Path) -> str:
+    """Last line of a component's log; that it is starting while there is none."""
+    lines = [line.strip() for line in tail(log, 3) if line.strip()]
+    return lines[-1][:SHOWN] if lines else "starting"

@@ -1,0 +1,97 @@
+"""Copies stand where they are told to, and what overlaps is found without making them."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from dem_scenes import FLOOR, box, mistakes, params, sphere
+
+from quintet.components.dem_bodies import MANIFEST
+from quintet.components.dem_bodies.params import Body
+from quintet.components.dem_bodies.shapes import placement
+from quintet.components.dem_bodies.shapes.copies import Bodies
+from quintet.components.dem_bodies.shapes.near_pairs import near_pairs
+from quintet.interfaces.params import read
+
+APART = {"edge_radius": 0.002}
+
+
+def test_each_copy_is_told_and_found_by_its_number():
+    lattice = {"number": [3, 2, 4], "spacing": [0.1, 0.2, 0.3], "scatter": 0.01, "seed": 5}
+    found = params([sphere([1.0, 2.0, 3.0], copies=lattice), sphere([9.0, 0.0, 0.0])])
+    each = np.array([one.position for one in found.bodies])
+    told = MANIFEST.initial(found)
+    assert len(found.bodies) == len(each) == 25 and (told["motion.position"] == each).all()
+    assert [found.bodies[k].position for k in (0, 7, -1)] == [tuple(each[k]) for k in (0, 7, 24)]
+    assert MANIFEST.plan(found).items == 25
+    with pytest.raises(IndexError):
+        found.bodies[25]
+
+
+def test_pairs_of_spheres_of_all_sizes_are_found_once():
+    random = np.random.default_rng(2)
+    middle, radius = random.uniform(0.0, 1.0, (300, 3)), 10.0 ** random.uniform(-3.0, -0.7, 300)
+    apart = np.linalg.norm(middle[:, None] - middle, axis=2) - radius[:, None] - radius
+    expected = {(i, j) for i, j in combinations(range(300), 2) if apart[i, j] < 0.0}
+    found = [np.sort(np.stack(both, axis=1)) for both in near_pairs(middle, radius)]
+    pairs = [(int(i), int(j)) for i, j in np.concatenate(found)]
+    assert len(pairs) == len(set(pairs)) and set(pairs) == expected and len(expected) > 300
+
+
+def scattered_scene(random):
+    """Two lattices and two single bodies, of spheres and turned boxes, that may overlap."""
+    bodies = []
+    for number in range(4):
+        turn = random.normal(size=4)
+        place = random.uniform(0.0, 0.5, 3).tolist()
+        if random.random() < 0.5:
+            body = sphere(place, diameter=random.uniform(0.02, 0.1))
+        else:
+            size = random.uniform(0.02, 0.1, 3).tolist()
+            body = box(place, size, orientation=(turn / np.linalg.norm(turn)).tolist(), **APART)
+        if number < 2:
+            body["copies"] = {
+                "number": random.integers(1, 4, 3).tolist(),
+                "spacing": random.uniform(0.06, 0.2, 3).tolist(),
+                "scatter": float(random.choice([0.0, 0.01, 0.03])),
+                "seed": number,
+            }
+        bodies.append(body)
+    return bodies
+
+
+def overlap(bodies):
+    """Whether any two bodies overlap, each compared with each."""
+    made = [read(Body, one, "body")[0] for one in bodies]
+    sizes = [placement.bounding_radius(one) for one in Bodies(made)]
+    pairs = combinations(zip(Bodies(made), sizes, strict=True), 2)
+    return any(placement.body_gap(a, b) < -1e-6 * min(r, s) for (a, r), (b, s) in pairs)
+
+
+def test_what_overlaps_is_refused_and_nothing_else():
+    found = []
+    for seed in range(60):
+        bodies = scattered_scene(np.random.default_rng(seed))
+        found.append(overlap(bodies))
+        assert bool(mistakes(bodies)) == found[-1], (seed, mistakes(bodies))
+    assert 5 < sum(found) < 55
+
+
+def test_copies_below_a_plane_are_refused_by_their_lowest():
+    lattice = {"number": [2, 2, 3], "spacing": [0.1, 0.1, 0.1]}
+    slope = FLOOR | {"normal": [0.0, 0.6, 0.8]}
+    assert not mistakes([sphere([0.0, 0.0, 0.02], copies=lattice)], planes=[slope])
+    (said,) = mistakes([sphere([0.0, -0.2, 0.1], copies=lattice)], planes=[slope])
+    assert "bodies[0] must start above planes[0]; it reaches 0.05 m below" in said
+    turned = FLOOR | {"normal": [0.0, 0.0, -1.0], "point": [0.0, 0.0, 0.25]}
+    (said,) = mistakes([sphere([0.0, 0.0, 0.1], copies=lattice)], planes=[turned])
+    assert "bodies[2] must start above planes[0]; it reaches 0.06 m below" in said
+
+
+def test_very_many_scattered_copies_must_be_apart_however_they_fall():
+    lattice = {"number": [100, 100, 100], "spacing": [0.03, 0.03, 0.03], "scatter": 6e-3}
+    (said,) = mistakes([sphere([0.0, 0.0, 1.0], copies=lattice)])
+    assert "by 0.006 m some may, by 0.002 m. Lower scatter, or widen spacing." in said
+    assert not mistakes([sphere([0.0, 0.0, 1.0], copies=lattice | {"scatter": 4e-3})])
+    (said,) = mistakes([sphere([0.0, 0.0, 0.0], copies=lattice | {"number": [2000, 2000, 2000]})])
+    assert "bodies, with their copies, must be at most 2147483647; found 8e+09." in said

@@ -1,0 +1,64 @@
+"""Files are whole or not there, and a change of one bit of a sealed one is found."""
+
+import errno
+import os
+
+import pytest
+
+from quintet.coupler.files.disk import is_sound, seal, write_at_last, write_whole
+from quintet.coupler.files.table_file import TableFile
+from quintet.interfaces.errors import DiskError
+
+
+def no_room(*_):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_every_bit_and_every_length_of_a_sealed_file_matters(tmp_path):
+    path = tmp_path / "a"
+    path.write_bytes(bytes(range(64)))
+    seal(path)
+    good = path.read_bytes()
+    assert is_sound(path)
+    for bit in range(8 * len(good)):
+        bad = bytearray(good)
+        bad[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(bad)
+        assert not is_sound(path)
+    for length in range(len(good)):
+        path.write_bytes(good[:length])
+        assert not is_sound(path)
+
+
+def test_a_file_that_cannot_be_written_whole_stays_as_it_was(tmp_path, monkeypatch):
+    path = tmp_path / "a.json"
+    write_whole(path, "before")
+    monkeypatch.setattr(os, "fsync", no_room)
+    with pytest.raises(DiskError, match=r"a\.json: it cannot be written, as the disk at / is full"):
+        write_whole(path, "after")
+    assert path.read_text() == "before" and [one.name for one in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_what_must_be_kept_goes_elsewhere_where_there_is_no_room(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(os, "fsync", no_room)
+    found = write_at_last(tmp_path / "results.json", "{}")
+    assert found.read_text() == "{}" and not list(tmp_path.iterdir())
+    assert f"It is kept as {found}." in capsys.readouterr().err
+
+
+def test_a_table_has_whole_rows_only(tmp_path, monkeypatch):
+    path = tmp_path / "t.csv"
+    table = TableFile(path)
+    table.write(["a", 1])
+    assert table.flush() == path.stat().st_size == 5
+    table.write(["b", 2])
+    monkeypatch.setattr(os, "pwrite", lambda file, data, at: no_room() if at > 5 else 3)
+    with pytest.raises(DiskError):
+        table.flush()
+    monkeypatch.undo()
+    table.close()
+    assert path.read_bytes() == b"a,1\r\n"
+    again = TableFile(path, 5)
+    again.write(["c", 3])
+    again.close()
+    assert path.read_bytes() == b"a,1\r\nc,3\r\n"

@@ -1,0 +1,214 @@
+"""Frames changed at random end a line in a sentence: no traceback, no hang, little memory."""
+
+import resource
+import time
+import warnings
+from functools import partial
+
+import numpy as np
+import pytest
+from frames import in_header, mutated, taken_apart
+from started import write_scene
+
+from quintet.coupler.coupling.group import assemble
+from quintet.coupler.coupling.ledger import Ledger
+from quintet.coupler.launch.connect import InMemory, free_port
+from quintet.coupler.run.loop import run
+from quintet.coupler.scene.read import load
+from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.lines.memory import MemoryLine
+from quintet.interfaces.lines.message import decode, encode
+from quintet.interfaces.lines.zenoh import Session, ZenohLine
+from quintet.interfaces.serving.process import build
+from quintet.interfaces.serving.serve import Server, answer
+
+FEW, MANY = 1_500, 200_000
+COUNTS = [FEW, pytest.param(MANY, marks=pytest.mark.full)]
+LONGEST = 5.0  # s for one frame, on a machine under load
+MEMORY = 200e6  # bytes that all of them may need
+TOY = "items = 5\nsubsteps = 3"
+
+
+class Silent:
+    """Lets a run pass."""
+
+    def plan(self, windows): ...
+
+    def begin(self, coupling, described): ...
+
+    def due(self, ticks):
+        return True
+
+    def end_window(self, coupling):
+        for one in coupling.components.values():
+            one.call("view")
+
+    def wants_end(self):
+        return False
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    return load(str(write_scene(tmp_path_factory.mktemp("scene"), end=0.003, ping=TOY, pong=TOY)))
+
+
+class Unwatched:
+    """Watches nobody: a thread for each of thousands of runs would take all the time."""
+
+    def add(self, *_): ...
+
+    def close(self): ...
+
+
+def run_of(scene, tap=lambda line: None):
+    """Run a scene in memory, with its lines tapped; return the lines."""
+    connection = InMemory(scene, Unwatched())
+    lines = [one.line for one in connection.participants.values()]
+    for line in lines:
+        tap(line)
+    exchange = scene.exchange()
+    coupling = assemble(scene.coupling, connection.participants, exchange, Ledger(exchange))
+    run(coupling, scene.file.end, Silent(), scene.asked_outputs())
+    for one in connection.participants.values():
+        state = one.save()
+        one.order_keep(0)
+        one.receive()
+        one.order_rewind(0)
+        one.receive()
+        one.load(state, one.window)
+        one.call("finish")
+    return lines
+
+
+@pytest.fixture(scope="module")
+def sent(scene):
+    """All frames of a run: orders to `pong`, and the answers of both components."""
+    orders, answers = [], []
+
+    def tap(line):
+        put, answered = line._put, line.far._put
+        line._put = lambda frame: (orders.append((line.name, bytes(frame))), put(frame))
+        line.far._put = lambda frame: (answers.append(bytes(frame)), answered(frame))
+
+    run_of(scene, tap)
+    assert len(orders) == len(answers) > 20
+    return [frame for name, frame in orders if name == "pong"], answers
+
+
+@pytest.fixture(autouse=True)
+def little_memory():
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    yield
+    assert 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) < MEMORY
+
+
+@pytest.fixture(autouse=True)
+def numbers_that_overflow():
+    """What a component or a sum makes of absurd numbers may warn: that is no fault here."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_the_decoder_refuses_what_is_no_message(sent, count):
+    random, refused = np.random.default_rng(11), 0
+    frames = [*sent[0], *sent[1]]
+    for _ in range(count):
+        bad = mutated(frames[random.integers(len(frames))], random)
+        try:
+            decode(bad)
+        except QuintetError as error:
+            refused += 1
+            assert len(str(error)) < 3000
+    assert 0.3 * count < refused < count
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_a_component_answers_every_order_in_a_sentence(scene, sent, count):
+    random, ended = np.random.default_rng(12), 0
+    orders = sent[0]
+    for _ in range(count):
+        line = MemoryLine("", "pong")
+        server = Server(build(scene.components["pong"].manifest, GO), "pong")
+        which = random.integers(len(orders))
+        began = time.monotonic()
+        for number, frame in enumerate(orders[: which + 1]):
+            line.far.inbox.append(mutated(frame, random) if number == which else frame)
+            try:
+                goes_on = answer(server, line.far, line.far.receive(0.0))
+            except QuintetError:
+                goes_on = False
+                continue
+            said = decode(line.far.outbox.pop()).header
+            assert said["order"] == "done" or not said["traceback"], said["traceback"]
+        ended += not goes_on
+        assert time.monotonic() - began < LONGEST
+    assert ended > 0.5 * count
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_a_component_is_built_from_nothing_else_than_its_parameters(scene, count):
+    random, refused = np.random.default_rng(14), 0
+    go = encode({"order": "go", **GO, "params": {}, "folder": "/none"}, {}, None)
+    for _ in range(count // 4):
+        header, _ = taken_apart(in_header(go, random))
+        try:
+            build(scene.components["pong"].manifest, header)
+        except QuintetError as error:
+            refused += 1
+            assert len(str(error)) < 1 << 14
+    assert refused > 0.1 * count
+
+
+@pytest.mark.zenoh
+@pytest.mark.parametrize("count", [200, pytest.param(20_000, marks=pytest.mark.full)])
+def test_a_live_endpoint_refuses_them_alike(sent, count):
+    random, refused = np.random.default_rng(15), 0
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    ours = Session(endpoint, True, "coupler", None)
+    line = ZenohLine(ours, "", "pong")
+    other = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
+    other.wait_for_partner(10.0)
+    for _ in range(count):
+        other._put(mutated(sent[1][random.integers(len(sent[1]))], random))
+        try:
+            line.receive(30.0)
+        except QuintetError as error:
+            refused += 1
+            assert "nothing arrived" not in str(error)
+    other.close()
+    ours.close()
+    assert refused > 0.9 * count
+
+
+GO = {"params": {"items": 5, "substeps": 3}, "threads": 1}
+
+
+class Changing:
+    """Changes one of the answers that components send."""
+
+    def __init__(self, which, random):
+        self.which, self.random, self.seen = which, random, 0
+
+    def tap(self, line):
+        line.far._put = partial(self.put, line.far._put)
+
+    def put(self, answered, frame):
+        answered(mutated(frame, self.random) if self.seen == self.which else frame)
+        self.seen += 1
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_the_coupler_meets_every_answer_in_a_sentence(scene, sent, count):
+    random, ended, count = np.random.default_rng(13), 0, count // 20
+    for _ in range(count):
+        which = random.integers(len(sent[1]))
+        began = time.monotonic()
+        try:
+            run_of(scene, Changing(which, random).tap)
+        except QuintetError as error:
+            ended += 1
+            assert len(str(error)) < 1 << 17
+        assert time.monotonic() - began < LONGEST
+    assert ended > 0.1 * count
