@@ -18,7 +18,7 @@ Elkhodary, Nonlinear Finite Elements (2014), chapter 8; Benson, Comput. Methods 
 """
 
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.ports import ports
+from quintet.components.fe_plate.ports import SHOWS, ports
 from quintet.interfaces.manifest import Manifest, Plan
 
 __all__ = ["MANIFEST", "FePlateParams"]
@@ -37,6 +37,7 @@ MANIFEST = Manifest(
     params=FePlateParams,
     component="quintet.components.fe_plate.component:FePlate",
     ports=ports,
+    shows=SHOWS,
     plan=_plan,
     bench="quintet.components.fe_plate.bench:cases",
     conform="quintet.components.fe_plate.conform:cases",

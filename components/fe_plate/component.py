@@ -9,7 +9,7 @@ from quintet.components.fe_plate.build import structure
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.ports import ports
+from quintet.components.fe_plate.ports import SHOWS, ports
 from quintet.components.fe_plate.state import Array, Whole, state
 from quintet.components.fe_plate.view import view
 from quintet.components.shared.threads import Team
@@ -45,6 +45,8 @@ class FePlate(Component):
     params : FePlateParams
         Parts, supports, loads.
     """
+
+    shows = SHOWS
 
     def __init__(self, params: FePlateParams, resources: Resources = ONE_THREAD) -> None:
         self.params = params
