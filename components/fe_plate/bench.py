@@ -15,7 +15,7 @@ def block(nx: int, ny: int, nz: int) -> dict[str, Any]:
                 "highest": [nx * edge, ny * edge, nz * edge],
                 "elements": [nx, ny, nz],
                 "material": "steel",
-                "velocity": [0.0, 0.0, -300.0],
+                "velocity": [0.0, 0.0, -100.0],
             }
         ],
         "rigid_walls": [{"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0]}],
