@@ -27,10 +27,12 @@ class EnergyBalance:
         start, largest = self._sums or (total, total)
         self._sums = [start, max(largest, total)]
 
-    @property
-    def largest(self) -> float:
-        """Largest energy [J] of one kind that any component had, by magnitude."""
-        return max((abs(one) for pair in self._range.values() for one in pair), default=0.0)
+    def largest(self, *kinds: str) -> float:
+        """Largest energy [J] of one of some kinds that any component had, by magnitude."""
+        ranges = ((key.rpartition(".")[2], pair) for key, pair in self._range.items())
+        return max(
+            (abs(one) for kind, pair in ranges if kind in kinds for one in pair), default=0.0
+        )
 
     def drift(self) -> float | None:
         """Largest rise of the sum above its start over the largest energy turned over.
@@ -39,7 +41,7 @@ class EnergyBalance:
         turned over but rounding: there is nothing to tell a rise against.
         """
         turned = max((most - least for least, most in self._range.values()), default=0.0)
-        if not turned > NEGLIGIBLE * self.largest:
+        if not turned > NEGLIGIBLE * self.largest(*KINDS):
             return None
         start, largest = self._sums
         return (largest - start) / turned

@@ -16,6 +16,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
+from quintet.coupler.coupling.energy_balance import KINDS
+
 if TYPE_CHECKING:
     from quintet.coupler.coupling.ledger import Account
     from quintet.coupler.coupling.schedule import Coupling
@@ -24,9 +26,9 @@ LIMIT = 0.2  # of the work that went through a link: what a stable coupling make
 LATE_LIMIT = 0.3  # the same over the last windows
 SPAN = 32  # windows that count most: each older one by 1 - 1/SPAN less
 FEWEST = 12  # windows before a link is judged: a start with a jolt is over by then
-# Of the largest energy of any component: with less going through, a link decides nothing. A body at
-# rest that the fluid has not reached works on a few samples by rounding.
-NEGLIGIBLE = 1e-9
+# Of the largest energy of any component, kinetic or internal, and of any kind: with less going
+# through, a link decides nothing, as at a body that the fluid has not reached, or ahead of a wave.
+MOVING, NEGLIGIBLE = 1e-2, 1e-9
 QUIET = 0.1  # of the mean work of a window so far: with less going through, no window is judged
 
 
@@ -95,16 +97,19 @@ class StabilityWatch:
     def look(self, coupling: "Coupling") -> list[Unstable]:
         """Judge all links at a window's end; return what is found for the first time."""
         new, ledger = [], coupling.ledger
-        negligible = NEGLIGIBLE * ledger.energy.largest
+        energy = ledger.energy
+        negligible = max(
+            MOVING * energy.largest("kinetic", "internal"), NEGLIGIBLE * energy.largest(*KINDS)
+        )
         for name, account in ledger.accounts.items():
             made = self._made[name]
             made.add(account)
             if name not in self.found and made.is_unstable(coupling.windows.done, negligible):
-                energy, turnover = made.taken - made.given, made.turnover
+                gain, turnover = made.taken - made.given, made.turnover
                 if made.made_of_late():
-                    energy, turnover = made.late, made.late_turnover
-                time, share = coupling.windows.time, energy / turnover
-                self.found[name] = Unstable(name, time, energy, share, advice(coupling, name))
+                    gain, turnover = made.late, made.late_turnover
+                time, share = coupling.windows.time, gain / turnover
+                self.found[name] = Unstable(name, time, gain, share, advice(coupling, name))
                 new.append(self.found[name])
         return new
 

@@ -126,7 +126,7 @@ def test_glue_refuses_schemes_that_gain_or_lose_energy(tmp_path, scheme):
         _run(tmp_path, 1.0, scheme=scheme)
 
 
-@pytest.mark.parametrize("ratio", [2, 4, 0.5])
+@pytest.mark.parametrize("ratio", [2, 4, 64])
 def test_glue_refuses_ratios_that_gain_energy(tmp_path, ratio):
     path = _scene(tmp_path, 1.0)
     path.write_text(path.read_text().replace('kind = "glue"', f'kind = "glue"\nsubsteps = {ratio}'))
