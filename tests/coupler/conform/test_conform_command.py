@@ -101,7 +101,7 @@ def test_the_tutorial_conforms_as_its_scene_joins_it(conform, name):
 
 
 def test_a_scene_gives_what_partners_tell_and_where_data_lies(conform):
-    settings = ["--preset", "quick", "--set", "components.water.spacing=0.1"]
+    settings = ["--preset", "quick"]
     status, said, _ = conform("--scene", "floating_cube", "--component", "water", *settings)
     assert status == 0
     assert "  passed          two half steps come to one" in said

@@ -30,6 +30,8 @@ class Faulty(Toy):
         items: Count = 5
         pause: float = 0.0
         substeps: Count = 1
+        seen: bool = False
+        talks: bool = False
         fails_at: int = -1
         fails_by: Literal[
             "exception", "sys.exit", "os._exit", "SIGKILL", "SIGSTOP", "deadlock", "endless loop",
@@ -119,6 +121,8 @@ class Waiting(Toy):
         items: Count = 5
         pause: float = 0.0
         substeps: Count = 1
+        seen: bool = False
+        talks: bool = False
         fails_at: int = 30
         fails_by: Literal["", "lock", "disk", "child", "build", "first", "programs"] = ""
         seconds: float = 0.0
