@@ -3,7 +3,7 @@
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +58,7 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(
         prog="quintet", description="Independent solvers, one interface, one coupler."
     )
+    top.add_argument("--version", action=Version, nargs=0, help="of quintet")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, does: object, text: str) -> argparse.ArgumentParser:
@@ -65,7 +66,18 @@ def parser() -> argparse.ArgumentParser:
         one.set_defaults(does=does)
         return one
 
-    top.add_argument("--version", action=Version, nargs=0, help="of quintet")
+    _add_reference(command)
+    _add_runs(command)
+    _add_studies(command)
+    _add_kinds(command)
+    return top
+
+
+Command = Callable[[str, object, str], argparse.ArgumentParser]
+
+
+def _add_reference(command: Command) -> None:
+    """Add what starts no solver."""
     one = command("list", list_scenes, "scenes: name, title, components, presets, run times")
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("check", check, "read a scene, print its plan; start no solver")
@@ -79,6 +91,10 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--write", nargs="+", type=Path, default=[], metavar="FILE", help=WRITE)
     one = command("schema", schema, "keys of scene files as a JSON schema, for editors")
     one.add_argument("scene", nargs="?", help="whose module:Class kinds it is to know as well")
+
+
+def _add_runs(command: Command) -> None:
+    """Add what runs a scene, and what looks at runs."""
     one = command("run", run, "run a scene, compare it with what it must reproduce")
     _scene(one, nargs="?")
     one.add_argument("--out", type=Path, help=OUT)
@@ -95,6 +111,10 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("diff", diff, "first difference between two runs; 0 if there is none")
     one.add_argument("folders", nargs=2, type=Path, metavar="DIR")
+
+
+def _add_studies(command: Command) -> None:
+    """Add what runs a scene many times."""
     one = command("study", study, "error against run time over the refinements of a scene")
     _scene(one)
     _report(one, "runs/SCENE-study")
@@ -102,6 +122,10 @@ def parser() -> argparse.ArgumentParser:
     one = command("stability", stability, "stability limits of a scene")
     _scene(one)
     _report(one, "runs/SCENE-stability")
+
+
+def _add_kinds(command: Command) -> None:
+    """Add what tries a kind of component by itself."""
     one = command("bench", bench, "throughput of one component, or of the exchange")
     one.add_argument("name", help="exchange, or a kind of component")
     one.add_argument("--case", default="", help="one of the component's cases; all if not given")
@@ -120,7 +144,6 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--preset", default="", help="a preset of the scene")
     one.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", dest="settings")
     one.add_argument("--json", type=Path, metavar="FILE", help="what was found, for programs")
-    return top
 
 
 GRAPH = "draw components, ports and links instead of the plan"

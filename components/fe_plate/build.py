@@ -7,7 +7,7 @@ import numpy as np
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.mesh import Mesh, faces_in, incident, inside, mesh
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.state import Array, Model, Whole
+from quintet.components.fe_plate.state import Array, Model, State, Whole, state_at_rest
 from quintet.components.shared.materials.params import material
 from quintet.components.shared.materials.solid import Solid, solid
 from quintet.interfaces.errors import SceneError
@@ -28,7 +28,7 @@ class Structure(NamedTuple):
 
 
 def structure(params: FePlateParams) -> Structure:
-    """Build a structure; all nodes are at rest."""
+    """Build a structure."""
     made = mesh(params.parts)
     laws = [solid(material(part.material)) for part in params.parts]
     counts = [part.count for part in params.parts]
@@ -67,6 +67,19 @@ def structure(params: FePlateParams) -> Structure:
         walls=walls,
     )
     return Structure(made, model, laws, [0, *np.cumsum(counts).tolist()], mass, coupled, pressed)
+
+
+def initial_state(params: FePlateParams, built: Structure) -> State:
+    """Temperatures and velocities that the parts have at the start; nothing is strained."""
+    model, first = built.model, built.first
+    made = state_at_rest(built.mesh.node, len(model.corner), len(model.walls))
+    for k, part in enumerate(params.parts):
+        mine = slice(first[k], first[k + 1])
+        made.temperature[mine] = built.laws[k].temperature
+        made.velocity[np.unique(model.corner[mine])] = part.velocity
+    made.velocity[:] *= model.free
+    made.mean_velocity[:] = made.velocity
+    return made
 
 
 def _require(rule: object, sentence: str) -> None:

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.components.fe_plate.build import structure
+from quintet.components.fe_plate.build import initial_state, structure
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
+from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.ports import SHOWS, ports
-from quintet.components.fe_plate.state import Array, Whole, state
+from quintet.components.fe_plate.state import Array, Resistance
 from quintet.components.fe_plate.view import view
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -52,30 +53,17 @@ class FePlate(Component):
         self.params = params
         self.takes, self.gives = ports(params)
         built = structure(params)
-        self.mesh, self.model, self.laws, self.first = (
-            built.mesh,
-            built.model,
-            built.laws,
-            built.first,
-        )
-        self.mass, self.pressed = built.mass, built.pressed
+        self.mesh, self.model, self.mass = built.mesh, built.model, built.mass
+        self.laws, self.first, self.pressed = built.laws, built.first, built.pressed
         self.faces = self.mesh.side[built.coupled]  # (f, 4) nodes
         self.owner = self.mesh.owner[built.coupled]  # (f,) elements
         self.surface, self.corner = np.unique(self.faces, return_inverse=True)  # nodes, faces' own
-        self.state = state(self.mesh.node, len(self.model.corner), len(self.model.walls))
-        for k, part in enumerate(params.parts):
-            mine = slice(self.first[k], self.first[k + 1])
-            self.state.temperature[mine] = self.laws[k].temperature
-            self.state.velocity[np.unique(self.model.corner[mine])] = part.velocity
-        self.state.velocity[:] *= self.model.free
-        self.state.mean_velocity[:] = self.state.velocity
-        self.numbers = np.array(
-            [
-                params.hourglass,
-                params.viscosity_linear,
-                params.viscosity_quadratic,
-                params.stiffness_damping,
-            ]
+        self.state = initial_state(params, built)
+        self.resistance = Resistance(
+            params.hourglass,
+            params.viscosity_linear,
+            params.viscosity_quadratic,
+            params.stiffness_damping,
         )
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
         self.accumulated = Accumulated()
@@ -125,22 +113,14 @@ class FePlate(Component):
         load[self.surface] = self.loads
         for one, faces in zip(self.params.pressures, self.pressed, strict=True):
             if one.begin <= time < (math.inf if one.end is None else one.end):
-                self._press(faces, one.pressure)
-
-    def _press(self, faces: Whole, pressure: float) -> None:
-        """Add a pressure [Pa] on outer faces, a quarter of each to its corners."""
-        live = faces[self.state.active[self.mesh.owner[faces]] > 0.0]
-        side = self.mesh.side[live]
-        a, b, c, d = np.moveaxis(self.state.position[side], 1, 0)
-        area = 0.5 * np.cross(c - a, d - b)  # (f, 3) m2, outwards
-        np.add.at(self.state.load, side, -0.25 * pressure * area[:, None, :])
+                add_pressure(self.mesh, self.state, faces, one.pressure)
 
     def _write_forces(self, dt: float) -> float:
         """Advance the elements by a step and the nodes' velocities by half; return the bound."""
         bound = math.inf
         for law, first, last in zip(self.laws, self.first, self.first[1:], strict=False):
             found = self.team.run(
-                _shifted, last - first, first, self.model, self.state, law, self.numbers, dt
+                _shifted, last - first, first, self.model, self.state, law, self.resistance, dt
             )
             bound = min(bound, *(one[0] for one in found))
             least, worst = min((one[1], one[2]) for one in found)

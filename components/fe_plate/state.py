@@ -22,6 +22,15 @@ class Model(NamedTuple):
     walls: Array  # (w, 4) unit normal and offset of rigid walls: normal·x ≥ offset
 
 
+class Resistance(NamedTuple):
+    """What acts on all elements beside their material."""
+
+    hourglass: float  # stiffness of the stabilisation over the element's own
+    linear: float  # C₁ of the bulk viscosity
+    quadratic: float  # C₀ of it
+    damping: float  # s, β of the stiffness damping
+
+
 class State(NamedTuple):
     """What moves. Of elements one number stands beside the next element's, for vectors."""
 
@@ -44,7 +53,7 @@ class State(NamedTuple):
     wall_impulse: Array  # (w,) N s, on each rigid wall so far
 
 
-def state(nodes: Array, elements: int, walls: int) -> State:
+def state_at_rest(nodes: Array, elements: int, walls: int) -> State:
     """State at rest at nodes (n, 3) m."""
     still = np.zeros_like(nodes)
     numbers = {name: np.zeros(elements) for name in ("pressure", "viscous", "energy", "strain")}

@@ -73,11 +73,7 @@ def side_views(
     low, high = _limits(views, still, region)
     wide, tall = high - low
     stretch = max(1.0, wide / tall * LOWEST)
-    said = [
-        _eye(views, region),
-        f"z drawn {stretch:.2g} times as long as x" if stretch > 1.0 else "",
-    ]
-    text = f"{title}\n{', '.join(one for one in said if one)}".strip()
+    text = f"{title}\n{_said(views, region, stretch)}".strip()
     figure, panels = place_panels(len(views), stretch * tall / wide, text)
     scales = colour_scales(views)
     sizes = diameters(views[0])
@@ -95,6 +91,12 @@ def side_views(
         )  # fmt: skip
     add_legend(figure, views[0], bool(still))
     return save(figure, out)
+
+
+def _said(views: Sequence[Sequence[Shown]], region: Region | None, stretch: float) -> str:
+    """Where one looks from, and how far the picture is stretched."""
+    stretched = f"z drawn {stretch:.2g} times as long as x" if stretch > 1.0 else ""
+    return ", ".join(one for one in (_eye(views, region), stretched) if one)
 
 
 def _ticks(figure: Any, panel: Any) -> int:

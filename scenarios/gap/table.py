@@ -38,7 +38,10 @@ class Run:
         self.width = (right - left)[:, 0] - self.size[0]  # m
         file = folder / "water.vtkhdf"
         points = read_step(file, len(times(file)) - 1)[1]["points"]
-        self.level = self._level(points, np.array(water["walls"]))
+        low, high = np.moveaxis(np.array(water["fluid"], float), 1, 0)
+        volume = float(np.prod(high - low, axis=1).sum())  # m3, which the particles share
+        self.particle = volume / len(points)  # m3
+        self.level = self._level(volume, np.array(water["boundary"]["walls"]))
         self.share = np.array([self._share(points, k) for k in range(len(left))])
         with Recording(folder) as recording:
             self.times = recording.times("water")[1:]
@@ -46,11 +49,11 @@ class Run:
             force = recording.field("water", "surface_load.force")[1:, :, 0] / window  # N
         self.pressure = self._pressure(force)  # over that outside; (gaps, m)
 
-    def _level(self, points: Array, walls: Array) -> float:
+    def _level(self, volume: float, walls: Array) -> float:
         """Height of the surface [m] that the water has by its volume."""
         across = np.prod(walls[1, :2] - walls[0, :2])
         solid = len(self.place) * np.prod(self.size)
-        return float((len(points) * self.spacing**3 + solid) / across)
+        return float((volume + solid) / across)
 
     def _share(self, points: Array, gap: int) -> float:
         """Particles in a gap over those that it has room for."""
@@ -59,7 +62,7 @@ class Run:
         low = left - half + [self.size[0], 0.0, 0.0]
         high = right + half - [self.size[0], 0.0, 0.0]
         inside = ((points > low) & (points < high)).all(axis=1).sum()
-        return float(inside * self.spacing**3 / np.prod(high - low))
+        return float(inside * self.particle / np.prod(high - low))
 
     def _pressure(self, force: Array) -> Array:
         depth, inset = REACH * self.spacing, 0.5 * self.spacing

@@ -14,7 +14,7 @@ from quintet.components.fe_plate.kernels.geometry import (
     velocity_gradients,
 )
 from quintet.components.fe_plate.kernels.hourglass import add_patterns, patterns
-from quintet.components.fe_plate.state import Array, Model, State
+from quintet.components.fe_plate.state import Array, Model, Resistance, State
 from quintet.components.shared.materials.equation_of_state import (
     pressure_and_energy,
     sound_speed_squared,
@@ -44,7 +44,7 @@ class Points(NamedTuple):
 
 @njit(**FAST)
 def step_elements(
-    first: int, last: int, model: Model, state: State, law: Solid, numbers: Array, dt: float
+    first: int, last: int, model: Model, state: State, law: Solid, resistance: Resistance, dt: float
 ) -> tuple[float, float, int]:
     """Advance the stresses of elements and write the forces on their corners.
 
@@ -52,9 +52,7 @@ def step_elements(
     ----------
     first, last : int
         Elements, all of one material.
-    model, state, law
-    numbers : (4,) float array
-        Hourglass stiffness 1, C₁ and C₀ of the bulk viscosity 1, stiffness damping s.
+    model, state, law, resistance
     dt : float, s
         Step that led to the present positions; 0 to write forces anew.
 
@@ -78,7 +76,7 @@ def step_elements(
     middle, at_end = np.empty((9, LANES)), np.empty((9, LANES))
     stress, spring = np.empty((9, LANES)), np.empty((12, LANES))
     volume, ratio, length = np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    stiff = 0.015625 * numbers[0] * (law.bulk + 4.0 / 3.0 * law.shear)
+    stiff = 0.015625 * resistance.hourglass * (law.bulk + 4.0 / 3.0 * law.shear)
     step, least, worst = HUGE, HUGE, first
     for begin in range(first, last, LANES):
         count = min(LANES, last - begin)
@@ -93,7 +91,7 @@ def step_elements(
             if not ratio[k] >= least:
                 least, worst = ratio[k], begin + k
         step = min(
-            step, update(begin, count, ratio, length, middle, stress, points, law, numbers, dt)
+            step, update(begin, count, ratio, length, middle, stress, points, law, resistance, dt)
         )
         patterns(x, hx)
         patterns(v, hv)
@@ -122,11 +120,11 @@ def edge_lengths(gradient, volume, out):  # type: ignore[no-untyped-def]
 
 @njit(**INLINED)
 def update(  # type: ignore[no-untyped-def]
-    begin, count, ratios, lengths, middle, stress, points, law, numbers, dt
+    begin, count, ratios, lengths, middle, stress, points, law, resistance, dt
 ):
     """Advance the material of a block; write stresses (9, lanes) Pa; return the least step [s]."""
     s6, old_pressure, old_viscous, energies, strains, warmth, damages, active = points
-    linear, quadratic, damp = numbers[1], numbers[2], numbers[3]
+    linear, quadratic, damp = resistance.linear, resistance.quadratic, resistance.damping
     least = HUGE
     for k in range(count):
         e, ratio, length = begin + k, ratios[k], lengths[k]

@@ -7,6 +7,7 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.params import (
     Faces,
     FePlateParams,
@@ -16,6 +17,7 @@ from quintet.components.fe_plate.params import (
     RigidWall,
 )
 from quintet.components.shared.materials.params import JohnsonCook, Material
+from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
 
 E, NU, RHO = 7e10, 0.3, 2700.0
@@ -43,8 +45,6 @@ def test_patch_test(amount):
 
     Of a distorted mesh too: Flanagan & Belytschko's mean gradient is the exact one.
     """
-    from quintet.components.fe_plate.kernels.geometry import write_volumes
-
     made = block((0.3, 0.3, 0.3), (3, 3, 3), **CALM)
     inner = distort(made, amount * 0.1)
     write_volumes(made.state.position, made.model.corner, made.model.volume)
@@ -250,8 +250,6 @@ def test_what_hangs_on_nodes_slows_them():
 
 
 def test_threads_change_no_bit():
-    from quintet.interfaces.component import Resources
-
     part = Part(
         lowest=(0.0, 0.0, 0.0), highest=(0.01, 0.01, 0.03), elements=(12, 12, 36), material="steel"
     )
