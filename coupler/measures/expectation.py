@@ -23,7 +23,9 @@ from quintet.interfaces.params import NotNegative, Number, Positive, parameters,
 if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for it
     from quintet.coupler.files.recording import Recording
 
-Measure = Literal["rms", "relative_rms", "crossing", "at", "max", "min", "mean", "period", "decay"]
+Measure = Literal[
+    "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay"
+]  # fmt: skip
 DISTANCES = ("rms", "relative_rms")  # to a curve
 Index = Annotated[int, pydantic.Field(ge=0)]
 ROUNDING = 1e-9  # of a time: what a run's last window may lack
@@ -36,8 +38,11 @@ class Expectation:
     ``rms`` is the distance to the curve of a file, over that curve's own times, and
     ``relative_rms`` the same over the curve's own size; ``crossing`` the first time at which a
     level is passed; ``at`` the value at ``begin``; ``period`` [s] and ``decay`` [1/s] those of the
-    damped oscillation that fits best; these and the others are taken between ``begin`` and
-    ``end``. Impulse fields are measured as mean rates.
+    damped oscillation that fits best; ``integral`` is over time; these and the others are taken
+    between ``begin`` and ``end``. Impulse fields are measured as mean rates. With ``from_level``
+    times count from where the curve first passes that level, as after the arrival of a wave, in
+    the run and in the reference; ``moving_mean`` first averages the run's curve, where the
+    reference was averaged too.
     """
 
     name: str
@@ -54,9 +59,12 @@ class Expectation:
     begin: NotNegative = 0.0  # s
     end: NotNegative | None = None  # s; None: of the reference curve, or of the run
     level: Number | None = None  # of a crossing
+    moving_mean: NotNegative = 0.0  # s; the run's curve is averaged over so long
+    from_level: Number | None = None  # times count from where the curve first passes it
     within: NotNegative  # tolerance, in `unit`; a crossing's in s
     unit: str
     source: str
+    required: bool = True  # whether the run must meet it; if not, it is told beside the others
 
     def __post_init__(self) -> None:
         wrong = [sentence for is_wrong, sentence in self._rules() if is_wrong]
@@ -88,6 +96,10 @@ class Expectation:
                 self.end is not None and self.end <= self.begin and self.measure != "at",
                 f"end must be later than begin; found {self.end} and {self.begin}.",
             ),
+            (
+                self.from_level is not None and self.measure in ("crossing", "at"),
+                "times of a crossing, and of a value, count from the start; remove from_level.",
+            ),
             (self.field.count(".") != 1, f"field must be port.field; found {self.field!r}."),
             (self.scale == 0.0, "scale must not be 0, as every run would do; remove it."),
         ]
@@ -104,6 +116,7 @@ class Outcome:
     unit: str
     met: bool
     source: str
+    required: bool = True
 
 
 def check(
@@ -164,7 +177,17 @@ def curve(expectation: Expectation, recording: "Recording") -> Curve:
     elif values.ndim > 2:
         values = np.linalg.norm(values.reshape(*values.shape[:2], -1), axis=2)
     values = values[:, 0] if isinstance(item, int) else getattr(values, item)(axis=1)
-    return Curve(times, expectation.scale * (values + expectation.offset))
+    found = Curve(times, expectation.scale * (values + expectation.offset))
+    if expectation.moving_mean and len(times) > 1:
+        found = time_series.moving_mean(found, expectation.moving_mean)
+    return _since_level(found, expectation.from_level)
+
+
+def _since_level(curve: Curve, level: float | None) -> Curve:
+    """Count the times of a curve from where it first passes a level; nan if it never does."""
+    if level is None:
+        return curve
+    return Curve(curve.times - time_series.crossing(curve, level), curve.values)
 
 
 def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
@@ -172,7 +195,11 @@ def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
     if expectation.csv is None:
         return None
     where = f"expectation {expectation.name}: reference {expectation.csv}"
-    return time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
+    found = time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
+    found = _since_level(found, expectation.from_level)
+    if math.isnan(found.times[0]):
+        raise SceneError(f"{where} must pass from_level {expectation.from_level}; it does not.")
+    return found
 
 
 def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
@@ -190,6 +217,8 @@ def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
             return fit(part).decay
         case "mean":
             return time_series.mean(part)
+        case "integral":
+            return time_series.integral(part)
         case "max":
             return float(part.values.max())
         case _:
@@ -230,6 +259,7 @@ def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> 
         expectation.unit,
         abs(value - reference) <= expectation.within,  # not so of nan
         expectation.source,
+        expectation.required,
     )
 
 
@@ -238,6 +268,10 @@ def _value(expectation: Expectation, recording: "Recording", folder: Path) -> fl
         return math.nan
     computed = curve(expectation, recording)
     last = float(recording.times(expectation.component)[-1])  # s
+    if expectation.from_level is not None:
+        last = float(computed.times[-1])
+        if math.isnan(last):
+            return math.nan
     wanted, target = expectation.end, reference_curve(expectation, folder)
     if expectation.measure == "at":
         wanted = expectation.begin
