@@ -57,6 +57,7 @@ class Participant:
         self.order = ""  # the last that it got
         self.built = False  # whether it has answered an order
         self.waited_since = 0.0  # s of the monotonic clock, while it keeps the coupler waiting
+        self.noted: Array | None = None  # where this is noted for who shares that memory
         # What ended the run meanwhile, if a watch has ended it.
         self.verdict: Callable[[], BaseException | None] = lambda: None
         self.window = 0  # the next
@@ -73,10 +74,17 @@ class Participant:
     def keeping_others_waiting(self) -> Iterator[None]:
         """Note since when the coupler waits for it, for who watches it meanwhile."""
         self.waited_since = time.monotonic()
+        self._note_wait()
         try:
             yield
         finally:
             self.waited_since = 0.0
+            self._note_wait()
+
+    def _note_wait(self) -> None:
+        if self.noted is not None:
+            self.noted[1], self.noted[2] = self.window, self.built
+            self.noted[0] = self.waited_since
 
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""

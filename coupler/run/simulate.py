@@ -30,6 +30,7 @@ from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
+from quintet.coupler.run.guard import Guard
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
@@ -98,10 +99,14 @@ class Running:
         self.writer.on_begin = self._start.close
         self._connection: Connection | None = None
         self._ending = threading.Lock()
+        self._guard: Guard | None = None
 
     def run(self) -> None:
         """Join the components and couple them to the end, or until a signal ends it."""
         scene = self.scene
+        main = threading.current_thread() is threading.main_thread()
+        if self.watchdog.own and self.stop.leave and main:
+            self._begin_guard()
         self._start.show()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
         self.participants = connection.participants
@@ -117,9 +122,24 @@ class Running:
         self._connection = None
         self.outcome |= outcome_of(end)
 
+    def _begin_guard(self) -> None:
+        """Have it ended from another process too: here a solver may stop all Python."""
+        patience = {name: self.scene.patience(name) for name in self.scene.components}
+        self._guard = self.watchdog.guard = Guard(patience, self.stop, self._report)
+        self.writer.on_window = self._guard.note
+
+    def _report(self, error: ComponentFailed, windows: int, reached: float) -> None:
+        """Write down a failure, from the guard's process."""
+        self.writer.done, self.writer.time = windows, reached
+        self.outcome |= failed(error, self.scene, self.folder, self.writer)
+        self.outcome["unstable"] = self.ledger.watch.summary()
+        conclude(self)
+
     def end(self, error: BaseException | None) -> int:
         """End it, with what went wrong if something did; write the results; tell the status."""
         with self._ending:
+            if self._guard:
+                self._guard.close()
             self._start.close()
             writer, lost = self.writer, False
             if isinstance(error, KeyboardInterrupt) or isinstance(
@@ -228,9 +248,13 @@ def conclude(made: Running) -> int:
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))
-    elif snapshots.snapshots(folder):
+    elif kept := snapshots.snapshots(folder):
         content["resume"] = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
-        print(f"to go on: {content['resume']}", file=sys.stderr)
+        behind = outcome["windows"] - snapshots.window_of(kept[-1])
+        again = f" ({behind} windows are computed again)" if behind else ""
+        print(f"to go on: {content['resume']}{again}", file=sys.stderr)
+    elif outcome["status"] == "interrupted":
+        print("it cannot go on: it was ended before its first snapshot", file=sys.stderr)
     results.write(folder, content)
     if outcome["status"] == "refused":
         return results.BAD
