@@ -94,12 +94,16 @@ MESH = (
     Field("corner", (4,), "1"),  # (faces, 4) nodes of each face; -1 ends a triangle
 )
 FACES = Port("faces", fields=(POSITION, VELOCITY), static=MESH)
+# The same of meshes in two dimensions, whose faces are edges: two nodes, then -1 twice. Edges go
+# round a body from x to z, so that (dz, -dx) is the outward normal of an edge along (dx, dz).
+PLANAR_FACES = replace(FACES, static=(*MESH, DIMENSIONS))
 NODE_LOAD = Port("node_load", fields=(FORCE,), static=(Field("added_mass", (), "kg"),))
 
 # Glue: particles that hang on the nodes of a mesh. Velocities cross as impulses, that is as
 # displacements over the window, so that both sides move by the same amount.
 DISPLACEMENT_RATE = Field("velocity", (3,), "m/s", "impulse")
 NODE_GLUE = Port("node_glue", fields=(DISPLACEMENT_RATE,), static=MESH)
+PLANAR_NODE_GLUE = replace(NODE_GLUE, static=(*MESH, DIMENSIONS))
 GLUED = Port("glued", fields=(DISPLACEMENT_RATE,))
 GLUED_LOAD = Port(
     "glued_load",
@@ -107,9 +111,11 @@ GLUED_LOAD = Port(
     static=(Field("position", (3,), "m"), Field("mass", (), "kg")),
 )
 
-# Of meshes whose faces may erode, and of the particles that hang on them: these are then free.
+# Of meshes whose faces may erode, and of the particles that hang on them: these are then free, and
+# the mesh is told anew how much mass hangs on its nodes.
 FACE_ACTIVITY = Port("face_activity", fields=(ACTIVE,))
 GLUE_ACTIVITY = Port("glue_activity", fields=(ACTIVE,))
+NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))
 
 # Conduction: one side holds its wall at a temperature, the other answers with the heat that it
 # conducts away. Walls are points (the bath of a particle lattice), meshes take heat at nodes.

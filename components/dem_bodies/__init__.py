@@ -51,29 +51,13 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 30 (comparison); Chung & Ooi, Granular Matter 13 (2011) 643 (tests).
 """
 
-from quintet.components.dem_bodies import build
-from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.plan import plan
 from quintet.components.dem_bodies.ports import SHOWS, ports
 from quintet.components.dem_bodies.start import initial
-from quintet.interfaces.manifest import Manifest, Plan
+from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "DemBodiesParams"]
-
-
-def _plan(params: DemBodiesParams) -> Plan:
-    bodies, count = params.placed.templates, len(params.bodies)
-    solids = [build.solid(body) for body in bodies]
-    ω = build.expected_frequency(params, bodies, solids)
-    dt = DURATION * SPEED_UP / ω / params.steps_per_contact
-    if count == 1 and not params.planes:  # nothing to touch
-        dt = params.longest_step
-    dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
-    # Of a step, some time is for calling it, and some for each body: more where it is no ball.
-    each = zip(bodies, params.placed.counts, strict=True)
-    balls = sum(n for body, n in each if build.is_ball(body))
-    step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
-    return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)
 
 
 MANIFEST = Manifest(
@@ -82,7 +66,7 @@ MANIFEST = Manifest(
     params=DemBodiesParams,
     component="quintet.components.dem_bodies.component:DemBodies",
     ports=ports,
-    plan=_plan,
+    plan=plan,
     initial=initial,
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",

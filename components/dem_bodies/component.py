@@ -17,9 +17,10 @@ from quintet.components.dem_bodies.integration.step_limit import (
     many_contacts_step,
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.plan import plan
 from quintet.components.dem_bodies.ports import SHOWS, ports
 from quintet.components.dem_bodies.shapes.view import planes_view, view
-from quintet.components.dem_bodies.start import described
+from quintet.components.dem_bodies.start import described, initial
 from quintet.components.dem_bodies.state import BallPairs
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -32,6 +33,7 @@ from quintet.interfaces.component import (
     Totals,
 )
 from quintet.interfaces.errors import StepError
+from quintet.interfaces.manifest import Plan, Ports
 
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 TURN = 0.05  # rad in a step of a free body that is no sphere: its energy is then kept to 1e-4
@@ -56,17 +58,36 @@ class Accumulated:
 class DemBodies(Component):
     """Moves rigid bodies under gravity, contact forces and the loads it is given.
 
+    A class of one's own may derive from it, with a `Params` that derives from `DemBodiesParams`: in
+    a scene it is a kind, ``module:Class``, with all ports of this one.
+
     Parameters
     ----------
     params : DemBodiesParams
         Bodies, materials, planes.
     """
 
+    Params: type[DemBodiesParams] = DemBodiesParams
+
+    @classmethod
+    def ports_of(cls, params: DemBodiesParams) -> Ports:
+        """Motion of the bodies, their loads and contacts."""
+        return ports(params)
+
+    @classmethod
+    def plan_of(cls, params: DemBodiesParams) -> Plan:
+        """What a run will need."""
+        return plan(params)
+
+    @classmethod
+    def initial_of(cls, params: DemBodiesParams) -> Fields:
+        """What it states before it is built."""
+        return initial(params)
+
     shows = SHOWS
 
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
-        self.params = params
-        self.takes, self.gives = ports(params)
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.bodies, self.solids = list(params.bodies), build.solids(params)
         number = build.balls_first(self.bodies)
         bodies, solids = [self.bodies[k] for k in number], [self.solids[k] for k in number]

@@ -188,7 +188,7 @@ class Body:
         "file": "agglomerate.file",
         "scale": "agglomerate.scale",
         "dim": "agglomerate.dim",
-        "radius": "agglomerate.sphere_radius",
+        "radius": "diameter of a sphere (twice it), or agglomerate.sphere_radius",
     }
     shape: Literal["box", "sphere", "spheres", "agglomerate", "disc", "polygon"]
     size: PositiveVector | None = None

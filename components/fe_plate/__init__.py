@@ -18,18 +18,11 @@ Elkhodary, Nonlinear Finite Elements (2014), chapter 8; Benson, Comput. Methods 
 """
 
 from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.plan import plan
 from quintet.components.fe_plate.ports import SHOWS, ports
-from quintet.interfaces.manifest import Manifest, Plan
+from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "FePlateParams"]
-
-RATE = 4e6  # elements stepped per second and thread
-
-
-def _plan(params: FePlateParams) -> Plan:
-    count = sum(one.count for one in params.parts)
-    return Plan(count, min(one.expected_step for one in params.parts), RATE, 1000.0)
-
 
 MANIFEST = Manifest(
     kind="fe_plate",
@@ -38,7 +31,7 @@ MANIFEST = Manifest(
     component="quintet.components.fe_plate.component:FePlate",
     ports=ports,
     shows=SHOWS,
-    plan=_plan,
+    plan=plan,
     bench="quintet.components.fe_plate.bench:cases",
     conform="quintet.components.fe_plate.conform:cases",
 )

@@ -10,6 +10,7 @@ from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
 from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.plan import plan
 from quintet.components.fe_plate.ports import SHOWS, ports
 from quintet.components.fe_plate.state import Array, Resistance
 from quintet.components.fe_plate.view import view
@@ -23,6 +24,7 @@ from quintet.interfaces.component import (
     Totals,
 )
 from quintet.interfaces.errors import StepError
+from quintet.interfaces.manifest import Plan, Ports
 
 FEWEST = 2048  # elements that are worth handing to another thread
 SMALLEST = 0.02  # of an element's volume at the start: below it, it has been turned inside out
@@ -41,17 +43,31 @@ class Accumulated:
 class FePlate(Component):
     """Moves a structure under the loads it is given, pressures, gravity and rigid walls.
 
+    A class of one's own may derive from it, with a `Params` that derives from `FePlateParams`: in
+    a scene it is a kind, ``module:Class``, with all ports of this one.
+
     Parameters
     ----------
     params : FePlateParams
         Parts, supports, loads.
     """
 
+    Params: type[FePlateParams] = FePlateParams
+
+    @classmethod
+    def ports_of(cls, params: FePlateParams) -> Ports:
+        """Nodes and faces that are coupled."""
+        return ports(params)
+
+    @classmethod
+    def plan_of(cls, params: FePlateParams) -> Plan:
+        """What a run will need."""
+        return plan(params)
+
     shows = SHOWS
 
     def __init__(self, params: FePlateParams, resources: Resources = ONE_THREAD) -> None:
-        self.params = params
-        self.takes, self.gives = ports(params)
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
         built = structure(params)
         self.mesh, self.model, self.mass = built.mesh, built.model, built.mass
         self.laws, self.first, self.pressed = built.laws, built.first, built.pressed

@@ -26,6 +26,10 @@ from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
 
+# Columns of a tensor that change their sign in a plane across x, y or z: those of it and another.
+ODD_OF_SIX = (np.array([3, 5]), np.array([3, 4]), np.array([4, 5]))
+ODD_OF_NINE = (np.array([1, 2, 3, 6]), np.array([1, 3, 5, 7]), np.array([2, 5, 6, 7]))
+
 
 class Plane(NamedTuple):
     """A plane of symmetry across an axis."""
@@ -77,6 +81,16 @@ class SymmetryImages:
         for plane, origin, images in self._images(rows):
             array[images] = array[origin]
             array[images, plane.axis] *= -1.0
+
+    def write_tensors(self, array: Array, rows: int) -> None:
+        """Write the images of the first rows, M T M with M = I - 2 n nᵀ; other columns copied.
+
+        The tensor is in columns 0 to 5 of eight, xx yy zz xy yz zx, or 0 to 8 of twelve, by rows.
+        """
+        odd = ODD_OF_SIX if array.shape[1] == 8 else ODD_OF_NINE
+        for plane, origin, images in self._images(rows):
+            array[images] = array[origin]
+            array[images, odd[plane.axis]] *= -1.0
 
     def write_values(self, array: NDArray[np.generic], rows: int) -> None:
         """Write the images of the first rows, equal to their origins; (n + images, ...)."""

@@ -83,90 +83,63 @@ class ShapeMap:
         return sum_by(parts.reshape(-1, values.shape[1]), self.node.reshape(-1), self.nodes)
 
 
-def bilinear(xi: Array, eta: Array) -> Array:
-    """Shape functions (n, 4) of a quadrilateral at local coordinates (n,) from -1 to 1."""
-    return 0.25 * np.stack(
-        [(1 - xi) * (1 - eta), (1 + xi) * (1 - eta), (1 + xi) * (1 + eta), (1 - xi) * (1 + eta)],
-        axis=1,
-    )
+@dataclass(slots=True)
+class OffsetMap:
+    """Points below the faces of a mesh, along the normals of these as they move.
 
+    A point lies at x(ξ, η) - d n, with n = t × s / |t × s| of the tangents t = ∂x/∂ξ, s = ∂x/∂η.
+    Forces go back by the transpose of the velocity, which is linear in that of the nodes: so they
+    do the same work, and keep their moments.
 
-def tangents(xi: Array, eta: Array, x: Array) -> tuple[Array, Array]:
-    """Derivatives (n, 3) of the position on faces with corners (n, 4, 3), along xi and eta."""
-    a, b, c, d = np.moveaxis(x, 1, 0)
-    along = 0.25 * ((1 - eta)[:, None] * (b - a) + (1 + eta)[:, None] * (c - d))
-    across = 0.25 * ((1 - xi)[:, None] * (d - a) + (1 + xi)[:, None] * (c - b))
-    return along, across
-
-
-def corners(face: Array) -> Array:
-    """Corners (m, 4) with triangles closed: a triangle's last corner stands twice."""
-    face = np.asarray(face, dtype=np.int64)
-    return np.where(face < 0, face[:, 2:3], face)
-
-
-def sample_faces(position: Array, face: Array, spacing: float) -> tuple[ShapeMap, Array, Array]:
-    """Sample faces (m, 4) at a spacing [m].
-
-    Returns
-    -------
-    ShapeMap, area of each sample (n,) m2, normal (n, 3)
+    Attributes
+    ----------
+    surface, along, across : ShapeMap
+        Of x, t and s: shape functions at the feet of the points, and their derivatives.
+    depth : (n,) float array, m
+        Of the points below the faces.
+    side : (3,) float array, m
+        Added to s: half of the depth along y where faces are edges, else none.
     """
-    nodes, weights, areas, normals, faces = [], [], [], [], []
-    for number, corner in enumerate(corners(face)):
-        a, b, c, d = position[corner]
-        along = max(np.linalg.norm(b - a), np.linalg.norm(c - d))
-        across = max(np.linalg.norm(d - a), np.linalg.norm(c - b))
-        n, m = max(1, round(along / spacing)), max(1, round(across / spacing))
-        grid = np.meshgrid((np.arange(n) + 0.5) * 2 / n - 1, (np.arange(m) + 0.5) * 2 / m - 1)
-        xi, eta = (axis.ravel() for axis in grid)
-        normal = np.cross(*tangents(xi, eta, position[corner][None]))
-        length = np.linalg.norm(normal, axis=1)
-        nodes.append(np.tile(corner, (n * m, 1)))
-        faces.append(np.full(n * m, number))
-        weights.append(bilinear(xi, eta))
-        areas.append(length * 4 / (n * m))
-        normals.append(normal / length[:, None])
-    owner = np.concatenate(faces)
-    shape = ShapeMap(np.concatenate(nodes), np.concatenate(weights), len(position), owner)
-    return shape, np.concatenate(areas), np.concatenate(normals)
+
+    surface: ShapeMap
+    along: ShapeMap
+    across: ShapeMap
+    depth: Array
+    side: Array
+
+    def tangents(self, position: Array) -> tuple[Array, Array]:
+        """Tangents t and s (n, 3) m of a mesh with its nodes at (nodes, 3) m."""
+        t = self.along.map_consistent(position)
+        return t, self.across.map_consistent(position) + self.side
+
+    def normals(self, position: Array) -> Array:
+        """Outward normals (n, 3)."""
+        normal = np.cross(*self.tangents(position))
+        return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
+
+    def map_consistent(self, position: Array, velocity: Array) -> tuple[Array, Array, Array]:
+        """Position and velocity of the points, and where they are mirrored in their faces."""
+        t, s = self.tangents(position)
+        normal, over = _unit(np.cross(t, s))
+        turning = np.cross(self.along.map_consistent(velocity), s)
+        turning += np.cross(t, self.across.map_consistent(velocity))
+        turning -= (turning * normal).sum(axis=1)[:, None] * normal
+        below, foot = self.depth[:, None] * normal, self.surface.map_consistent(position)
+        moving = self.surface.map_consistent(velocity)
+        return foot - below, moving - (self.depth * over)[:, None] * turning, foot + below
+
+    def map_conservative(self, force: Array, position: Array) -> Array:
+        """Forces (nodes, 3) of forces (n, 3) on the points, for nodes at (nodes, 3) m."""
+        t, s = self.tangents(position)
+        normal, over = _unit(np.cross(t, s))
+        turn = force - (force * normal).sum(axis=1)[:, None] * normal
+        turn *= -(self.depth * over)[:, None]
+        found = self.surface.map_conservative(force)
+        found += self.along.map_conservative(np.cross(s, turn))
+        return np.asarray(found + self.across.map_conservative(np.cross(turn, t)))
 
 
-def project(points: Array, position: Array, face: Array) -> ShapeMap:
-    """Hang points (n, 3) on the faces they lie nearest to, by bilinear shape functions."""
-    corner = corners(face)
-    point, candidate = _candidates(points, position[corner])
-    target, x = points[point], position[corner[candidate]]
-    xi, eta = _foot(target, x)
-    distance = np.linalg.norm(target - np.einsum("nc,nck->nk", bilinear(xi, eta), x), axis=1)
-    order = np.lexsort((distance, point))  # stable: of equally near faces the first
-    _, first = np.unique(point[order], return_index=True)
-    best = order[first]
-    weight, owner = bilinear(xi[best], eta[best]), candidate[best]
-    return ShapeMap(corner[owner], weight, len(position), owner)
-
-
-def _candidates(points: Array, x: Array) -> tuple[Array, Array]:
-    """Pairs of point and face, of all faces (m, 4, 3) that may be the nearest to the point."""
-    centre = x.mean(axis=1)
-    reach = np.linalg.norm(x - centre[:, None], axis=2).max(axis=1)
-    found = []
-    for p in points:  # one by one, so that memory stays small for large meshes
-        away = np.linalg.norm(centre - p, axis=1)
-        found.append(np.flatnonzero(away - reach <= away.min()))
-    counts = [len(faces) for faces in found]
-    return np.repeat(np.arange(len(points)), counts), np.concatenate([np.zeros(0, int), *found])
-
-
-def _foot(points: Array, x: Array) -> tuple[Array, Array]:
-    """Local coordinates of the foot of the perpendicular from points (n, 3) on faces (n, 4, 3)."""
-    xi, eta = np.zeros(len(points)), np.zeros(len(points))
-    for _ in range(20):  # Gauss-Newton, kept on the face
-        gap = points - np.einsum("nc,nck->nk", bilinear(xi, eta), x)
-        t, s = tangents(xi, eta, x)
-        tt, ss, ts = (t * t).sum(1), (s * s).sum(1), (t * s).sum(1)
-        gt, gs = (gap * t).sum(1), (gap * s).sum(1)
-        det = np.maximum(tt * ss - ts * ts, 1e-12 * tt.max(initial=0.0) ** 2 + 1e-300)
-        xi = np.clip(xi + (gt * ss - gs * ts) / det, -1.0, 1.0)
-        eta = np.clip(eta + (gs * tt - gt * ts) / det, -1.0, 1.0)
-    return xi, eta
+def _unit(vector: Array) -> tuple[Array, Array]:
+    """Unit vectors (n, 3), and one over the lengths (n,)."""
+    over = 1.0 / np.linalg.norm(vector, axis=1)
+    return vector * over[:, None], over

@@ -18,7 +18,6 @@ from typing import Protocol
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch import stack
 from quintet.coupler.launch.watch import Watch
-from quintet.interfaces.component import Array
 
 LOOKING = 0.05  # s between two looks at all components
 LONGEST_LOOK = 1.0  # s; if more has passed, this process itself was stopped meanwhile
@@ -46,8 +45,8 @@ class Request(Protocol):
 class Guard(Protocol):
     """Watches in this watchdog's place when no Python runs in its process."""
 
-    def row(self, name: str) -> Array:
-        """Where a component is noted."""
+    def follow(self, participant: Participant) -> None:
+        """Note when the coupler waits for a component."""
 
     def look(self, participants: Iterable[Participant]) -> None:
         """Note that this watchdog looks."""
@@ -110,7 +109,7 @@ class Watchdog:
         participant.verdict = lambda: self.verdict
         participant.line.watch = lambda: self.check(one)
         if self.guard:
-            participant.noted = self.guard.row(participant.name)
+            self.guard.follow(participant)
         if self._thread is None:
             self._last = time.monotonic()
             self._thread = threading.Thread(target=self._run, name="watchdog", daemon=True)
@@ -158,7 +157,11 @@ class Watchdog:
         if not self.stop():
             return
         self._asked_at = self._asked_at or now
-        waited = [one.participant for one in self._all.values() if one.participant.waited_since]
+        waited = [
+            one.participant
+            for one in self._all.values()
+            if one.participant.keeping_others_waiting.since
+        ]
         saves = any(one.order in ("save", "finish") for one in waited)
         late = bool(waited) and now - self._asked_at > (SAVING if saves else ENDING)
         if late or self.stop.at_once():
@@ -175,11 +178,12 @@ class Watchdog:
     def look_for_wait(self, one: Watched, passed: float) -> None:
         """Tell of a component that keeps the others waiting; end it if that takes too long."""
         participant, watch = one.participant, one.watch
-        since = participant.waited_since
+        since = participant.keeping_others_waiting.since
         if since != one.since:
             if one.told:
                 say(f"{participant.name} goes on after {one.waited:.1f} s")
             one.begin(since)
+            passed = min(passed, time.monotonic() - since)
         if not since:
             return
         one.waited += passed
@@ -194,7 +198,7 @@ class Watchdog:
 
     def _tell_or_end(self, one: Watched) -> None:
         calls = one.watch.where()
-        if one.participant.waited_since != one.since:
+        if one.participant.keeping_others_waiting.since != one.since:
             return  # it has answered
         participant, doing = one.participant, one.watch.described()
         place = participant.window

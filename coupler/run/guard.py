@@ -81,7 +81,17 @@ class Guard:
         library = ctypes.CDLL(None)
         library.signal(FAIL, ctypes.cast(library._exit, ctypes.c_void_p))
 
-    def row(self, name: str) -> Array:
+    def follow(self, participant: Participant) -> None:
+        """Note from now on when the coupler waits for a component."""
+        row = self._row(participant.name)
+
+        def note(since: float) -> None:
+            row[1], row[2] = participant.window, participant.built
+            row[0] = since
+
+        participant.keeping_others_waiting.note = note
+
+    def _row(self, name: str) -> Array:
         """Where a component is noted: waited since when, in which window, built, usual time."""
         first = CELLS * (1 + list(self.patience).index(name))
         return self._shared[first : first + CELLS]
@@ -90,7 +100,7 @@ class Guard:
         """Note that the run's watchdog looks, and what is usual."""
         self._shared[0], self._shared[1] = time.monotonic(), self.stop.signals
         for one in participants:
-            self.row(one.name)[3] = one.timing.usual
+            self._row(one.name)[3] = one.timing.usual
 
     def note(self, windows: int, reached: float) -> None:
         """Note how many windows are done, and the time that was reached [s]."""
@@ -148,9 +158,9 @@ class Guard:
         return Watched(participant, watch, self.patience[name])
 
     def _read(self, participant: Participant) -> None:
-        since, window, built, usual = self.row(participant.name).tolist()
-        participant.waited_since, participant.window = since, int(window)
-        participant.built = bool(built)
+        since, window, built, usual = self._row(participant.name).tolist()
+        participant.keeping_others_waiting.since = since
+        participant.window, participant.built = int(window), bool(built)
         participant.timing.recent = deque([usual])
 
     def _is_silent(self) -> bool:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from quintet.coupler.coupling.mapping import sample_faces
+from quintet.coupler.coupling.face_samples import sample_faces
+from quintet.coupler.coupling.rigid_samples import Sampling
 
 MASS, STIFFNESS, PRESSURE, WAVE, SPEED, DRAG, SPACING, END = (
     1.0,
@@ -40,7 +41,9 @@ def _exact():
     from toy_plates import Plate
 
     mesh = Plate(Plate.Params()).describe()
-    shape, area, _ = sample_faces(mesh["faces.start"], mesh["faces.corner"], SPACING)
+    asked = Sampling(SPACING, depth=SPACING, inset=0.0, planar=False)
+    found = sample_faces(mesh["faces.start"], mesh["faces.corner"], asked)
+    shape, area = found.offset.surface, found.volume / SPACING
     phi = np.array([shape.map_consistent(unit[:, None])[:, 0] for unit in np.eye(12)]).T  # (n, 12)
     place = shape.map_consistent(mesh["faces.start"])[:, 0]
     # sin(k x - ω t) = sin(k x) cos(ω t) - cos(k x) sin(ω t), with cos and sin as two more unknowns.

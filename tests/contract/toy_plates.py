@@ -78,7 +78,7 @@ class Gust(Component):
         speed: Positive = 1.5  # m/s, c
         drag: NotNegative = 1.0  # Pa s/m
         spacing: Positive = 0.125  # m
-        depth: Positive = 0.25  # m
+        depth: Positive = 0.125  # m, of samples: one layer, on the faces themselves
         dt: Positive = 0.01  # s
 
     def __init__(self, params: Params) -> None:
@@ -94,7 +94,7 @@ class Gust(Component):
         return {
             "surface.spacing": np.array([params.spacing]),
             "surface.depth": np.array([params.depth]),
-            "surface.inset": np.array([0.5 * params.spacing]),
+            "surface.inset": np.array([0.0]),
         }
 
     def bind(self, static: Fields, joined: Keys) -> None:

@@ -18,8 +18,8 @@ from quintet.coupler.coupling.exchange import (
     Works,
     requires,
 )
+from quintet.coupler.coupling.faces import project
 from quintet.coupler.coupling.links.keys import Between, is_stand_in, with_keys
-from quintet.coupler.coupling.mapping import project
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import Count, parameters
@@ -122,7 +122,7 @@ class Glue:
         glued, mesh = described[self.particles], described[self.mesh]
         shape = project(
             glued["glued_load.position"], mesh["node_glue.start"], mesh["node_glue.corner"]
-        )
+        ).shape
         mass = shape.map_conservative(glued["glued_load.mass"][:, None])[:, 0]
 
         def load(_: Ends, end: Ends) -> Mapped:

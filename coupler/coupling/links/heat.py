@@ -22,8 +22,8 @@ from quintet.coupler.coupling.exchange import (
     Works,
     requires,
 )
+from quintet.coupler.coupling.faces import project
 from quintet.coupler.coupling.links.keys import Between, with_keys
-from quintet.coupler.coupling.mapping import project
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import parameters
@@ -113,7 +113,7 @@ class Heat:
             described[self.wall]["wall_heat.position"],
             mesh["node_temperature.start"],
             mesh["node_temperature.corner"],
-        )
+        ).shape
 
         def hold(_: Ends, end: Ends) -> Mapped:
             temperature = end[self.mesh]["node_temperature.temperature"]

@@ -10,7 +10,9 @@ from functools import partial
 import numpy as np
 
 from quintet.coupler.coupling.exchange import Binding, Ends, Mapped
-from quintet.coupler.coupling.mapping import RigidMap, sample_faces
+from quintet.coupler.coupling.face_samples import sample_faces
+from quintet.coupler.coupling.faces import is_planar
+from quintet.coupler.coupling.mapping import OffsetMap, RigidMap
 from quintet.coupler.coupling.rigid_samples import Sampling as AskedSampling
 from quintet.coupler.coupling.rigid_samples import (
     asked_sampling,
@@ -135,24 +137,56 @@ def _moment(body: str, start: Ends, end: Ends, mapped: Fields) -> Array:
 
 
 def _bind_faces(of: Sampling, described: Mapping[str, Fields]) -> Binding:
-    """Sample every face at the fluid's spacing."""
-    spacing = float(described[of.fluid]["surface.spacing"][0])
-    mesh = described[of.body]
-    shape, area, normal = sample_faces(mesh["faces.start"], mesh["faces.corner"], spacing)
+    """Sample the body below every face as the fluid asks for it."""
+    asked, mesh = asked_sampling(described[of.fluid]), described[of.body]
+    if wrong := _refused_faces(of, described):
+        raise LinkError("\n".join(wrong))
+    found = sample_faces(mesh["faces.start"], mesh["faces.corner"], asked)
+    if found.room < asked.least * (1.0 - NEARLY):
+        raise LinkError(
+            f"link {of.link}: a body must be at least {asked.least:g} m thick between its faces, a "
+            f"spacing of {of.fluid} and twice the depth of the outermost samples it wants; behind "
+            f"face {found.thin} of {of.body} it is {found.room:g} m. Refine the spacing of "
+            f"{of.fluid}, or leave one of its sides out of its coupled faces."
+        )
+    maps = partial(_move_faces, of, found.offset), partial(_load_faces, of, found.offset)
+    static = _static(of, found.normal, found.volume, np.zeros(len(found.volume)))
+    return Binding(static, maps, (None, partial(_node_moment, of.body)))
 
-    def move(_: Ends, end: Ends) -> Mapped:
-        moved = {
-            "surface.position": shape.map_consistent(end[of.body]["faces.position"]),
-            "surface.velocity": shape.map_consistent(end[of.body]["faces.velocity"]),
-        }
-        if of.mirrored:  # samples lie on the faces, each its own image
-            moved["surface.mirror"] = moved["surface.position"]
-        return moved
 
-    def load(_: Ends, end: Ends) -> Mapped:
-        return {"node_load.force": shape.map_conservative(end[of.fluid]["surface_load.force"])}
+def _refused_faces(of: Sampling, initial: Mapping[str, Fields]) -> list[str]:
+    """Refuse also a mesh of other dimensions than the fluid."""
+    fluid, mesh = initial.get(of.fluid, {}), initial.get(of.body, {})
+    wrong = _refused_slab(of, initial)
+    if wrong or "surface.spacing" not in fluid or "faces.start" not in mesh:
+        return wrong
+    planar = asked_sampling(fluid).planar
+    if planar == is_planar(mesh, "faces"):
+        return []
+    flat, solid = (of.fluid, of.body) if planar else (of.body, of.fluid)
+    return [
+        f"link {of.link}: both sides must have two dimensions or both three; {flat} has two, "
+        f"{solid} has three. Set dimensions = 2 in both, or 3 in both."
+    ]
 
-    return Binding(_static(of, normal, area * spacing, np.zeros(len(area))), (move, load))
+
+def _move_faces(of: Sampling, samples: OffsetMap, _: Ends, end: Ends) -> Mapped:
+    position, velocity = (end[of.body][f"faces.{key}"] for key in ("position", "velocity"))
+    place, moving, mirror = samples.map_consistent(position, velocity)
+    moved = {"surface.position": place, "surface.velocity": moving}
+    return moved | {"surface.mirror": mirror} if of.mirrored else moved
+
+
+def _load_faces(of: Sampling, samples: OffsetMap, start: Ends, end: Ends) -> Mapped:
+    # As of bodies: at the middle between the two ends of the window.
+    middle = 0.5 * (start[of.body]["faces.position"] + end[of.body]["faces.position"])
+    force = end[of.fluid]["surface_load.force"]
+    return {"node_load.force": samples.map_conservative(force, middle)}
+
+
+def _node_moment(body: str, start: Ends, end: Ends, mapped: Fields) -> Array:
+    middle = 0.5 * (start[body]["faces.position"] + end[body]["faces.position"])
+    return np.asarray(np.cross(middle, mapped["node_load.force"]).sum(axis=0))
 
 
 RIGID_BODIES = Structure(
@@ -173,8 +207,8 @@ FACES_OF_A_MESH = Structure(
     load=NODE_LOAD,
     reads=("faces.position", "faces.velocity"),
     fills=("node_load.force",),
-    needs=(),
+    needs=("faces.position",),
     works_on=(("node_load.force", "faces.velocity", "faces.position"),),
-    refuses=_refused_slab,
+    refuses=_refused_faces,
     bind=_bind_faces,
 )

@@ -58,7 +58,11 @@ def test_wrong_scenes_are_refused(bodies, given, sentence):
         ([sphere([0, 0, 0], copies=[2, 1, 1])], {}, "bodies.0.copies is now copies.number."),
         ([sphere([0, 0, 0], apart=[1, 1, 1])], {}, "bodies.0.apart is now copies.spacing."),
         ([sphere([0, 0, 0], file="a.stl")], {}, "bodies.0.file is now agglomerate.file."),
-        ([sphere([0, 0, 0], radius=0.1)], {}, "radius is now agglomerate.sphere_radius."),
+        (
+            [sphere([0, 0, 0], radius=0.1)],
+            {},
+            "radius is now diameter of a sphere (twice it), or agglomerate",
+        ),
     ],
 )
 def test_old_keys_are_answered_with_the_new_ones(bodies, given, sentence):

@@ -115,8 +115,8 @@ def test_forces_on_own_items_add_up():
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     corner = np.array([[0.0, 1.0, 2.0, 3.0]])
     described = {
-        "a": STATED | {"surface.spacing": np.array([0.5])},
-        "b": STATED | {"surface.spacing": np.array([0.25])},
+        "a": STATED | {"surface.spacing": np.array([0.5]), "surface.inset": np.zeros(1)},
+        "b": STATED | {"surface.spacing": np.array([0.25]), "surface.inset": np.zeros(1)},
         "plate": {
             **{"faces.start": square, "faces.corner": corner},
             **{"node_glue.start": square, "node_glue.corner": corner},
@@ -186,9 +186,8 @@ def test_two_plates_in_one_fluid_get_their_own_forces_from_the_start(first):
     exchange = Exchange([join_fsi(n, ("water", n), ports) for n in ("left", "right")], ports)
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     faces = {"faces.start": square, "faces.corner": np.array([[0.0, 1.0, 2.0, 3.0]])}
-    exchange.bind(
-        {"left": faces, "right": faces, "water": {**STATED, "surface.spacing": np.ones(1)}}
-    )
+    asked = {"surface.spacing": np.ones(1), "surface.inset": np.zeros(1)}
+    exchange.bind({"left": faces, "right": faces, "water": STATED | asked})
     moving = {"faces.position": square, "faces.velocity": square}
     force = {"surface_load.force": np.array([[4.0, 0.0, 0.0], [0.0, 8.0, 0.0]])}
     outputs = {"left": moving, "right": moving, "water": force}

@@ -124,15 +124,49 @@ def test_a_run_whose_terminal_is_closed_leaves_a_snapshot(tmp_path, transport):
     out, command = tmp_path / "out", Started.command(path)
     pid, terminal = pty.fork()
     if not pid:
+        signal.signal(
+            signal.SIGHUP, signal.SIG_DFL
+        )  # under nohup it is ignored, and that is passed on
         os.execv(command[0], [*command, "--out", str(out)])
     read_until(terminal, lambda: (out / "recording.h5").is_file())
     began = time.monotonic()
     read_until(terminal, lambda: time.monotonic() > began + 1.0)
     os.close(terminal)
-    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 130
+    assert status_within(20.0, pid) == 130
     found = json.loads((out / "results.json").read_text())
     assert found["status"] == "interrupted" and "--resume" in found["resume"]
     assert [path.name for path in snapshots(out)] == [f"snapshot-{found['windows']}.h5"]
+
+
+@pytest.mark.parametrize("transport", ["memory", *OVER])
+def test_a_run_under_nohup_goes_on_without_its_terminal(tmp_path, transport):
+    path = write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3")
+    former = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does; children inherit it
+    try:
+        run = Started(path)
+    finally:
+        signal.signal(signal.SIGHUP, former)
+    run.wait_until(lambda: (run.folder / "recording.h5").is_file())
+    os.killpg(run.process.pid, signal.SIGHUP)
+    time.sleep(1.0)
+    assert run.process.poll() is None
+    run.process.send_signal(signal.SIGTERM)
+    run.process.communicate(timeout=30)
+    run.end()
+    assert run.process.returncode == 130 and "fault" not in run.results
+
+
+def status_within(seconds, pid):
+    """Exit status of a child that ends soon; it is killed if it does not."""
+    limit = time.monotonic() + seconds
+    while time.monotonic() < limit:
+        ended, status = os.waitpid(pid, os.WNOHANG)
+        if ended:
+            return os.waitstatus_to_exitcode(status)
+        time.sleep(0.05)
+    os.kill(pid, signal.SIGKILL)
+    os.waitpid(pid, 0)
+    raise AssertionError(f"still running {seconds:g} s later")
 
 
 def read_until(terminal, true):

@@ -97,5 +97,85 @@ def test_its_own_parameters_are_checked_and_its_plan_is_known(scene: Path) -> No
         quintet.check(str(scene), settings={"components.water.spacing": -1.0})
 
 
+THROWN = """
+from quintet.components.{kind}.component import {cls}
+from quintet.components.{kind}.params import {cls}Params
+from quintet.interfaces.params import Number, parameters
+
+
+class Thrown({cls}):
+    \"\"\"Starts with a speed upwards.\"\"\"
+
+    @parameters
+    class Params({cls}Params):
+        \"\"\"What a scene says of it.\"\"\"
+
+        speed: Number = 0.0  # m/s
+
+    def __init__(self, params, resources):
+        super().__init__(params, resources)
+        self.state.velocity[:, 2] = params.speed
+"""
+BODIES = """
+name = "thrown"
+end = 1e-3
+window = 1e-3
+transport = "memory"
+[components.thrown]
+kind = "{name}:Thrown"
+speed = 2.0
+gravity = [0.0, 0.0, 0.0]
+materials.steel = {{ youngs_modulus = 2e11, poissons_ratio = 0.3, friction = 0, restitution = 1 }}
+[[components.thrown.bodies]]
+shape = "sphere"
+diameter = 0.1
+density = 7850.0
+material = "steel"
+position = [0.0, 0.0, 0.0]
+[output]
+fields = ["thrown.motion.position"]
+"""
+STRUCTURE = """
+name = "thrown"
+end = 1e-5
+window = 1e-6
+transport = "memory"
+[components.thrown]
+kind = "{name}:Thrown"
+speed = 2.0
+[[components.thrown.parts]]
+lowest = [0.0, 0.0, 0.0]
+highest = [0.1, 0.1, 0.1]
+elements = [2, 2, 2]
+material = "steel"
+[[components.thrown.coupled_faces]]
+lowest = [0.0, 0.0, 0.1]
+highest = [0.1, 0.1, 0.1]
+[output]
+fields = ["thrown.faces.position"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "cls", "text", "key"),
+    [
+        ("dem_bodies", "DemBodies", BODIES, "thrown.motion.position"),
+        ("fe_plate", "FePlate", STRUCTURE, "thrown.faces.position"),
+    ],
+)
+def test_other_kinds_may_be_derived_from_alike(
+    tmp_path: Path, kind: str, cls: str, text: str, key: str
+) -> None:
+    name = f"thrown_{kind}_of_a_test"
+    (tmp_path / f"{name}.py").write_text(THROWN.format(kind=kind, cls=cls))
+    path = tmp_path / "scene.toml"
+    path.write_text(text.format(name=name))
+    run = quintet.run(str(path), out=str(tmp_path / "run"))
+    assert run.status == "done"
+    place = np.asarray(run.fields[key])[..., 2]
+    assert place[-1] - place[0] == pytest.approx(2.0 * run.scene["end"], rel=1e-9)
+    sys.modules.pop(name)
+
+
 def teardown_module() -> None:
     sys.modules.pop("stirred_water_of_a_test", None)

@@ -1,0 +1,22 @@
+"""What a run of bodies will need: its rows, step and time, estimated without making any."""
+
+from quintet.components.dem_bodies import build
+from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.manifest import Plan
+
+
+def plan(params: DemBodiesParams) -> Plan:
+    """What a run will need."""
+    bodies, count = params.placed.templates, len(params.bodies)
+    solids = [build.solid(body) for body in bodies]
+    ω = build.expected_frequency(params, bodies, solids)
+    dt = DURATION * SPEED_UP / ω / params.steps_per_contact
+    if count == 1 and not params.planes:  # nothing to touch
+        dt = params.longest_step
+    dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
+    # Of a step, some time is for calling it, and some for each body: more where it is no ball.
+    each = zip(bodies, params.placed.counts, strict=True)
+    balls = sum(n for body, n in each if build.is_ball(body))
+    step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
+    return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)

@@ -1,0 +1,13 @@
+"""What a run of a structure will need: elements, step and time, estimated without a mesh."""
+
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.interfaces.manifest import Plan
+
+RATE = 4e6  # elements stepped per second and thread
+BYTES = 1000.0  # of an element
+
+
+def plan(params: FePlateParams) -> Plan:
+    """What a run will need."""
+    count = sum(one.count for one in params.parts)
+    return Plan(count, min(one.expected_step for one in params.parts), RATE, BYTES)

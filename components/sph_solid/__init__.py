@@ -1,0 +1,43 @@
+"""Elastic-plastic bodies of particles: smoothed-particle hydrodynamics of solids under shocks.
+
+    dη/dt = -tr ηL,   ρ dv/dt = ∇·σ,   ρ de/dt = σ:D,   σ = -p I + s,   η = ρ/ρ₀
+
+Particles move with the material; gradients are sums over neighbours with the cubic spline, if asked
+for corrected to be exact for linear fields (Bonet and Lok). Stress by Jaumann's rate and the return
+to the flow stress of Johnson and Cook, equation of state of Mie and Grüneisen with temperatures
+from the energy on the isentrope, Monaghan's artificial viscosity; where the greatest principal
+stress passes its limit a particle has failed for good: it bears neither shear nor tension.
+
+Velocity Verlet; strains follow from places and velocities in the middle of the step, works from the
+forces at its two ends, so that energy is kept at second order in the step and momentum to rounding.
+Bodies touch as their particles come near. Planes of symmetry mirror what is near them.
+
+Papers: Libersky, Petschek, Carney, Hipp & Allahdadi, J. Comput. Phys. 109 (1993) 67; Monaghan, Rep.
+Prog. Phys. 68 (2005) 1703; Bonet & Lok, Comput. Methods Appl. Mech. Eng. 180 (1999) 97; Dyanov,
+Kazantsev & Chelakov (LOGOS), whose impacts of balls on plates it repeats.
+"""
+
+from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.ports import SHOWS, ports
+from quintet.interfaces.manifest import Manifest, Plan
+
+__all__ = ["MANIFEST", "SphSolidParams"]
+
+RATE = 8e5  # particles stepped per second and thread
+
+
+def _plan(params: SphSolidParams) -> Plan:
+    return Plan(params.expected_count, params.expected_step, RATE, 1500.0)
+
+
+MANIFEST = Manifest(
+    kind="sph_solid",
+    title="Elastic-plastic bodies of particles",
+    params=SphSolidParams,
+    component="quintet.components.sph_solid.component:SphSolid",
+    ports=ports,
+    shows=SHOWS,
+    plan=_plan,
+    bench="quintet.components.sph_solid.bench:cases",
+    conform="quintet.components.sph_solid.conform:cases",
+)

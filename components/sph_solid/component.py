@@ -1,0 +1,264 @@
+"""Elastic-plastic bodies of particles, stepped by velocity Verlet."""
+
+import math
+
+import numpy as np
+
+from quintet.components.shared.threads import Team
+from quintet.components.sph_solid.build import initial_state, materials, nearest, pair_law
+from quintet.components.sph_solid.diagnostics import bodies, failure, gauges, totals, view
+from quintet.components.sph_solid.kernels.material import Points, advance, write_stresses
+from quintet.components.sph_solid.kernels.motion import (
+    drift_half,
+    kick_and_drift_half,
+    kick_and_heat,
+)
+from quintet.components.sph_solid.kernels.pairs import Forces, accelerations, velocity_gradients
+from quintet.components.sph_solid.neighbours import SolidLists
+from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.ports import SHOWS, ports
+from quintet.components.sph_solid.state import Array, State, Whole
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Component,
+    Fields,
+    Keys,
+    Resources,
+    Totals,
+    fields_of,
+)
+from quintet.interfaces.errors import StepError
+from quintet.interfaces.manifest import Ports
+
+LOAD = "glued_load.force"
+
+
+class SphSolid(Component):
+    """Moves elastic-plastic bodies of particles, which may hang on a partner's mesh."""
+
+    shows = SHOWS
+
+    @classmethod
+    def ports_of(cls, params: SphSolidParams) -> Ports:
+        """Glue if particles are glued; bodies; gauges if there are any."""
+        return ports(params)
+
+    def __init__(self, params: SphSolidParams, resources: Resources = ONE_THREAD) -> None:
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
+        self.team, self.law = Team(resources.threads), pair_law(params)
+        self.laws, numbers = materials(params)
+        self.density = np.array([one.density for one in self.laws])
+        self.state = initial_state(params, self.laws, numbers)
+        self.gauged = nearest(self.state.position, params)
+        self.lists = SolidLists(params, self.team)
+        self.is_carried = False  # whether a mesh bears the glued particles
+        self._begin()
+
+    def describe(self) -> Fields:
+        """State where glued particles are, and their masses."""
+        if not self.params.glued:
+            return {}
+        rows = self._glued_rows()
+        return {
+            "glued_load.position": self.state.position[rows],
+            "glued_load.mass": self._masses()[rows],
+        }
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Learn whether a mesh bears the glued particles."""
+        self.is_carried = "glued" in joined or "glued_load" in joined
+
+    def prepare(self, fields: Fields) -> None:
+        """Compile all kernels: try a step, and come back."""
+        kept = self.save()
+        self.take(fields)
+        self.step(self.stable_dt())
+        self.give(frozenset(fields_of(self.gives)))
+        self.load(kept)
+
+    def stable_dt(self) -> float:
+        """Return the share `courant` of what the slowest particle bears."""
+        return self.params.courant * self.state.bound
+
+    def take(self, fields: Fields) -> None:
+        """Set velocities of glued particles in the coming step, and which are still glued."""
+        state = self.state
+        if "glue_activity.active" in fields:
+            state.active[:] = fields["glue_activity.active"]
+        if "glued.velocity" in fields:
+            state.pulled[:] = fields["glued.velocity"] * state.active[:, None]
+
+    def step(self, dt: float) -> None:
+        """Advance by exactly dt [s]; stresses follow the motion in the step's middle."""
+        state, rows = self.state, self.rows
+        self._pull()
+        displaced = self.team.run(
+            kick_and_drift_half, state.particles, dt, state.position, state.velocity,
+            state.acceleration, state.failed, state.volume, state.reference, rows.place,
+            rows.motion,
+        )  # fmt: skip
+        ends = np.array(displaced)
+        spread = self.lists.spread(ends[:, :3].min(axis=0), ends[:, 3:].max(axis=0))
+        if self.lists.are_outworn(state, spread):
+            self._search(dt)
+        self._write_gradients()
+        self._advance_materials(dt)
+        rows = self.rows
+        self.team.run(
+            drift_half, state.particles, dt, state.position, state.velocity, state.acceleration,
+            state.sound, rows.place, rows.motion,
+        )  # fmt: skip
+        self._write_accelerations()
+        squares = self.team.run(
+            kick_and_heat, state.particles, dt, state.velocity, state.acceleration, state.heating,
+            state.energy,
+        )  # fmt: skip
+        state.time += dt
+        if not math.isfinite(sum(squares)):
+            raise StepError(failure(state, self.params, dt))
+
+    def _begin(self) -> None:
+        """Find what acts at the start, where nothing is strained."""
+        state = self.state
+        self.lists.widen(state, 0.0)
+        self.lists.sort(state, state.position)
+        self._list()
+        self._fill_rows()
+        self.rows.motion[: state.particles, 3] = state.failed
+        self._write_gradients()
+        self._write_stresses()
+        self.rows.motion[: state.particles, 3] = state.sound
+        self._write_accelerations()
+
+    def _fill_rows(self) -> None:
+        state, rows, count = self.state, self.rows, self.state.particles
+        rows.place[:count, :3], rows.place[:count, 3] = state.position, state.volume
+        rows.motion[:count, :3] = state.velocity
+
+    def _search(self, dt: float) -> None:
+        """List what is near in the middle of a step of dt [s], and sort by it."""
+        state = self.state
+        self.lists.reflect(state)
+        low, high = state.velocity.min(axis=0), state.velocity.max(axis=0)
+        self.lists.widen(state, dt * self.lists.spread(low, high))
+        middle = state.position + 0.5 * dt * state.velocity
+        if not np.isfinite(middle).all():
+            raise StepError(failure(state, self.params, dt))
+        self.lists.sort(state, middle)
+        self._list()
+        self._fill_rows()
+        self.rows.place[: state.particles, :3] = state.reference
+        self.rows.motion[: state.particles, 3] = state.failed
+
+    def _list(self) -> None:
+        """Make lists from the references, and find the rows of what is asked for."""
+        state = self.state
+        self.rows = self.lists.make(state)
+        self.of_material = [np.flatnonzero(state.material == k) for k in range(len(self.laws))]
+        self.held = np.flatnonzero(state.fixed)
+        self.moves = ((state.fixed[self.held, None] >> np.arange(3)) & 1) == 0
+        self.points = Points(
+            state.deviator, state.density_ratio, state.pressure, state.energy, state.strain,
+            state.temperature, state.damage, state.failed, state.sound, state.heating,
+        )  # fmt: skip
+
+    def _glued_rows(self) -> Whole:
+        """Rows of the particles that are glued or were, in the order of their port."""
+        glue = self.state.glue
+        found = np.flatnonzero(glue >= 0)
+        return found[np.argsort(glue[found])]
+
+    def _pull(self) -> None:
+        """Let glued particles move as they are told in this step."""
+        state = self.state
+        if len(state.active):
+            glued = state.active > 0.0
+            rows = self._glued_rows()[glued]
+            state.velocity[rows], state.acceleration[rows] = state.pulled[glued], 0.0
+
+    def _write_gradients(self) -> None:
+        """Gradients of velocity, of places and motion as they stand in the rows."""
+        rows, count = self.rows, self.state.particles
+        self.lists.images.write_positions(rows.place, count)
+        self.lists.images.write_vectors(rows.motion, count)
+        self.team.run(
+            velocity_gradients, count, rows.place, rows.motion, self.lists.arrays, self.law,
+            rows.gradient, rows.correction,
+        )  # fmt: skip
+
+    def _advance_materials(self, dt: float) -> None:
+        rows = self.rows
+        for law, mine in zip(self.laws, self.of_material, strict=True):
+            self.team.run(
+                advance, len(mine), mine, self.points, rows.gradient, rows.correction, law, dt
+            )
+        self._write_stresses()
+
+    def _write_stresses(self) -> None:
+        rows, count = self.rows, self.state.particles
+        self.team.run(
+            write_stresses, count, self.density, self.state.material, self.points, rows.correction,
+            rows.stress,
+        )  # fmt: skip
+
+    def _write_accelerations(self) -> None:
+        """Accelerations, forces on glued particles, the next step's bound, as the rows stand."""
+        state, rows, count = self.state, self.rows, self.state.particles
+        images = self.lists.images
+        images.write_positions(rows.place, count)
+        images.write_vectors(rows.motion, count)
+        images.write_tensors(rows.stress, count)
+        found = self.team.run(
+            accelerations, count, rows.place, rows.motion, rows.stress, self.lists.arrays,
+            self.law, Forces(state.acceleration, state.heating),
+        )  # fmt: skip
+        state.bound = min(slowest for slowest, _ in found)
+        if len(self.held):
+            state.acceleration[self.held] *= self.moves
+        if len(state.active):
+            mine = self._glued_rows()
+            force = self._masses()[mine, None] * state.acceleration[mine]
+            state.force[:] = force * state.active[:, None]
+            state.acceleration[mine[state.active > 0.0]] = 0.0
+
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out forces on glued particles, and what bodies and gauges read now."""
+        given: dict[str, Array] = {}
+        ports_wanted = {key.partition(".")[0] for key in wanted}
+        if "bodies" in ports_wanted:
+            given.update(bodies(self.state, self._masses(), self.params))
+        if "gauges" in ports_wanted:
+            place = np.empty(self.state.particles, np.int64)
+            place[self.state.identity] = np.arange(self.state.particles)
+            given.update(gauges(self.state, place[self.gauged], self.density))
+        if LOAD in wanted:
+            given[LOAD] = self.state.force.copy()
+        return {key: given[key] for key in wanted}
+
+    def save(self) -> Fields:
+        """Copy out all state; the neighbour list is kept as the places it was made from."""
+        return self.state.save()
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state, bit for bit."""
+        self.state = State.load(state)
+        self._list()
+
+    def _masses(self) -> Array:
+        """Mass (n,) kg of each particle."""
+        return np.asarray(self.state.volume * self.density[self.state.material])
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies; what hangs on a mesh is the mesh's."""
+        carried = np.zeros(0, np.int64)
+        if self.is_carried and len(self.state.active):
+            carried = self._glued_rows()[self.state.active > 0.0]
+        return totals(self.state, self._masses(), carried)
+
+    def view(self) -> Fields:
+        """Particles in the order of their birth, with stress, strain and damage."""
+        return view(self.state)
+
+    def items(self) -> int:
+        """Count the particles."""
+        return self.state.particles

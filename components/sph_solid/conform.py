@@ -1,0 +1,53 @@
+"""What the laws of the contract are tried on: small blocks, free, striking and glued."""
+
+from typing import Any
+
+import numpy as np
+
+from quintet.interfaces.manifest import ConformCase
+
+BLOCK: dict[str, Any] = {
+    "spacing": 0.01,
+    "bodies": [{"lowest": [0.0, 0.0, 0.0], "highest": [0.05, 0.04, 0.04], "material": "steel"}],
+    "gauges": [[0.05, 0.0, 0.0]],
+}
+STEP = 4e-7  # s
+GLUED = 2 * 4 * 4  # particles in two layers
+
+
+def cases() -> tuple[ConformCase, ...]:
+    """A block of steel that rests, one that strikes another, one in a plane, and a glued one."""
+    (still,) = BLOCK["bodies"]
+    moving = still | {
+        "lowest": [0.05, 0.0, 0.0],
+        "highest": [0.08, 0.04, 0.04],
+        "velocity": [-200.0, 0.0, 0.0],
+        "material": "aluminium",
+    }
+    layers = {"lowest": [0.0, 0.0, 0.0], "highest": [0.02, 0.04, 0.04]}
+    rest = {"glued.velocity": np.zeros((GLUED, 3)), "glue_activity.active": np.ones(GLUED)}
+    return (
+        ConformCase("block", BLOCK, dt=STEP),
+        ConformCase(
+            "striking block",
+            {**BLOCK, "bodies": [still, moving]},
+            dt=STEP,
+            still=False,
+            smooth=False,  # it begins to yield
+        ),
+        ConformCase(
+            "quarter, corrected",
+            {**BLOCK, "symmetry": [{"axis": "y"}, {"axis": "z"}], "kernel_correction": True},
+            dt=STEP,
+        ),
+        ConformCase("plane strain", {**BLOCK, "dimensions": 2}, dt=STEP),
+        ConformCase(
+            "glued block",
+            {**BLOCK, "glued": [layers]},
+            rest=rest,
+            scale={"glued.velocity": 10.0},
+            dt=STEP,
+            smooth=False,  # a velocity that jumps is a force without end
+            activity={"glue_activity.active": ("glued", "glued_load")},
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Kernels of bodies of particles: sums over pairs, the material of each, motion."""

@@ -1,0 +1,106 @@
+"""Physics of one pair of particles; numba inlines it into the loops.
+
+A particle has the volume V at the start, η = ρ/ρ₀ and τ = σ/η². Of velocity's gradient L
+
+    η L_i = Σ_j V_j (v_j - v_i) ⊗ ∇_iW_ij,   dη_i/dt = -tr η L_i
+    m_i a_i = V_i Σ_j V_j (τ_i + τ_j - q_ij) ∇_iW_ij,   m_i de_i/dt = V_i τ_i : η L_i + ½ …
+
+so that what strains take from motion is what they add to energies, whatever the densities of two
+materials that meet: of one material it is Monaghan's form σ_i/ρ_i² + σ_j/ρ_j².
+
+Papers: Monaghan, Rep. Prog. Phys. 68 (2005) 1703; Libersky, Petschek, Carney, Hipp & Allahdadi,
+J. Comput. Phys. 109 (1993) 67; Bonet & Lok, Comput. Methods Appl. Mech. Eng. 180 (1999) 97.
+"""
+
+from typing import NamedTuple
+
+from numba import njit
+
+from quintet.components.shared.smoothing.cubic_spline import ZERO
+from quintet.components.shared.smoothing.smoothing import Smoothing
+
+SINGULAR = 0.15  # determinant of Σ V_j (x_j - x_i) ⊗ ∇W_ij, below which none is corrected
+On = bool | None
+
+
+class PairLaw(NamedTuple):
+    """The numbers of pairs."""
+
+    smoothing: Smoothing
+    softening: float  # m2, 0.01h², added to r² where velocities are divided by it
+    linear: float  # α
+    quadratic: float  # β
+    plane: float  # 1 in two dimensions, 0 in three
+    corrected: On  # None if gradients are not corrected
+
+
+@njit(inline="always")
+def approach(r2, dot, law):  # type: ignore[no-untyped-def]
+    """-μ = -h v·r/(r² + 0.01h²) [m/s] of two that come nearer; 0 of others."""
+    return law.smoothing.length * max(-dot, ZERO) / (r2 + law.softening)
+
+
+@njit(inline="always")
+def viscous_pressure(mu, sound_sum, density_sum, densities, law):  # type: ignore[no-untyped-def]
+    """Monaghan's artificial viscosity, as a pressure over η².
+
+    Parameters
+    ----------
+    mu : float, m/s
+        |μ| of two that come nearer.
+    sound_sum : float, m/s
+    density_sum : float, kg/m3
+    densities : float, kg2/m6
+        Product of their densities at the start.
+
+    Returns
+    -------
+    float, Pa
+        q = ρ₀_i ρ₀_j (α c̄ |μ| + β μ²)/ρ̄.
+
+    References
+    ----------
+    Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, eq. (4.2).
+    """
+    drag = law.linear * sound_sum + 2.0 * law.quadratic * mu
+    return mu * drag * densities / density_sum
+
+
+@njit(inline="always")
+def inverse(k, law):  # type: ignore[no-untyped-def]
+    """Inverse of a symmetric matrix xx yy zz xy yz zx, and its determinant.
+
+    In two dimensions it has nothing along y, where the inverse is 1.
+    """
+    xx, yy, zz, xy, yz, zx = k
+    yy += law.plane
+    a, b, c = yy * zz - yz * yz, zx * yz - xy * zz, xy * yz - zx * yy
+    determinant = xx * a + xy * b + zx * c
+    per = 1.0 / determinant if determinant != 0.0 else 0.0
+    found = (
+        a * per,
+        (xx * zz - zx * zx) * per,
+        (xx * yy - xy * xy) * per,
+        b * per,
+        (xy * zx - xx * yz) * per,
+        c * per,
+    )
+    return found, determinant
+
+
+@njit(inline="always")
+def times(m, b):  # type: ignore[no-untyped-def]
+    """Product of a matrix (nine, by rows) and a symmetric one xx yy zz xy yz zx."""
+    m00, m01, m02, m10, m11, m12, m20, m21, m22 = m
+    xx, yy, zz, xy, yz, zx = b
+    return (
+        m00 * xx + m01 * xy + m02 * zx,
+        m00 * xy + m01 * yy + m02 * yz,
+        m00 * zx + m01 * yz + m02 * zz,
+        m10 * xx + m11 * xy + m12 * zx,
+        m10 * xy + m11 * yy + m12 * yz,
+        m10 * zx + m11 * yz + m12 * zz,
+        m20 * xx + m21 * xy + m22 * zx,
+        m20 * xy + m21 * yy + m22 * yz,
+        m20 * zx + m21 * yz + m22 * zz,
+    )

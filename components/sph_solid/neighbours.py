@@ -1,0 +1,100 @@
+"""Which particles are near: Verlet lists of a reach that follows how fast bodies deform."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.search.cells import grid_around, sorted_into
+from quintet.components.shared.search.neighbours import (
+    Lists,
+    NeighbourLists,
+    neighbours_within,
+)
+from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.shared.symmetry import (
+    ODD_OF_SIX,
+    Plane,
+    SymmetryImages,
+    neighbours_and_images,
+)
+from quintet.components.shared.threads import Team
+from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.state import Array, Rows, State
+
+# The cost of a step is least with a skin of about this times the root of what particles approach
+# each other by in it, both over the support: a search takes about as long as the sums over pairs.
+SKIN = 0.5
+LEAST, MOST = 0.01, 0.15  # of the support
+
+
+class SolidLists:
+    """Neighbours of every particle, among particles and their images."""
+
+    def __init__(self, params: SphSolidParams, team: Team) -> None:
+        self.support = SUPPORT * params.length
+        self.team = team
+        self.corrected = params.kernel_correction
+        planes = [
+            Plane(one.axis + ("-" if one.side == "+" else "+"), "xyz".index(one.axis),
+                  one.position, 1.0 if one.side == "+" else -1.0)
+            for one in params.symmetry
+        ]  # fmt: skip
+        self.images = SymmetryImages(planes)
+        self.near = NeighbourLists()
+
+    @property
+    def arrays(self) -> Lists:
+        """What kernels take."""
+        return self.near.arrays
+
+    def spread(self, low: Array, high: Array) -> float:
+        """How far [m] two may have come apart or near, if all moved by low to high (3,) m.
+
+        Images move the other way across their planes.
+        """
+        low, high = low.copy(), high.copy()
+        for plane in self.images.planes:
+            k = plane.axis
+            low[k], high[k] = min(low[k], -high[k]), max(high[k], -low[k])
+        return float(np.linalg.norm(high - low))
+
+    def are_outworn(self, state: State, spread: float) -> bool:
+        """Whether pairs may act that the lists lack, by how far two have come apart or near [m]."""
+        return not spread <= state.reach - self.support
+
+    def widen(self, state: State, spread: float) -> None:
+        """Choose how far the next lists reach, by what two approach each other in a step [m]."""
+        share = min(max(SKIN * math.sqrt(spread / self.support), LEAST), MOST)
+        # Made in a step's middle, they hold to its end at least.
+        state.reach = self.support + max(share * self.support, 0.51 * spread)
+
+    def sort(self, state: State, places: Array) -> None:
+        """Bring particles that are near, by places (n, 3 or more) m, into near rows."""
+        order = sorted_into(places, grid_around(places, state.reach))[2]
+        state.reference = np.ascontiguousarray(places[:, :3])
+        state.reorder(order)
+
+    def reflect(self, state: State) -> None:
+        """Let what has passed a plane of symmetry change places with its image."""
+        for plane in self.images.planes:
+            k = plane.axis
+            out = np.flatnonzero(plane.inward * (state.position[:, k] - plane.position) < 0.0)
+            state.position[out, k] = 2.0 * plane.position - state.position[out, k]
+            state.velocity[out, k] *= -1.0
+            state.acceleration[out, k] *= -1.0
+            for odd in ODD_OF_SIX[k]:
+                state.deviator[out, odd] *= -1.0
+
+    def make(self, state: State) -> Rows:
+        """List what is near, from where all was when it was sorted; make room for pairs."""
+        points = self.images.find(state.reference, state.reach)
+        count, buffer = state.particles, self.near.list
+        if len(points) == count:
+            self.near = neighbours_within(state.reach, points, count, self.team, None, buffer)
+        else:
+            all_alike: NDArray[np.bool_] = np.ones(len(points), bool)
+            self.near = neighbours_and_images(
+                points, all_alike, count, count, state.reach, self.team, None, buffer
+            )
+        return Rows.empty(count, len(points) - count, self.corrected)

@@ -1,0 +1,247 @@
+"""What a scene says about elastic-plastic bodies of particles."""
+
+import math
+from typing import Literal
+
+from quintet.components.shared.materials.params import Material, MaterialName, material
+from quintet.interfaces.params import (
+    Fraction,
+    NotNegative,
+    Number,
+    Positive,
+    Vector,
+    parameters,
+)
+
+Axis = Literal["x", "y", "z"]
+NEEDS = {
+    "box": ("lowest", "highest"),
+    "sphere": ("centre", "diameter"),
+    "cylinder": ("centre", "diameter", "height"),
+}
+OWN = sorted({name for names in NEEDS.values() for name in names})
+
+
+@parameters
+class Body:
+    """A body, filled with a lattice of particles.
+
+    Parameters
+    ----------
+    shape
+        In two dimensions a box, or a cylinder along y.
+    lowest, highest : m
+        Corners of a box.
+    centre : m
+        Of a sphere or cylinder.
+    diameter : m
+        Of a sphere or cylinder.
+    height : m
+        Of a cylinder, along its axis.
+    axis
+        Of a cylinder.
+    material
+        Name of a material of the library, or its table.
+    velocity : m/s
+        At the start.
+    """
+
+    shape: Literal["box", "sphere", "cylinder"] = "box"
+    lowest: Vector | None = None
+    highest: Vector | None = None
+    centre: Vector | None = None
+    diameter: Positive | None = None
+    height: Positive | None = None
+    axis: Axis = "z"
+    material: MaterialName | Material
+    velocity: Vector = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        needed = NEEDS[self.shape]
+        said = [name for name in OWN if getattr(self, name) is not None]
+        if sorted(needed) != said:
+            raise ValueError(
+                f"bodies: a {self.shape} needs {' and '.join(needed)}; found "
+                f"{', '.join(said) or 'none of them'}. Correct it."
+            )
+        low, high = self.box
+        if not all(a < b for a, b in zip(low, high, strict=True)):
+            raise ValueError(
+                f"bodies: highest must be beyond lowest along every axis; found {low} and {high} m."
+            )
+
+    @property
+    def box(self) -> tuple[Vector, Vector]:
+        """Lowest and highest corner [m] of what it reaches over."""
+        if self.lowest is not None and self.highest is not None:
+            return self.lowest, self.highest
+        assert self.centre is not None and self.diameter is not None
+        half = [0.5 * self.diameter] * 3
+        if self.height is not None:
+            half["xyz".index(self.axis)] = 0.5 * self.height
+        (x, y, z), (a, b, c) = self.centre, half
+        return (x - a, y - b, z - c), (x + a, y + b, z + c)
+
+    def volume(self, dimensions: int) -> float:
+        """Volume [m3]; in two dimensions of a slice 1 m deep."""
+        edges = [b - a for a, b in zip(*self.box, strict=True)]
+        if dimensions == 2:
+            edges[1] = 1.0
+        share = {"box": 1.0, "sphere": math.pi / 6.0, "cylinder": 0.25 * math.pi}[self.shape]
+        return share * math.prod(edges)
+
+
+@parameters
+class SymmetryPlane:
+    """A plane of symmetry across an axis.
+
+    Parameters
+    ----------
+    axis
+        Across which it stands.
+    position : m
+        Along that axis.
+    side
+        The side that is computed: "+" beyond the position, "-" before it.
+    """
+
+    axis: Axis
+    position: Number = 0.0
+    side: Literal["+", "-"] = "+"
+
+
+@parameters
+class Region:
+    """A box.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Its corners; what is in it at the start is meant.
+    """
+
+    lowest: Vector
+    highest: Vector
+
+
+@parameters
+class Fixed:
+    """Particles that are held.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        A box; particles in it at the start are held.
+    directions
+        Along which they keep their places; all for clamped ones.
+    """
+
+    lowest: Vector
+    highest: Vector
+    directions: tuple[Axis, ...] = ("x", "y", "z")
+
+
+@parameters
+class SphSolidParams:
+    """Bodies of particles, and how they are computed.
+
+    Parameters
+    ----------
+    spacing : m
+        Of the particles at the start.
+    bodies
+        They touch where their particles come near.
+    dimensions
+        In 2 the bodies lie in the plane of x and z, are 1 m deep, and do not strain along y.
+    smoothing : 1
+        Smoothing length of the cubic spline over the spacing.
+    symmetry
+        Planes of symmetry, at most one across each axis.
+    fixed
+        Particles that are held.
+    glued
+        Particles that hang on a partner's mesh: they move with it, and it bears their mass.
+    gauges : m
+        Places; of the particle that is nearest to each at the start, motion and stress are given.
+    courant : 1
+        Share of h/(c + 1.2 (α c + β max|μ|)) that a step takes.
+    viscosity_linear, viscosity_quadratic : 1
+        α and β of Monaghan's artificial viscosity.
+    kernel_correction
+        Whether gradients are corrected to be exact for linear fields; not at failed particles nor
+        their neighbours.
+    """
+
+    spacing: Positive
+    bodies: tuple[Body, ...]
+    dimensions: Literal[2, 3] = 3
+    smoothing: Positive = 1.2
+    symmetry: tuple[SymmetryPlane, ...] = ()
+    fixed: tuple[Fixed, ...] = ()
+    glued: tuple[Region, ...] = ()
+    gauges: tuple[Vector, ...] = ()
+    courant: Fraction = 0.3
+    viscosity_linear: NotNegative = 1.0
+    viscosity_quadratic: NotNegative = 2.0
+    kernel_correction: bool = False
+
+    def __post_init__(self) -> None:
+        axes = [one.axis for one in self.symmetry]
+        for is_wrong, sentence in (
+            (not self.bodies, "bodies must be at least one; found none. Add [[bodies]]."),
+            (self.courant == 0.0, "courant must be above 0; found 0."),
+            (
+                len(set(axes)) < len(axes),
+                f"symmetry: one plane at most may stand across an axis; found {', '.join(axes)}.",
+            ),
+            (
+                self.dimensions == 2 and "y" in axes,
+                "symmetry: in two dimensions no plane can stand across y. Leave it out.",
+            ),
+            (
+                self.dimensions == 2
+                and any(
+                    one.shape == "sphere" or (one.shape == "cylinder" and one.axis != "y")
+                    for one in self.bodies
+                ),
+                "bodies: in two dimensions they must be boxes or cylinders along y.",
+            ),
+        ):
+            if is_wrong:
+                raise ValueError(sentence)
+
+    @property
+    def length(self) -> float:
+        """Smoothing length h [m]."""
+        return self.smoothing * self.spacing
+
+    @property
+    def cell(self) -> float:
+        """Volume [m3] of a particle of a full lattice."""
+        return self.spacing**self.dimensions
+
+    @property
+    def expected_count(self) -> int:
+        """About how many particles there will be."""
+        whole = sum(_computed_volume(one, self) for one in self.bodies)
+        return max(1, round(whole / self.cell))
+
+    @property
+    def expected_step(self) -> float:
+        """Step [s] that the stiffest material bears at rest."""
+        speeds = []
+        for one in self.bodies:
+            made = material(one.material)
+            speeds.append(math.sqrt((made.bulk + 4.0 / 3.0 * made.shear) / made.density))
+        return self.courant * self.length / ((1.0 + 1.2 * self.viscosity_linear) * max(speeds))
+
+
+def _computed_volume(body: Body, params: SphSolidParams) -> float:
+    """Volume [m3] of a body's box that planes of symmetry leave, times the body's share of it."""
+    volume = body.volume(params.dimensions)
+    for plane in params.symmetry:
+        k = "xyz".index(plane.axis)
+        low, high = body.box[0][k], body.box[1][k]
+        kept = high - plane.position if plane.side == "+" else plane.position - low
+        volume *= min(max(kept / (high - low), 0.0), 1.0)
+    return volume

@@ -1,0 +1,64 @@
+"""What bodies of particles take and give: glue to a mesh; motion of each body; gauges."""
+
+from quintet.components.sph_solid.params import SphSolidParams
+from quintet.interfaces.component import Field, Port
+from quintet.interfaces.manifest import Ports
+from quintet.interfaces.ports import (
+    GLUE_ACTIVITY,
+    GLUED,
+    GLUED_LOAD,
+    POSITION,
+    TEMPERATURE,
+    VELOCITY,
+)
+
+# Of the view, at particles.
+SHOWS = (
+    Field("von_mises", (), "Pa"),
+    VELOCITY,
+    Field("pressure", (), "Pa"),
+    Field("plastic_strain", (), "1"),
+    Field("damage", (), "1"),  # 1 once it has failed
+    TEMPERATURE,
+    Field("body", (), "1"),
+)
+# Of each body, in the order of the scene: of what is computed, without images.
+BODIES = Port(
+    "bodies",
+    fields=(
+        POSITION,  # centre of mass
+        VELOCITY,  # of it
+        Field("kinetic", (), "J"),
+        Field("internal", (), "J"),
+        Field("failed", (), "1"),  # share of its mass that has failed
+        Field("lowest", (3,), "m"),  # corners of what it reaches over, cells of its particles
+        Field("highest", (3,), "m"),
+    ),
+)
+# Of the particle nearest to each gauge at the start.
+GAUGES = Port(
+    "gauges",
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("stress", (3,), "Pa"),  # normal components xx, yy, zz; tension is positive
+        Field("pressure", (), "Pa"),
+        Field("von_mises", (), "Pa"),
+        Field("density", (), "kg/m3"),
+        Field("plastic_strain", (), "1"),
+        Field("failed", (), "1"),
+        TEMPERATURE,
+    ),
+)
+
+
+def ports(params: SphSolidParams) -> Ports:
+    """Ports taken and given.
+
+    Glued particles say the force that they bear at the present time, and move with what they are
+    told for the coming step: over a mesh of the same steps this is one leapfrog.
+    """
+    glued = len(params.glued) > 0
+    taken = (GLUED, GLUE_ACTIVITY) if glued else ()
+    load = (GLUED_LOAD,) if glued else ()
+    return taken, (BODIES, *load, *((GAUGES,) if params.gauges else ()))

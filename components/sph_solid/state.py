@@ -1,0 +1,95 @@
+"""All arrays of bodies of particles: what is remembered, and what pairs are computed from."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.interfaces.component import Fields
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+
+@dataclass(slots=True)
+class State:
+    """What is remembered from one step to the next; n particles, sorted by cell."""
+
+    position: Array  # (n, 3) m
+    velocity: Array  # (n, 3) m/s
+    acceleration: Array  # (n, 3) m/s2
+    heating: Array  # (n,) W/kg, of the artificial viscosity
+    deviator: Array  # (n, 6) Pa, xx yy zz xy yz zx
+    density_ratio: Array  # (n,) 1, η = ρ/ρ₀
+    pressure: Array  # (n,) Pa
+    energy: Array  # (n,) J/kg
+    strain: Array  # (n,) 1, plastic
+    temperature: Array  # (n,) K
+    damage: Array  # (n,) 1
+    failed: Array  # (n,) 1 or 0
+    sound: Array  # (n,) m/s, of longitudinal waves
+    volume: Array  # (n,) m3, at the start
+    material: Whole  # (n,)
+    body: Whole  # (n,)
+    glue: Whole  # (n,) row in the port `glued`; -1 of all others
+    fixed: Whole  # (n,) 1 2 4 added up: along x, y, z; 0 of what is free
+    identity: Whole  # (n,) the number each was born with
+    reference: Array  # (n, 3) m, where the neighbour list was made
+    pulled: Array  # (glued, 3) m/s, of glued particles
+    active: Array  # (glued,) 1, 0 once it is free
+    force: Array  # (glued, 3) N, on glued particles now
+    reach: float = 0.0  # m, of the neighbour list
+    bound: float = 0.0  # s, step that all bear
+    time: float = 0.0  # s
+
+    @property
+    def particles(self) -> int:
+        """Number of particles."""
+        return len(self.position)
+
+    def reorder(self, rows: Whole) -> None:
+        """Bring particles into another order."""
+        for name in OF_PARTICLES:
+            setattr(self, name, getattr(self, name).take(rows, axis=0))
+
+    def save(self) -> dict[str, NDArray[Any]]:
+        """Copy out everything."""
+        return {part.name: np.array(getattr(self, part.name)) for part in fields(self)}
+
+    @classmethod
+    def load(cls, saved: Fields) -> "State":
+        """Make the state that was saved."""
+        kept = {part.name: np.array(saved[part.name]) for part in fields(cls)}
+        own: dict[str, Any] = {name: a if a.ndim else a.item() for name, a in kept.items()}
+        return cls(**own)
+
+
+OF_PARTICLES = tuple(
+    part.name
+    for part in fields(State)
+    if part.name not in ("pulled", "active", "force", "reach", "bound", "time")
+)
+
+
+@dataclass(slots=True)
+class Rows:
+    """What pairs are computed from, of particles and then of their images."""
+
+    place: Array  # (n + images, 4) m, m, m, m3: x, y, z and volume at the start
+    motion: Array  # (n + images, 4) m/s: u, v, w, and whether it has failed, or speed of sound
+    stress: Array  # (n + images, 8 or 12) Pa, kg/m3: σ/η² and ρ, ρ₀; see `kernels`
+    gradient: Array  # (n, 9) 1/s, of velocity
+    correction: Array  # (n, 6) 1; (0, 6) without
+
+    @classmethod
+    def empty(cls, particles: int, images: int, corrected: bool) -> "Rows":
+        """Make room."""
+        count = particles + images
+        return cls(
+            place=np.zeros((count, 4)),
+            motion=np.zeros((count, 4)),
+            stress=np.zeros((count, 12 if corrected else 8)),
+            gradient=np.zeros((particles, 9)),
+            correction=np.zeros((particles if corrected else 0, 6)),
+        )
