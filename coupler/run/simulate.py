@@ -30,7 +30,6 @@ from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import tail
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
-from quintet.coupler.run.guard import Guard
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
@@ -41,10 +40,10 @@ from quintet.interfaces.errors import DiskError, LinkError, QuintetError, SceneE
 
 
 class Closable(Protocol):
-    """A file of a run, or several."""
+    """What is open while a run goes on: a file, or several."""
 
     def close(self) -> None:
-        """Write what is left; a second call does nothing."""
+        """Finish it; a second call does nothing."""
 
 
 def simulate(
@@ -99,7 +98,7 @@ class Running:
         self.writer.on_begin = self._start.close
         self._connection: Connection | None = None
         self._ending = threading.Lock()
-        self._guard: Guard | None = None
+        self._guard: Closable | None = None
 
     def run(self) -> None:
         """Join the components and couple them to the end, or until a signal ends it."""
@@ -124,9 +123,12 @@ class Running:
 
     def _begin_guard(self) -> None:
         """Have it ended from another process too: here a solver may stop all Python."""
+        # Only runs over memory have one, and load what it needs.
+        from quintet.coupler.run.guard import Guard
+
         patience = {name: self.scene.patience(name) for name in self.scene.components}
-        self._guard = self.watchdog.guard = Guard(patience, self.stop, self._report)
-        self.writer.on_window = self._guard.note
+        self._guard = self.watchdog.guard = guard = Guard(patience, self.stop, self._report)
+        self.writer.on_window = guard.note
 
     def _report(self, error: ComponentFailed, windows: int, reached: float) -> None:
         """Write down a failure, from the guard's process."""
