@@ -17,7 +17,7 @@ ONES = np.ones(BLOCK)
 
 def column_sums(array: Array) -> list[float]:
     """Sum over the items; one number per component of the field."""
-    rows = array.reshape(len(array), math.prod(array.shape[1:]))
+    rows = array if array.ndim == 2 else array.reshape(len(array), math.prod(array.shape[1:]))
     # A product with ones sums columns several times faster than a reduction along rows.
     if rows.size <= BLOCK:
         return (ONES[: len(rows)] @ rows).tolist()
@@ -66,8 +66,8 @@ def finite(array: Array) -> bool:
     """Tell whether every number is finite; one pass over memory when all is well."""
     if array.dtype.kind != "f":
         return True
-    if array.size <= BLOCK:
-        return bool(np.isfinite(array).all())
+    if array.size <= BLOCK:  # counting is several times faster than ``all`` of so few
+        return bool(np.count_nonzero(np.isfinite(array)) == array.size)
     # A sum is finite unless a number is not, or unless numbers are so large that it overflows.
     with np.errstate(over="ignore", invalid="ignore"):
         return bool(math.isfinite(array.sum()) or np.isfinite(array).all())

@@ -82,6 +82,10 @@ class FePlate(Component):
             params.stiffness_damping,
         )
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
+        self.hung = np.zeros(len(self.surface))  # kg, mass that hangs on the nodes
+        # Forces of glued particles are those where a step begins, and act in its first half: felt
+        # half a step late they would feed energy in.
+        self.glued = False
         self.accumulated = Accumulated()
         self.team = Team(resources.threads, FEWEST)
         self.bound = self._write_forces(0.0)  # s
@@ -100,25 +104,41 @@ class FePlate(Component):
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Let mass hang on the nodes."""
-        added = static.get("node_load.added_mass")
-        if added is not None:
-            mass = self.mass.copy()
-            mass[self.surface] += added
-            self.model.inverse_mass[:] = 1.0 / mass
+        self.glued = "node_glue" in joined
+        if "node_load.added_mass" in static:
+            self._hang(static["node_load.added_mass"])
+
+    def _hang(self, mass: Array) -> None:
+        """Let a mass (nodes of the surface,) kg hang on the nodes, in the place of what did.
+
+        What is let go goes on with the mean velocity of the last step, as its nodes gave it out.
+        """
+        rows, before = self.surface, self.mass[self.surface] + self.hung
+        whole = self.mass[rows] + mass
+        mean = self.state.mean_velocity[rows]
+        rest = (before / whole)[:, None] * (self.state.velocity[rows] - mean)
+        changed = whole != before
+        self.state.velocity[rows[changed]] = (mean + rest)[changed]
+        self.model.inverse_mass[rows] = 1.0 / whole
+        self.hung = np.array(mass)
 
     def stable_dt(self) -> float:
         """Return a share of the proven bound."""
         return self.params.courant * self.bound
 
     def take(self, fields: Fields) -> None:
-        """Set the forces [N] on the surface's nodes; without them there are none."""
+        """Set the forces [N] on the surface's nodes, without them none; and what hangs on them."""
         force = fields.get("node_load.force")
         self.loads[:] = 0.0 if force is None else force
+        added = fields.get("node_mass.added")
+        if added is not None and not np.array_equal(added, self.hung):
+            self._hang(added)
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         self._write_loads()
-        done = kick_and_drift(self.model, self.state, dt, self.params.mass_damping)
+        loading, damping = 2.0 if self.glued else 1.0, self.params.mass_damping
+        done = kick_and_drift(self.model, self.state, dt, damping, loading)
         self.accumulated.time += dt
         self.accumulated.work += done
         self.bound = self._write_forces(dt)
@@ -144,7 +164,8 @@ class FePlate(Component):
                 raise self._failure(
                     f"element {worst} of {least:.3g} of its volume", worst, "it is inside out"
                 )
-        squares = kick(self.model, self.state, dt, self.params.mass_damping)
+        loading, damping = 0.0 if self.glued else 1.0, self.params.mass_damping
+        squares = kick(self.model, self.state, dt, damping, loading)
         if not math.isfinite(squares):
             node = int(np.argmin(np.isfinite(self.state.velocity).all(axis=1)))
             raise StepError(
@@ -179,26 +200,32 @@ class FePlate(Component):
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         total = self.accumulated
         kept["accumulated"] = np.array([total.time, total.work, self.bound])
-        return kept | {"loads": self.loads.copy()}
+        return kept | {"loads": self.loads.copy(), "hung": self.hung.copy()}
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
         for name, array in self.state._asdict().items():
             array[:] = state[name]
-        self.loads[:] = state["loads"]
+        self.loads[:], self.hung = state["loads"], np.array(state["hung"])
+        self.model.inverse_mass[self.surface] = 1.0 / (self.mass[self.surface] + self.hung)
         time, work, self.bound = state["accumulated"].tolist()
         self.accumulated = Accumulated(time, work)
 
     def totals(self) -> Totals:
-        """Mass, momentum and energies; internal is strain, plastic work and stabilisation."""
-        s, momentum = self.state, self.mass[:, None] * self.state.velocity
+        """Mass, momentum and energies, with what hangs on the nodes.
+
+        Internal is strain, plastic work and stabilisation.
+        """
+        s, whole = self.state, self.mass.copy()
+        whole[self.surface] += self.hung
+        momentum = whole[:, None] * s.velocity
         mass = self.model.volume * np.array([law.density for law in self.laws])[self.mesh.part]
         return Totals(
-            mass=float(self.mass.sum()),
+            mass=float(whole.sum()),
             momentum=momentum.sum(axis=0),
             angular_momentum=np.cross(s.position, momentum).sum(axis=0),
             kinetic=0.5 * float((momentum * s.velocity).sum()),
-            potential=-float(self.mass @ (s.position @ self.model.gravity)),
+            potential=-float(whole @ (s.position @ self.model.gravity)),
             internal=float((mass * s.energy).sum() + s.hourglass_energy.sum()),
         )
 

@@ -8,6 +8,7 @@ from quintet.interfaces.ports import (
     FACES,
     NODE_GLUE,
     NODE_LOAD,
+    NODE_MASS,
     TEMPERATURE,
     VELOCITY,
 )
@@ -24,4 +25,4 @@ SHOWS = (
 
 def ports(_: FePlateParams) -> Ports:
     """Ports taken and given."""
-    return (NODE_LOAD,), (FACES, NODE_GLUE, FACE_ACTIVITY)
+    return (NODE_LOAD, NODE_MASS), (FACES, NODE_GLUE, FACE_ACTIVITY)

@@ -2,16 +2,18 @@
 
 import math
 import reprlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from quintet.interfaces.component import Field, Fields
 from quintet.interfaces.errors import MessageError
 from quintet.interfaces.lines.message import Message
+from quintet.interfaces.serving.orders import Rule, is_count, is_names
 
-Rule = tuple[Callable[[Any], bool], str]  # whether a value is right, and what it must be
-LARGEST = 1 << 62
+NUMBERS = frozenset((int, float))
+MOTION = frozenset(("first", "moved", "span"))
+NONE: dict[str, Rule] = {}
 TOTALS = {
     "mass": 0,
     "momentum": 3,
@@ -22,30 +24,26 @@ TOTALS = {
 }
 
 
-def _is_count(value: Any) -> bool:
-    return type(value) is int and 0 <= value < LARGEST
-
-
 def _is_number(value: Any) -> bool:
-    return type(value) in (int, float) and not math.isnan(value)
+    return type(value) in NUMBERS and value == value  # which nan is not
 
 
 def _is_time(value: Any) -> bool:
-    return _is_number(value) and 0 <= value < math.inf
+    return type(value) in NUMBERS and 0 <= value < math.inf
 
 
 def _is_list(value: Any) -> bool:
-    return isinstance(value, list) and all(type(one) in (int, float) for one in value)
+    return isinstance(value, list) and NUMBERS.issuperset(map(type, value))
 
 
 def _is_sums(value: Any) -> bool:
-    return isinstance(value, dict) and all(map(_is_list, value.values()))
+    return value == {} or (isinstance(value, dict) and all(map(_is_list, value.values())))
 
 
 def _is_motion(value: Any) -> bool:
     return (
         isinstance(value, dict)
-        and value.keys() == {"first", "moved", "span"}
+        and value.keys() == MOTION
         and _is_sums(value["first"])
         and _is_sums(value["moved"])
         and _is_time(value["span"])
@@ -61,7 +59,7 @@ def _are_totals(value: Any) -> bool:
     )
 
 
-COUNT: Rule = _is_count, "a whole number from 0"
+COUNT: Rule = is_count, "a whole number from 0"
 NUMBER: Rule = _is_number, "a number"
 TIME: Rule = _is_time, "a time in s"
 SUMS: Rule = _is_sums, "sums of fields"
@@ -91,11 +89,12 @@ def check_answer(order: str, answer: Message) -> None:
         raise MessageError(
             f"the answer to {order} must be done or failed; found {reprlib.repr(answer.order)}."
         )
-    notes = answer.header.get("notes", [])
-    if not (isinstance(notes, list) and all(isinstance(one, str) for one in notes)):
+    header = answer.header
+    notes = header.get("notes")
+    if notes is not None and not is_names(notes):
         raise MessageError(f"the answer to {order}: notes must be a list of texts.")
-    for key, (is_right, words) in ANSWERS.get(order, {}).items():
-        value = answer.header.get(key)
+    for key, (is_right, words) in ANSWERS.get(order, NONE).items():
+        value = header.get(key)
         if not is_right(value):
             found = reprlib.repr(value)
             raise MessageError(f"the answer to {order}: {key} must be {words}; found {found}.")

@@ -1,11 +1,10 @@
 """One component as the run loop sees it, wherever it runs."""
 
-import contextlib
 import statistics
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -48,6 +47,21 @@ class Timing:
         return statistics.median(self.recent) if self.recent else 0.0
 
 
+class Waiting:
+    """A time in which the coupler waits for a component, for who watches it meanwhile."""
+
+    __slots__ = ("since",)
+
+    def __init__(self) -> None:
+        self.since = 0.0  # s of the monotonic clock; 0 while nobody waits
+
+    def __enter__(self) -> None:
+        self.since = time.monotonic()
+
+    def __exit__(self, *_: object) -> None:
+        self.since = 0.0
+
+
 class Participant:
     """A component behind a line: orders go out, answers come back checked."""
 
@@ -56,7 +70,7 @@ class Participant:
         self.components = {name: self}
         self.order = ""  # the last that it got
         self.built = False  # whether it has answered an order
-        self.waited_since = 0.0  # s of the monotonic clock, while it keeps the coupler waiting
+        self.keeping_others_waiting = Waiting()
         # What ended the run meanwhile, if a watch has ended it.
         self.verdict: Callable[[], BaseException | None] = lambda: None
         self.window = 0  # the next
@@ -69,21 +83,12 @@ class Participant:
         self._answered = True  # whether the answer to the last order is known
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
 
-    @contextlib.contextmanager
-    def keeping_others_waiting(self) -> Iterator[None]:
-        """Note since when the coupler waits for it, for who watches it meanwhile."""
-        self.waited_since = time.monotonic()
-        try:
-            yield
-        finally:
-            self.waited_since = 0.0
-
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
         self._asked = time.perf_counter()
         self.order, self._answered = order, False
         try:
-            with self.keeping_others_waiting():
+            with self.keeping_others_waiting:
                 self.line.send({"order": order, "window": self.window, **header}, fields or {})
         except LineError as error:
             raise self._failure(error) from error
@@ -91,18 +96,19 @@ class Participant:
     def receive(self, expected: Shapes | None = None, finite: bool = True) -> Message:
         """Wait for the answer."""
         try:
-            with self.keeping_others_waiting():
+            with self.keeping_others_waiting:
                 message = self.line.receive(LONGEST_WAIT, expected)
-            if message.order != "failed":
+            failed = message.order == "failed"
+            if not failed:
                 check_answer(self.order, message)
-            if self.sums and self.order == "advance" and message.order != "failed":
-                self.sums.check(message)
+                if self.sums and self.order == "advance":
+                    self.sums.check(message)
             if finite:
                 require_finite(message.fields, "what it gave")
         except (LineError, MessageError) as error:
             raise self._failure(error) from error
         self._answered = self.built = True
-        if message.order == "failed":
+        if failed:
             text = sendable(str(message.header.get("text")))
             if message.header.get("error") == SceneError.__name__ and self.shapes is None:
                 # It has not begun: the scene is refused, by who knows the rule.
@@ -128,7 +134,7 @@ class Participant:
     def await_hello(self, seconds: float, connect: Callable[[float], None]) -> Message:
         """Wait until the component has connected, and for its first message."""
         try:
-            with self.keeping_others_waiting():
+            with self.keeping_others_waiting:
                 connect(seconds)
                 return self.line.receive(seconds)
         except LineError as error:

@@ -75,7 +75,7 @@ class InMemory:
                 participant = self.participants[name] = Participant(name, line)
                 watch = Watch(name, os.getpid(), where=stack.of_main_thread)
                 self.watchdog.add(participant, watch, scene.patience(name))
-                with participant.keeping_others_waiting():
+                with participant.keeping_others_waiting:
                     component = _built(one, settings(scene, name))
                 line.handle = partial(answer, Server(component, name), line.far)
         except BaseException:

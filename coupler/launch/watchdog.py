@@ -139,7 +139,11 @@ class Watchdog:
         if not self.stop():
             return
         self._asked_at = self._asked_at or now
-        waited = [one.participant for one in self._all.values() if one.participant.waited_since]
+        waited = [
+            one.participant
+            for one in self._all.values()
+            if one.participant.keeping_others_waiting.since
+        ]
         saves = any(one.order in ("save", "finish") for one in waited)
         late = bool(waited) and now - self._asked_at > (SAVING if saves else ENDING)
         if late or self.stop.at_once():
@@ -155,7 +159,7 @@ class Watchdog:
 
     def _look_for_wait(self, one: Watched, passed: float) -> None:
         participant, watch = one.participant, one.watch
-        since = participant.waited_since
+        since = participant.keeping_others_waiting.since
         if since != one.since:
             if one.told:
                 say(f"{participant.name} goes on after {one.waited:.1f} s")
@@ -174,7 +178,7 @@ class Watchdog:
 
     def _tell_or_end(self, one: Watched) -> None:
         calls = one.watch.where()
-        if one.participant.waited_since != one.since:
+        if one.participant.keeping_others_waiting.since != one.since:
             return  # it has answered
         participant, doing = one.participant, one.watch.described()
         place = participant.window

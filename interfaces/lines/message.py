@@ -23,6 +23,7 @@ Frame = Any  # bytes, a bytearray or an array of bytes: whatever has a buffer
 
 MAGIC = b"qnt3"
 PREFIX = struct.Struct("<4sIQI")  # magic, bytes of the header, bytes of the frame, CRC-32 of header
+PACKER = msgpack.Packer()  # making one takes longer than packing a header
 HEADER_LIMIT = 1 << 20  # bytes
 WITHOUT_ARRAYS = ("failed", "abort")  # orders that may replace an expected message
 
@@ -43,7 +44,7 @@ class Message:
 def encode(header: Mapping[str, Any], fields: Fields, scratch: bytearray | None) -> bytearray:
     """Pack a message into one frame; `scratch` is reused when it has the right length."""
     layout = lay_out(tuple([(key, a.dtype.str, a.shape) for key, a in fields.items()]))
-    packed = msgpack.packb({**header, "arrays": layout.packed})
+    packed = PACKER.pack({**header, "arrays": layout.packed})
     first = aligned(PREFIX.size + len(packed))
     total = first + layout.size
     frame = scratch if scratch is not None and len(scratch) == total else bytearray(total)

@@ -9,6 +9,7 @@ from quintet.interfaces.errors import OrderError
 
 MOST_STEPS = 10_000  # that may be asked for in a window
 LARGEST = 1 << 62
+TEXTS = frozenset((str,))
 Rule = tuple[Callable[[Any], bool], str]  # whether a value is right, and what it must be
 
 
@@ -19,7 +20,7 @@ def is_count(value: Any) -> bool:
 
 def is_names(value: Any) -> bool:
     """Whether a value is a list of texts."""
-    return isinstance(value, list) and all(isinstance(one, str) for one in value)
+    return isinstance(value, list) and TEXTS.issuperset(map(type, value))
 
 
 def _is_length(value: Any) -> bool:
@@ -70,16 +71,19 @@ REQUIRED: dict[str, dict[str, Rule]] = {
 }
 
 
+# Of each order: key, rule, whether the order must have it.
+RULES: dict[str, list[tuple[str, Rule, bool]]] = {
+    order: [(key, rule, False) for key, rule in {**OF_ALL, **OPTIONAL.get(order, {})}.items()]
+    + [(key, rule, True) for key, rule in REQUIRED.get(order, {}).items()]
+    for order in {"", *OPTIONAL, *REQUIRED}
+}
+
+
 def check_order(order: str, header: Mapping[str, Any]) -> None:
     """Refuse an order whose header lacks something, or has what it may not."""
-    for key, rule in {**OF_ALL, **OPTIONAL.get(order, {})}.items():
-        if key in header:
-            _check(order, key, rule, header[key])
-    for key, rule in REQUIRED.get(order, {}).items():
-        _check(order, key, rule, header.get(key))
-
-
-def _check(order: str, key: str, rule: Rule, value: Any) -> None:
-    is_right, words = rule
-    if not is_right(value):
-        raise OrderError(f"order {order}: {key} must be {words}; found {reprlib.repr(value)}.")
+    for key, (is_right, words), required in RULES.get(order) or RULES[""]:
+        if required or key in header:
+            value = header.get(key)
+            if not is_right(value):
+                found = reprlib.repr(value)
+                raise OrderError(f"order {order}: {key} must be {words}; found {found}.")

@@ -9,7 +9,7 @@ from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> float:
+def kick_and_drift(model: Model, state: State, dt: float, damping: float, loading: float) -> float:
     """Advance velocities by half a step and positions by a whole one; return the loads' work [J].
 
     Parameters
@@ -18,13 +18,17 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
     dt : float, s
     damping : float, 1/s
         α: velocities decay by exp(-α dt/4) here and at the step's end.
+    loading : float, 1
+        How many halves of the step the loads act in here: 1, or 2 for loads that were found at the
+        step's beginning, as those of glued particles are.
     """
     decay, work = math.exp(-0.25 * damping * dt), 0.0
     for i in range(state.position.shape[0]):
         half = 0.5 * dt * model.inverse_mass[i]
         for d in range(3):
             v = decay * state.velocity[i, d]
-            v += half * (state.internal[i, d] + state.load[i, d]) + 0.5 * dt * model.gravity[d]
+            force = state.internal[i, d] + loading * state.load[i, d]
+            v += half * force + 0.5 * dt * model.gravity[d]
             state.mean_velocity[i, d] = v * model.free[i, d]
         for w in range(model.walls.shape[0]):
             hold(i, w, model, state, dt)
@@ -50,10 +54,11 @@ def hold(i, w, model, state, dt):  # type: ignore[no-untyped-def]
 
 
 @njit(**EXACT)
-def kick(model: Model, state: State, dt: float, damping: float) -> float:
+def kick(model: Model, state: State, dt: float, damping: float, loading: float) -> float:
     """Sum the elements' forces on nodes, advance velocities by half a step; return their sum.
 
-    The sum of the squares of all velocities [m2/s2] is finite if all is well.
+    The sum of the squares of all velocities [m2/s2] is finite if all is well. `loading` is 1, or 0
+    for loads that have acted already.
     """
     decay, squares = math.exp(-0.25 * damping * dt), 0.0
     flat = state.corner_force.reshape(-1, 3)
@@ -68,7 +73,8 @@ def kick(model: Model, state: State, dt: float, damping: float) -> float:
         half = 0.5 * dt * model.inverse_mass[i]
         for d in range(3):
             v = state.mean_velocity[i, d]
-            v += half * (state.internal[i, d] + state.load[i, d]) + 0.5 * dt * model.gravity[d]
+            force = state.internal[i, d] + loading * state.load[i, d]
+            v += half * force + 0.5 * dt * model.gravity[d]
             v *= decay * model.free[i, d]
             state.velocity[i, d] = v
             squares += v * v
