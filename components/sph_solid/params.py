@@ -14,6 +14,7 @@ from quintet.interfaces.params import (
 )
 
 Axis = Literal["x", "y", "z"]
+NARROW = 2.4  # smoothing lengths between planes: nothing is as near to the images of images
 NEEDS = {
     "box": ("lowest", "highest"),
     "sphere": ("centre", "diameter"),
@@ -156,7 +157,7 @@ class SphSolidParams:
     smoothing : 1
         Smoothing length of the cubic spline over the spacing.
     symmetry
-        Planes of symmetry, at most one across each axis.
+        Planes of symmetry; two that face each other enclose a strip.
     fixed
         Particles that are held.
     glued
@@ -187,12 +188,18 @@ class SphSolidParams:
 
     def __post_init__(self) -> None:
         axes = [one.axis for one in self.symmetry]
+        sides = [one.axis + one.side for one in self.symmetry]
         for is_wrong, sentence in (
             (not self.bodies, "bodies must be at least one; found none. Add [[bodies]]."),
             (self.courant == 0.0, "courant must be above 0; found 0."),
             (
-                len(set(axes)) < len(axes),
-                f"symmetry: one plane at most may stand across an axis; found {', '.join(axes)}.",
+                len(set(sides)) < len(sides),
+                f"symmetry: a side must have one plane at most; found {', '.join(sides)}.",
+            ),
+            (
+                self._narrowest < NARROW * self.length,
+                f"symmetry: two planes must be {NARROW} smoothing lengths apart, "
+                f"{NARROW * self.length:g} m; found {self._narrowest:g} m.",
             ),
             (
                 self.dimensions == 2 and "y" in axes,
@@ -209,6 +216,16 @@ class SphSolidParams:
         ):
             if is_wrong:
                 raise ValueError(sentence)
+
+    @property
+    def _narrowest(self) -> float:
+        """Least distance [m] between two planes that face each other."""
+        found = math.inf
+        for axis in "xyz":
+            ends = {one.side: one.position for one in self.symmetry if one.axis == axis}
+            if len(ends) == 2:
+                found = min(found, ends["-"] - ends["+"])
+        return found
 
     @property
     def length(self) -> float:
