@@ -20,6 +20,7 @@ SHOWS = (
     Field("pressure", (), "Pa"),
     Field("plastic_strain", (), "1"),
     TEMPERATURE,
+    Field("displacement", (3,), "m"),
 )
 
 

@@ -35,4 +35,5 @@ def view(mesh: Mesh, state: State) -> Fields:
         "pressure": mean(state.pressure),
         "plastic_strain": mean(state.strain),
         "temperature": mean(state.temperature),
+        "displacement": state.position[node] - mesh.node[node],
     }

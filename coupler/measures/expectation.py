@@ -79,6 +79,8 @@ class Expectation:
         Of the measured value.
     source
         Where the reference is from.
+    quantity
+        What the curve is, in words, for pictures; told by its field if not given.
     """
 
     name: str
@@ -98,6 +100,7 @@ class Expectation:
     within: NotNegative
     unit: str
     source: str
+    quantity: str = ""
 
     def __post_init__(self) -> None:
         wrong = [sentence for is_wrong, sentence in self._rules() if is_wrong]
