@@ -152,7 +152,7 @@ class SphSolidParams:
         Of the particles at the start.
     bodies
         They touch where their particles come near.
-    dimensions : 1
+    dimensions
         In 2 the bodies lie in the plane of x and z, are 1 m deep, and do not strain along y.
     smoothing : 1
         Smoothing length of the cubic spline over the spacing.
