@@ -175,7 +175,7 @@ class SphSolidParams:
         Of the particles at the start.
     bodies
         They touch where their particles come near.
-    dimensions : 1
+    dimensions
         In 2 the bodies lie in the plane of x and z, are 1 m deep, and do not strain along y.
     axisymmetric
         With 2 dimensions: bodies are those of the half-plane x > 0, turned about the axis z.

@@ -79,7 +79,10 @@ def comparison(
 
 def _curve_of(one: Expectation) -> tuple[Any, ...]:
     """What makes a computed curve: expectations that agree in it share a panel."""
-    return (one.component, one.field, one.item, one.axis, one.offset, one.scale)
+    return (
+        one.component, one.field, one.item, one.axis, one.offset, one.scale, one.moving_mean,
+        one.from_level,
+    )  # fmt: skip
 
 
 def _draw(
@@ -104,7 +107,7 @@ def _draw(
         if one.level is not None:
             panel.axhline(one.level, color="grey", linewidth=0.8, linestyle="--")
     panel.set_title("\n".join(_verdict(one, results.get(one.name)) for one in ones), fontsize=8)
-    panel.set_xlabel("t [s]")
+    panel.set_xlabel(_time(ones[0]))
     panel.set_ylabel(textwrap.fill(_label(ones, recording), LINE), fontsize=8)
     panel.grid(alpha=0.3)
     panel.legend(fontsize=7, frameon=False)
@@ -145,6 +148,11 @@ def shortened(text: str) -> str:
     return "\n".join(textwrap.wrap(text, LINE, max_lines=LINES, placeholder=" …"))
 
 
+def _time(one: Expectation) -> str:
+    """Name of the times, and what they count from."""
+    return "t [s]" if one.from_level is None else f"t since {_number(one.from_level)} is passed [s]"
+
+
 def _label(ones: list[Expectation], recording: Recording) -> str:
     """Name and unit of the curve that some expectations measure."""
     one = ones[0]
@@ -159,6 +167,8 @@ def _label(ones: list[Expectation], recording: Recording) -> str:
         name += f", {one.item} of {items}"
     elif items > 1:
         name += f", item {one.item}"
+    if one.moving_mean:
+        name += f", mean over {one.moving_mean:g} s"
     if one.offset:
         name = f"{name} {'+' if one.offset > 0.0 else '−'} {abs(one.offset):g} {field.unit}"
     if abs(one.scale) == 1.0:
@@ -193,5 +203,5 @@ def _verdict(one: Expectation, outcome: Outcome | None) -> str:
     if one.measure not in DISTANCES:
         expected = f"expected {outcome.reference:.4g} ± {outcome.within:.2g}"
     unit = "" if one.unit == "1" else f" {one.unit}"
-    verdict = "met" if outcome.met else "NOT met"
+    verdict = "met" if outcome.met else "NOT met" if one.required else "not met, not required"
     return f"{one.name}: {what} {outcome.value:.4g}, {expected}{unit}: {verdict}"

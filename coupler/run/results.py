@@ -41,7 +41,9 @@ def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
         return evaluate(one, recording, folder)
     except SceneError as error:
         print(f"quintet: expectation {one.name}: {error}", file=sys.stderr)
-        return Outcome(one.name, None, one.value or 0.0, one.within, one.unit, False, one.source)
+        return Outcome(
+            one.name, None, one.value or 0.0, one.within, one.unit, False, one.source, one.required
+        )
 
 
 def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
