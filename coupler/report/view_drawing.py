@@ -207,8 +207,11 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Array]) -> No
             )  # fmt: skip
     if still:
         shaded = any(not _is_flat(face[:, [0, 2]]) for face in still)
-        back = (*to_rgb(BACK), BEHIND) if shaded else "none"
-        handles.append(Patch(facecolor=back, edgecolor=WALL, linewidth=2.0, label="walls"))
+        if shaded:
+            back = (*to_rgb(BACK), BEHIND)
+            handles.append(Patch(facecolor=back, edgecolor=WALL, linewidth=2.0, label="walls"))
+        else:
+            handles.append(Line2D([], [], color=WALL, linewidth=2.0, label="walls"))
     if not handles:
         return
     figure.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
