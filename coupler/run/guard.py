@@ -3,7 +3,8 @@
 A solver that waits, or computes, with the interpreter's lock held stops all Python of its process,
 the watchdog's thread included. The guard reads in memory that both share whom the run waits for and
 when the watchdog last looked. When it looks no more, the guard watches in its place, by the same
-rules; the stack and the exit status come from signal handlers that need no interpreter.
+rules; the stack and the exit status come from signal handlers that need no interpreter. If the
+process dies without a word, as one that the system kills for want of memory, it writes that down.
 """
 
 import contextlib
@@ -19,7 +20,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -40,7 +41,6 @@ CELLS = 4  # numbers that are kept of the run, and of every component
 # Its number is the exit status of a run that failed: the C library's _exit, as its handler, ends
 # the process with it.
 FAIL = signal.SIGQUIT
-PR_SET_PDEATHSIG = 1  # of prctl(2): a signal that comes when the parent ends
 
 
 class Guard:
@@ -83,10 +83,11 @@ class Guard:
 
     def follow(self, participant: Participant) -> None:
         """Note from now on when the coupler waits for a component."""
-        row = self._row(participant.name)
+        row: Any = self._row(participant.name).data  # written to faster than an array
 
         def note(since: float) -> None:
-            row[1], row[2] = participant.window, participant.built
+            if since:
+                row[1], row[2] = participant.window, participant.built
             row[0] = since
 
         participant.keeping_others_waiting.note = note
@@ -124,7 +125,6 @@ class Guard:
     def _guard(self) -> NoReturn:
         """Watch until the run ends, by itself or from here."""
         try:
-            ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
             os.setsid()
             signal.set_wakeup_fd(-1)
             for number in ENDING:
@@ -150,6 +150,17 @@ class Guard:
                     watchdog.fail(one, "kept the interpreter's lock when asked to end")
             if isinstance(watchdog.verdict, ComponentFailed):
                 self._end(watchdog.verdict)
+        for one in watched:
+            self._read(one.participant)
+        self._write_down(self._death([one.participant for one in watched]))
+
+    def _death(self, participants: Iterable[Participant]) -> ComponentFailed:
+        """Why the run's process is gone: whoever it waited for has most likely ended it."""
+        cause = f"process {self._run} is gone: it ended or was killed"
+        for one in participants:
+            if one.keeping_others_waiting.since:
+                return ComponentFailed(one.name, one.window, cause)
+        return ComponentFailed("coupler", int(self._shared[2]), cause)
 
     def _watched(self, name: str) -> Watched:
         participant = Participant(name, MemoryLine("", name))
@@ -170,10 +181,13 @@ class Guard:
         """Signals that asked for the end, read by the run or not."""
         return int(self._shared[1]) + self.stop.unread()
 
-    def _end(self, verdict: ComponentFailed) -> NoReturn:
+    def _write_down(self, verdict: ComponentFailed) -> None:
         self.report(verdict, int(self._shared[2]), float(self._shared[3]))
         sys.stdout.flush()
         sys.stderr.flush()
+
+    def _end(self, verdict: ComponentFailed) -> NoReturn:
+        self._write_down(verdict)
         os.kill(self._run, FAIL)
         limit = time.monotonic() + ENDED
         while os.getppid() == self._run and time.monotonic() < limit:
