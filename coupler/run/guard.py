@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
+import psutil
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch import stack
@@ -37,6 +38,7 @@ from quintet.interfaces.serving.process import STACK_SIGNAL
 LOOKING = 0.2  # s between two looks
 SILENT = 1.0  # s without a look of its watchdog, after which a run is watched from here
 ENDED = 1.0  # s for the run to end by itself
+STILL = (psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP)
 CELLS = 4  # numbers that are kept of the run, and of every component
 # Its number is the exit status of a run that failed: the C library's _exit, as its handler, ends
 # the process with it.
@@ -135,13 +137,13 @@ class Guard:
             os._exit(0)
 
     def _watch(self) -> None:
-        watchdog, own = Watchdog(self.stop, own=True, acts=self._is_silent), Watch("", self._run)
+        watchdog = Watchdog(self.stop, own=True, acts=self._is_silent)
         watched = [self._watched(name) for name in self.patience]
         last = time.monotonic()
         while os.getppid() == self._run:
             time.sleep(LOOKING)
             passed, last = min(time.monotonic() - last, LONGEST_LOOK), time.monotonic()
-            if own.stopped():
+            if self._stands_still():
                 continue
             for one in watched:
                 self._read(one.participant)
@@ -176,6 +178,13 @@ class Guard:
 
     def _is_silent(self) -> bool:
         return time.monotonic() - float(self._shared[0]) > SILENT
+
+    def _stands_still(self) -> bool:
+        """Whether the run was stopped, by a user or a debugger."""
+        try:
+            return psutil.Process(self._run).status() in STILL
+        except psutil.Error:
+            return False
 
     def _signals(self) -> int:
         """Signals that asked for the end, read by the run or not."""
