@@ -4,10 +4,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from quintet.components.fe_plate.kernels.blocks import LANES, TEMPERATURE
 from quintet.components.fe_plate.kernels.geometry import write_volumes
-from quintet.components.fe_plate.mesh import Mesh, faces_in, incident, inside, mesh
+from quintet.components.fe_plate.meshes.mesh import Mesh, faces_in, incident, inside, mesh
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.state import Array, Model, State, Whole, state_at_rest
+from quintet.components.fe_plate.state import (
+    Array,
+    Model,
+    Places,
+    State,
+    Whole,
+    state_at_rest,
+)
 from quintet.components.shared.materials.params import material
 from quintet.components.shared.materials.solid import Solid, solid
 from quintet.interfaces.errors import SceneError
@@ -20,8 +28,10 @@ class Structure(NamedTuple):
 
     mesh: Mesh
     model: Model
+    places: Places  # of the elements' points
     laws: list[Solid]  # of the parts
-    first: list[int]  # element of each part, and the end of all
+    first: list[int]  # block of each part, and the end of all
+    volume: Array  # (e,) m3
     mass: Array  # (n,) kg, without what hangs on the nodes
     coupled: Whole  # (f,) numbers of the outer faces that partners see
     pressed: list[Whole]  # for each pressure the outer faces that it acts on
@@ -31,13 +41,13 @@ def structure(params: FePlateParams) -> Structure:
     """Build a structure."""
     made = mesh(params.parts)
     laws = [solid(material(part.material)) for part in params.parts]
-    counts = [part.count for part in params.parts]
     volume = np.empty(len(made.corner))
-    write_volumes(made.node, made.corner, volume)
+    write_volumes(made.node, made.corner, 0.0, volume)
     density = np.array([law.density for law in laws])[made.part]
     nodes = len(made.node)
     share = np.repeat(density * volume / 8.0, 8)
     mass = np.bincount(made.corner.ravel(), share, nodes).astype(np.float64)
+    place, element, first = in_blocks(made.part, len(laws))
     begin, at = incident(made.corner, nodes)
     walls = np.zeros((len(params.rigid_walls), 4))
     for row, wall in zip(walls, params.rigid_walls, strict=True):
@@ -57,26 +67,42 @@ def structure(params: FePlateParams) -> Structure:
     for number, faces in enumerate(pressed):
         _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
     model = Model(
-        corner=made.corner,
-        volume=volume,
+        corner=made.corner[element],
+        volume=volume[element],
+        depth=0.0,
         inverse_mass=1.0 / mass,
         free=free,
         begin=begin,
-        at=at,
+        at=8 * place[at // 8] + at % 8,
         gravity=np.array(params.gravity),
         walls=walls,
     )
-    return Structure(made, model, laws, [0, *np.cumsum(counts).tolist()], mass, coupled, pressed)
+    places = Places(place[:, None])
+    return Structure(made, model, places, laws, first, volume, mass, coupled, pressed)
+
+
+def in_blocks(part: Whole, parts: int) -> tuple[Whole, Whole, list[int]]:
+    """Place of each element, element at each place, and first block of each part.
+
+    Parts begin with a block; places beyond their last element repeat it.
+    """
+    place, element, first = [], [], [0]
+    for k in range(parts):
+        mine = np.flatnonzero(part == k)
+        blocks = -(-len(mine) // LANES)
+        place.append(first[-1] * LANES + np.arange(len(mine)))
+        element.append(np.pad(mine, (0, blocks * LANES - len(mine)), mode="edge"))
+        first.append(first[-1] + blocks)
+    return np.concatenate(place), np.concatenate(element), first
 
 
 def initial_state(params: FePlateParams, built: Structure) -> State:
     """Temperatures and velocities that the parts have at the start; nothing is strained."""
-    model, first = built.model, built.first
-    made = state_at_rest(built.mesh.node, len(model.corner), len(model.walls))
+    model, first, node = built.model, built.first, built.mesh.node
+    made = state_at_rest(node, first[-1], len(model.corner), len(model.walls))
     for k, part in enumerate(params.parts):
-        mine = slice(first[k], first[k + 1])
-        made.temperature[mine] = built.laws[k].temperature
-        made.velocity[np.unique(model.corner[mine])] = part.velocity
+        made.points[first[k] : first[k + 1], TEMPERATURE] = built.laws[k].temperature
+        made.velocity[np.unique(built.mesh.corner[built.mesh.part == k])] = part.velocity
     made.velocity[:] *= model.free
     made.mean_velocity[:] = made.velocity
     return made

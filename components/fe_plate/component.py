@@ -6,13 +6,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from quintet.components.fe_plate.build import initial_state, structure
+from quintet.components.fe_plate.gauges import (
+    at_nodes,
+    in_elements,
+    measured,
+    of_parts,
+    wanted_of,
+)
+from quintet.components.fe_plate.kernels.blocks import ENERGY
 from quintet.components.fe_plate.kernels.elements import step_elements
+from quintet.components.fe_plate.kernels.material import HUGE
 from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
 from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.plan import plan
 from quintet.components.fe_plate.ports import SHOWS, ports
-from quintet.components.fe_plate.state import Array, Resistance
+from quintet.components.fe_plate.state import Array, Resistance, Whole
 from quintet.components.fe_plate.view import view
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -26,7 +35,8 @@ from quintet.interfaces.component import (
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.manifest import Plan, Ports
 
-FEWEST = 2048  # elements that are worth handing to another thread
+FEWEST = 128  # blocks that are worth handing to another thread
+SQUASHED = 4.0  # least steps in which what meets a wall moves by an element
 SMALLEST = 0.02  # of an element's volume at the start: below it, it has been turned inside out
 POSITION, VELOCITY = "faces.position", "faces.velocity"
 MEAN_VELOCITY, ACTIVE = "node_glue.velocity", "face_activity.active"
@@ -71,6 +81,11 @@ class FePlate(Component):
         built = structure(params)
         self.mesh, self.model, self.mass = built.mesh, built.model, built.mass
         self.laws, self.first, self.pressed = built.laws, built.first, built.pressed
+        self.places, self.volume = built.places, built.volume
+        self.element_mass = (
+            built.volume * np.array([one.density for one in self.laws])[self.mesh.part]
+        )
+        self.measured = measured(self.mesh, params.gauges)
         self.faces = self.mesh.side[built.coupled]  # (f, 4) nodes
         self.owner = self.mesh.owner[built.coupled]  # (f,) elements
         self.surface, self.corner = np.unique(self.faces, return_inverse=True)  # nodes, faces' own
@@ -82,9 +97,17 @@ class FePlate(Component):
             params.stiffness_damping,
         )
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
+        self.hung = np.zeros(len(self.surface))  # kg, mass that hangs on the nodes
+        self.glued = False  # whether particles hang on it
         self.accumulated = Accumulated()
         self.team = Team(resources.threads, FEWEST)
+        self.shortest = self._shortest()  # m
         self.bound = self._write_forces(0.0)  # s
+
+    def _shortest(self) -> float:
+        """Least edge [m] of cubes as large as the elements."""
+        edge = self.volume.min() ** (1.0 / 3.0)
+        return float(edge)
 
     def describe(self) -> Fields:
         """State where the nodes of the surface are, and the corners of its faces."""
@@ -100,36 +123,69 @@ class FePlate(Component):
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Let mass hang on the nodes."""
-        added = static.get("node_load.added_mass")
-        if added is not None:
-            mass = self.mass.copy()
-            mass[self.surface] += added
-            self.model.inverse_mass[:] = 1.0 / mass
+        self.glued = "node_glue" in joined
+        if "node_load.added_mass" in static:
+            self._hang(static["node_load.added_mass"])
+
+    def _hang(self, mass: Array) -> None:
+        """Let a mass (nodes of the surface,) kg hang on the nodes, in the place of what did.
+
+        What is let go goes on with the mean velocity of the last step, as its nodes gave it out.
+        """
+        rows, before = self.surface, self.mass[self.surface] + self.hung
+        whole = self.mass[rows] + mass
+        mean = self.state.mean_velocity[rows]
+        rest = (before / whole)[:, None] * (self.state.velocity[rows] - mean)
+        changed = whole != before
+        self.state.velocity[rows[changed]] = (mean + rest)[changed]
+        self.model.inverse_mass[rows] = 1.0 / whole
+        self.hung = np.array(mass)
 
     def stable_dt(self) -> float:
         """Return a share of the proven bound."""
         return self.params.courant * self.bound
 
     def take(self, fields: Fields) -> None:
-        """Set the forces [N] on the surface's nodes; without them there are none."""
+        """Set the forces [N] on the surface's nodes, without them none; and what hangs on them."""
         force = fields.get("node_load.force")
         self.loads[:] = 0.0 if force is None else force
+        added = fields.get("node_mass.added")
+        if added is not None and not np.array_equal(added, self.hung):
+            self._hang(added)
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         self._write_loads()
+        early = self._hasten(dt) if self.glued else 0.0
         done = kick_and_drift(self.model, self.state, dt, self.params.mass_damping)
         self.accumulated.time += dt
         self.accumulated.work += done
         self.bound = self._write_forces(dt)
+        if self.glued:
+            self.state.velocity[self.surface] -= early
+
+    def _hasten(self, dt: float) -> Array:
+        """Let the loads of partners act in the step's first half; return what is to be taken back.
+
+        Forces of glued particles are those where a step begins: felt half a step late they would
+        feed energy in.
+        """
+        rows = self.surface
+        push = 0.5 * dt * self.model.inverse_mass[rows, None] * self.loads * self.model.free[rows]
+        self.state.velocity[rows] += push
+        return np.asarray(push)
 
     def _write_loads(self) -> None:
         load, time = self.state.load, self.accumulated.time
         load[:] = 0.0
         load[self.surface] = self.loads
         for one, faces in zip(self.params.pressures, self.pressed, strict=True):
-            if one.begin <= time < (math.inf if one.end is None else one.end):
-                add_pressure(self.mesh, self.state, faces, one.pressure)
+            if pressure := one.at(time):
+                add_pressure(self.mesh, self.state, self._is_left(faces), pressure)
+
+    def _is_left(self, faces: Whole) -> Whole:
+        """Those of some outer faces whose elements are not eroded."""
+        return faces[self.places.active(self.state)[self.mesh.owner[faces]] > 0.0]
 
     def _write_forces(self, dt: float) -> float:
         """Advance the elements by a step and the nodes' velocities by half; return the bound."""
@@ -141,22 +197,26 @@ class FePlate(Component):
             bound = min(bound, *(one[0] for one in found))
             least, worst = min((one[1], one[2]) for one in found)
             if not least > SMALLEST:
-                raise self._failure(
-                    f"element {worst} of {least:.3g} of its volume", worst, "it is inside out"
-                )
-        squares = kick(self.model, self.state, dt, self.params.mass_damping)
+                raise self._inside_out(worst, least)
+        ahead = 2.0 * min(bound, 1.0)  # s
+        squares, closing = kick(self.model, self.state, dt, self.params.mass_damping, ahead)
         if not math.isfinite(squares):
             node = int(np.argmin(np.isfinite(self.state.velocity).all(axis=1)))
             raise StepError(
                 f"node {node} at {self.mesh.node[node]} m: its velocity is not finite, at "
                 f"{self.accumulated.time:g} s. Take a smaller courant."
             )
-        return bound
+        if bound >= HUGE:  # nothing is left
+            return math.inf
+        # What meets a wall is squashed by what it moves in a step: a small share of an element.
+        return bound / (1.0 + SQUASHED * closing * bound / self.shortest)
 
-    def _failure(self, what: str, element: int, why: str) -> StepError:
-        middle = self.mesh.node[self.model.corner[element]].mean(axis=0)
+    def _inside_out(self, place: int, ratio: float) -> StepError:
+        element = int(np.flatnonzero((self.places.point == place).any(axis=1))[0])
+        middle = self.mesh.node[self.mesh.corner[element]].mean(axis=0)
         return StepError(
-            f"{what}, at {np.array2string(middle, precision=4)} m at the start: {why}, at "
+            f"element {element} of {ratio:.3g} of its volume, at "
+            f"{np.array2string(middle, precision=4)} m at the start: it is inside out, at "
             f"{self.accumulated.time:g} s. Let it erode by failure_strain, or refine the mesh."
         )
 
@@ -171,44 +231,61 @@ class FePlate(Component):
             if key in wanted:
                 given[key] = array[self.surface]
         if ACTIVE in wanted:
-            given[ACTIVE] = self.state.active[self.owner]
-        return given
+            given[ACTIVE] = self.places.active(self.state)[self.owner]
+        return given | {key: one for key, one in self._measure(wanted).items() if key in wanted}
+
+    def _measure(self, wanted: Keys) -> Fields:
+        """Gauges that any partner, expectation or output asks for."""
+        found: dict[str, Array] = {}
+        if wanted_of("node_gauge", wanted):
+            found |= at_nodes(self.state, self.measured.node)
+        if wanted_of("element_gauge", wanted):
+            found |= in_elements(self.places, self.state, self.measured.element)
+        if wanted_of("part_gauge", wanted):
+            found |= of_parts(self.mesh, self.places, self.state, self.element_mass)
+        return found
 
     def save(self) -> Fields:
         """Copy out all state."""
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         total = self.accumulated
         kept["accumulated"] = np.array([total.time, total.work, self.bound])
-        return kept | {"loads": self.loads.copy()}
+        return kept | {"loads": self.loads.copy(), "hung": self.hung.copy()}
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
         for name, array in self.state._asdict().items():
             array[:] = state[name]
-        self.loads[:] = state["loads"]
+        self.loads[:], self.hung = state["loads"], np.array(state["hung"])
+        self.model.inverse_mass[self.surface] = 1.0 / (self.mass[self.surface] + self.hung)
         time, work, self.bound = state["accumulated"].tolist()
         self.accumulated = Accumulated(time, work)
 
     def totals(self) -> Totals:
-        """Mass, momentum and energies; internal is strain, plastic work and stabilisation."""
-        s, momentum = self.state, self.mass[:, None] * self.state.velocity
-        mass = self.model.volume * np.array([law.density for law in self.laws])[self.mesh.part]
+        """Mass, momentum and energies, with what hangs on the nodes.
+
+        Internal is strain, plastic work and stabilisation.
+        """
+        s, whole = self.state, self.mass.copy()
+        whole[self.surface] += self.hung
+        momentum = whole[:, None] * s.velocity
+        energy = self.element_mass @ self.places.of(s, ENERGY) + self.places.spring_energy(s)
         return Totals(
-            mass=float(self.mass.sum()),
+            mass=float(whole.sum()),
             momentum=momentum.sum(axis=0),
             angular_momentum=np.cross(s.position, momentum).sum(axis=0),
             kinetic=0.5 * float((momentum * s.velocity).sum()),
-            potential=-float(self.mass @ (s.position @ self.model.gravity)),
-            internal=float((mass * s.energy).sum() + s.hourglass_energy.sum()),
+            potential=-float(whole @ (s.position @ self.model.gravity)),
+            internal=float(energy),
         )
 
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""
-        return view(self.mesh, self.state)
+        return view(self.mesh, self.places, self.state)
 
     def items(self) -> int:
         """Count the elements."""
-        return len(self.model.corner)
+        return len(self.mesh.corner)
 
 
 def _shifted(begin: int, end: int, first: int, *arguments: object) -> tuple[float, float, int]:

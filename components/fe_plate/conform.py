@@ -44,7 +44,7 @@ def _case(
         name,
         params,
         static={"node_load.added_mass": np.zeros(nodes)},
-        rest={"node_load.force": np.zeros((nodes, 3))},
+        rest={"node_load.force": np.zeros((nodes, 3)), "node_mass.added": np.zeros(nodes)},
         scale={"node_load.force": 100.0},
         dt=STEP,
         forces=forces,

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from quintet.components.fe_plate.mesh import Mesh
+from quintet.components.fe_plate.meshes.mesh import Mesh
 from quintet.components.fe_plate.state import State, Whole
 
 
 def add_pressure(mesh: Mesh, state: State, faces: Whole, pressure: float) -> None:
-    """Add the load of a pressure on outer faces that are left, a quarter of each to its corners.
+    """Add the load of a pressure on outer faces, a quarter of each to its corners.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ def add_pressure(mesh: Mesh, state: State, faces: Whole, pressure: float) -> Non
     pressure : float, Pa
         Along their normals as they are now; positive pushes.
     """
-    side = mesh.side[faces[state.active[mesh.owner[faces]] > 0.0]]
+    side = mesh.side[faces]
     a, b, c, d = np.moveaxis(state.position[side], 1, 0)
     area = 0.5 * np.cross(c - a, d - b)  # (f, 3) m2, outwards
     np.add.at(state.load, side, -0.25 * pressure * area[:, None, :])

@@ -1,11 +1,9 @@
 """What a scene says about a structure of finite elements."""
 
 import math
-from typing import Literal
 
-from quintet.components.shared.materials.params import Material, MaterialName, material
+from quintet.components.fe_plate.meshes.params import Direction, Part
 from quintet.interfaces.params import (
-    Count,
     Fraction,
     NotNegative,
     Number,
@@ -13,52 +11,6 @@ from quintet.interfaces.params import (
     Vector,
     parameters,
 )
-
-Direction = Literal["x", "y", "z"]
-
-
-@parameters
-class Part:
-    """A box of equal elements.
-
-    Parameters
-    ----------
-    lowest, highest : m
-        Its corners.
-    elements : 1
-        How many along x, y and z.
-    material
-        Name of a material of the library, or its table.
-    velocity : m/s
-        At the start.
-    """
-
-    lowest: Vector
-    highest: Vector
-    elements: tuple[Count, Count, Count]
-    material: MaterialName | Material
-    velocity: Vector = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
-            raise ValueError(
-                f"part: highest must be beyond lowest along every axis; found {self.lowest} and "
-                f"{self.highest} m."
-            )
-
-    @property
-    def count(self) -> int:
-        """Number of its elements."""
-        return math.prod(self.elements)
-
-    @property
-    def expected_step(self) -> float:
-        """Step [s] that its shortest edge bears."""
-        made = material(self.material)
-        sides = zip(self.lowest, self.highest, self.elements, strict=True)
-        bound = sum(((n / (b - a)) ** 2 for a, b, n in sides), 0.0)
-        speed = math.sqrt((made.bulk + 4.0 / 3.0 * made.shear) / made.density)
-        return 1.0 / (speed * math.sqrt(bound))
 
 
 @parameters
@@ -104,12 +56,29 @@ class Pressure:
         Positive pushes.
     begin, end : s
         When it acts; to the end of the run without `end`.
+    pulse
+        Whether it grows from nothing and vanishes again between these, as sin².
     """
 
     faces: Faces
     pressure: Number
     begin: NotNegative = 0.0
     end: Positive | None = None
+    pulse: bool = False
+
+    def __post_init__(self) -> None:
+        if self.pulse and self.end is None:
+            raise ValueError("pressures: a pulse must have an end; found none. Say it.")
+
+    def at(self, time: float) -> float:
+        """Pressure [Pa] at a time [s]."""
+        if not self.begin <= time < (math.inf if self.end is None else self.end):
+            return 0.0
+        if not self.pulse or self.end is None:
+            return self.pressure
+        return (
+            self.pressure * math.sin(math.pi * (time - self.begin) / (self.end - self.begin)) ** 2
+        )
 
 
 @parameters
@@ -133,6 +102,26 @@ class RigidWall:
 
 
 @parameters
+class Gauges:
+    """What is measured in a structure; each gauge is a port of its own.
+
+    Parameters
+    ----------
+    node_gauges : m
+        Points at the start: position [m] and velocity [m/s] of the node that is nearest to each.
+    element_gauges : m
+        Points at the start: stress, pressure [Pa], plastic strain, temperature [K] and damage of
+        the element whose middle is nearest to each.
+    part_gauge
+        Whether the mean velocity [m/s] and the energies [J] of each part are given.
+    """
+
+    node_gauges: tuple[Vector, ...] = ()
+    element_gauges: tuple[Vector, ...] = ()
+    part_gauge: bool = False
+
+
+@parameters
 class FePlateParams:
     """A structure, its supports and its loads.
 
@@ -148,6 +137,8 @@ class FePlateParams:
         On outer faces.
     rigid_walls
         Planes that nodes do not pass.
+    gauges
+        What is measured.
     gravity : m/s2
         Acceleration of free fall.
     courant : 1
@@ -167,6 +158,7 @@ class FePlateParams:
     coupled_faces: tuple[Faces, ...] = ()
     pressures: tuple[Pressure, ...] = ()
     rigid_walls: tuple[RigidWall, ...] = ()
+    gauges: Gauges = Gauges()
     gravity: Vector = (0.0, 0.0, 0.0)
     courant: Fraction = 0.9
     hourglass: NotNegative = 0.05

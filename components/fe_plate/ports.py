@@ -1,27 +1,49 @@
 """What the structure takes and gives: loads at nodes of its surface; the motion of its faces."""
 
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.interfaces.component import Field
+from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
+    ACTIVE,
     FACE_ACTIVITY,
     FACES,
     NODE_GLUE,
     NODE_LOAD,
+    NODE_MASS,
     TEMPERATURE,
     VELOCITY,
 )
 
+POSITION = Field("position", (3,), "m")
+PRESSURE = Field("pressure", (), "Pa")
+VON_MISES = Field("von_mises", (), "Pa")
+PLASTIC_STRAIN = Field("plastic_strain", (), "1")
+DAMAGE = Field("damage", (), "1")
+DISPLACEMENT = Field("displacement", (3,), "m")  # from where nodes were at the start
+NODE_GAUGE = Port("node_gauge", (POSITION, VELOCITY))
+ELEMENT_GAUGE = Port(
+    "element_gauge", (VON_MISES, PRESSURE, PLASTIC_STRAIN, TEMPERATURE, DAMAGE, ACTIVE)
+)
+PART_GAUGE = Port(
+    "part_gauge",
+    (
+        VELOCITY,  # momentum over mass
+        Field("kinetic", (), "J"),
+        Field("internal", (), "J"),  # strain, plastic work, stabilisation
+        Field("eroded", (), "J"),  # of it that of eroded elements
+    ),
+)
 # Of the view, at the corners of outer faces: means of the elements that meet there.
-SHOWS = (
-    Field("von_mises", (), "Pa"),
-    VELOCITY,
-    Field("pressure", (), "Pa"),
-    Field("plastic_strain", (), "1"),
-    TEMPERATURE,
-)
+SHOWS = (VON_MISES, VELOCITY, PRESSURE, PLASTIC_STRAIN, TEMPERATURE, DAMAGE, DISPLACEMENT)
 
 
-def ports(_: FePlateParams) -> Ports:
+def ports(params: FePlateParams) -> Ports:
     """Ports taken and given."""
-    return (NODE_LOAD,), (FACES, NODE_GLUE, FACE_ACTIVITY)
+    gauges = params.gauges
+    switched = (
+        (NODE_GAUGE, bool(gauges.node_gauges)),
+        (ELEMENT_GAUGE, bool(gauges.element_gauges)),
+        (PART_GAUGE, gauges.part_gauge),
+    )
+    measured = tuple(port for port, on in switched if on)
+    return (NODE_LOAD, NODE_MASS), (FACES, NODE_GLUE, FACE_ACTIVITY, *measured)

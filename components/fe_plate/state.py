@@ -5,15 +5,28 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.fe_plate.kernels.blocks import (
+    ACTIVE,
+    LANES,
+    POINT_ROWS,
+    SPRING_ENERGY,
+    SPRING_ROWS,
+)
+
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 
 class Model(NamedTuple):
-    """What never changes; n nodes, e elements, with rows of elements padded to whole blocks."""
+    """What never changes; n nodes, e elements, b blocks of points.
 
-    corner: Whole  # (e, 8) nodes
-    volume: Array  # (e,) m3, at the start
+    Each part's elements fill whole blocks: places that are left over repeat its last element and
+    load no node.
+    """
+
+    corner: Whole  # (places, 8) nodes
+    volume: Array  # (b LANES,) m3, of points at the start
+    depth: float  # m, along y, of elements in a plane; 0 of solids
     inverse_mass: Array  # (n,) 1/kg, with what hangs on the nodes
     free: Array  # (n, 3) 1 or 0: whether a node moves along an axis
     begin: Whole  # (n + 1,) corners at node i: at[begin[i]] ... at[begin[i + 1] - 1]
@@ -32,44 +45,54 @@ class Resistance(NamedTuple):
 
 
 class State(NamedTuple):
-    """What moves. Of elements one number stands beside the next element's, for vectors."""
+    """What moves. Rows of points and springs, and their units, stand in `kernels.blocks`."""
 
     position: Array  # (n, 3) m
     velocity: Array  # (n, 3) m/s
     mean_velocity: Array  # (n, 3) m/s, displacement of the last step over it
     internal: Array  # (n, 3) N, force of the elements on the nodes
     load: Array  # (n, 3) N, from outside
-    deviator: Array  # (6, e) Pa, xx yy zz xy yz zx
-    pressure: Array  # (e,) Pa
-    viscous: Array  # (e,) Pa, of the bulk viscosity
-    energy: Array  # (e,) J/kg
-    strain: Array  # (e,) plastic
-    temperature: Array  # (e,) K
-    damage: Array  # (e,)
-    active: Array  # (e,) 1, 0 once it is eroded
-    hourglass: Array  # (12, e) N, of four patterns along three axes
-    hourglass_energy: Array  # (e,) J
-    corner_force: Array  # (e, 8, 3) N, of elements on their corners
+    points: Array  # (b, POINT_ROWS, LANES), stresses and all that belongs to the material
+    springs: Array  # (b, SPRING_ROWS, LANES), of the hourglass patterns
+    corner_force: Array  # (places, 8, 3) N, of elements on their corners
     wall_impulse: Array  # (w,) N s, on each rigid wall so far
 
 
-def state_at_rest(nodes: Array, elements: int, walls: int) -> State:
+def state_at_rest(nodes: Array, blocks: int, places: int, walls: int) -> State:
     """State at rest at nodes (n, 3) m."""
     still = np.zeros_like(nodes)
-    numbers = {name: np.zeros(elements) for name in ("pressure", "viscous", "energy", "strain")}
+    points = np.zeros((blocks, POINT_ROWS, LANES))
+    points[:, ACTIVE] = 1.0
     return State(
         position=nodes.copy(),
         velocity=still.copy(),
         mean_velocity=still.copy(),
         internal=still.copy(),
         load=still.copy(),
-        deviator=np.zeros((6, elements)),
-        **numbers,
-        temperature=np.zeros(elements),
-        damage=np.zeros(elements),
-        active=np.ones(elements),
-        hourglass=np.zeros((12, elements)),
-        hourglass_energy=np.zeros(elements),
-        corner_force=np.zeros((elements, 8, 3)),
+        points=points,
+        springs=np.zeros((blocks, SPRING_ROWS, LANES)),
+        corner_force=np.zeros((places, 8, 3)),
         wall_impulse=np.zeros(walls),
     )
+
+
+class Places(NamedTuple):
+    """Where each element's points stand among all points."""
+
+    point: Whole  # (e, q), of each of its q points
+
+    def of(self, state: State, row: int) -> Array:
+        """Mean of a row over the points of each element (e,)."""
+        return np.asarray(state.points[:, row].ravel()[self.point].mean(axis=1))
+
+    def rows(self, state: State, first: int, count: int) -> Array:
+        """Means of some rows over the points of each element (count, e)."""
+        return np.stack([self.of(state, first + k) for k in range(count)])
+
+    def active(self, state: State) -> Array:
+        """1 of each element that is left, 0 of an eroded one (e,): any of its points failed."""
+        return np.asarray(state.points[:, ACTIVE].ravel()[self.point].min(axis=1))
+
+    def spring_energy(self, state: State) -> float:
+        """Energy [J] of the springs of all elements."""
+        return float(state.springs[:, SPRING_ENERGY].ravel()[self.point[:, 0]].sum())

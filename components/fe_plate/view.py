@@ -2,21 +2,28 @@
 
 import numpy as np
 
-from quintet.components.fe_plate.mesh import Mesh, outer_sides
-from quintet.components.fe_plate.state import Array, State
+from quintet.components.fe_plate.kernels.blocks import (
+    DAMAGE,
+    DEVIATOR,
+    PRESSURE,
+    STRAIN,
+    TEMPERATURE,
+)
+from quintet.components.fe_plate.meshes.mesh import Mesh, outer_sides
+from quintet.components.fe_plate.state import Array, Places, State
 from quintet.interfaces.component import Fields
 
 
-def von_mises(state: State) -> Array:
-    """Equivalent stress (e,) Pa of the elements."""
-    xx, yy, zz, xy, yz, zx = state.deviator
+def von_mises(places: Places, state: State) -> Array:
+    """Equivalent stress (e,) Pa of the elements' mean deviators."""
+    xx, yy, zz, xy, yz, zx = places.rows(state, DEVIATOR, 6)
     squares = 1.5 * (xx * xx + yy * yy + zz * zz) + 3.0 * (xy * xy + yz * yz + zx * zx)
     return np.asarray(np.sqrt(squares))
 
 
-def view(mesh: Mesh, state: State) -> Fields:
+def view(mesh: Mesh, places: Places, state: State) -> Fields:
     """Corners of the outer faces of what is left, and means of the elements at each."""
-    live = np.flatnonzero(state.active)
+    live = np.flatnonzero(places.active(state))
     side, _ = outer_sides(mesh.corner[live])
     node, cells = np.unique(side, return_inverse=True)
     corner = mesh.corner[live].ravel()
@@ -31,8 +38,10 @@ def view(mesh: Mesh, state: State) -> Fields:
         "points": state.position[node],
         "cells": cells.reshape(-1, 4),
         "velocity": state.velocity[node],
-        "von_mises": mean(von_mises(state)),
-        "pressure": mean(state.pressure),
-        "plastic_strain": mean(state.strain),
-        "temperature": mean(state.temperature),
+        "von_mises": mean(von_mises(places, state)),
+        "pressure": mean(places.of(state, PRESSURE)),
+        "plastic_strain": mean(places.of(state, STRAIN)),
+        "temperature": mean(places.of(state, TEMPERATURE)),
+        "damage": mean(places.of(state, DAMAGE)),
+        "displacement": state.position[node] - mesh.node[node],
     }

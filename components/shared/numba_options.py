@@ -14,3 +14,5 @@ EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
 FAST = EXACT | {"fastmath": True}
 # Of functions that only other kernels call: without the code for calls from Python and C.
 INNER = EXACT | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+# Of laws that loops over lanes call: always part of the loop, so that vectors are made of it.
+LANEWISE = INNER | {"forceinline": True}

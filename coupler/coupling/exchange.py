@@ -13,6 +13,7 @@ import numpy as np
 from quintet.interfaces.component import Array, Field, Fields, Port, fields_of
 from quintet.interfaces.errors import LinkError
 
+MASS = "kg"  # unit of instants that add up, as impulses do
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
 Works = list[tuple[str, str, str]]  # force, velocity, position or "": all of one component
 Ends = Mapping[str, Fields]  # outputs of both components of a transfer at one end of a window
@@ -378,7 +379,7 @@ class Exchange:
             return whole
         if len(parts) == 1:
             return parts[0].after[key]
-        if not self.is_impulse(taker, key):
+        if not self.is_impulse(taker, key) and self.unit(taker, key) != MASS:
             raise LinkError(
                 f"{taker}.{key}: only forces of several links can be added up; this is a value. "
                 f"Join {taker}.{key.partition('.')[0]} once."

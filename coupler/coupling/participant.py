@@ -50,16 +50,21 @@ class Timing:
 class Waiting:
     """A time in which the coupler waits for a component, for who watches it meanwhile."""
 
-    __slots__ = ("since",)
+    __slots__ = ("note", "since")
 
     def __init__(self) -> None:
         self.since = 0.0  # s of the monotonic clock; 0 while nobody waits
+        self.note: Callable[[float], None] | None = None  # who else is told
 
     def __enter__(self) -> None:
         self.since = time.monotonic()
+        if self.note:
+            self.note(self.since)
 
     def __exit__(self, *_: object) -> None:
         self.since = 0.0
+        if self.note:
+            self.note(0.0)
 
 
 class Participant:

@@ -11,7 +11,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -40,6 +40,16 @@ class Request(Protocol):
     @property
     def leave(self) -> Callable[[], None] | None:
         """Ends this process, with all that is left to do; None where it may not be ended."""
+
+
+class Guard(Protocol):
+    """Watches in this watchdog's place when no Python runs in its process."""
+
+    def follow(self, participant: Participant) -> None:
+        """Note when the coupler waits for a component."""
+
+    def look(self, participants: Iterable[Participant]) -> None:
+        """Note that this watchdog looks."""
 
 
 @dataclass(slots=True)
@@ -76,10 +86,14 @@ class Watchdog:
         Asks for the end of the run.
     own : bool
         Whether components run in the main thread of this process.
+    acts : function
+        Whether it is this watchdog's turn to tell and to end.
     """
 
     stop: Request
     own: bool = False
+    acts: Callable[[], bool] = lambda: True
+    guard: Guard | None = None
     verdict: BaseException | None = None  # why the run is to end
     _all: dict[str, Watched] = field(default_factory=dict)
     _asked_at: float = 0.0
@@ -94,6 +108,8 @@ class Watchdog:
         one = self._all[participant.name] = Watched(participant, watch, patience)
         participant.verdict = lambda: self.verdict
         participant.line.watch = lambda: self.check(one)
+        if self.guard:
+            self.guard.follow(participant)
         if self._thread is None:
             self._last = time.monotonic()
             self._thread = threading.Thread(target=self._run, name="watchdog", daemon=True)
@@ -127,13 +143,15 @@ class Watchdog:
         while not self._closed.wait(LOOKING):
             now = time.monotonic()
             passed, self._last = min(now - self._last, LONGEST_LOOK), now
+            if self.guard:
+                self.guard.look([one.participant for one in list(self._all.values())])
             if self.verdict:
                 self._enforce(now)
                 continue
             self._look_for_stop(now)
             for one in list(self._all.values()):
                 self._look_for_death(one, now)
-                self._look_for_wait(one, passed)
+                self.look_for_wait(one, passed)
 
     def _look_for_stop(self, now: float) -> None:
         if not self.stop():
@@ -155,25 +173,27 @@ class Watchdog:
         one.dead_since = one.dead_since or now
         if now - one.dead_since > DEAD:
             joined = "" if one.participant.order else "did not join: "
-            self._judge(self._failed(one, joined + one.watch.ending()))
+            self.fail(one, joined + one.watch.ending())
 
-    def _look_for_wait(self, one: Watched, passed: float) -> None:
+    def look_for_wait(self, one: Watched, passed: float) -> None:
+        """Tell of a component that keeps the others waiting; end it if that takes too long."""
         participant, watch = one.participant, one.watch
         since = participant.keeping_others_waiting.since
         if since != one.since:
             if one.told:
                 say(f"{participant.name} goes on after {one.waited:.1f} s")
             one.begin(since)
+            passed = min(passed, time.monotonic() - since)
         if not since:
             return
         one.waited += passed
         if not self.own and watch.stopped():
             watch.activity = "stopped"
-            self._judge(self._failed(one, f"stopped responding: {watch.described()}"))
+            self.fail(one, f"stopped responding: {watch.described()}")
             return
         if one.waited > 0.2 * one.tell_at:
             watch.read()
-        if one.waited > min(one.tell_at, one.end_at):
+        if one.waited > min(one.tell_at, one.end_at) and self.acts():
             self._tell_or_end(one)
 
     def _tell_or_end(self, one: Watched) -> None:
@@ -191,15 +211,17 @@ class Watchdog:
         if over and participant.built and not stack.compiles(calls):
             at = f", at {where[0].removeprefix('  File ')}" if where else ""
             cause = f"stopped responding: kept the others waiting {what}{usual}; {doing}{at}"
-            self._judge(self._failed(one, cause, calls))
+            self.fail(one, cause, calls)
             return
         if over:
             one.end_at += one.patience
         one.told, one.tell_at = True, 2.0 * one.waited
         say(f"{participant.name} keeps the others waiting {what}{usual}: {doing}", where)
 
-    def _failed(self, one: Watched, cause: str, calls: str = "") -> ComponentFailed:
-        return ComponentFailed(one.participant.name, one.participant.window, cause, calls)
+    def fail(self, one: Watched, cause: str, calls: str = "") -> None:
+        """Decide that the run ends, as a component has failed."""
+        participant = one.participant
+        self._judge(ComponentFailed(participant.name, participant.window, cause, calls))
 
     def _judge(self, verdict: BaseException) -> None:
         """Decide that the run ends."""

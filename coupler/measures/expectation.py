@@ -19,12 +19,14 @@ from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters, shown, unknown
-from quintet.interfaces.units import same
+from quintet.interfaces.units import INTEGRATED, same
 
 if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for it
     from quintet.coupler.files.recording import Recording
 
-Measure = Literal["rms", "relative_rms", "crossing", "at", "max", "min", "mean", "period", "decay"]
+Measure = Literal[
+    "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay"
+]  # fmt: skip
 DISTANCES = ("rms", "relative_rms")  # to a curve
 Index = Annotated[int, pydantic.Field(ge=0)]
 MEASURED_IN = {"crossing": "s", "period": "s", "decay": "1/s", "relative_rms": "1"}
@@ -38,8 +40,8 @@ class Expectation:
     ``rms`` is the distance to the curve of a file, over that curve's own times, and
     ``relative_rms`` the same over the curve's own size; ``crossing`` the first time at which a
     level is passed; ``at`` the value at ``begin``; ``period`` [s] and ``decay`` [1/s] those of the
-    damped oscillation that fits best; these and the others are taken between ``begin`` and
-    ``end``. Impulse fields are measured as mean rates.
+    damped oscillation that fits best; ``integral`` is over time; these and the others are taken
+    between ``begin`` and ``end``. Impulse fields are measured as mean rates.
 
     Parameters
     ----------
@@ -60,7 +62,8 @@ class Expectation:
     measure
         Distance to the reference curve (rms), also over that curve's own size (relative_rms); time
         at which `level` is passed first (crossing); value at the time `begin` (at); largest,
-        smallest and mean value; period and decay of the damped oscillation that fits best.
+        smallest and mean value; integral over time; period and decay of the damped oscillation
+        that fits best.
     value : `unit`
         The reference as a number; this or `csv`.
     csv
@@ -73,12 +76,21 @@ class Expectation:
         Of the part that is measured; that of the reference curve, or of the run, if not given.
     level : `unit`, after offset and scale
         That a crossing passes.
+    moving_mean : s
+        The run's curve is first averaged over so long, as a reference may have been.
+    from_level : `unit`, after offset and scale
+        Times count from where the curve first passes it, as after the arrival of a wave: in the
+        run, and in the reference.
     within : `unit`
         Tolerance; of a crossing in s.
     unit
         Of the measured value.
     source
         Where the reference is from.
+    quantity
+        What the curve is, in words, for pictures; told by its field if not given.
+    required
+        Whether a run must meet it; one that is not required is told beside the others.
     """
 
     name: str
@@ -95,9 +107,13 @@ class Expectation:
     begin: NotNegative = 0.0
     end: NotNegative | None = None
     level: Number | None = None
+    moving_mean: NotNegative = 0.0
+    from_level: Number | None = None
     within: NotNegative
     unit: str
     source: str
+    quantity: str = ""
+    required: bool = True
 
     def __post_init__(self) -> None:
         wrong = [sentence for is_wrong, sentence in self._rules() if is_wrong]
@@ -129,6 +145,10 @@ class Expectation:
                 self.end is not None and self.end <= self.begin and self.measure != "at",
                 f"end must be later than begin; found {self.end} and {self.begin}.",
             ),
+            (
+                self.from_level is not None and self.measure in ("crossing", "at"),
+                "times of a crossing, and of a value, count from the start; remove from_level.",
+            ),
             (self.field.count(".") != 1, f"field must be port.field; found {self.field!r}."),
             (self.scale == 0.0, "scale must not be 0, as every run would do; remove it."),
         ]
@@ -145,6 +165,7 @@ class Outcome:
     unit: str
     met: bool
     source: str
+    required: bool = True
 
 
 def check(
@@ -205,6 +226,8 @@ def lacking_items(
 def _check_unit(expectation: Expectation, field: Field) -> list[str]:
     """Compare the unit with that of what is measured; a scale may make any of any."""
     unit = MEASURED_IN.get(expectation.measure, field.unit if expectation.scale == 1.0 else "")
+    if expectation.measure == "integral" and unit:
+        unit = INTEGRATED.get(unit, f"{unit} s")
     if not unit or same(unit, expectation.unit):
         return []
     remedy = f"Give value and within in {unit}"
@@ -238,7 +261,17 @@ def curve(expectation: Expectation, recording: "Recording") -> Curve:
     elif values.ndim > 2:
         values = np.linalg.norm(values.reshape(*values.shape[:2], -1), axis=2)
     values = values[:, 0] if isinstance(item, int) else getattr(values, item)(axis=1)
-    return Curve(times, expectation.scale * (values + expectation.offset))
+    found = Curve(times, expectation.scale * (values + expectation.offset))
+    if expectation.moving_mean and len(times) > 1:
+        found = time_series.moving_mean(found, expectation.moving_mean)
+    return _since_level(found, expectation.from_level)
+
+
+def _since_level(curve: Curve, level: float | None) -> Curve:
+    """Count the times of a curve from where it first passes a level; nan if it never does."""
+    if level is None:
+        return curve
+    return Curve(curve.times - time_series.crossing(curve, level), curve.values)
 
 
 def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
@@ -246,7 +279,11 @@ def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
     if expectation.csv is None:
         return None
     where = f"expectation {expectation.name}: reference {expectation.csv}"
-    return time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
+    found = time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
+    found = _since_level(found, expectation.from_level)
+    if math.isnan(found.times[0]):
+        raise SceneError(f"{where} must pass from_level {expectation.from_level}; it does not.")
+    return found
 
 
 def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
@@ -264,6 +301,8 @@ def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
             return fit(part).decay
         case "mean":
             return time_series.mean(part)
+        case "integral":
+            return time_series.integral(part)
         case "max":
             return float(part.values.max())
         case _:
@@ -304,6 +343,7 @@ def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> 
         expectation.unit,
         abs(value - reference) <= expectation.within,  # not so of nan
         expectation.source,
+        expectation.required,
     )
 
 
@@ -312,6 +352,10 @@ def _value(expectation: Expectation, recording: "Recording", folder: Path) -> fl
         return math.nan
     computed = curve(expectation, recording)
     last = float(recording.times(expectation.component)[-1])  # s
+    if expectation.from_level is not None:
+        last = float(computed.times[-1])
+        if math.isnan(last):
+            return math.nan
     wanted, target = expectation.end, reference_curve(expectation, folder)
     if expectation.measure == "at":
         wanted = expectation.begin

@@ -85,6 +85,22 @@ def mean(curve: Curve) -> float:
     return float(np.trapezoid(curve.values, curve.times) / span if span else curve.values[0])
 
 
+def moving_mean(curve: Curve, span: float) -> Curve:
+    """Mean over a span [s] about every time; at the ends over what there is of it."""
+    times, values = curve
+    steps = np.diff(times) * 0.5 * (values[1:] + values[:-1])
+    total = np.concatenate([[0.0], np.cumsum(steps)])  # integral so far
+    first = np.maximum(times - 0.5 * span, times[0])
+    last = np.minimum(times + 0.5 * span, times[-1])
+    whole = np.interp(last, times, total) - np.interp(first, times, total)
+    return Curve(times, whole / (last - first))
+
+
+def integral(curve: Curve) -> float:
+    """Integral over time, by trapezia."""
+    return float(np.trapezoid(curve.values, curve.times))
+
+
 def crossing(curve: Curve, level: float) -> float:
     """First time at which a level is crossed; nan if never."""
     times, above = curve.times, curve.values - level

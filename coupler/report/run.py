@@ -131,8 +131,10 @@ class Run:
 
     @property
     def ok(self) -> bool:
-        """Whether the run is done and meets all its expectations."""
-        return self.status == "done" and all(one["met"] for one in self.expectations.values())
+        """Whether the run is done and meets all expectations that are required."""
+        return self.status == "done" and all(
+            one["met"] or not one["required"] for one in self.expectations.values()
+        )
 
     @property
     def expectations(self) -> dict[str, dict[str, Any]]:

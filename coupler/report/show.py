@@ -102,7 +102,7 @@ def _table(title: str, names: list[str], left: int, rows: list[Row]) -> Table | 
 def _expectations(found: Mapping[str, Any]) -> Table | None:
     rows = [
         [
-            _met(one.get("met")),
+            _met(one.get("met"), one.get("required", True)),
             one.get("name", "?"),
             one.get("unit", ""),
             _number(one.get("value")),
@@ -115,8 +115,11 @@ def _expectations(found: Mapping[str, Any]) -> Table | None:
     return _table("Expectations", names, 3, rows)
 
 
-def _met(met: Any) -> Text:
-    return Text("met", style="green") if met else Text("not met", style="red")
+def _met(met: Any, required: Any) -> Text:
+    text = "met" if met else "not met"
+    if not required:
+        return Text(f"{text}, not required")
+    return Text(text, style="green" if met else "red")
 
 
 def _is_more(value: Any) -> bool:

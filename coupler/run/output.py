@@ -12,6 +12,7 @@ from quintet.coupler.coupling.windows import Windows, in_ticks
 from quintet.coupler.files.recording import NAME, Instant, Recorder
 from quintet.coupler.files.run_files import view_file, walls_file
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
+from quintet.coupler.launch.watchdog import ENDING
 from quintet.coupler.measures.expectation import lacking_items
 from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport, Reading
@@ -23,7 +24,10 @@ from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import only_fields
 
 WALLS = "walls."  # what fields of walls begin with, beside those of the view
-SNAPSHOT_INTERVAL = 600.0  # s of wall time between two snapshots, where the scene gives none
+# Wall time [s] between two snapshots where the scene gives none: of windows that are over before an
+# interrupted run is ended, and of longer ones, which an interruption loses.
+SNAPSHOT_INTERVAL, OFTEN = 600.0, 60.0
+COST = 50.0  # times as long as a snapshot takes is there none after it
 
 
 class OutputWriter:
@@ -41,8 +45,10 @@ class OutputWriter:
         self.scene, self.folder, self.stop, self.first = scene, folder, stop, first
         self.logs, self.begun = logs, False
         self.on_begin: Callable[[], None] = lambda: None  # called when the first window is next
+        self.on_window: Callable[[int, float], None] = lambda *_: None  # windows done, time [s]
         self.done, self.time = first or 0, 0.0  # windows, s
         self._kept = time.monotonic()  # when the last snapshot was made
+        self._cost = 0.0  # s that it took
         self._views = 0  # ticks between two views; 0: none
         self._totals = 0  # ticks between two rows of the ledger
         self._snapshots = 0  # ticks between two snapshots; 0: by the clock
@@ -76,6 +82,7 @@ class OutputWriter:
         discard_former(self.folder)  # all checks are passed
         self.done, self._now = self._windows.done, self._windows.now
         self.time = self._began = self._windows.time
+        self.on_window(self.done, self.time)
         if self.scene.file.output.record:
             self._recorder = self._recording(coupling, described)
         if self.first is None:
@@ -111,6 +118,7 @@ class OutputWriter:
         """See `Observer.end_window`."""
         windows = self._windows
         now, self.done, self.time = windows.now, windows.done, windows.time
+        self.on_window(self.done, self.time)
         self._record(coupling)
         if self._passes(self._views, now) or self._meets_picture(now):
             self._note(coupling)
@@ -118,7 +126,7 @@ class OutputWriter:
             coupling.ledger.note(self.time, dict(coupling.ledger.totals))
         if self._progress:
             self._progress.show(self._reading(coupling))
-        late = time.monotonic() - self._kept > SNAPSHOT_INTERVAL
+        late = time.monotonic() - self._kept > self._interval(coupling)
         if self._passes(self._snapshots, now) if self._snapshots else late:
             self._keep(coupling)
         self._now = now
@@ -137,12 +145,19 @@ class OutputWriter:
         """See `Observer.ends_early`."""
         self._keep(coupling)
 
+    def _interval(self, coupling: Coupling) -> float:
+        """Wall time until the next snapshot [s]."""
+        usual = sum(one.timing.usual for one in coupling.components.values())
+        return SNAPSHOT_INTERVAL if usual < 0.5 * ENDING else max(OFTEN, COST * self._cost)
+
     def _keep(self, coupling: Coupling) -> None:
         """Make a snapshot, with all rows written that the run had until then."""
+        began = time.monotonic()
         if self._recorder:
             self._recorder.sync()
         save(coupling, self.scene, self.folder, self.logs)
         self._kept = time.monotonic()
+        self._cost = self._kept - began
 
     def wants_end(self) -> bool:
         """See `Observer.wants_end`."""

@@ -1,9 +1,12 @@
 """Signals that end a run: SIGINT, SIGTERM, SIGHUP, and the end of the process that started it."""
 
+import array
 import contextlib
+import fcntl
 import os
 import signal
 import sys
+import termios
 import threading
 from collections.abc import Callable, Iterator
 from types import FrameType
@@ -43,6 +46,18 @@ class StopRequest:
         """Return whether to end without waiting for anything: there was a second signal."""
         self._count()
         return self._signals > 1
+
+    @property
+    def signals(self) -> int:
+        """How many signals have asked for it, as far as they were read."""
+        return self._signals
+
+    def unread(self) -> int:
+        """Signals in the pipe that nobody has read."""
+        found = array.array("i", [0])
+        if self._pipe >= 0:
+            fcntl.ioctl(self._pipe, termios.FIONREAD, found)
+        return found[0]
 
     def _count(self) -> None:
         if self._pipe < 0:

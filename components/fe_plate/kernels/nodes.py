@@ -20,56 +20,78 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
         α: velocities decay by exp(-α dt/4) here and at the step's end.
     """
     decay, work = math.exp(-0.25 * damping * dt), 0.0
-    for i in range(state.position.shape[0]):
-        half = 0.5 * dt * model.inverse_mass[i]
-        for d in range(3):
-            v = decay * state.velocity[i, d]
-            v += half * (state.internal[i, d] + state.load[i, d]) + 0.5 * dt * model.gravity[d]
-            state.mean_velocity[i, d] = v * model.free[i, d]
-        for w in range(model.walls.shape[0]):
-            hold(i, w, model, state, dt)
-        for d in range(3):
-            v = state.mean_velocity[i, d]
-            state.position[i, d] += dt * v
-            work += dt * v * state.load[i, d]
+    position, velocity, mean = state.position, state.velocity, state.mean_velocity
+    internal, load, free, impulse = state.internal, state.load, model.free, state.wall_impulse
+    inverse, walls = model.inverse_mass, model.walls
+    h, gravity = 0.5 * dt, model.gravity
+    gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
+    for i in range(position.shape[0]):
+        half = 0.5 * dt * inverse[i]
+        fx, fy, fz = load[i, 0], load[i, 1], load[i, 2]
+        x, y, z = position[i, 0], position[i, 1], position[i, 2]
+        u = (decay * velocity[i, 0] + half * (internal[i, 0] + fx) + gx) * free[i, 0]
+        v = (decay * velocity[i, 1] + half * (internal[i, 1] + fy) + gy) * free[i, 1]
+        w = (decay * velocity[i, 2] + half * (internal[i, 2] + fz) + gz) * free[i, 2]
+        for k in range(walls.shape[0]):
+            a, b, c = walls[k, 0], walls[k, 1], walls[k, 2]
+            gap = a * x + b * y + c * z - walls[k, 3]
+            speed = a * u + b * v + c * w
+            if gap + dt * speed < 0.0:
+                more = -gap / dt - speed
+                u += more * a * free[i, 0]
+                v += more * b * free[i, 1]
+                w += more * c * free[i, 2]
+                impulse[k] += more / inverse[i]
+        mean[i, 0], mean[i, 1], mean[i, 2] = u, v, w
+        position[i, 0], position[i, 1], position[i, 2] = x + dt * u, y + dt * v, z + dt * w
+        work += dt * (u * fx + v * fy + w * fz)
     return work
 
 
 @njit(**EXACT)
-def hold(i, w, model, state, dt):  # type: ignore[no-untyped-def]
-    """Keep a node from passing a rigid wall in this step, and book the impulse on the wall."""
-    x, v, wall = state.position[i], state.mean_velocity[i], model.walls[w]
-    gap = wall[0] * x[0] + wall[1] * x[1] + wall[2] * x[2] - wall[3]
-    speed = wall[0] * v[0] + wall[1] * v[1] + wall[2] * v[2]
-    if gap + dt * speed >= 0.0:
-        return
-    more = -gap / dt - speed
-    for d in range(3):
-        v[d] += more * wall[d] * model.free[i, d]
-    state.wall_impulse[w] += more / model.inverse_mass[i]
+def kick(
+    model: Model, state: State, dt: float, damping: float, ahead: float
+) -> tuple[float, float]:
+    """Sum the elements' forces on nodes, advance velocities by half a step.
 
+    Parameters
+    ----------
+    model, state
+    dt : float, s
+    damping : float, 1/s
+    ahead : float, s
+        How long before a node meets a rigid wall its speed counts.
 
-@njit(**EXACT)
-def kick(model: Model, state: State, dt: float, damping: float) -> float:
-    """Sum the elements' forces on nodes, advance velocities by half a step; return their sum.
-
-    The sum of the squares of all velocities [m2/s2] is finite if all is well.
+    Returns
+    -------
+    float, m2/s2 : sum of the squares of all velocities, finite if all is well
+    float, m/s : greatest speed towards a rigid wall that is about to be met
     """
-    decay, squares = math.exp(-0.25 * damping * dt), 0.0
-    flat = state.corner_force.reshape(-1, 3)
-    for i in range(state.position.shape[0]):
+    closing, decay, squares = 0.0, math.exp(-0.25 * damping * dt), 0.0
+    velocity, mean, internal = state.velocity, state.mean_velocity, state.internal
+    load, free, inverse = state.load, model.free, model.inverse_mass
+    begin, at = model.begin, model.at
+    flat, position, walls = state.corner_force.reshape(-1, 3), state.position, model.walls
+    h, gravity = 0.5 * dt, model.gravity
+    gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
+    for i in range(velocity.shape[0]):
         fx, fy, fz = 0.0, 0.0, 0.0
-        for k in range(model.begin[i], model.begin[i + 1]):
-            row = model.at[k]
+        for k in range(begin[i], begin[i + 1]):
+            row = at[k]
             fx -= flat[row, 0]
             fy -= flat[row, 1]
             fz -= flat[row, 2]
-        state.internal[i, 0], state.internal[i, 1], state.internal[i, 2] = fx, fy, fz
-        half = 0.5 * dt * model.inverse_mass[i]
-        for d in range(3):
-            v = state.mean_velocity[i, d]
-            v += half * (state.internal[i, d] + state.load[i, d]) + 0.5 * dt * model.gravity[d]
-            v *= decay * model.free[i, d]
-            state.velocity[i, d] = v
-            squares += v * v
-    return squares
+        internal[i, 0], internal[i, 1], internal[i, 2] = fx, fy, fz
+        half = 0.5 * dt * inverse[i]
+        u = (mean[i, 0] + half * (fx + load[i, 0]) + gx) * (decay * free[i, 0])
+        v = (mean[i, 1] + half * (fy + load[i, 1]) + gy) * (decay * free[i, 1])
+        w = (mean[i, 2] + half * (fz + load[i, 2]) + gz) * (decay * free[i, 2])
+        velocity[i, 0], velocity[i, 1], velocity[i, 2] = u, v, w
+        squares += u * u + v * v + w * w
+        for k in range(walls.shape[0]):
+            a, b, c = walls[k, 0], walls[k, 1], walls[k, 2]
+            gap = a * position[i, 0] + b * position[i, 1] + c * position[i, 2] - walls[k, 3]
+            speed = -(a * u + b * v + c * w)
+            if gap < speed * ahead:
+                closing = max(closing, speed)
+    return squares, closing

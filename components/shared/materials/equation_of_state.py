@@ -4,16 +4,15 @@ Papers: Steinberg, Equation of State and Strength Properties of Selected Materia
 (1996); LS-DYNA Theory Manual, equation of state 4.
 """
 
-import math
-
 from numba import njit
 
-from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.shared.elementary import exponential
+from quintet.components.shared.numba_options import EXACT, INNER, LANEWISE
 
 POLE = 1e300  # Pa; kernels take every number to be finite
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def reference_pressure(mu, law):  # type: ignore[no-untyped-def]
     """P [Pa] at μ = ρ/ρ₀ - 1 without thermal energy; huge beyond the Hugoniot's pole."""
     if mu <= 0.0 or not law.shocks:
@@ -24,7 +23,7 @@ def reference_pressure(mu, law):  # type: ignore[no-untyped-def]
     return law.density * law.c2 * numerator / (denominator * denominator)
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def fractions(mu, law):  # type: ignore[no-untyped-def]
     """Numerator of p/(ρ₀c²) in compression, square root of its denominator, and their slopes."""
     over = 1.0 / (mu + 1.0)
@@ -38,7 +37,7 @@ def fractions(mu, law):  # type: ignore[no-untyped-def]
     return numerator, rise, denominator, fall
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def pressure_and_energy(mu, energy, change, law):  # type: ignore[no-untyped-def]
     """Pressure [Pa] and energy [J/kg] at a step's end, both implicit in each other.
 
@@ -58,7 +57,7 @@ def pressure_and_energy(mu, energy, change, law):  # type: ignore[no-untyped-def
     return pressure, energy - 0.5 * pressure * change
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def sound_speed_squared(mu, energy, pressure, law):  # type: ignore[no-untyped-def]
     """c² [m2/s2] of longitudinal waves: (∂p/∂ρ)_s + 4G/(3ρ), at least a tenth of that at rest."""
     stiffness = 1.0
@@ -73,7 +72,7 @@ def sound_speed_squared(mu, energy, pressure, law):  # type: ignore[no-untyped-d
     return max(bulk, 0.1 * law.c2) + 4.0 / 3.0 * law.shear / (law.density * (1.0 + mu))
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def temperature(mu, energy, law):  # type: ignore[no-untyped-def]
     """T [K] from the energy: T₀ exp(γ₀η) on the isentrope, and (e - e_s(η))/c_v beyond it.
 
@@ -88,7 +87,7 @@ def temperature(mu, energy, law):  # type: ignore[no-untyped-def]
     d0, d1 = law.step * table[row, 1], law.step * table[row + 1, 1]
     jump = e1 - e0
     cold = e0 + u * (d0 + u * (3.0 * jump - 2.0 * d0 - d1 + u * (d0 + d1 - 2.0 * jump)))
-    return law.temperature * math.exp(law.gamma * eta) + (energy - cold) / law.specific_heat
+    return law.temperature * exponential(law.gamma * eta) + (energy - cold) / law.specific_heat
 
 
 @njit(**INNER)

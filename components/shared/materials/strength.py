@@ -10,14 +10,15 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.elementary import exponential, logarithm
+from quintet.components.shared.numba_options import INNER, LANEWISE
 
 CLOSE = 1e-8  # of the flow stress: how far the returned stress may be from it
 MOST = 80  # iterations
-LEAST = 1e-12  # plastic strain at which the slope of hardening is taken at first
+LEAST = 1e-300  # plastic strain by which none is divided
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def turned_and_strained(s, gradient, shear, dt):  # type: ignore[no-untyped-def]
     """Deviator after an elastic step, s + dt (2G dev D + W s - s W).
 
@@ -44,33 +45,30 @@ def turned_and_strained(s, gradient, shear, dt):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def equivalent(s):  # type: ignore[no-untyped-def]
     """Von Mises' equivalent stress √(3/2 s:s) [Pa] of a deviator."""
     xx, yy, zz, xy, yz, zx = s
     return math.sqrt(1.5 * (xx * xx + yy * yy + zz * zz) + 3.0 * (xy * xy + yz * yz + zx * zx))
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def softening(temperature, law):  # type: ignore[no-untyped-def]
     """1 - T*ᵐ, between 0 at melting and 1."""
-    above = (temperature - law.reference_temperature) / law.melting
-    if above <= 0.0:
-        return 1.0
-    return 1.0 - above**law.m if above < 1.0 else 0.0
+    above = min(max((temperature - law.reference_temperature) / law.melting, 0.0), 1.0)
+    return 1.0 - (above if law.m == 1.0 else exponential(law.m * logarithm(above)))
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def flow_stress(strain, rate, soft, law):  # type: ignore[no-untyped-def]
     """Y [Pa] at a plastic strain and its rate [1/s], and dY/dε_p at that rate, dY/d(rate)."""
-    power = strain ** (law.n - 1.0) if strain > 0.0 else 0.0
-    static = law.hard + law.b * power * strain
-    slope = law.b * law.n * power
-    over = rate / law.reference_rate
-    if over <= 1.0 or law.c == 0.0:
-        return static * soft, slope * soft, 0.0
-    faster = 1.0 + law.c * math.log(over)
-    return static * soft * faster, slope * soft * faster, static * soft * law.c / rate
+    grows = law.b * (strain if law.n == 1.0 else exponential(law.n * logarithm(strain)))
+    grows = grows if strain > 0.0 else 0.0
+    static, slope = (law.hard + grows) * soft, law.n * soft * grows / max(strain, LEAST)
+    over = max(rate / law.reference_rate, 1.0)
+    faster = 1.0 + law.c * logarithm(over)
+    hastens = static * law.c / rate if over > 1.0 else 0.0
+    return static * faster, slope * faster, hastens
 
 
 @njit(**INNER)

@@ -2,10 +2,16 @@
 
 Seed: Dyanov, Kazantsev, Chelakov, LOGOS, equations 2 to 4: f_M += φ f_S, M_M += φ m_S,
 v_S = Σ φ v_M, with the shape functions φ of the face on which a particle lies at the start.
+
+Where a face erodes its particles are freed, and their mass is taken off the nodes. A particle goes
+on as its nodes gave it out; the force that it gave last acts on these, and none on it in its first
+free step: so momentum stays to rounding, where the mesh steps before the particles.
 """
 
 from collections.abc import Mapping
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
+
+import numpy as np
 
 from quintet.coupler.coupling.exchange import (
     Binding,
@@ -18,11 +24,12 @@ from quintet.coupler.coupling.exchange import (
     Works,
     requires,
 )
-from quintet.coupler.coupling.faces import project
+from quintet.coupler.coupling.faces import Projection, project
 from quintet.coupler.coupling.links.keys import Between, is_stand_in, with_keys
-from quintet.interfaces.component import Fields
-from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import Count, parameters
+from quintet.coupler.coupling.mapping import ShapeMap
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import LinkError, SceneError
+from quintet.interfaces.params import Count, Positive, parameters
 from quintet.interfaces.ports import (
     FACE_ACTIVITY,
     GLUE_ACTIVITY,
@@ -30,11 +37,14 @@ from quintet.interfaces.ports import (
     GLUED_LOAD,
     NODE_GLUE,
     NODE_LOAD,
+    NODE_MASS,
 )
 
 T = TypeVar("T")
 FORCE = ("glued_load.force", "node_load.force")
 ERODED = ("face_activity.active", "glue_activity.active")
+HUNG = "node_mass.added"
+BESIDE = 0.1  # of a longest side: particles further beside all faces are above none
 # Glued chains of equal masses, thirty transits of a wave, step a tenth of the limit: the energy
 # stays within 1 % when both sides step once a window, one after the other; an impulse that is
 # summed over two or four steps against a velocity that is held meanwhile gains 28 % and 66 %,
@@ -56,10 +66,13 @@ class GlueKeys:
         The particles and the mesh, in either order.
     substeps : 1
         Steps of one side in a step of the other: 1, as any other number feeds energy in.
+    reach : 1
+        How far from its face a particle may lie at the start, over the longest side of the face.
     """
 
     between: Between
     substeps: Count = 1
+    reach: Positive = 1.0
 
     def __post_init__(self) -> None:
         if self.substeps != 1:
@@ -69,10 +82,12 @@ class GlueKeys:
 @with_keys(GlueKeys)
 def make(name: str, given: GlueKeys, ports: Mapping[str, Ports]) -> Link:
     """Make a link of steps that are equal on both sides."""
-    return join(name, given.between, ports)
+    return join(name, given.between, ports, given.reach)
 
 
-def join(name: str, pair: tuple[str, str], ports: Mapping[str, Ports]) -> "Glue":
+def join(
+    name: str, pair: tuple[str, str], ports: Mapping[str, Ports], reach: float = 1.0
+) -> "Glue":
     """Match two components: one has glued particles, the other faces with nodes."""
     first, second = pair
     complaints = []
@@ -81,27 +96,39 @@ def join(name: str, pair: tuple[str, str], ports: Mapping[str, Ports]) -> "Glue"
         lacks = requires(ports[particles], particles, GLUED if moved else None, GLUED_LOAD)
         lacks += requires(ports[mesh], mesh, NODE_LOAD if loaded else None, NODE_GLUE)
         if not lacks:
-            gives = {port.name for port in ports[mesh][1]}
-            takes = {port.name for port in ports[particles][0]}
-            frees = FACE_ACTIVITY.name in gives and GLUE_ACTIVITY.name in takes
-            return Glue(name, particles, mesh, (loaded, moved, frees))
+            takes, gives = ({port.name for port in side} for side in ports[mesh])
+            freed = GLUE_ACTIVITY.name in {port.name for port in ports[particles][0]}
+            frees = FACE_ACTIVITY.name in gives and freed
+            returns = frees and NODE_MASS.name in takes
+            return Glue(name, (particles, mesh), Ways(loaded, moved, frees, returns), reach)
         complaints.append("; ".join(lacks))
     raise SceneError(f"link {name}: glue needs: {' or: '.join(complaints)}. Link others.")
+
+
+class Ways(NamedTuple):
+    """What crosses a glued interface; stand-ins take nothing."""
+
+    loads: bool  # forces to the mesh
+    moves: bool  # velocities to the particles
+    frees: bool  # which faces eroded, to the particles
+    returns: bool  # what still hangs on the nodes, to the mesh
 
 
 class Glue:
     """Forces and masses to nodes, velocities back."""
 
-    def __init__(self, name: str, particles: str, mesh: str, ways: tuple[bool, bool, bool]) -> None:
-        """Glue two components; `ways`: force to the mesh, motion and freeing to the particles."""
-        self.name, self.particles, self.mesh, self.ways = name, particles, mesh, ways
+    def __init__(self, name: str, pair: tuple[str, str], ways: Ways, reach: float) -> None:
+        self.name, (self.particles, self.mesh), self.ways, self.reach = name, pair, ways, reach
+        particles, mesh = pair
         self.partner: dict[str, str] = {}
         self.works: dict[str, Works] = {particles: [("glued_load.force", "glued.velocity", "")]}
+        returned = ways.loads and ways.returns
         load = Transfer(
             particles,
             mesh,
             reads=("glued_load.force",),
-            fills=("node_load.force",),
+            fills=("node_load.force", HUNG) if returned else ("node_load.force",),
+            needs=(ERODED[0],) if returned else (),
             sums=(FORCE,),
             works_on=(("node_load.force", "node_glue.velocity", "integral"),),
         )
@@ -110,8 +137,8 @@ class Glue:
         self.transfers = self._those((load, move, free))
 
     def _those(self, each: tuple[T, T, T]) -> tuple[T, ...]:
-        """Of three things for the three ways, those of the ways that it has."""
-        return tuple(one for one, has in zip(each, self.ways, strict=True) if has)
+        """Of three things for the first three ways, those of the ways that it has."""
+        return tuple(one for one, has in zip(each, self.ways[:3], strict=True) if has)
 
     def demands(self) -> Demands:
         """One step of both sides in every window, one after the other."""
@@ -120,13 +147,19 @@ class Glue:
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Hang the particles on the faces, and their mass on the nodes."""
         glued, mesh = described[self.particles], described[self.mesh]
-        shape = project(
-            glued["glued_load.position"], mesh["node_glue.start"], mesh["node_glue.corner"]
-        ).shape
-        mass = shape.map_conservative(glued["glued_load.mass"][:, None])[:, 0]
+        place = glued["glued_load.position"]
+        found = project(place, mesh["node_glue.start"], mesh["node_glue.corner"])
+        self._refuse_outside(place, found)
+        shape, each = found.shape, glued["glued_load.mass"]
+        mass = _hung(shape, each)
+        returned = HUNG in self.transfers[0].fills
 
         def load(_: Ends, end: Ends) -> Mapped:
-            return {FORCE[1]: shape.map_conservative(end[self.particles][FORCE[0]])}
+            mapped = {FORCE[1]: shape.map_conservative(end[self.particles][FORCE[0]])}
+            if returned:
+                active = end[self.mesh][ERODED[0]][shape.face]
+                mapped[HUNG] = mass if active.all() else _hung(shape, each * active)
+            return mapped
 
         def move(_: Ends, end: Ends) -> Mapped:
             return {"glued.velocity": shape.map_consistent(end[self.mesh]["node_glue.velocity"])}
@@ -136,3 +169,25 @@ class Glue:
 
         static = {self.mesh: {"node_load.added_mass": mass}}
         return Binding(static, self._those((load, move, free)))
+
+    def _refuse_outside(self, place: Array, found: Projection) -> None:
+        """Refuse particles that lie beside all faces, or too far above them."""
+        beside, far = found.beyond > BESIDE * found.size, found.gap > self.reach * found.size
+        for one in np.flatnonzero(beside | far)[:1]:
+            how = (
+                f"{found.beyond[one]:.3g} m beside"
+                if beside[one]
+                else f"{found.gap[one]:.3g} m from"
+            )
+            raise LinkError(
+                f"link {self.name}: a glued particle must lie above a face of {self.mesh}, no "
+                f"further from it than reach = {self.reach:g} of its longest side; particle {one} "
+                f"of {self.particles}, at {np.array2string(place[one], precision=4)} m, is {how} "
+                f"the nearest one, face {found.shape.face[one]} of {found.size[one]:.3g} m. Let "
+                "the faces reach under all glued particles, glue fewer, or raise reach."
+            )
+
+
+def _hung(shape: ShapeMap, mass: Array) -> Array:
+    """Mass (nodes,) kg that hangs on the nodes, of particles (n,) kg."""
+    return shape.map_conservative(mass[:, None])[:, 0]

@@ -18,6 +18,7 @@ TOYS = ROOT / "tests/coupler/toy_scenes"
 if __name__ == "__main__":
     sys.path.insert(0, str(TOYS))
 
+from full_disk import broken_rules, fill, make_disk, start  # noqa: E402
 from started import Started, write_scene  # noqa: E402
 
 TABLE = ROOT / "coupler/README.md"
@@ -52,7 +53,7 @@ FAULTS = [
     Fault("os._exit", "dead", "ended by itself with status 0", PROCESSES, DEATHS),
     Fault("SIGKILL", "dead", "was killed by signal 9 (SIGKILL)", PROCESSES, DEATHS),
     Fault("SIGSTOP", "stopped", "stopped responding: process", PROCESSES),
-    Fault("deadlock", "hangs", HANGS, PROCESSES),
+    Fault("deadlock", "hangs", HANGS),
     Fault("endless loop", "hangs", HANGS),
     Fault("compiled loop", "hangs", HANGS),
     Fault("polling loop", "hangs", HANGS),
@@ -61,6 +62,12 @@ FAULTS = [
     Fault("out of memory", "said", "MemoryError: "),
 ]
 CASES = [(one, transport) for one in FAULTS for transport in one.transports]
+WRITTEN = {  # on a full disk: what finds no room
+    "recording": "recording.h5",
+    "ledger": "ledger.csv",
+    "snapshot": "snapshot-",
+    "view": "pong.vtkhdf",
+}
 
 
 @dataclass
@@ -76,6 +83,38 @@ class Outcome:
     left: list = field(default_factory=list)
 
 
+class Reader:
+    """Reads what a run says, and when."""
+
+    def __init__(self, run):
+        self.run, self.lines = run, []
+        streams = (run.process.stdout, run.process.stderr)
+        self.threads = [Thread(target=self._read, args=[one]) for one in streams]
+        for one in self.threads:
+            one.start()
+
+    def _read(self, stream):
+        with stream:
+            for line in stream:
+                self.lines.append((time.time(), line))
+
+    def wait(self, seconds):
+        """Wait for the run's end; return its status, when that was, and what it has left."""
+        try:
+            status = self.run.process.wait(seconds)
+        finally:
+            ended = time.time()
+            left = [*self.run.processes(), *self.run.left_in_shared_memory()]
+            self.run.end()
+            for one in self.threads:
+                one.join(5.0)
+        return status, ended, left
+
+    def first(self, words):
+        """When some words were said first, if they were."""
+        return next((then for then, line in self.lines if words in line), None)
+
+
 def fail(fault, transport, folder, patience):
     """Run a scene of two components, one of which fails."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -89,29 +128,13 @@ def fail(fault, transport, folder, patience):
     )
     scene.write_text("toy_faults:Faulty".join(text.rsplit("toys:Toy", 1)))
     run = Started(scene)
-    lines = []
-
-    def read(stream):
-        for line in stream:
-            lines.append((time.time(), line))
-
-    readers = [Thread(target=read, args=[one]) for one in (run.process.stdout, run.process.stderr)]
-    for one in readers:
-        one.start()
-    try:
-        status = run.process.wait(60.0 + patience)
-    finally:
-        ended = time.time()
-        left = [*run.processes(), *run.left_in_shared_memory()]
-        run.end()
-        for one in readers:
-            one.join(5.0)
-        run.process.stdout.close()
-        run.process.stderr.close()
+    reader = Reader(run)
+    status, ended, left = reader.wait(60.0 + patience)
+    lines = reader.lines
     assert moment.is_file(), f"it came to no fault: {lines}"
     at = float(moment.read_text())
-    told = next((then for then, line in lines if "keeps the others waiting" in line), ended)
-    said = next((then for then, line in lines if "failed in window" in line), ended)
+    told = reader.first("keeps the others waiting") or ended
+    said = reader.first("failed in window") or ended
     err = "".join(line for _, line in lines)
     there = (run.folder / "results.json").is_file()
     results = run.results if there else {}
@@ -178,13 +201,44 @@ def table(patience):
                 cause = found.results.get("fault", {}).get("cause", "")
             print(fault.name, transport, cells[-1], flush=True)
         rows.append(f"| {fault.name} | {' | '.join(cells)} | {shortened(cause)} |")
-    return rows
+    return [*rows, *disk_rows()]
+
+
+def full_disk(written, transport, folder):
+    """Run a scene whose disk becomes full; return the rules it broke, the time, and the cause."""
+    disk = make_disk("disk", folder)
+    try:
+        run, _, _ = start(folder, disk, transport, WRITTEN[written])
+        reader = Reader(run)
+        at = fill(run, disk, WRITTEN[written])
+        _, ended, _ = reader.wait(60.0)
+        run.err = "".join(line for _, line in reader.lines)
+        broken = broken_rules(run, disk, WRITTEN[written])
+        said = reader.first("it cannot be written") or ended
+        cause = next((line for _, line in reader.lines if "it cannot be written" in line), "")
+        return broken, said - at, cause.removeprefix("quintet: coupler failed in ").strip()
+    finally:
+        disk.close()
+
+
+def disk_rows():
+    """Rows of the table for a disk that becomes full."""
+    for written in WRITTEN:
+        cells, causes = [], []
+        for transport in TRANSPORTS:
+            with tempfile.TemporaryDirectory() as folder:
+                broken, after, cause = full_disk(written, transport, Path(folder))
+            cells.append("; ".join(broken) or f"{after:.2f} s")
+            causes.append(cause.partition(": ")[2])
+            print(f"full disk, {written}", transport, cells[-1], flush=True)
+        yield f"| full disk, {written} | {' | '.join(cells)} | {shortened(causes[0])} |"
 
 
 def shortened(cause):
     """A cause without what differs from run to run."""
     cause = re.sub(r"process \d+", "its process", cause)
     cause = re.sub(r'"[^"]*/', '"', cause).replace("|", "/").replace("\n", " ")
+    cause = re.sub(r"/\S*/small", "/small", cause)
     return cause if len(cause) < 240 else cause[:237] + "..."
 
 

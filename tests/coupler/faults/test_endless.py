@@ -60,6 +60,21 @@ def test_over_memory_one_signal_interrupts_python(faulty, tmp_path):
     assert end(hanging(faulty, tmp_path, "memory", "polling loop"), "SIGTERM") < AT_ONCE + LOADED
 
 
+def test_over_memory_two_signals_end_what_holds_the_lock_of_python(faulty, tmp_path):
+    run = hanging(faulty, tmp_path, "memory", "deadlock")
+    began = time.monotonic()
+    for _ in range(2):
+        os.kill(run.process.pid, signal.SIGINT)
+        time.sleep(0.2)
+    run.out, run.err = run.process.communicate(timeout=20)
+    assert time.monotonic() - began < AT_ONCE + LOADED
+    assert run.process.returncode == 3 and run.results["status"] == "failed"
+    assert run.results["windows"] == run.results["fault"]["window"] == 60
+    assert run.results["fault"]["component"] == "pong"
+    assert "kept the interpreter's lock when asked to end" in run.err
+    assert not run.processes()
+
+
 def test_over_memory_two_signals_end_compiled_code(faulty, tmp_path):
     run = hanging(faulty, tmp_path, "memory", "compiled loop")
     assert end(run, "SIGINT", "SIGINT") < AT_ONCE + LOADED

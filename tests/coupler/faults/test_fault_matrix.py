@@ -10,7 +10,7 @@ DEFAULT = {
     "os._exit": "zenoh",
     "SIGKILL": "mpi",
     "SIGSTOP": "mpi",
-    "deadlock": "zenoh",
+    "deadlock": "memory",
     "endless loop": "zenoh",
     "compiled loop": "memory",
     "polling loop": "mpi",

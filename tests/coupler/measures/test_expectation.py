@@ -54,6 +54,9 @@ def _write(folder, text):
         ({"measure": "min", "begin": 0.255, "end": 0.75}, 1.255),
         ({"measure": "mean", "begin": 0.255, "end": 0.755}, 1.505),
         ({"measure": "mean"}, 2.0),
+        ({"measure": "max", "moving_mean": 0.5, "begin": 0.5, "end": 1.5}, 2.5),
+        ({"measure": "integral", "begin": 0.25, "end": 0.75}, 0.75),
+        ({"measure": "mean", "from_level": 1.5, "begin": 0.1, "end": 0.2}, 1.65),
         ({"measure": "crossing", "level": 1.503, "unit": "s"}, 0.503),
         ({"measure": "at", "begin": 1.0, "offset": -3.0, "scale": 2.0}, -2.0),
     ],
@@ -83,6 +86,21 @@ def test_a_reference_curve_is_measured_as_the_computed_one(tmp_path, recording):
     assert outcome.met
     top = evaluate(_expectation(measure="max", csv="ref.csv", end=2.0), recording, tmp_path)
     assert (top.value, top.reference, top.met) == (pytest.approx(3.0), 2.0, False)
+
+
+def test_times_count_from_a_level_in_the_run_and_in_the_reference(tmp_path, recording):
+    """x = 1 + t passes 1.5 at 0.5 s, the reference at 2 s; both rise by 1 a second after it."""
+    _write(tmp_path, "t,x\n1.0,0.5\n2.0,1.5\n4.0,3.5\n")
+    since = {"from_level": 1.5, "begin": 0.0, "end": 1.0, "csv": "ref.csv"}
+    whole = evaluate(_expectation(measure="integral", unit="m s", **since), recording, tmp_path)
+    assert whole.met and whole.value == pytest.approx(2.0)
+    assert evaluate(_expectation(measure="rms", **since), recording, tmp_path).met
+    never = _expectation(measure="mean", value=1.0, from_level=9.0)
+    assert evaluate(never, recording, tmp_path).value is None
+    late = _expectation(measure="mean", value=1.0, from_level=1.5, end=1.6)
+    assert evaluate(late, recording, tmp_path).value is None  # the run ends 1.5 s after
+    with pytest.raises(SceneError, match=r"must pass from_level 9.0; it does not"):
+        evaluate(_expectation(measure="mean", csv="ref.csv", from_level=9.0), recording, tmp_path)
 
 
 def test_an_oscillation_is_measured_by_its_period_and_decay(tmp_path, recording):

@@ -1,76 +1,23 @@
 """A disk that is full ends a run in a sentence; with room again it goes on to the same bits."""
 
-import json
 import shutil
 import subprocess
 import sys
 import time
 
 import pytest
-from small_disk import SizeLimit, SmallDisk
-from started import Started, same, write_scene
-
-from quintet.coupler.files.disk import RESERVE
-from quintet.coupler.run.snapshots import snapshots
+from full_disk import WRITERS, broken_rules, fill, make_disk, start
+from started import same
 
 SOON = 5.0  # s, with what reading the results of a machine under load takes
-SNAPSHOTS = "output.snapshots=0.15"  # one, and for a while none
-WRITERS = {  # file, and what makes it grow
-    "recording.h5": [SNAPSHOTS],
-    "ledger.csv": [SNAPSHOTS, "output.record=false", "output.totals=0.001"],
-    "pong.vtkhdf": [SNAPSHOTS, "output.record=false", "output.interval=0.001"],
-    "snapshot-": ["output.snapshots=0.02", "output.record=false"],
-}
 
 
 @pytest.fixture
 def disk(request, tmp_path):
-    """A small disk; a limit on sizes alone where this user may mount none."""
-    made = SmallDisk(tmp_path) if request.param == "disk" else SizeLimit(tmp_path)
-    if not made.allowed:
-        made.close()
-        made = SizeLimit(tmp_path)
+    """A small disk, or a limit on sizes."""
+    made = make_disk(request.param, tmp_path)
     yield made
     made.close()
-
-
-def started(folder, disk, transport, settings, end=0.4):
-    """A run on the disk, slow enough to be overtaken."""
-    toy = "items = 400\nseen = true\npause = 3e-3\ntalks = true"
-    scene = write_scene(folder, transport, end, ping="items = 400", pong=toy)
-    chosen = [word for one in settings for word in ("--set", one)]
-    return Started(scene, *chosen, out=disk.place / "out", within=disk.within), scene, chosen
-
-
-def growing(folder, name):
-    """The file that will find no room; once it is large enough to be told from the others."""
-    if name == "snapshot-":
-        return folder / found[-1].name if (found := snapshots(folder)) else None
-    path = folder / name
-    large = path.is_file() and path.stat().st_size > 1 << 14 and snapshots(folder)
-    return path if large else None
-
-
-def process_of(run, folder):
-    """Process of the coupler."""
-    note = folder / "log" / "mpi.json"
-    return json.loads(note.read_text())["coupler"] if note.is_file() else run.process.pid
-
-
-def check_full(run, folder, name, disk):
-    """The run ends soon, says which file and disk, and leaves its results and no process."""
-    began = time.monotonic()
-    assert run.wait() == 3
-    assert time.monotonic() - began < SOON
-    assert not run.processes() and not run.left_in_shared_memory()
-    said = [line for line in run.err.splitlines() if line.startswith("quintet: ")]
-    assert len(said) == 1 and "Traceback" not in run.err, run.err
-    assert f"{disk.place}/out/{name}" in said[0]
-    assert "it cannot be written, as the disk at /" in said[0] and "Make room there." in said[0]
-    found = json.loads((folder / "results.json").read_text())
-    assert found["status"] == "failed" and found["fault"]["component"] == "coupler"
-    assert said[0].endswith(found["fault"]["cause"]) and "--resume" in found["resume"]
-    assert not (folder / RESERVE).exists() and not list(folder.rglob("*.part"))
 
 
 def check_goes_on(scene, folder, disk, chosen, tmp_path):
@@ -83,16 +30,6 @@ def check_goes_on(scene, folder, disk, chosen, tmp_path):
     whole = [*command, str(scene), "--transport", "memory", "--out", str(tmp_path / "whole")]
     subprocess.run([*whole, *chosen], check=True, capture_output=True)
     assert same(tmp_path / "whole", tmp_path / "resumed")
-
-
-def full_and_on(tmp_path, disk, name, transport):
-    run, scene, chosen = started(tmp_path, disk, transport, WRITERS[name])
-    folder = disk.seen(run.folder)
-    path = run.wait_until(lambda: growing(folder, name))
-    disk.fill(process_of(run, folder), path)
-    check_full(run, folder, name, disk)
-    disk.empty()
-    check_goes_on(scene, folder, disk, chosen, tmp_path)
 
 
 FULL = pytest.mark.full
@@ -115,13 +52,14 @@ OTHERS = [
 
 @pytest.mark.parametrize(("disk", "name", "transport"), [*BY_DEFAULT, *OTHERS], indirect=["disk"])
 def test_a_run_on_a_full_disk_ends_and_goes_on_when_there_is_room(tmp_path, disk, name, transport):
-    run, scene, chosen = started(tmp_path, disk, transport, WRITERS[name])
-    folder = disk.seen(run.folder)
-    path = run.wait_until(lambda: growing(folder, name))
-    disk.fill(process_of(run, folder), path)
-    check_full(run, folder, name, disk)
+    run, scene, chosen = start(tmp_path, disk, transport, name)
+    fill(run, disk, name)
+    began = time.monotonic()
+    run.wait()
+    assert time.monotonic() - began < SOON
+    assert broken_rules(run, disk, name) == [], run.err
     disk.empty()
-    check_goes_on(scene, folder, disk, chosen, tmp_path)
+    check_goes_on(scene, disk.seen(run.folder), disk, chosen, tmp_path)
 
 
 @pytest.mark.parametrize("disk", ["disk"], indirect=True)
@@ -129,7 +67,7 @@ def test_nothing_starts_on_a_disk_that_is_full(tmp_path, disk):
     if not disk.allowed:
         return
     disk.fill()
-    run, _, _ = started(tmp_path, disk, "memory", [])
+    run, _, _ = start(tmp_path, disk, "memory", "")
     assert run.wait() == 2
     assert run.err.count("quintet: ") == 1 and "Traceback" not in run.err
     assert f"as the disk at {disk.place} is full (0.0 of " in run.err

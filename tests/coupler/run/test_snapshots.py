@@ -3,6 +3,7 @@
 import os
 import shutil
 import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from started import Started, same, write_scene
 from quintet.coupler.cli import main
 from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.disk import seal
-from quintet.coupler.run import snapshots
+from quintet.coupler.run import output, snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
 
@@ -94,6 +95,26 @@ def test_a_run_whose_component_was_killed_goes_on_from_its_last_snapshot(tmp_pat
     assert status(*again, "--resume", run.folder) == 0
     assert status(*again, "--out", tmp_path / "undisturbed") == 0
     assert same(tmp_path / "undisturbed", run.folder)
+
+
+@pytest.mark.parametrize(("pause", "kept"), [(0.4, True), (0.0, False)])
+def test_long_windows_are_kept_often(tmp_path, monkeypatch, pause, kept):
+    """They may not end in time when a run is interrupted."""
+    monkeypatch.setattr(output, "OFTEN", 0.0)
+    path = write_scene(tmp_path, end=1.0, pong=f"pause = {pause}\nfails_at = 3")
+    assert status("run", path, "--out", tmp_path / "out") == 3
+    assert bool(snapshots.snapshots(tmp_path / "out")) == kept
+
+
+@pytest.mark.zenoh
+def test_what_an_interruption_loses_is_said(tmp_path):
+    run = Started(write_scene(tmp_path, "zenoh", 100.0, pong="pause = 2.5\ntalks = true"))
+    log = run.folder / "log" / "pong.log"
+    run.wait_until(lambda: log.is_file() and "a step" in log.read_text())
+    time.sleep(0.2)
+    run.process.send_signal(signal.SIGINT)
+    assert run.wait() == 130
+    assert "it cannot go on: it was ended before its first snapshot" in run.err
 
 
 def test_what_cannot_go_on_is_refused(tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""Meshes of 8-node solids: boxes, their outer faces, and which elements meet at a node.
+"""Meshes of 8-node solids: their outer faces, and which elements meet at a node.
 
 Corners 0 to 3 of an element go round one side, seen from within, and 4 to 7 stand opposite them.
 """
@@ -9,7 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.fe_plate.params import Faces, Fixed, Part
+from quintet.components.fe_plate.meshes.box import box
+from quintet.components.fe_plate.meshes.cylinder import cylinder
+from quintet.components.fe_plate.meshes.params import Part
+from quintet.components.fe_plate.params import Faces, Fixed
 from quintet.components.fe_plate.state import Array, Whole
 
 # Corners around each side of an element, seen from outside.
@@ -33,26 +36,13 @@ def mesh(parts: Sequence[Part]) -> Mesh:
     """Make the mesh of some parts."""
     nodes, corners, first = [], [], 0
     for part in parts:
-        node, corner = box(part)
+        node, corner = box(part) if part.cylinder is None else cylinder(part.cylinder)
         nodes.append(node)
         corners.append(corner + first)
         first += len(node)
     number = np.repeat(np.arange(len(parts)), [len(one) for one in corners])
     corner = np.concatenate(corners)
     return Mesh(np.concatenate(nodes), corner, number, *outer_sides(corner))
-
-
-def box(part: Part) -> tuple[Array, Whole]:
-    """Nodes (n, 3) m and corners (e, 8) of a box of equal elements."""
-    nx, ny, nz = part.elements
-    ends = zip(part.lowest, part.highest, part.elements, strict=True)
-    lines = [np.linspace(a, b, n + 1) for a, b, n in ends]
-    node = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
-    number = np.arange(len(node)).reshape(nx + 1, ny + 1, nz + 1)
-    low, high = slice(0, -1), slice(1, None)
-    around = ((low, low), (high, low), (high, high), (low, high))
-    corner = [number[x, y, z].ravel() for z in (low, high) for x, y in around]
-    return node, np.stack(corner, axis=1)
 
 
 def outer_sides(corner: Whole) -> tuple[Whole, Whole]:

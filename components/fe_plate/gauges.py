@@ -1,0 +1,86 @@
+"""What is measured in a structure: at nodes, in elements, of whole parts."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.components.fe_plate.kernels.blocks import (
+    DAMAGE,
+    ENERGY,
+    PRESSURE,
+    SPRING_ENERGY,
+    STRAIN,
+    TEMPERATURE,
+)
+from quintet.components.fe_plate.meshes.mesh import Mesh
+from quintet.components.fe_plate.params import Gauges
+from quintet.components.fe_plate.state import Array, Places, State, Whole
+from quintet.components.fe_plate.view import von_mises
+from quintet.interfaces.component import Keys
+
+
+class Measured(NamedTuple):
+    """Nodes and elements at which a structure is measured."""
+
+    node: Whole  # (k,)
+    element: Whole  # (k,)
+
+
+def measured(mesh: Mesh, gauges: Gauges) -> Measured:
+    """Nodes nearest to some points at the start, and elements whose middles are."""
+    middle = mesh.node[mesh.corner].mean(axis=1)
+    return Measured(nearest(mesh.node, gauges.node_gauges), nearest(middle, gauges.element_gauges))
+
+
+def nearest(points: Array, wanted: tuple[tuple[float, float, float], ...]) -> Whole:
+    """Which of points (n, 3) m is nearest to each wanted one; the first of several."""
+    found = [int(np.argmin(((points - one) ** 2).sum(axis=1))) for one in wanted]
+    return np.array(found, np.int64)
+
+
+def at_nodes(state: State, node: Whole) -> dict[str, Array]:
+    """Motion of some nodes."""
+    return {
+        "node_gauge.position": state.position[node],
+        "node_gauge.velocity": state.velocity[node],
+    }
+
+
+def in_elements(places: Places, state: State, element: Whole) -> dict[str, Array]:
+    """What some elements bear."""
+    mine = Places(places.point[element])
+    return {
+        "element_gauge.von_mises": von_mises(mine, state),
+        "element_gauge.pressure": mine.of(state, PRESSURE),
+        "element_gauge.plastic_strain": mine.of(state, STRAIN),
+        "element_gauge.temperature": mine.of(state, TEMPERATURE),
+        "element_gauge.damage": mine.of(state, DAMAGE),
+        "element_gauge.active": mine.active(state),
+    }
+
+
+def of_parts(mesh: Mesh, places: Places, state: State, mass: Array) -> dict[str, Array]:
+    """Mean velocity and energies of each part, whose elements have a mass (e,) kg each.
+
+    Each element has an eighth of its mass at each of its corners.
+    """
+    parts = int(mesh.part.max()) + 1
+
+    def sums(of_elements: Array) -> Array:
+        return np.bincount(mesh.part, of_elements, parts).astype(np.float64)
+
+    velocity = state.velocity[mesh.corner]  # (e, 8, 3)
+    spring = state.springs[:, SPRING_ENERGY].ravel()[places.point[:, 0]]
+    internal = mass * places.of(state, ENERGY) + spring
+    momentum = [sums(mass * velocity[:, :, d].mean(axis=1)) for d in range(3)]
+    return {
+        "part_gauge.velocity": np.stack(momentum, axis=1) / sums(mass)[:, None],
+        "part_gauge.kinetic": sums(0.5 * mass * (velocity**2).sum(axis=2).mean(axis=1)),
+        "part_gauge.internal": sums(internal),
+        "part_gauge.eroded": sums(internal * (places.active(state) == 0.0)),
+    }
+
+
+def wanted_of(port: str, wanted: Keys) -> bool:
+    """Whether any field of a port is wanted."""
+    return any(key.startswith(f"{port}.") for key in wanted)

@@ -1,0 +1,113 @@
+"""What a scene says about the parts of a structure: their shapes, meshes, materials."""
+
+import math
+from typing import Literal
+
+from quintet.components.shared.materials.params import Material, MaterialName, material
+from quintet.interfaces.params import Count, Positive, Vector, parameters
+
+Direction = Literal["x", "y", "z"]
+
+
+@parameters
+class Cylinder:
+    """A cylinder of elements: a rounded square in the middle, and rings around it.
+
+    Parameters
+    ----------
+    base : m
+        Middle of the disc with which it begins.
+    axis
+        Along which it extends from there.
+    radius, length : m
+        Of the cylinder.
+    elements : 1
+        Along half the width of the square in the middle, across the rings around it, and along
+        the axis.
+    quarter
+        Only where both coordinates across the axis are beyond those of the base.
+    """
+
+    base: Vector = (0.0, 0.0, 0.0)
+    axis: Direction = "z"
+    radius: Positive
+    length: Positive
+    elements: tuple[Count, Count, Count]
+    quarter: bool = False
+
+    @property
+    def count(self) -> int:
+        """Number of its elements."""
+        core, rings, layers = self.elements
+        return (1 if self.quarter else 4) * core * (core + 2 * rings) * layers
+
+    @property
+    def edges(self) -> tuple[float, float, float]:
+        """Edges [m] of its smallest elements, about."""
+        core, rings, layers = self.elements
+        half = 0.4 * self.radius
+        return half / core, half / rings, self.length / layers
+
+
+@parameters
+class Part:
+    """A box of equal elements, or a cylinder.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Corners of a box.
+    elements : 1
+        How many along x, y and z.
+    cylinder
+        In place of the box.
+    material
+        Name of a material of the library, or its table.
+    velocity : m/s
+        At the start.
+    """
+
+    lowest: Vector | None = None
+    highest: Vector | None = None
+    elements: tuple[Count, Count, Count] | None = None
+    cylinder: Cylinder | None = None
+    material: MaterialName | Material
+    velocity: Vector = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        box = (self.lowest, self.highest, self.elements)
+        given = sum(one is not None for one in box)
+        if given != (3 if self.cylinder is None else 0):
+            raise ValueError(
+                "part: a box has lowest, highest and elements, and no cylinder; found "
+                f"{given} of them{'' if self.cylinder is None else ' and a cylinder'}."
+            )
+        if self.lowest is None or self.highest is None:
+            return
+        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
+            raise ValueError(
+                f"part: highest must be beyond lowest along every axis; found {self.lowest} and "
+                f"{self.highest} m."
+            )
+
+    @property
+    def count(self) -> int:
+        """Number of its elements."""
+        if self.cylinder is not None:
+            return self.cylinder.count
+        return math.prod(self.elements or ())
+
+    @property
+    def expected_step(self) -> float:
+        """Step [s] that its shortest edge bears."""
+        made = material(self.material)
+        bound = sum((1.0 / edge**2 for edge in self._edges()), 0.0)
+        speed = math.sqrt((made.bulk + 4.0 / 3.0 * made.shear) / made.density)
+        return 1.0 / (speed * math.sqrt(bound))
+
+    def _edges(self) -> tuple[float, ...]:
+        if self.cylinder is not None:
+            return self.cylinder.edges
+        assert self.lowest is not None and self.highest is not None and self.elements is not None
+        sides = zip(self.lowest, self.highest, self.elements, strict=True)
+        return tuple((b - a) / n for a, b, n in sides)

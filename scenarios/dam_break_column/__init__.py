@@ -1,0 +1,1 @@
+"""A dam break meets a fixed box: scene and experiment."""

@@ -1,0 +1,1 @@
+"""A steel bar strikes a rigid wall: scene, against published computations."""

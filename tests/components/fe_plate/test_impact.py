@@ -1,0 +1,81 @@
+"""Structures that strike a rigid wall: stable, or ended with a sentence that names the place."""
+
+import numpy as np
+import pytest
+
+from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.kernels.blocks import STRAIN
+from quintet.components.fe_plate.meshes.params import Part
+from quintet.components.fe_plate.params import (
+    FePlateParams,
+    RigidWall,
+)
+
+WALL = RigidWall(point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
+
+
+def struck(speed, material="steel", elements=(8, 8, 8), **given):
+    size = tuple(4e-4 * n for n in elements)
+    part = Part(
+        lowest=(0.0, 0.0, 0.0),
+        highest=size,
+        elements=elements,
+        material=material,
+        velocity=(0.0, 0.0, -speed),
+    )
+    return FePlate(FePlateParams(parts=(part,), rigid_walls=(WALL,), **given))
+
+
+def advance(made, steps):
+    for _ in range(steps):
+        made.step(min(made.stable_dt(), 1e-7))
+    found = made.totals()
+    return found.kinetic + found.internal
+
+
+@pytest.mark.parametrize(
+    ("material", "speed"),
+    [("steel", 300.0), ("steel", 1000.0), ("aluminium", 6000.0), ("aluminium", 12000.0)],
+)
+def test_a_block_that_strikes_a_wall_stays_finite_and_gains_no_energy(material, speed):
+    made = struck(speed, material)
+    start = made.totals().kinetic
+    end = advance(made, 400)
+    # What is lost stays at the wall: half a layer of elements stops at once, and so do nodes that
+    # erosion has set free.
+    assert 0.5 * start < end < 1.001 * start
+    assert np.isfinite(made.state.points).all() and np.isfinite(made.state.position).all()
+    assert made.places.active(made.state).mean() < 1.0
+
+
+def test_elements_that_are_eroded_may_be_turned_inside_out():
+    made = struck(300.0)
+    advance(made, 600)
+    volume = np.empty(len(made.mesh.corner))
+    corner = made.state.position[made.mesh.corner]
+    along = [corner[:, k] - corner[:, 0] for k in (1, 3, 4)]
+    volume = np.einsum("ij,ij->i", along[0], np.cross(along[1], along[2]))
+    gone = made.places.active(made.state) == 0.0
+    assert gone.any() and (volume[~gone] > 0.0).all()
+
+
+def test_plastic_strains_beyond_three_stay_stable():
+    made = struck(1200.0, "42CrMo4")
+    start = made.totals().kinetic
+    end = advance(made, 700)
+    assert made.places.of(made.state, STRAIN).max() > 3.0
+    assert 0.9 * start < end < 1.001 * start
+
+
+def test_a_plate_of_one_element_strikes_a_wall():
+    made = struck(1000.0, "42CrMo4", (6, 6, 1))
+    start = made.totals().kinetic
+    end = advance(made, 400)
+    assert 0.45 * start < end < 1.001 * start  # half of its mass stops at once
+    assert made.state.wall_impulse[0] > 0.9 * made.totals().mass * 1000.0
+
+
+def test_the_wall_shortens_the_step_before_it_is_met():
+    near, far = struck(10e3, "aluminium"), struck(10.0, "aluminium")
+    assert near.stable_dt() < 0.3 * far.stable_dt()
+    assert near.stable_dt() * 10e3 < 0.25 * 4e-4  # m, of an element

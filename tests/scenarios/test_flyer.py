@@ -1,0 +1,28 @@
+"""A plate strikes another, coarse: the jumps of a shock, the release, and where it spalls."""
+
+from collections.abc import Callable
+
+import pytest
+
+Run = Callable[..., dict]
+
+
+@pytest.fixture(scope="module")
+def found(run_scene: Run) -> dict:
+    return run_scene("flyer", "--preset", "quick")
+
+
+@pytest.mark.parametrize("name", ["stress", "arrival", "spall_plane", "spalled_layer", "target"])
+def test_shock_and_spall_are_where_the_equation_of_state_has_them(found: dict, name: str) -> None:
+    assert found["by_name"][name]["met"], found["by_name"][name]
+
+
+def test_energy_is_kept_through_shock_release_and_spall(found: dict) -> None:
+    assert abs(found["ledger"]["energy_drift"]) < 1e-3
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("preset", ["steel", "fast"])
+def test_other_materials_and_speeds_are_as_close(run_scene: Run, preset: str) -> None:
+    found = run_scene("flyer", "--preset", preset)
+    assert all(one["met"] for one in found["expect"]), found["expect"]
