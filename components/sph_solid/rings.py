@@ -17,7 +17,7 @@ from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.state import Rows, State
 
-ROOM = 80  # cuts near each ring that there is room for at first
+ROOM = 80  # cuts that there is room for near each ring, at first
 
 
 class Rings:
@@ -25,30 +25,31 @@ class Rings:
 
     def __init__(self, length: float, team: Team) -> None:
         self.length, self.team = length, team
-        self.table = turns(1)
-        none = np.zeros(0, np.int64)
-        self.doubles = Doubles(none, none, np.zeros(0, np.int32), np.zeros((0, 4)))
+        self.most, self.room = 0, ROOM  # cuts in the table, and near a ring
+        none, empty = np.zeros(0, np.int64), np.zeros(0, np.int32)
+        self.doubles = Doubles(none, none, empty, empty, turns(0))
 
     def make(self, state: State, lists: SolidLists) -> None:
         """List cuts of the rings that are near in the plane."""
         numbers = cuts(lists.points[:, 0], self.length)
         most, count = int(numbers.max()), state.particles
-        if most >= len(self.table.few):
-            self.table = turns(2 * most)
+        if most > self.most:
+            self.most = 2 * most
+            self.doubles = self.doubles._replace(turn=turns(self.most))
         begin, end = np.empty(count, np.int64), np.empty(count, np.int64)
-        room = max(len(self.doubles.ring), ROOM * count)
         while True:
-            if room > len(self.doubles.ring):
-                turn = np.zeros((room, 4))
-                self.doubles = Doubles(begin, end, np.zeros(room, np.int32), turn)
+            size = self.room * count
+            if len(self.doubles.ring) < size:
+                empty = np.empty(size, np.int32), np.empty(size, np.int32)
+                self.doubles = self.doubles._replace(ring=empty[0], row=empty[1])
             self.doubles = self.doubles._replace(begin=begin, end=end)
-            found = list_doubles(
-                lists.points, numbers, state.reach, CLOSE * self.length, lists.arrays,
-                self.table, self.doubles,
+            found = self.team.run(
+                list_doubles, count, lists.points, numbers, state.reach, CLOSE * self.length,
+                lists.arrays, self.room, self.doubles,
             )  # fmt: skip
-            if found <= room:
+            if max(found) <= self.room:
                 return
-            room = 2 * found
+            self.room = 2 * max(found)
 
     def write_gradients(self, rows: Rows, law: PairLaw) -> None:
         """Gradients of velocity."""

@@ -45,22 +45,27 @@ class Doubles(NamedTuple):
     begin: Whole  # (n,)
     end: Whole  # (n,)
     ring: NDArray[np.int32]  # (any,) particle
-    turn: Array  # (any, 4) cos, sin, share of the ring's volume, 0
+    row: NDArray[np.int32]  # (any,) of the table of turns
+    turn: Array  # (rows, 4) cos, sin, share of the ring's volume, 0
 
 
-class Turns(NamedTuple):
-    """Cosines and sines of 2πk/n."""
+def turns(most: int) -> Array:
+    """Turns (rows, 4) by 2πk/n of up to `most` cuts, for k up to 2, then for all of a few cuts.
 
-    few: Array  # (n, 3, 2) of k up to 2
-    all: Array  # (n, n, 2) of all k, for the few n near the axis
+    Cuts at k and -k are mirrored in the plane: what is not across it is twice that of one.
+    """
+    n, k = np.arange(most + 1)[:, None], np.arange(3)
+    few = _turned(n, np.broadcast_to(k, (most + 1, 3)))
+    n, k = np.arange(WHOLE)[:, None], np.arange(WHOLE // 2 + 1)
+    return np.concatenate([few, _turned(n, np.broadcast_to(k, (WHOLE, len(k))))])
 
 
-def turns(most: int) -> Turns:
-    """Tables for up to `most` cuts."""
-    n = np.arange(most + 1)
-    few = 2.0 * math.pi * np.arange(3) / np.maximum(n, 1)[:, None]
-    full = 2.0 * math.pi * np.arange(WHOLE) / np.maximum(np.arange(WHOLE), 1)[:, None]
-    return Turns(*(np.stack([np.cos(one), np.sin(one)], axis=-1) for one in (few, full)))
+def _turned(n: Whole, k: Whole) -> Array:
+    whole = np.maximum(n, 1)
+    angle = 2.0 * math.pi * k / whole
+    share = np.where((k == 0) | (2 * k == whole), 1.0, 2.0) / whole
+    columns = [np.cos(angle), np.sin(angle), share, np.zeros_like(angle)]
+    return np.stack(columns, axis=-1).reshape(-1, 4)
 
 
 def cuts(radius: Array, length: float) -> Whole:
@@ -71,52 +76,52 @@ def cuts(radius: Array, length: float) -> Whole:
 
 @njit(**EXACT)
 def list_doubles(
-    points: Array, numbers: Whole, reach: float, close: float, lists: Lists, table: Turns,
-    doubles: Doubles,
+    first: int, last: int, points: Array, numbers: Whole, reach: float, close: float,
+    lists: Lists, room: int, doubles: Doubles,
 ) -> int:  # fmt: skip
-    """List the cuts that are near; return how many there are, also where there is no room.
+    """List the cuts that are near; return the most that one ring has, also if it has no room.
 
     Parameters
     ----------
+    first, last : int
+        Rings that look.
     points : (n + images, 3) float array, m
     numbers : (n + images,) int array
         Cuts of each ring.
     reach, close : float, m
     lists : Lists
         Rings that are near in the plane.
-    table : Turns
+    room : int
+        Cuts that there is room for, near each.
     doubles : Doubles
-        Written.
+        Written, but for the turns.
     """
     begin, _, end, neighbour = lists
-    begins, ends, ring, turn = doubles
-    reach2, room, place = reach * reach, ring.shape[0], 0
-    for i in range(begins.shape[0]):
+    begins, ends, ring, row, turn = doubles
+    reach2, most, each = reach * reach, 0, WHOLE // 2 + 1
+    few = turn.shape[0] - WHOLE * each
+    for i in range(first, last):
         x, z = points[i, 0], points[i, 2]
+        place, count = i * room, 0
         begins[i] = place
         for q in range(begin[i], end[i]):
             j = neighbour[q]
             r = points[j, 0]
             n = max(numbers[i], numbers[j])
             flat = (x - r) * (x - r) + (z - points[j, 2]) * (z - points[j, 2])
-            whole = x < close or r < close
-            first, last = (0, n) if whole else (-2, 3)
-            for k in range(first, last):
-                if k == 0 and i == j:
-                    continue
-                if whole:
-                    c, s = table.all[n, k, 0], table.all[n, k, 1]
-                elif k < 0:
-                    c, s = table.few[n, -k, 0], -table.few[n, -k, 1]
-                else:
-                    c, s = table.few[n, k, 0], table.few[n, k, 1]
-                if flat + 2.0 * x * r * (1.0 - c) < reach2:
-                    if place < room:
-                        ring[place] = j
-                        turn[place, 0], turn[place, 1], turn[place, 2] = c, s, 1.0 / n
-                    place += 1
-        ends[i] = place
-    return place
+            at, turned = 3 * n, 3
+            if x < close or r < close:
+                at, turned = few + each * n, n // 2 + 1
+            for k in range(1 if i == j else 0, turned):
+                if flat + 2.0 * x * r * (1.0 - turn[at + k, 0]) >= reach2:
+                    break
+                if count < room:
+                    ring[place + count] = j
+                    row[place + count] = at + k
+                count += 1
+        ends[i] = place + count
+        most = max(most, count)
+    return most
 
 
 @njit(inline="always")
@@ -125,9 +130,10 @@ def pack_turned(i, doubles, place, motion, outside, near, moves):  # type: ignor
     begin, end = doubles.begin[i], doubles.end[i]
     count = end - begin
     for k in range(count):
-        j, c, s = doubles.ring[begin + k], doubles.turn[begin + k, 0], doubles.turn[begin + k, 1]
+        j, t = doubles.ring[begin + k], doubles.row[begin + k]
+        c, s = doubles.turn[t, 0], doubles.turn[t, 1]
         near[k, 0], near[k, 1], near[k, 2] = c * place[j, 0], s * place[j, 0], place[j, 2]
-        near[k, 3] = doubles.turn[begin + k, 2] * place[j, 3]
+        near[k, 3] = doubles.turn[t, 2] * place[j, 3]
         moves[k, 0], moves[k, 1], moves[k, 2] = c * motion[j, 0], s * motion[j, 0], motion[j, 2]
         moves[k, 3] = motion[j, 3]
     full = (count + PAIRS - 1) // PAIRS * PAIRS
@@ -144,7 +150,8 @@ def pack_stress(i, doubles, stress, filling, full, tension):  # type: ignore[no-
     begin, end = doubles.begin[i], doubles.end[i]
     count, width = end - begin, len(filling)
     for k in range(count):
-        j, c, s = doubles.ring[begin + k], doubles.turn[begin + k, 0], doubles.turn[begin + k, 1]
+        j, t = doubles.ring[begin + k], doubles.row[begin + k]
+        c, s = doubles.turn[t, 0], doubles.turn[t, 1]
         if width == 8:
             xx, yy, zx = stress[j, 0], stress[j, 1], stress[j, 5]
             tension[k, 0], tension[k, 1] = c * c * xx + s * s * yy, s * s * xx + c * c * yy
