@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.fe_plate.kernels.blocks import LANES, TEMPERATURE
+from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.meshes.mesh import Mesh, faces_in, incident, inside, mesh
 from quintet.components.fe_plate.params import FePlateParams
@@ -47,7 +48,12 @@ def structure(params: FePlateParams) -> Structure:
     nodes = len(made.node)
     share = np.repeat(density * volume / 8.0, 8)
     mass = np.bincount(made.corner.ravel(), share, nodes).astype(np.float64)
-    place, element, first = in_blocks(made.part, len(laws))
+    points = 8 if params.integration == "full" else 1  # of an element
+    place, element, first = in_blocks(made.part, len(laws), LANES // points)
+    corner, own = made.corner[element], volume[element]
+    if points == 8:
+        own = np.empty(8 * len(corner))
+        write_point_volumes(made.node, corner, 0.0, own)
     begin, at = incident(made.corner, nodes)
     walls = np.zeros((len(params.rigid_walls), 4))
     for row, wall in zip(walls, params.rigid_walls, strict=True):
@@ -67,8 +73,8 @@ def structure(params: FePlateParams) -> Structure:
     for number, faces in enumerate(pressed):
         _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
     model = Model(
-        corner=made.corner[element],
-        volume=volume[element],
+        corner=corner,
+        volume=own,
         depth=0.0,
         inverse_mass=1.0 / mass,
         free=free,
@@ -77,21 +83,22 @@ def structure(params: FePlateParams) -> Structure:
         gravity=np.array(params.gravity),
         walls=walls,
     )
-    places = Places(place[:, None])
+    point = points * place[:, None] + np.arange(points)
+    places = Places(point, own[point] / own[point].sum(axis=1, keepdims=True))
     return Structure(made, model, places, laws, first, volume, mass, coupled, pressed)
 
 
-def in_blocks(part: Whole, parts: int) -> tuple[Whole, Whole, list[int]]:
+def in_blocks(part: Whole, parts: int, size: int) -> tuple[Whole, Whole, list[int]]:
     """Place of each element, element at each place, and first block of each part.
 
-    Parts begin with a block; places beyond their last element repeat it.
+    A block holds `size` elements. Parts begin with a block; places beyond their last element repeat it.
     """
     place, element, first = [], [], [0]
     for k in range(parts):
         mine = np.flatnonzero(part == k)
-        blocks = -(-len(mine) // LANES)
-        place.append(first[-1] * LANES + np.arange(len(mine)))
-        element.append(np.pad(mine, (0, blocks * LANES - len(mine)), mode="edge"))
+        blocks = -(-len(mine) // size)
+        place.append(first[-1] * size + np.arange(len(mine)))
+        element.append(np.pad(mine, (0, blocks * size - len(mine)), mode="edge"))
         first.append(first[-1] + blocks)
     return np.concatenate(place), np.concatenate(element), first
 
@@ -99,7 +106,8 @@ def in_blocks(part: Whole, parts: int) -> tuple[Whole, Whole, list[int]]:
 def initial_state(params: FePlateParams, built: Structure) -> State:
     """Temperatures and velocities that the parts have at the start; nothing is strained."""
     model, first, node = built.model, built.first, built.mesh.node
-    made = state_at_rest(node, first[-1], len(model.corner), len(model.walls))
+    springs = 0 if params.integration == "full" else first[-1]  # blocks
+    made = state_at_rest(node, first[-1], springs, len(model.corner), len(model.walls))
     for k, part in enumerate(params.parts):
         made.points[first[k] : first[k + 1], TEMPERATURE] = built.laws[k].temperature
         made.velocity[np.unique(built.mesh.corner[built.mesh.part == k])] = part.velocity

@@ -14,6 +14,7 @@ from quintet.components.fe_plate.gauges import (
     wanted_of,
 )
 from quintet.components.fe_plate.kernels.blocks import ENERGY
+from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.kernels.material import HUGE
 from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
@@ -38,6 +39,7 @@ from quintet.interfaces.manifest import Plan, Ports
 FEWEST = 128  # blocks that are worth handing to another thread
 SQUASHED = 4.0  # least steps in which what meets a wall moves by an element
 SMALLEST = 0.02  # of an element's volume at the start: below it, it has been turned inside out
+Stepped = tuple[float, float, int]  # largest step [s], least volume over the first one, of which
 POSITION, VELOCITY = "faces.position", "faces.velocity"
 MEAN_VELOCITY, ACTIVE = "node_glue.velocity", "face_activity.active"
 
@@ -96,6 +98,8 @@ class FePlate(Component):
             params.viscosity_quadratic,
             params.stiffness_damping,
         )
+        # Compiled where it is asked for alone.
+        self.kernel = _eight_points if params.integration == "full" else _one_point
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
         self.hung = np.zeros(len(self.surface))  # kg, mass that hangs on the nodes
         # Forces of glued particles are those where a step begins, and act in its first half: felt
@@ -181,7 +185,7 @@ class FePlate(Component):
         bound = math.inf
         for law, first, last in zip(self.laws, self.first, self.first[1:], strict=False):
             found = self.team.run(
-                _shifted, last - first, first, self.model, self.state, law, self.resistance, dt
+                self.kernel, last - first, first, self.model, self.state, law, self.resistance, dt
             )
             bound = min(bound, *(one[0] for one in found))
             least, worst = min((one[1], one[2]) for one in found)
@@ -259,7 +263,7 @@ class FePlate(Component):
         s, whole = self.state, self.mass.copy()
         whole[self.surface] += self.hung
         momentum = whole[:, None] * s.velocity
-        energy = self.element_mass @ self.places.of(s, ENERGY) + self.places.spring_energy(s)
+        energy = self.element_mass @ self.places.of(s, ENERGY) + self.places.spring_energy(s).sum()
         return Totals(
             mass=float(whole.sum()),
             momentum=momentum.sum(axis=0),
@@ -278,7 +282,13 @@ class FePlate(Component):
         return len(self.mesh.corner)
 
 
-def _shifted(begin: int, end: int, first: int, *arguments: object) -> tuple[float, float, int]:
-    """Step elements that are counted from a part's first one on."""
-    found: tuple[float, float, int] = step_elements(first + begin, first + end, *arguments)
+def _one_point(begin: int, end: int, first: int, *arguments: object) -> Stepped:
+    """Step blocks that are counted from a part's first one on."""
+    found: Stepped = step_elements(first + begin, first + end, *arguments)
+    return found
+
+
+def _eight_points(begin: int, end: int, first: int, *arguments: object) -> Stepped:
+    """The same of elements with eight points."""
+    found: Stepped = step_eight_points(first + begin, first + end, *arguments)
     return found

@@ -1,5 +1,7 @@
 """What a scene says about a structure of finite elements."""
 
+from typing import Literal
+
 from quintet.components.fe_plate.meshes.params import Direction, Part
 from quintet.interfaces.params import (
     Fraction,
@@ -122,10 +124,13 @@ class FePlateParams:
         What is measured.
     gravity : m/s2
         Acceleration of free fall.
+    integration
+        Reduced: one quadrature point an element, with stabilisation; full: eight, with strains
+        assumed so that bending is exact: seven times the work.
     courant : 1
         Share of the greatest step that is proven stable.
     hourglass : 1
-        Stiffness of the stabilisation, as a share of the element's own.
+        Stiffness of the stabilisation of one point, as a share of the element's own.
     viscosity_linear, viscosity_quadratic : 1
         C₁ and C₀ of the bulk viscosity ρ l (C₀² l D² - C₁ c D), in compression.
     mass_damping : 1/s
@@ -141,6 +146,7 @@ class FePlateParams:
     rigid_walls: tuple[RigidWall, ...] = ()
     gauges: Gauges = Gauges()
     gravity: Vector = (0.0, 0.0, 0.0)
+    integration: Literal["reduced", "full"] = "reduced"
     courant: Fraction = 0.9
     hourglass: NotNegative = 0.05
     viscosity_linear: NotNegative = 0.06

@@ -25,6 +25,7 @@ from quintet.components.fe_plate.kernels.blocks import (
     RATIO,
     SCRATCH,
     SOFT,
+    SPECIFIC,
     SPEED,
     STRAIN,
     STRESS,
@@ -179,7 +180,7 @@ def press(points, base, work, law, dt):  # type: ignore[no-untyped-def]
         gradient = nine(work, GRADIENT, k)
         divergence = gradient[0] + gradient[4] + gradient[8]
         ratio = work[RATIO * LANES + k]
-        per_density = ratio / law.density
+        per_density = work[SPECIFIC * LANES + k]
         change = divergence * dt * per_density
         live = points[base + ACTIVE * LANES + k] > 0.0
         s = six(work, STRESS * LANES + k)
@@ -274,13 +275,14 @@ def resist(points, base, work, law, resistance, dt):  # type: ignore[no-untyped-
         sound = math.sqrt(sound_speed_squared(1.0 / ratio - 1.0, old, pressure, law))
         edge, rate = work[EDGE * LANES + k], max(0.0, -divergence)
         drag = (linear * sound + quadratic * quadratic * edge * rate) if rate > 0.0 else 0.0  # m/s
-        viscous = edge * rate * drag * law.density / ratio if live else 0.0
+        per_density = work[SPECIFIC * LANES + k]
+        viscous = edge * rate * drag / per_density if live else 0.0
         energy = old - 0.5 * viscous * work[CHANGE * LANES + k]
         slower = drag + damp * sound * sound / length
         trace, double = -pressure - viscous, 0.0
         if damp > 0.0:
             gradient = l00, l01, l02, l10, l11, l12, l20, l21, l22
-            energy += dt * ratio / law.density * damp * damping_power(gradient, law)
+            energy += dt * per_density * damp * damping_power(gradient, law)
             double = 2.0 * damp * law.shear
             trace += damp * (law.bulk - 2.0 / 3.0 * law.shear) * divergence
         points[at + VISCOUS * LANES] = viscous
