@@ -91,7 +91,8 @@ def structure(params: FePlateParams) -> Structure:
 def in_blocks(part: Whole, parts: int, size: int) -> tuple[Whole, Whole, list[int]]:
     """Place of each element, element at each place, and first block of each part.
 
-    A block holds `size` elements. Parts begin with a block; places beyond their last element repeat it.
+    A block holds `size` elements. Parts begin with a block; places beyond their last element
+    repeat it.
     """
     place, element, first = [], [], [0]
     for k in range(parts):

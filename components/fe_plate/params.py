@@ -1,5 +1,6 @@
 """What a scene says about a structure of finite elements."""
 
+import math
 from typing import Literal
 
 from quintet.components.fe_plate.meshes.params import Direction, Part
@@ -56,12 +57,29 @@ class Pressure:
         Positive pushes.
     begin, end : s
         When it acts; to the end of the run without `end`.
+    pulse
+        Whether it grows from nothing and vanishes again between these, as sin².
     """
 
     faces: Faces
     pressure: Number
     begin: NotNegative = 0.0
     end: Positive | None = None
+    pulse: bool = False
+
+    def __post_init__(self) -> None:
+        if self.pulse and self.end is None:
+            raise ValueError("pressures: a pulse must have an end; found none. Say it.")
+
+    def at(self, time: float) -> float:
+        """Pressure [Pa] at a time [s]."""
+        if not self.begin <= time < (math.inf if self.end is None else self.end):
+            return 0.0
+        if not self.pulse or self.end is None:
+            return self.pressure
+        return (
+            self.pressure * math.sin(math.pi * (time - self.begin) / (self.end - self.begin)) ** 2
+        )
 
 
 @parameters

@@ -19,6 +19,7 @@ PRESSURE = Field("pressure", (), "Pa")
 VON_MISES = Field("von_mises", (), "Pa")
 PLASTIC_STRAIN = Field("plastic_strain", (), "1")
 DAMAGE = Field("damage", (), "1")
+DISPLACEMENT = Field("displacement", (3,), "m")  # from where nodes were at the start
 NODE_GAUGE = Port("node_gauge", (POSITION, VELOCITY))
 ELEMENT_GAUGE = Port(
     "element_gauge", (VON_MISES, PRESSURE, PLASTIC_STRAIN, TEMPERATURE, DAMAGE, ACTIVE)
@@ -33,7 +34,7 @@ PART_GAUGE = Port(
     ),
 )
 # Of the view, at the corners of outer faces: means of the elements that meet there.
-SHOWS = (VON_MISES, VELOCITY, PRESSURE, PLASTIC_STRAIN, TEMPERATURE, DAMAGE)
+SHOWS = (VON_MISES, VELOCITY, PRESSURE, PLASTIC_STRAIN, TEMPERATURE, DAMAGE, DISPLACEMENT)
 
 
 def ports(params: FePlateParams) -> Ports:

@@ -43,4 +43,5 @@ def view(mesh: Mesh, places: Places, state: State) -> Fields:
         "plastic_strain": mean(places.of(state, STRAIN)),
         "temperature": mean(places.of(state, TEMPERATURE)),
         "damage": mean(places.of(state, DAMAGE)),
+        "displacement": state.position[node] - mesh.node[node],
     }

@@ -10,6 +10,7 @@ stress passes its limit a particle has failed for good: it bears neither shear n
 
 Velocity Verlet; strains follow from places and velocities in the middle of the step, works from the
 forces at its two ends, so that energy is kept at second order in the step and momentum to rounding.
+Bodies of rings about an axis see cuts of each other, turned about it.
 Bodies touch as their particles come near. Planes of symmetry mirror what is near them.
 
 Papers: Libersky, Petschek, Carney, Hipp & Allahdadi, J. Comput. Phys. 109 (1993) 67; Monaghan, Rep.

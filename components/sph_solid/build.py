@@ -27,12 +27,13 @@ def materials(params: SphSolidParams) -> tuple[list[Solid], list[int]]:
 
 def pair_law(params: SphSolidParams) -> PairLaw:
     """Numbers of pairs."""
+    is_plane = params.dimensions == 2 and not params.axisymmetric
     return PairLaw(
-        smoothing=smoothing("cubic", params.dimensions, params.length),
+        smoothing=smoothing("cubic", 2 if is_plane else 3, params.length),
         softening=0.01 * params.length**2,
         linear=params.viscosity_linear,
         quadratic=params.viscosity_quadratic,
-        plane=1.0 if params.dimensions == 2 else 0.0,
+        plane=1.0 if is_plane else 0.0,
         corrected=True if params.kernel_correction else None,
     )
 
@@ -80,7 +81,7 @@ def initial_state(params: SphSolidParams, laws: list[Solid], numbers: list[int])
         damage=zeros.copy(),
         failed=zeros.copy(),
         sound=np.array(speed)[kind],
-        volume=np.array([one.volume for one in filled])[body],
+        volume=np.concatenate([one.volume for one in filled]),
         material=kind,
         body=body,
         glue=glue,

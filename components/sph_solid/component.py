@@ -6,15 +6,16 @@ import numpy as np
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.build import initial_state, materials, nearest, pair_law
-from quintet.components.sph_solid.diagnostics import bodies, failure, gauges, totals, view
+from quintet.components.sph_solid.diagnostics import bodies, failure, gauges, levels, totals, view
 from quintet.components.sph_solid.kernels.material import Points, advance, write_stresses
 from quintet.components.sph_solid.kernels.motion import (
     drift_half,
     kick_and_drift_half,
     kick_and_heat,
 )
-from quintet.components.sph_solid.kernels.pairs import Forces, accelerations, velocity_gradients
+from quintet.components.sph_solid.kernels.pairs import Forces
 from quintet.components.sph_solid.neighbours import SolidLists
+from quintet.components.sph_solid.pair_sums import pair_sums
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS, ports
 from quintet.components.sph_solid.state import Array, State, Whole
@@ -30,6 +31,7 @@ from quintet.interfaces.component import (
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.manifest import Ports
 
+FEWEST = 500  # particles that are worth handing to another thread
 LOAD = "glued_load.force"
 
 
@@ -45,12 +47,13 @@ class SphSolid(Component):
 
     def __init__(self, params: SphSolidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
-        self.team, self.law = Team(resources.threads), pair_law(params)
+        self.team, self.law = Team(resources.threads, FEWEST), pair_law(params)
         self.laws, numbers = materials(params)
         self.density = np.array([one.density for one in self.laws])
         self.state = initial_state(params, self.laws, numbers)
         self.gauged = nearest(self.state.position, params)
         self.lists = SolidLists(params, self.team)
+        self.sums = pair_sums(params.axisymmetric, params.length, self.team)
         self.is_carried = False  # whether a mesh bears the glued particles
         self._begin()
 
@@ -154,6 +157,7 @@ class SphSolid(Component):
         """Make lists from the references, and find the rows of what is asked for."""
         state = self.state
         self.rows = self.lists.make(state)
+        self.sums.make(state, self.lists)
         self.of_material = [np.flatnonzero(state.material == k) for k in range(len(self.laws))]
         self.held = np.flatnonzero(state.fixed)
         self.moves = ((state.fixed[self.held, None] >> np.arange(3)) & 1) == 0
@@ -181,10 +185,7 @@ class SphSolid(Component):
         rows, count = self.rows, self.state.particles
         self.lists.images.write_positions(rows.place, count)
         self.lists.images.write_vectors(rows.motion, count)
-        self.team.run(
-            velocity_gradients, count, rows.place, rows.motion, self.lists.arrays, self.law,
-            rows.gradient, rows.correction,
-        )  # fmt: skip
+        self.sums.write_gradients(rows, self.law)
 
     def _advance_materials(self, dt: float) -> None:
         rows = self.rows
@@ -208,11 +209,8 @@ class SphSolid(Component):
         images.write_positions(rows.place, count)
         images.write_vectors(rows.motion, count)
         images.write_tensors(rows.stress, count)
-        found = self.team.run(
-            accelerations, count, rows.place, rows.motion, rows.stress, self.lists.arrays,
-            self.law, Forces(state.acceleration, state.heating),
-        )  # fmt: skip
-        state.bound = min(slowest for slowest, _ in found)
+        forces = Forces(state.acceleration, state.heating)
+        state.bound = self.sums.write_accelerations(rows, self.law, forces)
         if len(self.held):
             state.acceleration[self.held] *= self.moves
         if len(state.active):
@@ -231,6 +229,8 @@ class SphSolid(Component):
             place = np.empty(self.state.particles, np.int64)
             place[self.state.identity] = np.arange(self.state.particles)
             given.update(gauges(self.state, place[self.gauged], self.density))
+        if "levels" in ports_wanted:
+            given.update(levels(self.state, self.params))
         if LOAD in wanted:
             given[LOAD] = self.state.force.copy()
         return {key: given[key] for key in wanted}
@@ -253,7 +253,10 @@ class SphSolid(Component):
         carried = np.zeros(0, np.int64)
         if self.is_carried and len(self.state.active):
             carried = self._glued_rows()[self.state.active > 0.0]
-        return totals(self.state, self._masses(), carried)
+        found = totals(self.state, self._masses(), carried)
+        if self.params.axisymmetric:  # the rest of a ring moves the other way
+            found.momentum[:2], found.angular_momentum[:] = 0.0, 0.0
+        return found
 
     def view(self) -> Fields:
         """Particles in the order of their birth, with stress, strain and damage."""

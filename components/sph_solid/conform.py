@@ -10,6 +10,7 @@ BLOCK: dict[str, Any] = {
     "spacing": 0.01,
     "bodies": [{"lowest": [0.0, 0.0, 0.0], "highest": [0.05, 0.04, 0.04], "material": "steel"}],
     "gauges": [[0.05, 0.0, 0.0]],
+    "levels": [{"body": 0}],
 }
 STEP = 4e-7  # s
 GLUED = 2 * 4 * 4  # particles in two layers
@@ -41,6 +42,7 @@ def cases() -> tuple[ConformCase, ...]:
             dt=STEP,
         ),
         ConformCase("plane strain", {**BLOCK, "dimensions": 2}, dt=STEP),
+        ConformCase("rings", {**BLOCK, "dimensions": 2, "axisymmetric": True}, dt=STEP),
         ConformCase(
             "glued block",
             {**BLOCK, "glued": [layers]},

@@ -81,6 +81,23 @@ def gauges(state: State, rows: Whole, density: Array) -> Fields:
     }
 
 
+def levels(state: State, params: SphSolidParams) -> Fields:
+    """Ends of whole material along lines through bodies, in the fields of the port `levels`.
+
+    Of particles within a smoothing length of the line, or if there are none of the nearest one.
+    """
+    ends = []
+    for level in params.levels:
+        mine = np.flatnonzero((state.body == level.body) & (state.failed == 0.0))
+        if not len(mine):
+            mine = np.flatnonzero(state.body == level.body)
+        away = np.hypot(*(state.position[mine, :2] - np.array(level.place)).T)
+        heights = state.position[mine, 2][away <= max(params.length, float(away.min()))]
+        ends.append((heights.max(), heights.min()))
+    highest, lowest = np.array(ends).T
+    return {"levels.highest": highest, "levels.lowest": lowest}
+
+
 def view(state: State) -> Fields:
     """Copy particles in the order of their birth."""
     rows = np.argsort(state.identity)

@@ -14,7 +14,7 @@ class Filling(NamedTuple):
     """Particles of one body."""
 
     points: Array  # (n, 3) m
-    volume: float  # m3, of each
+    volume: Array  # (n,) m3, of each
 
 
 def filling(body: Body, params: SphSolidParams) -> Filling:
@@ -23,10 +23,15 @@ def filling(body: Body, params: SphSolidParams) -> Filling:
     Particles share the body's volume, what planes of symmetry cut off included.
     """
     points = _box(body, params) if body.shape == "box" else _round(body, params)
-    volume = body.volume(params.dimensions) / max(len(points), 1)
+    share: Array = np.ones(len(points))
+    if params.axisymmetric:
+        points = points[points[:, 0] > 0.0]
+        share = points[:, 0]  # of a ring, by its circumference
+    volume = body.volume(params.dimensions, params.axisymmetric) * share / max(share.sum(), 1e-300)
     for plane in params.symmetry:
         beyond = points[:, "xyz".index(plane.axis)]
-        points = points[(beyond > plane.position) == (plane.side == "+")]
+        kept = (beyond > plane.position) == (plane.side == "+")
+        points, volume = points[kept], volume[kept]
     return Filling(points, volume)
 
 

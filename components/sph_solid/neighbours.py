@@ -41,7 +41,10 @@ class SolidLists:
             for one in params.symmetry
         ]  # fmt: skip
         self.images = SymmetryImages(planes)
+        axis = [Plane("x-", 0, 0.0, 1.0)] if params.axisymmetric else []
+        self.mirrors = [*planes, *axis]  # what moves towards one meets what moves the other way
         self.near = NeighbourLists()
+        self.points: Array = np.zeros((0, 3))  # (n + images, 3) m, references
 
     @property
     def arrays(self) -> Lists:
@@ -51,10 +54,10 @@ class SolidLists:
     def spread(self, low: Array, high: Array) -> float:
         """How far [m] two may have come apart or near, if all moved by low to high (3,) m.
 
-        Images move the other way across their planes.
+        Images move the other way across their planes, and so does the other side of an axis.
         """
         low, high = low.copy(), high.copy()
-        for plane in self.images.planes:
+        for plane in self.mirrors:
             k = plane.axis
             low[k], high[k] = min(low[k], -high[k]), max(high[k], -low[k])
         return float(np.linalg.norm(high - low))
@@ -76,8 +79,8 @@ class SolidLists:
         state.reorder(order)
 
     def reflect(self, state: State) -> None:
-        """Let what has passed a plane of symmetry change places with its image."""
-        for plane in self.images.planes:
+        """Let what has passed a plane of symmetry, or an axis, change places with its image."""
+        for plane in self.mirrors:
             k = plane.axis
             out = np.flatnonzero(plane.inward * (state.position[:, k] - plane.position) < 0.0)
             state.position[out, k] = 2.0 * plane.position - state.position[out, k]
@@ -88,7 +91,7 @@ class SolidLists:
 
     def make(self, state: State) -> Rows:
         """List what is near, from where all was when it was sorted; make room for pairs."""
-        points = self.images.find(state.reference, state.reach)
+        self.points = points = self.images.find(state.reference, state.reach)
         count, buffer = state.particles, self.near.list
         if len(points) == count:
             self.near = neighbours_within(state.reach, points, count, self.team, None, buffer)

@@ -1,7 +1,9 @@
 """What a scene says about elastic-plastic bodies of particles."""
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import Field
 
 from quintet.components.shared.materials.params import Material, MaterialName, material
 from quintet.interfaces.params import (
@@ -83,8 +85,13 @@ class Body:
         (x, y, z), (a, b, c) = self.centre, half
         return (x - a, y - b, z - c), (x + a, y + b, z + c)
 
-    def volume(self, dimensions: int) -> float:
-        """Volume [m3]; in two dimensions of a slice 1 m deep."""
+    def volume(self, dimensions: int, axisymmetric: bool = False) -> float:
+        """Volume [m3]; in two dimensions of a slice 1 m deep, or of what is turned about z."""
+        if axisymmetric and self.shape == "box":
+            (low, _, bottom), (high, _, top) = self.box
+            return math.pi * (high**2 - max(low, 0.0) ** 2) * (top - bottom)
+        if axisymmetric:
+            dimensions = 3
         edges = [b - a for a, b in zip(*self.box, strict=True)]
         if dimensions == 2:
             edges[1] = 1.0
@@ -143,6 +150,22 @@ class Fixed:
 
 
 @parameters
+class Level:
+    """A line along z through a body, on which the ends of what has not failed are read.
+
+    Parameters
+    ----------
+    place : m
+        Where it stands, x and y.
+    body : 1
+        Number of the body, from 0.
+    """
+
+    place: tuple[Number, Number] = (0.0, 0.0)
+    body: Annotated[int, Field(ge=0)]
+
+
+@parameters
 class SphSolidParams:
     """Bodies of particles, and how they are computed.
 
@@ -154,6 +177,8 @@ class SphSolidParams:
         They touch where their particles come near.
     dimensions
         In 2 the bodies lie in the plane of x and z, are 1 m deep, and do not strain along y.
+    axisymmetric
+        With 2 dimensions: bodies are those of the half-plane x > 0, turned about the axis z.
     smoothing : 1
         Smoothing length of the cubic spline over the spacing.
     symmetry
@@ -164,6 +189,8 @@ class SphSolidParams:
         Particles that hang on a partner's mesh: they move with it, and it bears their mass.
     gauges : m
         Places; of the particle that is nearest to each at the start, motion and stress are given.
+    levels
+        Lines along z: how high and how low a body is there, as of a crater.
     courant : 1
         Share of h/(c + 1.2 (α c + β max|μ|)) that a step takes.
     viscosity_linear, viscosity_quadratic : 1
@@ -176,12 +203,14 @@ class SphSolidParams:
     spacing: Positive
     bodies: tuple[Body, ...]
     dimensions: Literal[2, 3] = 3
+    axisymmetric: bool = False
     smoothing: Positive = 1.2
     symmetry: tuple[SymmetryPlane, ...] = ()
     fixed: tuple[Fixed, ...] = ()
     glued: tuple[Region, ...] = ()
     gauges: tuple[Vector, ...] = ()
-    courant: Fraction = 0.3
+    levels: tuple[Level, ...] = ()
+    courant: Fraction = 0.5
     viscosity_linear: NotNegative = 1.0
     viscosity_quadratic: NotNegative = 2.0
     kernel_correction: bool = False
@@ -191,6 +220,10 @@ class SphSolidParams:
         sides = [one.axis + one.side for one in self.symmetry]
         for is_wrong, sentence in (
             (not self.bodies, "bodies must be at least one; found none. Add [[bodies]]."),
+            (
+                any(one.body >= len(self.bodies) for one in self.levels),
+                f"levels: body must be below {len(self.bodies)}, their number.",
+            ),
             (self.courant == 0.0, "courant must be above 0; found 0."),
             (
                 len(set(sides)) < len(sides),
@@ -207,11 +240,28 @@ class SphSolidParams:
             ),
             (
                 self.dimensions == 2
+                and not self.axisymmetric
                 and any(
                     one.shape == "sphere" or (one.shape == "cylinder" and one.axis != "y")
                     for one in self.bodies
                 ),
-                "bodies: in two dimensions they must be boxes or cylinders along y.",
+                "bodies: in two dimensions they must be boxes or cylinders along y; axisymmetric "
+                "ones boxes or spheres.",
+            ),
+            (
+                self.axisymmetric and (self.dimensions != 2 or "x" in axes or self.glued),
+                "axisymmetric bodies need dimensions = 2, have no symmetry across x, and are not "
+                "glued.",
+            ),
+            (
+                self.axisymmetric
+                and any(
+                    one.shape == "cylinder"
+                    or (one.shape == "sphere" and one.centre is not None and any(one.centre[:2]))
+                    for one in self.bodies
+                ),
+                "bodies: axisymmetric ones must be boxes, or spheres with their centre on the "
+                "axis z.",
             ),
         ):
             if is_wrong:
@@ -240,7 +290,10 @@ class SphSolidParams:
     @property
     def expected_count(self) -> int:
         """About how many particles there will be."""
-        whole = sum(_computed_volume(one, self) for one in self.bodies)
+        if self.axisymmetric:
+            whole = sum(_half_plane(one) for one in self.bodies)
+        else:
+            whole = sum(_computed_volume(one, self) for one in self.bodies)
         return max(1, round(whole / self.cell))
 
     @property
@@ -262,3 +315,10 @@ def _computed_volume(body: Body, params: SphSolidParams) -> float:
         kept = high - plane.position if plane.side == "+" else plane.position - low
         volume *= min(max(kept / (high - low), 0.0), 1.0)
     return volume
+
+
+def _half_plane(body: Body) -> float:
+    """Area [m2] of a body of rings in the half-plane."""
+    (low, _, bottom), (high, _, top) = body.box
+    share = 0.25 * math.pi if body.shape == "sphere" else 1.0
+    return share * (high - max(low, 0.0)) * (top - bottom)

@@ -52,6 +52,13 @@ GAUGES = Port(
 )
 
 
+# Along lines through bodies: ends of what has not failed, at its particles.
+LEVELS = Port(
+    "levels",
+    fields=(Field("highest", (), "m"), Field("lowest", (), "m")),
+)
+
+
 def ports(params: SphSolidParams) -> Ports:
     """Ports taken and given.
 
@@ -61,4 +68,5 @@ def ports(params: SphSolidParams) -> Ports:
     glued = len(params.glued) > 0
     taken = (GLUED, GLUE_ACTIVITY) if glued else ()
     load = (GLUED_LOAD,) if glued else ()
-    return taken, (BODIES, *load, *((GAUGES,) if params.gauges else ()))
+    read = (*((GAUGES,) if params.gauges else ()), *((LEVELS,) if params.levels else ()))
+    return taken, (BODIES, *load, *read)

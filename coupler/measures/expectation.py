@@ -87,6 +87,8 @@ class Expectation:
         Of the measured value.
     source
         Where the reference is from.
+    quantity
+        What the curve is, in words, for pictures; told by its field if not given.
     required
         Whether a run must meet it; one that is not required is told beside the others.
     """
@@ -110,6 +112,7 @@ class Expectation:
     within: NotNegative
     unit: str
     source: str
+    quantity: str = ""
     required: bool = True
 
     def __post_init__(self) -> None:

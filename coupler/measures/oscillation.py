@@ -26,6 +26,16 @@ class Harmonic(NamedTuple):
 
     period: float  # s
     decay: float  # 1/s, γ: of the amplitude
+    begin: float = math.nan  # s, from where its time counts
+    mean: float = math.nan  # c, as a and b in the unit of the curve
+    cosine: float = math.nan  # a
+    sine: float = math.nan  # b
+
+    def values(self, times: Array) -> Array:
+        """Values (n,) at times (n,) s."""
+        passed = times - self.begin
+        columns = _columns(passed, 2.0 * math.pi / self.period, self.decay)
+        return np.asarray(columns @ [self.mean, self.cosine, self.sine])
 
 
 NONE = Harmonic(math.nan, math.nan)
@@ -48,7 +58,10 @@ def fit(curve: Curve) -> Harmonic:
         if not (omega > SHORT * omegas[0] and abs(decay) < omega):  # also true of nan
             return NONE
         if max(map(abs, change)) < TOLERANCE * omega:
-            return Harmonic(2.0 * math.pi / omega, decay)
+            factors = np.linalg.lstsq(_columns(times, omega, decay), values, rcond=None)[0]
+            return Harmonic(
+                2.0 * math.pi / omega, decay, float(curve.times[0]), *map(float, factors)
+            )
     return NONE
 
 

@@ -3,10 +3,13 @@
 Matplotlib is loaded by the functions that draw: a run without pictures does not need it.
 """
 
+import math
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.measures.expectation import (
@@ -16,7 +19,8 @@ from quintet.coupler.measures.expectation import (
     curve,
     reference_curve,
 )
-from quintet.coupler.measures.time_series import Curve
+from quintet.coupler.measures.oscillation import fit
+from quintet.coupler.measures.time_series import Curve, between, mean
 from quintet.coupler.report.panels import curve_panels, save
 from quintet.interfaces.component import Field
 
@@ -25,6 +29,7 @@ PANELS = 12  # at most
 COMPUTED, BAND = "tab:blue", "tab:orange"
 MARKS = (("o", "black"), ("s", "tab:red"), ("^", "tab:green"), ("D", "tab:purple"))
 AXES = "xyz"
+FINE = 1000  # points of a curve that is drawn by its formula
 LINE = 44  # characters of a line beside a panel or in its legend
 LINES = 2  # of a source in a legend
 Outcomes = Mapping[str, Outcome]
@@ -90,6 +95,7 @@ def _draw(
 ) -> None:
     computed = curve(ones[0], recording)
     panel.plot(*computed, color=COMPUTED, linewidth=1.5, label="computed")
+    _draw_oscillation(panel, ones, computed)
     drawn: list[str] = []
     last = max(_end(one, computed, folder) for one in ones)
     for one in ones:
@@ -106,11 +112,12 @@ def _draw(
             )  # fmt: skip
         if one.level is not None:
             panel.axhline(one.level, color="grey", linewidth=0.8, linestyle="--")
-    panel.set_title("\n".join(_verdict(one, results.get(one.name)) for one in ones), fontsize=8)
+    panel.set_title("\n".join(_verdict(one, results.get(one.name)) for one in ones), fontsize=9)
     panel.set_xlabel(_time(ones[0]))
-    panel.set_ylabel(textwrap.fill(_label(ones, recording), LINE), fontsize=8)
+    panel.set_ylabel(textwrap.fill(_label(ones, recording), LINE), fontsize=9)
     panel.grid(alpha=0.3)
-    panel.legend(fontsize=7, frameon=False)
+    below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "ncols": 2}  # hides no curve
+    panel.legend(fontsize=8, frameon=False, **below)
 
 
 def _end(one: Expectation, computed: Curve, folder: Path) -> float:
@@ -124,10 +131,28 @@ def _end(one: Expectation, computed: Curve, folder: Path) -> float:
     return 1.05 * max(known)
 
 
+def _draw_oscillation(panel: Any, ones: list[Expectation], computed: Curve) -> None:
+    """Draw the oscillation with the expected period and decay, of computed amplitude and phase."""
+    expected = {one.measure: one for one in ones if one.measure in ("period", "decay")}
+    if not expected:
+        return
+    one = next(iter(expected.values()))
+    part = between(computed, one.begin, math.inf if one.end is None else one.end)
+    found = fit(part)
+    known = {key: value for key, value in ((k, e.value) for k, e in expected.items()) if value}
+    if not math.isfinite(found.period) or not known:
+        return
+    times = np.linspace(part.times[0], part.times[-1], FINE)
+    label = f"with the expected {' and '.join(known)}"
+    values = found._replace(**known).values(times)
+    panel.plot(times, values, color=BAND, linewidth=1.2, linestyle="--", label=label)
+
+
 def _draw_value(panel: Any, one: Expectation, computed: Curve) -> None:
     """Draw a single value as a mark or line with its tolerance, where the curve can show it."""
     assert one.value is not None
-    label, value = shortened(f"expected: {one.source}"), one.value
+    what = "expected" if one.measure in ("at", "crossing") else f"expected {one.measure}"
+    label, value = shortened(f"{what}: {one.source}"), one.value
     style = {"color": BAND, "label": label, "markersize": 5, "capsize": 3, "zorder": 3}
     if one.measure == "at":
         panel.errorbar(one.begin, value, yerr=one.within, fmt="o", **style)
@@ -138,6 +163,10 @@ def _draw_value(panel: Any, one: Expectation, computed: Curve) -> None:
         span = (one.begin, last if one.end is None else one.end)
         if span[0] >= last:  # the run did not come so far
             return
+        if one.measure == "mean":  # about which the curve may swing far beyond what is allowed
+            middle = mean(between(computed, *span))
+            style = {"color": COMPUTED, "linewidth": 1.2, "linestyle": "--"}
+            panel.plot(span, (middle, middle), label="mean of the computed", **style)
         panel.plot(span, (value, value), color=BAND, linewidth=1.2, label=label)
         low, high = value - one.within, value + one.within
         panel.fill_between(span, low, high, color=BAND, alpha=0.25, linewidth=0)
@@ -156,24 +185,27 @@ def _time(one: Expectation) -> str:
 def _label(ones: list[Expectation], recording: Recording) -> str:
     """Name and unit of the curve that some expectations measure."""
     one = ones[0]
-    field = _field(one, recording)
-    name = f"{one.component} {one.field.replace('.', ' ').replace('_', ' ')}"
+    field, units = _field(one, recording), {one.unit for one in ones if one.measure in IN_UNIT}
+    if told := next((other.quantity for other in ones if other.quantity), ""):
+        return f"{told} [{units.pop() if len(units) == 1 else field.unit}]"
+    port, _, what = one.field.replace("_", " ").partition(".")
+    name = f"{one.component}: {what if port == 'motion' else f'{port} {what}'}"
     if one.axis is not None:
         name += f" {AXES[one.axis]}" if field.shape == (3,) else f" {one.axis}"
     elif field.shape:
         name = f"|{name}|"
     items = recording.items(one.component, one.field)[0]
     if one.item in ("mean", "max", "min"):
-        name += f", {one.item} of {items}"
+        name += f", {one.item} of {items} items"
     elif items > 1:
-        name += f", item {one.item}"
+        name += f" of item {one.item}"
     if one.moving_mean:
         name += f", mean over {one.moving_mean:g} s"
     if one.offset:
-        name = f"{name} {'+' if one.offset > 0.0 else '−'} {abs(one.offset):g} {field.unit}"
+        change = "plus" if one.offset > 0.0 else "less"
+        name = f"{name}, {change} {abs(one.offset):g} {field.unit}"
     if abs(one.scale) == 1.0:
         return f"{'−' if one.scale < 0.0 else ''}{name} [{field.unit}]"
-    units = {other.unit for other in ones if other.measure in IN_UNIT}
     if len(units) == 1:
         return f"{_number(one.scale)} × ({name}) [{units.pop()}]"
     return f"{_number(one.scale)} × ({name} [{field.unit}])"
@@ -197,11 +229,15 @@ def _verdict(one: Expectation, outcome: Outcome | None) -> str:
         what = f"at {one.begin:g} s"
     elif one.level is not None:
         what = f"passes {one.level:g} at"
+    what = "" if what == one.name else f": {what}"
     if outcome is None or outcome.value is None:
-        return f"{one.name}: {what}: no value: NOT met"
+        return f"{one.name}{what}: no value: NOT met"
     expected = f"at most {outcome.within:.3g}"
     if one.measure not in DISTANCES:
         expected = f"expected {outcome.reference:.4g} ± {outcome.within:.2g}"
     unit = "" if one.unit == "1" else f" {one.unit}"
     verdict = "met" if outcome.met else "NOT met" if one.required else "not met, not required"
-    return f"{one.name}: {what} {outcome.value:.4g}, {expected}{unit}: {verdict}"
+    share = ""
+    if outcome.within:
+        share = f", {abs(outcome.value - outcome.reference) / outcome.within:.0%} of the tolerance"
+    return f"{one.name}{what} {outcome.value:.4g}, {expected}{unit}: {verdict}{share}"

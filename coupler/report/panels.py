@@ -12,8 +12,9 @@ LARGEST = 6.5  # inches, edge of a panel that shows a place
 STRIP = 0.5  # height over width of such a panel that may be twice as wide
 CURVES, HEIGHT = 5.2, 3.2  # inches, width and height of a panel of curves
 SMALLEST = 1.4  # inches, height of a panel that shows a place, if its width allows
-AROUND = (0.8, 0.75)  # inches, what axes take beside and below a panel, and its title
+AROUND = (0.8, 0.95)  # inches, what axes take beside and below a panel, and its title
 MOST = 6  # columns
+GAP = 0.1  # inches, between rows of panels, and from their title
 DOTS = 120  # per inch
 
 
@@ -40,10 +41,11 @@ def _figure(
     # A run without pictures does not load matplotlib.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     (wide, tall), rows = panel, -(-count // columns)
     size = (columns * (wide + AROUND[0]) + 0.9, rows * (tall + AROUND[1]) + 0.5 + below)
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(h_pad=GAP))
     FigureCanvasAgg(figure)  # no window, and none of the global state of pyplot
     if title:
         figure.suptitle(title, fontsize=12, wrap=True)

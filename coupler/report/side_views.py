@@ -13,6 +13,7 @@ from quintet.coupler.report.panels import place_panels, save
 from quintet.coupler.report.view_drawing import (
     MARK,
     add_legend,
+    bar_label,
     clipped_ends,
     colour_scales,
     diameters,
@@ -38,6 +39,7 @@ def side_views(
     title: str = "",
     colours: Sequence[str] = (),
     region: Region | None = None,
+    displacement_scale: float = 1.0,
 ) -> Path:
     """Draw the side view of a run, one panel for each time.
 
@@ -57,6 +59,8 @@ def side_views(
     region : two corners, m, optional
         Of the box that is shown; particles, and faces that show a field, are cut away in front of
         it, along y.
+    displacement_scale : float
+        How many times as large displacements are drawn, of components that show them.
 
     Returns
     -------
@@ -68,12 +72,15 @@ def side_views(
         raise SceneError(f"run {run}: a picture needs a .vtkhdf file with steps, and a time.")
     fields = dict(one.split(".", 1) for one in colours)
     found = moments(files, times)
-    views = [[_within(read(path, time, fields), region) for path in files] for time in found]
+    views = [
+        [_within(read(path, time, fields, displacement_scale), region) for path in files]
+        for time in found
+    ]
     still = walls(run)
     low, high = _limits(views, still, region)
     wide, tall = high - low
     stretch = max(1.0, wide / tall * LOWEST)
-    text = f"{title}\n{_said(views, region, stretch)}".strip()
+    text = f"{title}\n{_said(region, stretch, displacement_scale)}".strip()
     figure, panels = place_panels(len(views), stretch * tall / wide, text)
     scales = colour_scales(views)
     sizes = diameters(views[0])
@@ -85,36 +92,32 @@ def side_views(
         draw_walls(panel, still)
         draw_view(panel, view, scales, sizes)
     for one, scale in scales.items():
-        figure.colorbar(
-            scale, ax=panels, label=one.label, extend=clipped_ends(scale, views, one),
-            shrink=0.8, aspect=30, pad=0.02,
+        bar = figure.colorbar(
+            scale, ax=panels, label=bar_label(scale, views, one),
+            extend=clipped_ends(scale, views, one), shrink=0.8, aspect=30, pad=0.02,
         )  # fmt: skip
-    add_legend(figure, views[0], bool(still))
+        bar.formatter.set_powerlimits((-3, 4))
+    add_legend(figure, views[0], still)
     return save(figure, out)
 
 
-def _said(views: Sequence[Sequence[Shown]], region: Region | None, stretch: float) -> str:
-    """Where one looks from, and how far the picture is stretched."""
-    stretched = f"z drawn {stretch:.2g} times as long as x" if stretch > 1.0 else ""
-    return ", ".join(one for one in (_eye(views, region), stretched) if one)
+def _said(region: Region | None, stretch: float, displacement_scale: float) -> str:
+    """Where one looks from, what is cut off, and what is not drawn to scale."""
+    said = ["side view along y"]
+    if region is not None:
+        said.append(
+            f"a part of the scene, with particles from y = {region[0][1]:g} to {region[1][1]:g} m"
+        )
+    if displacement_scale != 1.0:
+        said.append(f"displacements drawn {displacement_scale:g} times as large")
+    if stretch > 1.0:
+        said.append(f"z drawn {stretch:.2g} times as long as x")
+    return ", ".join(said)
 
 
 def _ticks(figure: Any, panel: Any) -> int:
     """Numbers that have room along the x axis of a panel."""
     return max(2, int(1.2 * figure.get_figwidth() / panel.get_subplotspec().get_gridspec().ncols))
-
-
-def _eye(views: Sequence[Sequence[Shown]], region: Region | None) -> str:
-    """Where one looks from; nothing to say in two dimensions."""
-    y = np.concatenate([_every_corner(one)[:, 1] for view in views for one in view])
-    if not len(y) or float(np.ptp(y)) < 1e-9 * max(1.0, float(np.abs(y).max())):
-        return ""
-    cut = f", particles from y = {region[0][1]:g} to {region[1][1]:g} m" if region else ""
-    return f"side view along y{cut}"
-
-
-def _every_corner(shown: Shown) -> Array:
-    return np.concatenate([np.zeros((0, 3)), shown.points, *shown.faces])
 
 
 def _within(shown: Shown, region: Region | None) -> Shown:

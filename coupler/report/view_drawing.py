@@ -15,6 +15,7 @@ LIGHT = np.array([-0.4, -0.8, 0.6])  # towards the light; the eye looks along +y
 PLAIN = ("#ccaa7a", "#8fb0c9", "#b5c98f", "#c99a8f")  # of what no field colours, by component
 MAPS = ("viridis", "plasma", "cividis", "inferno")  # of quantities
 WALL, BACK = "#444444", "#9aa5ad"  # walls seen from their edge, and from their face
+BEHIND = 0.12  # opacity of the shade of walls
 CLIPPED = 0.5  # % of all values that may be beyond either end of the colours
 ENOUGH = 1000  # values, of which a few may be clipped
 OVERLAP = 1.3  # diameter of a particle over the spacing: hardly any white between them
@@ -26,6 +27,11 @@ FEW = 3000  # spheres or faces that have an outline
 def is_mark(shown: Shown) -> bool:
     """Whether points of a component are few and of no size, so that they are drawn as marks."""
     return bool(len(shown.points)) and not shown.radius.any() and not spacing(shown.points)
+
+
+def _is_named(shown: Shown) -> bool:
+    """Whether a component's name stands beside its points."""
+    return is_mark(shown) and len(shown.points) <= NAMED
 
 
 def colour_scales(views: Sequence[Sequence[Shown]]) -> dict[Quantity, Any]:
@@ -60,8 +66,15 @@ def _values(views: Sequence[Sequence[Shown]], one: Quantity | None) -> Array:
 def clipped_ends(scale: Any, views: Sequence[Sequence[Shown]], one: Quantity) -> str:
     """Ends of a colour bar beyond which there are values: they have the colour of that end."""
     values = _values(views, one)
-    ends = values.min() < scale.norm.vmin, values.max() > scale.norm.vmax
+    ends = bool(values.min() < scale.norm.vmin), bool(values.max() > scale.norm.vmax)
     return {(True, True): "both", (True, False): "min", (False, True): "max"}.get(ends, "neither")
+
+
+def bar_label(scale: Any, views: Sequence[Sequence[Shown]], one: Quantity) -> str:
+    """Name and unit of a quantity, and how many of its values are beyond the colours."""
+    values = _values(views, one)
+    beyond = np.mean((values < scale.norm.vmin) | (values > scale.norm.vmax))
+    return f"{one.label}; {100.0 * beyond:.2g} % of values are beyond" if beyond else one.label
 
 
 def draw_walls(panel: Any, still: Sequence[Array]) -> None:
@@ -73,7 +86,7 @@ def draw_walls(panel: Any, still: Sequence[Array]) -> None:
     edge_on = [_is_flat(f) for f in flat]
     lines = [_ends(f) for f, on in zip(flat, edge_on, strict=True) if on]
     faces = [f for f, on in zip(flat, edge_on, strict=True) if not on]
-    panel.add_collection(PolyCollection(faces, facecolors=BACK, alpha=0.12, zorder=0), False)
+    panel.add_collection(PolyCollection(faces, facecolors=BACK, alpha=BEHIND, zorder=0), False)
     panel.add_collection(LineCollection(lines, colors=WALL, linewidths=2.0, zorder=4), False)
 
 
@@ -131,7 +144,7 @@ def _draw_points(
     else:
         circles.set_facecolor(plain)
     panel.add_collection(circles, autolim=False)
-    if is_mark(shown) and len(shown.points) <= NAMED:
+    if _is_named(shown):
         for x, _, z in shown.points:
             panel.annotate(shown.name, (x, z), (14, 0), textcoords="offset points", va="center")
 
@@ -156,14 +169,21 @@ def _draw_faces(panel: Any, shown: Shown, scales: Mapping[Quantity, Any], plain:
 
 def _shade(corners: Array) -> float:
     """Brightness of a face under diffuse light."""
-    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    return _brightness(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
+
+
+def _brightness(normal: Array) -> float:
     cosine = abs(float(normal @ LIGHT)) / max(float(np.linalg.norm(normal)), 1e-300)
     return 0.65 + 0.35 * min(cosine / float(np.linalg.norm(LIGHT)), 1.0)
 
 
-def add_legend(figure: Any, view: Sequence[Shown], with_walls: bool) -> None:
-    """Say below the panels which component is what."""
+FRONT = _brightness(np.array([0.0, -1.0, 0.0]))  # of faces towards the eye
+
+
+def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Array]) -> None:
+    """Say below the panels which component is what; points with names beside them need no more."""
     # A run without pictures does not load matplotlib.
+    from matplotlib.colors import to_rgb
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -171,9 +191,13 @@ def add_legend(figure: Any, view: Sequence[Shown], with_walls: bool) -> None:
     for place, shown in enumerate(view):
         plain, coloured = PLAIN[place % len(PLAIN)], shown.quantity is not None
         if shown.faces:
-            handles.append(Patch(facecolor=plain, edgecolor="black", label=shown.name))
-        elif len(shown.points):
-            by = f" (by {shown.quantity.name})" if coloured and shown.quantity else ""
+            front: Any = (FRONT * np.array(to_rgb(plain))).tolist()
+            by = ""
+            if shown.face_values is not None and shown.quantity:
+                front, by = "none", f" (coloured by {shown.quantity.name})"
+            handles.append(Patch(facecolor=front, edgecolor="black", label=shown.name + by))
+        elif len(shown.points) and not _is_named(shown):
+            by = f" (coloured by {shown.quantity.name})" if coloured and shown.quantity else ""
             what = "spheres" if shown.radius.any() else "particles" if len(shown.points) > 1 else ""
             text = shown.name if what in ("", shown.name) else f"{shown.name}: {what}"
             colour = "none" if coloured else plain
@@ -181,6 +205,13 @@ def add_legend(figure: Any, view: Sequence[Shown], with_walls: bool) -> None:
                 Line2D([], [], marker="o", linestyle="", markerfacecolor=colour,
                        markeredgecolor="black", label=text + by)
             )  # fmt: skip
-    if with_walls:
-        handles.append(Line2D([], [], color=WALL, linewidth=2.0, label="walls"))
+    if still:
+        shaded = any(not _is_flat(face[:, [0, 2]]) for face in still)
+        if shaded:
+            back = (*to_rgb(BACK), BEHIND)
+            handles.append(Patch(facecolor=back, edgecolor=WALL, linewidth=2.0, label="walls"))
+        else:
+            handles.append(Line2D([], [], color=WALL, linewidth=2.0, label="walls"))
+    if not handles:
+        return
     figure.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)

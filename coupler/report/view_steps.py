@@ -11,6 +11,7 @@ from quintet.coupler.files.run_files import VIEWS, WALLS
 from quintet.interfaces.component import Array
 
 SAMPLE = 24  # points from whose nearest neighbours the spacing is estimated; fewer have none
+DISPLACEMENT = "displacement"  # from where points were at the start
 NAMES = {"velocity": "speed"}  # of the magnitude of a vector
 
 
@@ -62,14 +63,20 @@ def moments(files: Sequence[Path], wanted: Sequence[float]) -> list[float]:
     return sorted({float(known[np.abs(known - time).argmin()]) for time in wanted})
 
 
-def read(path: Path, time: float, fields: Mapping[str, str]) -> Shown:
+def read(
+    path: Path, time: float, fields: Mapping[str, str], displacement_scale: float = 1.0
+) -> Shown:
     """Read what a component shows at the step next to a time [s].
 
     `fields` names what components are coloured by. Where it does not name one, points take the
-    first field of their view, and faces have no values.
+    first field of their view, and faces have no values. Displacements, where they are shown, are
+    taken so many times as large.
     """
     step = int(np.abs(vtkhdf_reader.times(path) - time).argmin())
     view, units = vtkhdf_reader.read_step(path, step)[1], vtkhdf_reader.units(path)
+    if displacement_scale != 1.0 and DISPLACEMENT in view:
+        moved = view["points"] + (displacement_scale - 1.0) * view[DISPLACEMENT]
+        view = {**view, "points": moved}
     name = path.name.removesuffix(VIEWS)
     first = "velocity" if "velocity" in units else next(iter(units), "")
     field = fields.get(name, first if any(units.values()) or first == "velocity" else "")

@@ -50,10 +50,9 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
     """Draw the pictures of a scene, and its time series against references."""
     output, title = scene.file.output, scene.headline
     if output.pictures and view_files(folder):
-        colours, region = output.colours, output.region
-        out = folder / PICTURES[0]
+        out, scale = folder / PICTURES[0], output.displacement_scale
         with told(out):
-            side_views(folder, out, output.pictures, title, colours, region)
+            side_views(folder, out, output.pictures, title, output.colours, output.region, scale)
     if found:
         out, values = folder / PICTURES[1], bool(output.pictures)
         with Recording(folder / "recording.h5") as recording, told(out):

@@ -79,6 +79,8 @@ class OutputSettings:
     region : m
         Lowest and highest corner of the box that pictures show; particles in front of it, along y,
         are left out, and so are faces that show a field. If not given all is shown.
+    displacement_scale : 1
+        How many times as large pictures draw displacements, of components that show them.
     totals : s
         Between two rows of the ledger; 0: with the views.
     snapshots : s
@@ -93,6 +95,7 @@ class OutputSettings:
     pictures: tuple[NotNegative, ...] = ()
     colours: tuple[str, ...] = ()
     region: tuple[Vector, Vector] | None = None
+    displacement_scale: Positive = 1.0
     totals: NotNegative = 0.0
     snapshots: NotNegative = 0.0
     record: bool = True

@@ -137,7 +137,7 @@ def sign(k, axis):  # type: ignore[no-untyped-def]
 
 @njit(**INLINED)
 def average_shear(work, row, first, axis):  # type: ignore[no-untyped-def]
-    """Average a shear over the points on each side along the axis across which it does not shear."""
+    """Average a shear over the points that differ along its own two axes."""
     for side in range(2):
         total, weights = 0.0, 0.0
         for k in range(POINTS):

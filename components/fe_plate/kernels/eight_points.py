@@ -1,11 +1,11 @@
 """Elements with eight quadrature points over a step: strains assumed so that bending is exact.
 
-Lanes are points, eight to an element. What trilinear displacements strain falsely is left out of the
-rates of strain, along axes that turn with the element: a shear strain is averaged over the points
-that differ along its own two axes, so that bending shears nothing; and along each axis the strain
-is let vary as the other two do, times -ν/(1 - ν), as Poisson's ratio asks for in bending, or -1
-once the element has yielded, so that plastic flow, which keeps its volume, does not lock. Forces are
-given by the transpose. All that is added has no mean, so that the patch test is passed.
+Lanes are points, eight to an element. What trilinear displacements strain falsely is left out of
+the rates of strain, along axes that turn with the element: a shear strain is averaged over the
+points that differ along its own two axes, so that bending shears nothing; and along each axis the
+strain is let vary as the other two do, times -ν/(1 - ν), as Poisson's ratio asks for in bending,
+or -1 once the element has yielded, so that plastic flow, which keeps its volume, does not lock.
+Forces are given by the transpose. What is added has no mean, so that the patch test is passed.
 
 Papers: Simo & Hughes, J. Appl. Mech. 53 (1986) 51 (assumed strains); Belytschko & Bindeman, Comput.
 Methods Appl. Mech. Eng. 105 (1993) 225 (strains of bending).

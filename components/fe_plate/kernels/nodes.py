@@ -9,7 +9,7 @@ from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def kick_and_drift(model: Model, state: State, dt: float, damping: float, loading: float) -> float:
+def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> float:
     """Advance velocities by half a step and positions by a whole one; return the loads' work [J].
 
     Parameters
@@ -18,9 +18,6 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float, loadin
     dt : float, s
     damping : float, 1/s
         α: velocities decay by exp(-α dt/4) here and at the step's end.
-    loading : float, 1
-        How many halves of the step the loads act in here: 1, or 2 for loads that were found at the
-        step's beginning, as those of glued particles are.
     """
     decay, work = math.exp(-0.25 * damping * dt), 0.0
     position, velocity, mean = state.position, state.velocity, state.mean_velocity
@@ -32,9 +29,9 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float, loadin
         half = 0.5 * dt * inverse[i]
         fx, fy, fz = load[i, 0], load[i, 1], load[i, 2]
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
-        u = (decay * velocity[i, 0] + half * (internal[i, 0] + loading * fx) + gx) * free[i, 0]
-        v = (decay * velocity[i, 1] + half * (internal[i, 1] + loading * fy) + gy) * free[i, 1]
-        w = (decay * velocity[i, 2] + half * (internal[i, 2] + loading * fz) + gz) * free[i, 2]
+        u = (decay * velocity[i, 0] + half * (internal[i, 0] + fx) + gx) * free[i, 0]
+        v = (decay * velocity[i, 1] + half * (internal[i, 1] + fy) + gy) * free[i, 1]
+        w = (decay * velocity[i, 2] + half * (internal[i, 2] + fz) + gz) * free[i, 2]
         for k in range(walls.shape[0]):
             a, b, c = walls[k, 0], walls[k, 1], walls[k, 2]
             gap = a * x + b * y + c * z - walls[k, 3]
@@ -53,7 +50,7 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float, loadin
 
 @njit(**EXACT)
 def kick(
-    model: Model, state: State, dt: float, damping: float, loading: float, ahead: float
+    model: Model, state: State, dt: float, damping: float, ahead: float
 ) -> tuple[float, float]:
     """Sum the elements' forces on nodes, advance velocities by half a step.
 
@@ -62,8 +59,6 @@ def kick(
     model, state
     dt : float, s
     damping : float, 1/s
-    loading : float, 1
-        1, or 0 for loads that have acted already.
     ahead : float, s
         How long before a node meets a rigid wall its speed counts.
 
@@ -88,9 +83,9 @@ def kick(
             fz -= flat[row, 2]
         internal[i, 0], internal[i, 1], internal[i, 2] = fx, fy, fz
         half = 0.5 * dt * inverse[i]
-        u = (mean[i, 0] + half * (fx + loading * load[i, 0]) + gx) * (decay * free[i, 0])
-        v = (mean[i, 1] + half * (fy + loading * load[i, 1]) + gy) * (decay * free[i, 1])
-        w = (mean[i, 2] + half * (fz + loading * load[i, 2]) + gz) * (decay * free[i, 2])
+        u = (mean[i, 0] + half * (fx + load[i, 0]) + gx) * (decay * free[i, 0])
+        v = (mean[i, 1] + half * (fy + load[i, 1]) + gy) * (decay * free[i, 1])
+        w = (mean[i, 2] + half * (fz + load[i, 2]) + gz) * (decay * free[i, 2])
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = u, v, w
         squares += u * u + v * v + w * w
         for k in range(walls.shape[0]):

@@ -13,7 +13,7 @@ from quintet.components.shared.materials.equation_of_state import (
 from quintet.components.shared.materials.fracture import damage_growth, is_torn
 from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.materials.strength import returned, turned_and_strained
-from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.shared.numba_options import EXACT, FAST, INNER
 from quintet.components.sph_solid.laws import times
 from quintet.components.sph_solid.state import Array, Whole
 
@@ -49,7 +49,7 @@ def power(s, m):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**EXACT)
+@njit(**FAST)
 def advance(
     first: int, last: int, rows: Whole, points: Points, gradient: Array, correction: Array,
     law: Solid, dt: float,

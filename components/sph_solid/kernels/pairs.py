@@ -3,10 +3,9 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
 from numba import njit
 
-from quintet.components.shared.float_bits import bits_of, number_of
+from quintet.components.shared.float_bits import number_of
 from quintet.components.shared.numba_options import FAST
 from quintet.components.shared.packing import (
     empty_rows,
@@ -15,16 +14,13 @@ from quintet.components.shared.packing import (
     pack_rows,
 )
 from quintet.components.shared.search.neighbours import Lists
-from quintet.components.shared.smoothing.cubic_spline import ONE
-from quintet.components.shared.smoothing.smoothing import gradient
-from quintet.components.sph_solid.laws import (
-    SINGULAR,
-    PairLaw,
-    approach,
-    inverse,
-    times,
-    viscous_pressure,
+from quintet.components.sph_solid.kernels.sums import (
+    corrected,
+    own_stress,
+    sum_forces,
+    sum_gradients,
 )
+from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.state import Array
 
 
@@ -67,39 +63,10 @@ def velocity_gradients(
         outside = out_of_reach(x, law.smoothing.length), y, z, 0.0
         count = pack_rows(begin[i], end[i], neighbour, place, outside, near)
         pack_rows(begin[i], end[i], neighbour, motion, (u, v, w, 0.0), moves)
-        m00, m01, m02, m10, m11, m12, m20, m21, m22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        kxx, kyy, kzz, kxy, kyz, kzx, broken = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for k in range(count):
-            dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
-            r2 = dx * dx + dy * dy + dz * dz
-            per_r = ONE / math.sqrt(r2 + law.smoothing.tiny)
-            weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
-            gx, gy, gz = weight * dx, weight * dy, weight * dz
-            du, dv, dw = moves[k, 0] - u, moves[k, 1] - v, moves[k, 2] - w
-            m00 += du * gx
-            m01 += du * gy
-            m02 += du * gz
-            m10 += dv * gx
-            m11 += dv * gy
-            m12 += dv * gz
-            m20 += dw * gx
-            m21 += dw * gy
-            m22 += dw * gz
-            if law.corrected is not None:
-                kxx -= dx * gx
-                kyy -= dy * gy
-                kzz -= dz * gz
-                kxy -= dx * gy
-                kyz -= dy * gz
-                kzx -= dz * gx
-                broken -= weight * moves[k, 3]
-        found = m00, m01, m02, m10, m11, m12, m20, m21, m22
+        found, matrix, broken = sum_gradients(count, x, y, z, u, v, w, near, moves, law)
         if law.corrected is not None:
-            matrix, determinant = inverse((kxx, kyy, kzz, kxy, kyz, kzx), law)
-            if motion[i, 3] == 0.0 and broken == 0.0 and determinant > SINGULAR:
-                found = times(found, matrix)
-            else:
-                matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            whole = motion[i, 3] == 0.0 and broken == 0.0
+            found, matrix = corrected(found, matrix, whole, law)
             for d in range(6):
                 correction[i, d] = matrix[d]
         for d in range(9):
@@ -146,55 +113,26 @@ def accelerations(
         outside = out_of_reach(x, law.smoothing.length), y, z, 0.0
         count = pack_rows(begin[i], end[i], neighbour, place, outside, near)
         pack_rows(begin[i], end[i], neighbour, motion, (u, v, w, sound), moves)
-        fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, np.int64(0)
-        if law.corrected is None:
-            t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
-            t4, t5, density, start = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
-            padding = t0, t1, t2, t3, t4, t5, density, start
-            pack_rows(begin[i], end[i], neighbour, stress, padding, tension)
-            for k in range(count):
-                dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
-                du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
-                r2 = dx * dx + dy * dy + dz * dz
-                dot = dx * du + dy * dv + dz * dw
-                per_r = ONE / math.sqrt(r2 + law.smoothing.tiny)
-                weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
-                mu = approach(r2, dot, law)
-                q = viscous_pressure(
-                    mu, sound + moves[k, 3], density + tension[k, 6], start * tension[k, 7], law
-                )
-                fastest = max(fastest, bits_of(mu))
-                xx, yy, zz = t0 + tension[k, 0] - q, t1 + tension[k, 1] - q, t2 + tension[k, 2] - q
-                xy, yz, zx = t3 + tension[k, 3], t4 + tension[k, 4], t5 + tension[k, 5]
-                fx += weight * (xx * dx + xy * dy + zx * dz)
-                fy += weight * (xy * dx + yy * dy + yz * dz)
-                fz += weight * (zx * dx + yz * dy + zz * dz)
-                heat += weight * q * dot
-        else:
-            t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
-            t4, t5, t6, t7 = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
-            t8, density, start = stress[i, 8], stress[i, 9], stress[i, 10]
-            filling = t0, t1, t2, t3, t4, t5, t6, t7, t8, density, start, 0.0
-            pack_rows(begin[i], end[i], neighbour, stress, filling, tension)
-            for k in range(count):
-                dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
-                du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
-                r2 = dx * dx + dy * dy + dz * dz
-                dot = dx * du + dy * dv + dz * dw
-                per_r = ONE / math.sqrt(r2 + law.smoothing.tiny)
-                weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
-                mu = approach(r2, dot, law)
-                q = viscous_pressure(
-                    mu, sound + moves[k, 3], density + tension[k, 9], start * tension[k, 10], law
-                )
-                fastest = max(fastest, bits_of(mu))
-                a0, a1, a2 = t0 + tension[k, 0] - q, t1 + tension[k, 1], t2 + tension[k, 2]
-                a3, a4, a5 = t3 + tension[k, 3], t4 + tension[k, 4] - q, t5 + tension[k, 5]
-                a6, a7, a8 = t6 + tension[k, 6], t7 + tension[k, 7], t8 + tension[k, 8] - q
-                fx += weight * (a0 * dx + a1 * dy + a2 * dz)
-                fy += weight * (a3 * dx + a4 * dy + a5 * dz)
-                fz += weight * (a6 * dx + a7 * dy + a8 * dz)
-                heat += weight * q * dot
+        own, density, start, filling = own_stress(stress, i, law.corrected)
+        pack_rows(begin[i], end[i], neighbour, stress, filling, tension)
+        fx, fy, fz, heat, fastest = sum_forces(
+            count,
+            x,
+            y,
+            z,
+            u,
+            v,
+            w,
+            sound,
+            density,
+            start,
+            own,
+            near,
+            moves,
+            tension,
+            law,
+            law.corrected,
+        )
         mu = number_of(fastest)
         per = 1.0 / start
         fx, fy, fz = fx * per, fy * per, fz * per

@@ -193,7 +193,7 @@ def test_the_step_is_stable_below_twice_over_the_greatest_frequency(share, grows
     made = block((6, 5, 5), **CALM)
     dt = 2.0 / greatest_frequency(made)
     told = made.state.bound / dt
-    assert 0.3 * told < 1.0  # with the courant number that is given if none is said
+    assert 0.5 * told < 0.8  # with the courant number that is given if none is said
     random = np.random.default_rng(1)
     made.state.velocity[:] = 1e-6 * random.normal(size=made.state.position.shape)
     start = np.abs(made.state.velocity).max()

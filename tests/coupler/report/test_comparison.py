@@ -1,5 +1,7 @@
 """Computed curves are drawn against what is expected of them, one panel for each curve."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -62,13 +64,45 @@ def test_curves_have_axes_with_names_and_units(figure):
     assert drawn.get_suptitle() == "a scene"
     assert [panel.get_xlabel() for panel in drawn.axes] == ["t [s]", "t [s]"]
     names = [panel.get_ylabel() for panel in drawn.axes]
-    assert names == ["cubes motion position x [m]", "cubes motion position x + 0.5 m [m]"]
+    assert names == ["cubes: position x [m]", "cubes: position x, plus 0.5 m [m]"]
+
+
+def test_a_curve_is_called_what_the_scene_calls_it(figure):
+    named = replace(END, quantity="way of the cube")
+    (panel,) = figure(X_RMS, named, values=True).axes
+    assert panel.get_ylabel() == "way of the cube [m]"
+
+
+def test_a_title_says_how_much_of_the_tolerance_is_used_up(figure):
+    (panel,) = figure(END, values=True).axes
+    assert panel.get_title().endswith("met, 0% of the tolerance")
+
+
+def test_an_expected_oscillation_has_the_computed_phase(tmp_path, monkeypatch):
+    times = np.linspace(0.0, 4.0, 401)
+    with Recorder(tmp_path / "recording.h5", "", "") as recorder:
+        recorder.component("cubes", (MOTION,), {})
+        for k, t in enumerate(times):
+            place = 0.3 + 0.1 * np.exp(-0.2 * t) * np.sin(5.0 * t)
+            recorder.add("cubes", Instant(t, k), {"motion.position": np.array([[place, 0.0, 0.0]])})
+    period = Expectation(name="period", measure="period", value=1.3, within=1.0, **COMMON)
+    kept = []
+    monkeypatch.setattr(drawing, "save", lambda figure, out: kept.append(figure) or out)
+    with Recording(tmp_path) as recording:
+        outcomes = [evaluate(period, recording, tmp_path)]
+        comparison(tmp_path, [period], outcomes, recording, tmp_path / "c.png", values=True)
+    line = kept[0].axes[0].get_lines()[1]
+    assert line.get_label() == "with the expected period"
+    t, x = line.get_data()
+    expected = 0.3 + 0.1 * np.exp(-0.2 * t) * np.sin(2.0 * np.pi / 1.3 * t)
+    assert x == pytest.approx(expected, abs=1e-6)
 
 
 def test_single_values_are_drawn_where_the_scene_wants_pictures(figure):
     assert figure(TOP, END) is None
     band, point = figure(TOP, END, values=True).axes
     assert band.get_lines()[1].get_ydata().tolist() == [1.0, 1.0]
+    assert not np.any([line.get_label() == "mean of the computed" for line in band.get_lines()])
     assert point.get_lines()[1].get_xydata().tolist() == [[0.9, 0.9]]
 
 

@@ -43,6 +43,18 @@ def _walls(path, low, high, faces):
     file.close()
 
 
+def test_displacements_are_drawn_as_many_times_as_large_as_asked_for(figure, tmp_path):
+    moved = np.full((8, 3), 1e-3)
+    file = VtkHdf(tmp_path / "plate.vtkhdf", {"displacement": "m"})
+    file.append(0.0, {"points": CORNERS + moved, "cells": FACES, "displacement": moved})
+    file.close()
+    drawn = figure([0.0], displacement_scale=100.0)
+    assert "displacements drawn 100 times as large" in drawn.get_suptitle()
+    shown = read(tmp_path / "plate.vtkhdf", 0.0, {}, 100.0)
+    corners = np.concatenate(shown.faces)
+    assert corners.min(axis=0) == pytest.approx(CORNERS.min(axis=0) + 0.1)
+
+
 @pytest.fixture
 def figure(monkeypatch, tmp_path):
     """Draw, and return the figure as matplotlib holds it."""

@@ -1,0 +1,27 @@
+"""Impacts of bodies of particles, coarse: a ball on a plate, a bar on a wall."""
+
+from collections.abc import Callable
+
+import pytest
+
+Run = Callable[..., dict]
+
+
+def test_a_ball_at_7400_m_per_s_leaves_its_crater_and_keeps_the_energy(run_scene: Run) -> None:
+    found = run_scene("al_ball_7400", "--preset", "quick")
+    assert all(one["met"] for one in found["expect"]), found["expect"]
+    assert abs(found["ledger"]["energy_drift"]) < 3e-3
+
+
+def test_a_bar_has_its_published_length_foot_and_strain(run_scene: Run) -> None:
+    found = run_scene("taylor_bar_sph", "--preset", "quick")
+    assert all(one["met"] for one in found["expect"]), found["expect"]
+    assert abs(found["ledger"]["energy_drift"]) < 3e-3
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("preset", ["no_spall", "quarter"])
+def test_the_ball_without_spall_and_in_three_dimensions(run_scene: Run, preset: str) -> None:
+    found = run_scene("al_ball_7400", "--preset", preset)
+    assert all(one["met"] for one in found["expect"]), found["expect"]
+    assert abs(found["ledger"]["energy_drift"]) < 0.03
