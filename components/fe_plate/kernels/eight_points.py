@@ -63,6 +63,7 @@ OFF = 1.0 / math.sqrt(3.0)  # of the points from the middle, in ξ, η and ζ
 XI, ETA, ZETA = (
     OFF * np.tile(np.where((np.arange(POINTS) >> bit) & 1, 1.0, -1.0), PER) for bit in (0, 1, 2)
 )
+ROUNDING = 1e-14  # of volumes: at rest nothing is strained
 CUBE = math.sqrt(8.0 / 3.0)  # edge of a cube times √Σ|∇N|² at its points
 
 
@@ -207,6 +208,7 @@ def compare_volumes(points, base, start, begin, work, law, dt):  # type: ignore[
             at = base + DILATION * LANES + k
             points[at] += dt * (trace_at(work, k) - mean) if live else 0.0
             ratio = now / before * exponential(points[at])
+            ratio = 1.0 if abs(ratio - 1.0) < ROUNDING else ratio
             own = work[VOLUME * LANES + k] / start[begin + k]
             work[RATIO * LANES + k] = ratio if live else 1.0
             work[SPECIFIC * LANES + k] = (own if live else 1.0) / law.density

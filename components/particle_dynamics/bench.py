@@ -1,0 +1,46 @@
+"""Throughput of lattices in thermal motion; each point has up to 16 pairs within the cut-off."""
+
+from typing import Any
+
+from quintet.interfaces.manifest import BenchCase
+
+
+def lattice(nx: int, ny: int, nz: int) -> dict[str, Any]:
+    """Table of a scene: a warm open lattice of so many points, damped within the cut-off."""
+    return {
+        "lattice": {
+            "cells": [nx - 1, ny - 1, nz - 1],
+            "spacing": 1.0,
+            "mass": 1.0,
+            "temperature": 3e-5,
+        },
+        "boltzmann": 1.0,
+        "seven_roots": {"top_frequency": 0.15915494309189535},
+        "damping": {"coefficient": 1e-4},
+    }
+
+
+def pairs(nx: int, ny: int, nz: int) -> int:
+    """Pairs of points at most two spacings apart."""
+    found = 0
+    for i in range(-2, 3):
+        for j in range(-2, 3):
+            for k in range(-2, 3):
+                if 0 < i * i + j * j + k * k <= 4:
+                    found += max(nx - abs(i), 0) * max(ny - abs(j), 0) * max(nz - abs(k), 0)
+    return found // 2
+
+
+def cases() -> tuple[BenchCase, ...]:
+    """The paper's bar, a lattice in a processor's cache, and one that is not."""
+    sizes = {"160": (10, 4, 4), "24k": (60, 20, 20), "100k": (98, 32, 32)}
+    return tuple(
+        BenchCase(
+            f"lattice, {name}",
+            lattice(*size),
+            20,
+            max(50, 2_000_000 // (size[0] * size[1] * size[2]) // 10),
+            "point-steps/s",
+        )
+        for name, size in sizes.items()
+    )

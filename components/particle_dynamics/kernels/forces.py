@@ -1,0 +1,197 @@
+"""Forces and energies of all pairs; each pair stands once in the lists."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit, types
+from numba.extending import overload
+from numpy.typing import NDArray
+
+from quintet.components.particle_dynamics.laws import (
+    damping_weight,
+    force_over_distance,
+    pair_energy,
+)
+from quintet.components.shared.numba_options import EXACT, FAST
+from quintet.interfaces.component import Array
+
+Whole = NDArray[np.int64]
+
+
+class Pairs(NamedTuple):
+    """Lists of neighbours j of points i, each pair once: neighbour[begin[i]:begin[i + 1]]."""
+
+    begin: Whole  # (n + 1,)
+    neighbour: NDArray[np.int32]  # (p,)
+
+
+def opposed(
+    damping: Any, velocity: Any, i: int, j: int, x: float, y: float, z: float
+) -> tuple[float, float]:
+    """Force [N] of the damping of a pair, over its distance; and what it dissipates [W]."""
+    raise NotImplementedError("it is called by compiled functions only")
+
+
+@overload(opposed, inline="always")
+def _opposed(damping, velocity, i, j, x, y, z):  # type: ignore[no-untyped-def]
+    if isinstance(damping, types.NoneType):
+        return lambda damping, velocity, i, j, x, y, z: (0.0, 0.0)
+
+    def along(damping, velocity, i, j, x, y, z):  # type: ignore[no-untyped-def]
+        r = math.sqrt(x * x + y * y + z * z)
+        opening = (
+            (velocity[i, 0] - velocity[j, 0]) * x
+            + (velocity[i, 1] - velocity[j, 1]) * y
+            + (velocity[i, 2] - velocity[j, 2]) * z
+        ) / r
+        push = damping_weight(damping, r) * opening
+        return push / r, push * opening
+
+    return along
+
+
+def shifted(period: Any, axis: int, x: float) -> float:
+    """Difference of coordinates [m] to the nearest image."""
+    raise NotImplementedError("it is called by compiled functions only")
+
+
+@overload(shifted, inline="always")
+def _shifted(period, axis, x):  # type: ignore[no-untyped-def]
+    if isinstance(period, types.NoneType):
+        return lambda period, axis, x: x
+    # Lengths of open sides are 0: nothing is then taken away.
+    return lambda period, axis, x: x - period[axis] * np.rint(x * period[axis + 3])
+
+
+@njit(**FAST)
+def sum_forces(
+    position: Array, velocity: Array, pairs: Pairs, law: Any, damping: Any, period: Any,
+    force: Array,
+) -> float:  # fmt: skip
+    """Sum the forces of all pairs.
+
+    Parameters
+    ----------
+    position, velocity : (n, 3) float array, m and m/s
+    pairs : Pairs
+    law : SevenRoots or ForceTable
+    damping : PairDamping or None
+    period : (6,) float array, m and 1/m, or None
+        Lengths of periodic sides and their inverses, 0 of open ones.
+    force : (n, 3) float array, N
+        Written.
+
+    Returns
+    -------
+    float
+        Power [W] that is dissipated.
+    """
+    begin, neighbour = pairs
+    longest = 1
+    for i in range(position.shape[0]):
+        longest = max(longest, begin[i + 1] - begin[i])
+    dx, dy, dz = np.empty(longest), np.empty(longest), np.empty(longest)
+    force[:] = 0.0
+    lost = 0.0
+    for i in range(position.shape[0]):
+        first, count = np.uint64(begin[i]), begin[i + 1] - begin[i]
+        x, y, z = position[i, 0], position[i, 1], position[i, 2]
+        for k in range(count):
+            j = np.uint64(neighbour[first + np.uint64(k)])
+            dx[k] = shifted(period, 0, x - position[j, 0])
+            dy[k] = shifted(period, 1, y - position[j, 1])
+            dz[k] = shifted(period, 2, z - position[j, 2])
+        fx, fy, fz = 0.0, 0.0, 0.0
+        # Of its own, so that the compiler makes vectors of it.
+        for k in range(count):
+            f = -force_over_distance(law, dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k])
+            if damping is not None:
+                j = neighbour[first + np.uint64(k)]
+                push, power = opposed(damping, velocity, i, j, dx[k], dy[k], dz[k])
+                f -= push
+                lost += power
+            dx[k] *= f
+            dy[k] *= f
+            dz[k] *= f
+            fx += dx[k]
+            fy += dy[k]
+            fz += dz[k]
+        for k in range(count):
+            j = np.uint64(neighbour[first + np.uint64(k)])
+            force[j, 0] -= dx[k]
+            force[j, 1] -= dy[k]
+            force[j, 2] -= dz[k]
+        force[i, 0] += fx
+        force[i, 1] += fy
+        force[i, 2] += fz
+    return lost
+
+
+@njit(**FAST)
+def damp_all_pairs(position: Array, velocity: Array, coefficient: float, force: Array) -> float:
+    """Add δ ṙ of all pairs, at whatever distance; return the power [W] that is dissipated."""
+    lost = 0.0
+    for i in range(position.shape[0]):
+        for j in range(i + 1, position.shape[0]):
+            x = position[i, 0] - position[j, 0]
+            y = position[i, 1] - position[j, 1]
+            z = position[i, 2] - position[j, 2]
+            u = velocity[i, 0] - velocity[j, 0]
+            v = velocity[i, 1] - velocity[j, 1]
+            w = velocity[i, 2] - velocity[j, 2]
+            opening = u * x + v * y + w * z
+            push = coefficient * opening / (x * x + y * y + z * z)
+            lost += push * opening
+            force[i, 0] -= push * x
+            force[i, 1] -= push * y
+            force[i, 2] -= push * z
+            force[j, 0] += push * x
+            force[j, 1] += push * y
+            force[j, 2] += push * z
+    return lost
+
+
+@njit(**EXACT)
+def sum_energies(position: Array, pairs: Pairs, law: Any, period: Any) -> float:
+    """Potential energy [J] of all pairs."""
+    found = 0.0
+    for i in range(position.shape[0]):
+        for k in range(pairs.begin[i], pairs.begin[i + 1]):
+            j = pairs.neighbour[k]
+            x = shifted(period, 0, position[i, 0] - position[j, 0])
+            y = shifted(period, 1, position[i, 1] - position[j, 1])
+            z = shifted(period, 2, position[i, 2] - position[j, 2])
+            found += pair_energy(law, x * x + y * y + z * z)
+    return found
+
+
+@njit(**EXACT)
+def count_near(
+    position: Array, pairs: Pairs, reach2: float, period: Any, near: Whole
+) -> None:  # fmt: skip
+    """Count for each point how many others are nearer than a squared distance [m2]."""
+    near[:] = 0
+    for i in range(position.shape[0]):
+        for k in range(pairs.begin[i], pairs.begin[i + 1]):
+            j = pairs.neighbour[k]
+            x = shifted(period, 0, position[i, 0] - position[j, 0])
+            y = shifted(period, 1, position[i, 1] - position[j, 1])
+            z = shifted(period, 2, position[i, 2] - position[j, 2])
+            if x * x + y * y + z * z < reach2:
+                near[i] += 1
+                near[j] += 1
+
+
+@njit(**EXACT)
+def count_intact(position: Array, bonds: Whole, spacing: float, period: Any) -> int:
+    """Count the bonds (b, 2) that are between 0.8 and 1.2 spacings [m] long."""
+    found = 0
+    for k in range(bonds.shape[0]):
+        i, j = bonds[k, 0], bonds[k, 1]
+        x = shifted(period, 0, position[i, 0] - position[j, 0])
+        y = shifted(period, 1, position[i, 1] - position[j, 1])
+        z = shifted(period, 2, position[i, 2] - position[j, 2])
+        r = math.sqrt(x * x + y * y + z * z) / spacing
+        found += int(0.8 < r < 1.2)
+    return found

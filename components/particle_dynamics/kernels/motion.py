@@ -1,0 +1,259 @@
+"""Steps of a lattice: velocity Verlet, or its threefold composition, with baths and collisions."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from quintet.components.particle_dynamics.kernels.forces import Pairs, damp_all_pairs, sum_forces
+from quintet.components.particle_dynamics.kernels.generator import (
+    State as Generator,
+)
+from quintet.components.particle_dynamics.kernels.generator import direction, normal, uniform
+from quintet.components.particle_dynamics.state import (
+    DISSIPATED,
+    LOST,
+    PULL_FIRST,
+    PULL_SECOND,
+    TIME,
+    WORK,
+    Bathed,
+    Driven,
+    Model,
+    State,
+)
+from quintet.components.shared.numba_options import EXACT
+from quintet.interfaces.component import Array
+
+EARLY = 0.6  # share of the skin at which lists are made anew: the rest is for the step that is made
+
+
+@njit(**EXACT)
+def constrain(driven: Driven, time: float, position: Array, velocity: Array) -> None:
+    """Set places and velocities of the driven pair along its axis to what is told at a time [s]."""
+    i, j, k = driven.first, driven.second, driven.axis
+    moved = driven.amplitude * math.sin(driven.frequency * time)
+    speed = driven.amplitude * driven.frequency * math.cos(driven.frequency * time)
+    if driven.is_free:
+        middle = 0.5 * (position[i, k] + position[j, k])
+        position[i, k] = middle + 0.5 * (driven.distance + moved)
+        position[j, k] = middle - 0.5 * (driven.distance + moved)
+        middle = 0.5 * (velocity[i, k] + velocity[j, k])
+        velocity[i, k], velocity[j, k] = middle + 0.5 * speed, middle - 0.5 * speed
+    else:
+        position[i, k] = driven.rest_first + driven.share_first * moved
+        position[j, k] = driven.rest_second - driven.share_second * moved
+        velocity[i, k] = driven.share_first * speed
+        velocity[j, k] = -driven.share_second * speed
+
+
+@njit(**EXACT)
+def drive(model: Model, time: float, acceleration: Array, energies: Array) -> None:
+    """Let the constraint accelerate the driven pair, and write the forces [N] that this takes."""
+    driven = model.driven
+    i, j, k = driven.first, driven.second, driven.axis
+    turning = driven.frequency * driven.frequency
+    told = -driven.amplitude * turning * math.sin(driven.frequency * time)
+    one, other = acceleration[i, k], acceleration[j, k]
+    if driven.is_free:
+        middle = 0.5 * (one + other)
+        acceleration[i, k], acceleration[j, k] = middle + 0.5 * told, middle - 0.5 * told
+    else:
+        acceleration[i, k] = driven.share_first * told
+        acceleration[j, k] = -driven.share_second * told
+    energies[PULL_FIRST] = model.mass * (acceleration[i, k] - one)
+    energies[PULL_SECOND] = model.mass * (acceleration[j, k] - other)
+
+
+@njit(**EXACT)
+def power_of_drive(driven: Driven, velocity: Array, energies: Array) -> float:
+    """Power [W] of the forces on the driven pair; 0 without one."""
+    if driven.first < 0:
+        return 0.0
+    first = energies[PULL_FIRST] * velocity[driven.first, driven.axis]
+    return first + energies[PULL_SECOND] * velocity[driven.second, driven.axis]
+
+
+@njit(**EXACT)
+def exchange_with_baths(
+    bathed: Bathed, mass: float, boltzmann: float, dt: float, state: State
+) -> None:
+    """Ornstein and Uhlenbeck's velocities after a step: the O of BAOAB (Leimkuhler & Matthews)."""
+    velocity = state.velocity
+    for b in range(bathed.point.shape[0]):
+        i, kept = bathed.point[b], math.exp(-bathed.rate[b] * dt)
+        width = math.sqrt(boltzmann * state.temperature[b] / mass * (1.0 - kept * kept))
+        for k in range(3):
+            old = velocity[i, k]
+            velocity[i, k] = kept * old + width * normal(state.generator)
+            state.heat[b] += 0.5 * mass * (velocity[i, k] * velocity[i, k] - old * old)
+
+
+@njit(**EXACT)
+def collide(bonds: Array, expected: float, velocity: Array, generator: Generator) -> None:
+    """Turn relative velocities of so many random pairs, in the mean, into random directions.
+
+    Masses are equal, so that momentum and energy of each pair stay as they are.
+    """
+    waited = -math.log(uniform(generator))
+    while waited < expected:
+        b = int(uniform(generator) * bonds.shape[0])
+        i, j = bonds[b, 0], bonds[b, 1]
+        x = velocity[i, 0] - velocity[j, 0]
+        y = velocity[i, 1] - velocity[j, 1]
+        z = velocity[i, 2] - velocity[j, 2]
+        speed = math.sqrt(x * x + y * y + z * z)
+        u, v, w = direction(generator)
+        x, y, z = 0.5 * (speed * u - x), 0.5 * (speed * v - y), 0.5 * (speed * w - z)
+        velocity[i, 0] += x
+        velocity[i, 1] += y
+        velocity[i, 2] += z
+        velocity[j, 0] -= x
+        velocity[j, 1] -= y
+        velocity[j, 2] -= z
+        waited -= math.log(uniform(generator))
+
+
+@njit(**EXACT)
+def accelerate(
+    time: float, model: Model, state: State, velocity: Array, pairs: Pairs, law: Any, damping: Any,
+    period: Any,
+) -> None:  # fmt: skip
+    """Write the accelerations at a time [s], for some velocities, and the powers with them."""
+    position, acceleration, bathed = state.position, state.acceleration, model.bathed
+    lost = sum_forces(position, velocity, pairs, law, damping, period, acceleration)
+    if model.literal_damping > 0.0:
+        lost += damp_all_pairs(position, velocity, model.literal_damping, acceleration)
+    for b in range(bathed.point.shape[0]):
+        i = bathed.point[b]
+        for k in range(3):
+            acceleration[i, k] -= bathed.tether[b] * (position[i, k] - bathed.rest[b, k])
+    inverse = 1.0 / model.mass
+    for i in range(acceleration.shape[0]):
+        for k in range(3):
+            acceleration[i, k] *= inverse
+    for f in range(model.frozen.shape[0]):
+        for k in range(3):
+            acceleration[model.frozen[f], k] = 0.0
+    if model.driven.first >= 0:
+        drive(model, time, acceleration, state.energies)
+    state.energies[LOST] = lost
+
+
+@njit(**EXACT)
+def begin(model: Model, state: State, pairs: Pairs, law: Any, damping: Any, period: Any) -> None:
+    """Find what acts at the start; the driven pair has its first velocities."""
+    time = state.energies[TIME]
+    if model.driven.first >= 0:
+        constrain(model.driven, time, state.position, state.velocity)
+    accelerate(time, model, state, state.velocity, pairs, law, damping, period)
+
+
+@njit(**EXACT)
+def drift(dt: float, position: Array, velocity: Array) -> None:
+    """Move points by their velocities."""
+    for i in range(position.shape[0]):
+        for k in range(3):
+            position[i, k] += dt * velocity[i, k]
+
+
+@njit(**EXACT)
+def kick(dt: float, velocity: Array, acceleration: Array) -> None:
+    """Change velocities by the accelerations."""
+    for i in range(velocity.shape[0]):
+        for k in range(3):
+            velocity[i, k] += dt * acceleration[i, k]
+
+
+@njit(**EXACT)
+def average(dt: float, mass: float, velocity: Array, kinetic: Array) -> float:
+    """Add kinetic energies times the step to their integrals; return the sum of the squares."""
+    found = 0.0
+    for i in range(velocity.shape[0]):
+        square = 0.0
+        for k in range(3):
+            square += velocity[i, k] * velocity[i, k]
+        kinetic[i] += dt * 0.5 * mass * square
+        found += square
+    return found
+
+
+@njit(**EXACT)
+def furthest(position: Array, listed: Array) -> float:
+    """Furthest [m] that a point is from where it was listed."""
+    found = 0.0
+    for i in range(position.shape[0]):
+        x, y = position[i, 0] - listed[i, 0], position[i, 1] - listed[i, 1]
+        z = position[i, 2] - listed[i, 2]
+        found = max(found, x * x + y * y + z * z)
+    return math.sqrt(found)
+
+
+@njit(**EXACT)
+def advance(
+    steps: int, dt: float, skin: float, averaged_from: float, boltzmann: float, model: Model,
+    state: State, pairs: Pairs, law: Any, damping: Any, period: Any,
+) -> int:  # fmt: skip
+    """Make steps until they are done or the neighbour lists no longer hold.
+
+    Parameters
+    ----------
+    steps : int
+    dt : float, s
+    skin : float, m
+        Two points that moved by this together may have come into reach unlisted.
+    averaged_from : float, s
+        From when kinetic energies are averaged.
+    boltzmann : float, J/K
+    model, state, pairs, law, damping, period
+        As in `accelerate`; the state is advanced.
+
+    Returns
+    -------
+    int
+        Steps that were made; -1 if points moved further in a step than the lists allow, or if
+        their velocities are not finite.
+    """
+    position, velocity, acceleration = state.position, state.velocity, state.acceleration
+    energies, stages = state.energies, model.stages
+    predicted = velocity
+    if damping is not None or model.literal_damping > 0.0:
+        predicted = np.empty_like(velocity)
+    for step in range(steps):
+        for s in range(stages.shape[0]):
+            h = stages[s] * dt
+            energies[DISSIPATED] += 0.5 * h * energies[LOST]
+            energies[WORK] += 0.5 * h * power_of_drive(model.driven, velocity, energies)
+            kick(0.5 * h, velocity, acceleration)
+            if model.bathed.point.shape[0] > 0 or model.collision_rate > 0.0:
+                drift(0.5 * h, position, velocity)
+                exchange_with_baths(model.bathed, model.mass, boltzmann, h, state)
+                if model.collision_rate > 0.0:
+                    expected = model.collision_rate * h * model.bonds.shape[0]
+                    collide(model.bonds, expected, velocity, state.generator)
+                drift(0.5 * h, position, velocity)
+            else:
+                drift(h, position, velocity)
+            energies[TIME] += h
+            if damping is not None or model.literal_damping > 0.0:
+                # What damps is the velocity at the step's end, to the accuracy of the step.
+                predicted[:] = velocity
+                kick(0.5 * h, predicted, acceleration)
+            if model.driven.first >= 0:
+                constrain(model.driven, energies[TIME], position, predicted)
+                constrain(model.driven, energies[TIME], position, velocity)
+            accelerate(energies[TIME], model, state, predicted, pairs, law, damping, period)
+            kick(0.5 * h, velocity, acceleration)
+            if model.driven.first >= 0:
+                constrain(model.driven, energies[TIME], position, velocity)
+            energies[DISSIPATED] += 0.5 * h * energies[LOST]
+            energies[WORK] += 0.5 * h * power_of_drive(model.driven, velocity, energies)
+        weight = dt if energies[TIME] > averaged_from else 0.0
+        squares = average(weight, model.mass, velocity, state.kinetic)
+        moved = furthest(position, state.listed)
+        if not (math.isfinite(squares) and 2.0 * moved < skin):
+            return -1
+        if 2.0 * moved > EARLY * skin:
+            return step + 1
+    return steps

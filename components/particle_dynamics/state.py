@@ -1,0 +1,68 @@
+"""All arrays of a lattice: what stays as it was built, and what moves."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.particle_dynamics.kernels.generator import State as Generator
+from quintet.interfaces.component import Array
+
+Whole = NDArray[np.int64]
+
+
+class Driven(NamedTuple):
+    """Two points whose distance along an axis is told; `first` is -1 without."""
+
+    first: int
+    second: int
+    axis: int
+    distance: float  # m, of the first from the second along the axis, at rest
+    amplitude: float  # m, with the sign of the distance
+    frequency: float  # rad/s
+    share_first: float  # of the amplitude, that the first moves by
+    share_second: float
+    is_free: bool  # whether their mean along the axis moves freely
+    rest_first: float  # m, along the axis
+    rest_second: float
+
+
+class Bathed(NamedTuple):
+    """Points that baths keep at temperatures; each is in one bath."""
+
+    point: Whole  # (b,)
+    bath: Whole  # (b,) its number
+    rate: Array  # (b,) 1/s
+    tether: Array  # (b,) N/m
+    rest: Array  # (b, 3) m
+
+
+class Model(NamedTuple):
+    """What never changes."""
+
+    mass: float  # kg, of each point
+    frozen: Whole  # (f,) points
+    driven: Driven
+    bathed: Bathed
+    bonds: Whole  # (m, 2) nearest points, those that collide
+    collision_rate: float  # 1/s
+    stages: Array  # (s,) shares of a step: 1, or Yoshida's three
+    literal_damping: float  # N s/m, of all pairs at any distance
+
+
+class State(NamedTuple):
+    """What moves."""
+
+    position: Array  # (n, 3) m
+    velocity: Array  # (n, 3) m/s
+    acceleration: Array  # (n, 3) m/s2
+    listed: Array  # (n, 3) m, positions for which the neighbour lists were made
+    kinetic: Array  # (n,) J s, ½ m v² over time since the averages began
+    temperature: Array  # (b,) K, of bathed points
+    heat: Array  # (b,) J, from the bath to each point
+    energies: Array  # (6,) see below
+    generator: Generator  # (1,)
+
+
+# Rows of `State.energies`: s, J of the drive, J and W dissipated, N on the driven pair.
+TIME, WORK, DISSIPATED, LOST, PULL_FIRST, PULL_SECOND = range(6)
