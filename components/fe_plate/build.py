@@ -40,10 +40,11 @@ class Structure(NamedTuple):
 
 def structure(params: FePlateParams) -> Structure:
     """Build a structure."""
-    made = mesh(params.parts)
+    made = mesh(params.parts, params.dimensions)
+    depth = 1.0 if params.dimensions == 2 else 0.0  # m
     laws = [solid(material(part.material)) for part in params.parts]
     volume = np.empty(len(made.corner))
-    write_volumes(made.node, made.corner, 0.0, volume)
+    write_volumes(made.node, made.corner, depth, volume)
     density = np.array([law.density for law in laws])[made.part]
     nodes = len(made.node)
     share = np.repeat(density * volume / 8.0, 8)
@@ -53,7 +54,7 @@ def structure(params: FePlateParams) -> Structure:
     corner, own = made.corner[element], volume[element]
     if points == 8:
         own = np.empty(8 * len(corner))
-        write_point_volumes(made.node, corner, 0.0, own)
+        write_point_volumes(made.node, corner, depth, own)
     begin, at = incident(made.corner, nodes)
     walls = np.zeros((len(params.rigid_walls), 4))
     for row, wall in zip(walls, params.rigid_walls, strict=True):
@@ -65,6 +66,8 @@ def structure(params: FePlateParams) -> Structure:
         _require(found.any(), f"fixed.{number}: its box must hold a node; it holds none.")
         for one in held.directions:
             free[found, AXES.index(one)] = 0.0
+    if params.dimensions == 2:
+        free[:, 1] = 0.0
     coupled: Whole = np.arange(len(made.side))
     if params.coupled_faces:
         coupled = faces_in(made, params.coupled_faces)
@@ -75,7 +78,7 @@ def structure(params: FePlateParams) -> Structure:
     model = Model(
         corner=corner,
         volume=own,
-        depth=0.0,
+        depth=depth,
         inverse_mass=1.0 / mass,
         free=free,
         begin=begin,

@@ -90,7 +90,9 @@ class FePlate(Component):
         self.measured = measured(self.mesh, params.gauges)
         self.faces = self.mesh.side[built.coupled]  # (f, 4) nodes
         self.owner = self.mesh.owner[built.coupled]  # (f,) elements
-        self.surface, self.corner = np.unique(self.faces, return_inverse=True)  # nodes, faces' own
+        self.surface = np.unique(self.faces[self.faces >= 0])  # nodes
+        own = np.searchsorted(self.surface, self.faces)
+        self.corner = np.where(self.faces < 0, -1, own)  # (f, 4) among these; -1 ends an edge
         self.state = initial_state(params, built)
         self.resistance = Resistance(
             params.hourglass,
@@ -109,16 +111,17 @@ class FePlate(Component):
         self.bound = self._write_forces(0.0)  # s
 
     def _shortest(self) -> float:
-        """Least edge [m] of cubes as large as the elements."""
-        edge = self.volume.min() ** (1.0 / 3.0)
-        return float(edge)
+        """Least edge [m] of cubes, or squares, as large as the elements."""
+        return float(self.volume.min() ** (1.0 / self.params.dimensions))
 
     def describe(self) -> Fields:
         """State where the nodes of the surface are, and the corners of its faces."""
         mesh = {
             "start": self.mesh.node[self.surface],
-            "corner": self.corner.reshape(-1, 4).astype(np.float64),
+            "corner": self.corner.astype(np.float64),
         }
+        if self.params.dimensions == 2:
+            mesh["dimensions"] = np.array([2.0])
         return {
             f"{port}.{key}": one.copy()
             for port in ("faces", "node_glue")

@@ -142,6 +142,9 @@ class FePlateParams:
         What is measured.
     gravity : m/s2
         Acceleration of free fall.
+    dimensions
+        In two, x and z, plane strain: parts are one element of 1 m deep along y, forces those on
+        1 m, and faces edges.
     integration
         Reduced: one quadrature point an element, with stabilisation; full: eight, with strains
         assumed so that bending is exact: seven times the work.
@@ -164,6 +167,7 @@ class FePlateParams:
     rigid_walls: tuple[RigidWall, ...] = ()
     gauges: Gauges = Gauges()
     gravity: Vector = (0.0, 0.0, 0.0)
+    dimensions: Literal[2, 3] = 3
     integration: Literal["reduced", "full"] = "reduced"
     courant: Fraction = 0.9
     hourglass: NotNegative = 0.05
@@ -177,3 +181,6 @@ class FePlateParams:
             raise ValueError("parts must be at least one; found none. Add [[parts]].")
         if self.courant == 0.0:
             raise ValueError("courant must be above 0; found 0.")
+        if self.dimensions == 2:
+            for number, part in enumerate(self.parts):
+                part.require_planar(f"parts.{number}")
