@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.fe_plate.kernels.blocks import LANES, TEMPERATURE
+from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.meshes.mesh import Mesh, faces_in, incident, inside, mesh
 from quintet.components.fe_plate.params import FePlateParams
@@ -39,15 +40,21 @@ class Structure(NamedTuple):
 
 def structure(params: FePlateParams) -> Structure:
     """Build a structure."""
-    made = mesh(params.parts)
+    made = mesh(params.parts, params.dimensions)
+    depth = 1.0 if params.dimensions == 2 else 0.0  # m
     laws = [solid(material(part.material)) for part in params.parts]
     volume = np.empty(len(made.corner))
-    write_volumes(made.node, made.corner, 0.0, volume)
+    write_volumes(made.node, made.corner, depth, volume)
     density = np.array([law.density for law in laws])[made.part]
     nodes = len(made.node)
     share = np.repeat(density * volume / 8.0, 8)
     mass = np.bincount(made.corner.ravel(), share, nodes).astype(np.float64)
-    place, element, first = in_blocks(made.part, len(laws))
+    points = 8 if params.integration == "full" else 1  # of an element
+    place, element, first = in_blocks(made.part, len(laws), LANES // points)
+    corner, own = made.corner[element], volume[element]
+    if points == 8:
+        own = np.empty(8 * len(corner))
+        write_point_volumes(made.node, corner, depth, own)
     begin, at = incident(made.corner, nodes)
     walls = np.zeros((len(params.rigid_walls), 4))
     for row, wall in zip(walls, params.rigid_walls, strict=True):
@@ -59,6 +66,8 @@ def structure(params: FePlateParams) -> Structure:
         _require(found.any(), f"fixed.{number}: its box must hold a node; it holds none.")
         for one in held.directions:
             free[found, AXES.index(one)] = 0.0
+    if params.dimensions == 2:
+        free[:, 1] = 0.0
     coupled: Whole = np.arange(len(made.side))
     if params.coupled_faces:
         coupled = faces_in(made, params.coupled_faces)
@@ -67,9 +76,9 @@ def structure(params: FePlateParams) -> Structure:
     for number, faces in enumerate(pressed):
         _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
     model = Model(
-        corner=made.corner[element],
-        volume=volume[element],
-        depth=0.0,
+        corner=corner,
+        volume=own,
+        depth=depth,
         inverse_mass=1.0 / mass,
         free=free,
         begin=begin,
@@ -77,21 +86,23 @@ def structure(params: FePlateParams) -> Structure:
         gravity=np.array(params.gravity),
         walls=walls,
     )
-    places = Places(place[:, None])
+    point = points * place[:, None] + np.arange(points)
+    places = Places(point, own[point] / own[point].sum(axis=1, keepdims=True))
     return Structure(made, model, places, laws, first, volume, mass, coupled, pressed)
 
 
-def in_blocks(part: Whole, parts: int) -> tuple[Whole, Whole, list[int]]:
+def in_blocks(part: Whole, parts: int, size: int) -> tuple[Whole, Whole, list[int]]:
     """Place of each element, element at each place, and first block of each part.
 
-    Parts begin with a block; places beyond their last element repeat it.
+    A block holds `size` elements. Parts begin with a block; places beyond their last element
+    repeat it.
     """
     place, element, first = [], [], [0]
     for k in range(parts):
         mine = np.flatnonzero(part == k)
-        blocks = -(-len(mine) // LANES)
-        place.append(first[-1] * LANES + np.arange(len(mine)))
-        element.append(np.pad(mine, (0, blocks * LANES - len(mine)), mode="edge"))
+        blocks = -(-len(mine) // size)
+        place.append(first[-1] * size + np.arange(len(mine)))
+        element.append(np.pad(mine, (0, blocks * size - len(mine)), mode="edge"))
         first.append(first[-1] + blocks)
     return np.concatenate(place), np.concatenate(element), first
 
@@ -99,7 +110,8 @@ def in_blocks(part: Whole, parts: int) -> tuple[Whole, Whole, list[int]]:
 def initial_state(params: FePlateParams, built: Structure) -> State:
     """Temperatures and velocities that the parts have at the start; nothing is strained."""
     model, first, node = built.model, built.first, built.mesh.node
-    made = state_at_rest(node, first[-1], len(model.corner), len(model.walls))
+    springs = 0 if params.integration == "full" else first[-1]  # blocks
+    made = state_at_rest(node, first[-1], springs, len(model.corner), len(model.walls))
     for k, part in enumerate(params.parts):
         made.points[first[k] : first[k + 1], TEMPERATURE] = built.laws[k].temperature
         made.velocity[np.unique(built.mesh.corner[built.mesh.part == k])] = part.velocity

@@ -14,6 +14,7 @@ from quintet.components.fe_plate.gauges import (
     wanted_of,
 )
 from quintet.components.fe_plate.kernels.blocks import ENERGY
+from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.kernels.material import HUGE
 from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
@@ -38,6 +39,7 @@ from quintet.interfaces.manifest import Plan, Ports
 FEWEST = 128  # blocks that are worth handing to another thread
 SQUASHED = 4.0  # least steps in which what meets a wall moves by an element
 SMALLEST = 0.02  # of an element's volume at the start: below it, it has been turned inside out
+Stepped = tuple[float, float, int]  # largest step [s], least volume over the first one, of which
 POSITION, VELOCITY = "faces.position", "faces.velocity"
 MEAN_VELOCITY, ACTIVE = "node_glue.velocity", "face_activity.active"
 
@@ -88,7 +90,9 @@ class FePlate(Component):
         self.measured = measured(self.mesh, params.gauges)
         self.faces = self.mesh.side[built.coupled]  # (f, 4) nodes
         self.owner = self.mesh.owner[built.coupled]  # (f,) elements
-        self.surface, self.corner = np.unique(self.faces, return_inverse=True)  # nodes, faces' own
+        self.surface = np.unique(self.faces[self.faces >= 0])  # nodes
+        own = np.searchsorted(self.surface, self.faces)
+        self.corner = np.where(self.faces < 0, -1, own)  # (f, 4) among these; -1 ends an edge
         self.state = initial_state(params, built)
         self.resistance = Resistance(
             params.hourglass,
@@ -96,6 +100,8 @@ class FePlate(Component):
             params.viscosity_quadratic,
             params.stiffness_damping,
         )
+        # Compiled where it is asked for alone.
+        self.kernel = _eight_points if params.integration == "full" else _one_point
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
         self.hung = np.zeros(len(self.surface))  # kg, mass that hangs on the nodes
         self.glued = False  # whether particles hang on it
@@ -105,16 +111,17 @@ class FePlate(Component):
         self.bound = self._write_forces(0.0)  # s
 
     def _shortest(self) -> float:
-        """Least edge [m] of cubes as large as the elements."""
-        edge = self.volume.min() ** (1.0 / 3.0)
-        return float(edge)
+        """Least edge [m] of cubes, or squares, as large as the elements."""
+        return float(self.volume.min() ** (1.0 / self.params.dimensions))
 
     def describe(self) -> Fields:
         """State where the nodes of the surface are, and the corners of its faces."""
         mesh = {
             "start": self.mesh.node[self.surface],
-            "corner": self.corner.reshape(-1, 4).astype(np.float64),
+            "corner": self.corner.astype(np.float64),
         }
+        if self.params.dimensions == 2:
+            mesh["dimensions"] = np.array([2.0])
         return {
             f"{port}.{key}": one.copy()
             for port in ("faces", "node_glue")
@@ -192,7 +199,7 @@ class FePlate(Component):
         bound = math.inf
         for law, first, last in zip(self.laws, self.first, self.first[1:], strict=False):
             found = self.team.run(
-                _shifted, last - first, first, self.model, self.state, law, self.resistance, dt
+                self.kernel, last - first, first, self.model, self.state, law, self.resistance, dt
             )
             bound = min(bound, *(one[0] for one in found))
             least, worst = min((one[1], one[2]) for one in found)
@@ -269,7 +276,7 @@ class FePlate(Component):
         s, whole = self.state, self.mass.copy()
         whole[self.surface] += self.hung
         momentum = whole[:, None] * s.velocity
-        energy = self.element_mass @ self.places.of(s, ENERGY) + self.places.spring_energy(s)
+        energy = self.element_mass @ self.places.of(s, ENERGY) + self.places.spring_energy(s).sum()
         return Totals(
             mass=float(whole.sum()),
             momentum=momentum.sum(axis=0),
@@ -288,7 +295,13 @@ class FePlate(Component):
         return len(self.mesh.corner)
 
 
-def _shifted(begin: int, end: int, first: int, *arguments: object) -> tuple[float, float, int]:
-    """Step elements that are counted from a part's first one on."""
-    found: tuple[float, float, int] = step_elements(first + begin, first + end, *arguments)
+def _one_point(begin: int, end: int, first: int, *arguments: object) -> Stepped:
+    """Step blocks that are counted from a part's first one on."""
+    found: Stepped = step_elements(first + begin, first + end, *arguments)
+    return found
+
+
+def _eight_points(begin: int, end: int, first: int, *arguments: object) -> Stepped:
+    """The same of elements with eight points."""
+    found: Stepped = step_eight_points(first + begin, first + end, *arguments)
     return found

@@ -21,7 +21,7 @@ STEP = 2e-7  # s
 
 
 def cases() -> tuple[ConformCase, ...]:
-    """An elastic block, free; the same of yielding steel, clamped."""
+    """An elastic block, free; yielding steel, clamped, with one and eight points an element."""
     steel = {**BLOCK["parts"][0], "material": "steel"}
     clamped = {
         "parts": [steel],
@@ -30,10 +30,16 @@ def cases() -> tuple[ConformCase, ...]:
     return (
         _case("free block", BLOCK, forces=("node_load.force",)),
         _case("clamped steel", clamped),
+        _case("eight points", {**clamped, "integration": "full"}),
+        _case("plane strain", PLANE, nodes=10),
         _case("face of a block", {**BLOCK, "coupled_faces": [FACE]}, nodes=9),
     )
 
 
+PLANE = {
+    "parts": [{**BLOCK["parts"][0], "highest": [0.03, 1.0, 0.02], "elements": [3, 1, 2]}],
+    "dimensions": 2,
+}
 FACE = {"lowest": [0.03, 0.0, 0.0], "highest": [0.03, 0.02, 0.02]}
 
 

@@ -8,7 +8,6 @@ from quintet.components.fe_plate.kernels.blocks import (
     DAMAGE,
     ENERGY,
     PRESSURE,
-    SPRING_ENERGY,
     STRAIN,
     TEMPERATURE,
 )
@@ -48,7 +47,7 @@ def at_nodes(state: State, node: Whole) -> dict[str, Array]:
 
 def in_elements(places: Places, state: State, element: Whole) -> dict[str, Array]:
     """What some elements bear."""
-    mine = Places(places.point[element])
+    mine = Places(places.point[element], places.share[element])
     return {
         "element_gauge.von_mises": von_mises(mine, state),
         "element_gauge.pressure": mine.of(state, PRESSURE),
@@ -70,8 +69,7 @@ def of_parts(mesh: Mesh, places: Places, state: State, mass: Array) -> dict[str,
         return np.bincount(mesh.part, of_elements, parts).astype(np.float64)
 
     velocity = state.velocity[mesh.corner]  # (e, 8, 3)
-    spring = state.springs[:, SPRING_ENERGY].ravel()[places.point[:, 0]]
-    internal = mass * places.of(state, ENERGY) + spring
+    internal = mass * places.of(state, ENERGY) + places.spring_energy(state)
     momentum = [sums(mass * velocity[:, :, d].mean(axis=1)) for d in range(3)]
     return {
         "part_gauge.velocity": np.stack(momentum, axis=1) / sums(mass)[:, None],

@@ -1,6 +1,7 @@
 """What a scene says about a structure of finite elements."""
 
 import math
+from typing import Literal
 
 from quintet.components.fe_plate.meshes.params import Direction, Part
 from quintet.interfaces.params import (
@@ -141,10 +142,16 @@ class FePlateParams:
         What is measured.
     gravity : m/s2
         Acceleration of free fall.
+    dimensions
+        In two, x and z, plane strain: parts are one element of 1 m deep along y, forces those on
+        1 m, and faces edges.
+    integration
+        Reduced: one quadrature point an element, with stabilisation; full: eight, with strains
+        assumed so that bending is exact: seven times the work.
     courant : 1
         Share of the greatest step that is proven stable.
     hourglass : 1
-        Stiffness of the stabilisation, as a share of the element's own.
+        Stiffness of the stabilisation of one point, as a share of the element's own.
     viscosity_linear, viscosity_quadratic : 1
         C₁ and C₀ of the bulk viscosity ρ l (C₀² l D² - C₁ c D), in compression.
     mass_damping : 1/s
@@ -160,6 +167,8 @@ class FePlateParams:
     rigid_walls: tuple[RigidWall, ...] = ()
     gauges: Gauges = Gauges()
     gravity: Vector = (0.0, 0.0, 0.0)
+    dimensions: Literal[2, 3] = 3
+    integration: Literal["reduced", "full"] = "reduced"
     courant: Fraction = 0.9
     hourglass: NotNegative = 0.05
     viscosity_linear: NotNegative = 0.06
@@ -172,3 +181,6 @@ class FePlateParams:
             raise ValueError("parts must be at least one; found none. Add [[parts]].")
         if self.courant == 0.0:
             raise ValueError("courant must be above 0; found 0.")
+        if self.dimensions == 2:
+            for number, part in enumerate(self.parts):
+                part.require_planar(f"parts.{number}")

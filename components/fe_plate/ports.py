@@ -10,6 +10,8 @@ from quintet.interfaces.ports import (
     NODE_GLUE,
     NODE_LOAD,
     NODE_MASS,
+    PLANAR_FACES,
+    PLANAR_NODE_GLUE,
     TEMPERATURE,
     VELOCITY,
 )
@@ -46,4 +48,6 @@ def ports(params: FePlateParams) -> Ports:
         (PART_GAUGE, gauges.part_gauge),
     )
     measured = tuple(port for port, on in switched if on)
-    return (NODE_LOAD, NODE_MASS), (FACES, NODE_GLUE, FACE_ACTIVITY, *measured)
+    planar = params.dimensions == 2
+    mesh = (PLANAR_FACES, PLANAR_NODE_GLUE) if planar else (FACES, NODE_GLUE)
+    return (NODE_LOAD, NODE_MASS), (*mesh, FACE_ACTIVITY, *measured)

@@ -53,12 +53,12 @@ class State(NamedTuple):
     internal: Array  # (n, 3) N, force of the elements on the nodes
     load: Array  # (n, 3) N, from outside
     points: Array  # (b, POINT_ROWS, LANES), stresses and all that belongs to the material
-    springs: Array  # (b, SPRING_ROWS, LANES), of the hourglass patterns
+    springs: Array  # (b or 0, SPRING_ROWS, LANES), of the hourglass patterns
     corner_force: Array  # (places, 8, 3) N, of elements on their corners
     wall_impulse: Array  # (w,) N s, on each rigid wall so far
 
 
-def state_at_rest(nodes: Array, blocks: int, places: int, walls: int) -> State:
+def state_at_rest(nodes: Array, blocks: int, springs: int, places: int, walls: int) -> State:
     """State at rest at nodes (n, 3) m."""
     still = np.zeros_like(nodes)
     points = np.zeros((blocks, POINT_ROWS, LANES))
@@ -70,7 +70,7 @@ def state_at_rest(nodes: Array, blocks: int, places: int, walls: int) -> State:
         internal=still.copy(),
         load=still.copy(),
         points=points,
-        springs=np.zeros((blocks, SPRING_ROWS, LANES)),
+        springs=np.zeros((springs, SPRING_ROWS, LANES)),
         corner_force=np.zeros((places, 8, 3)),
         wall_impulse=np.zeros(walls),
     )
@@ -80,10 +80,11 @@ class Places(NamedTuple):
     """Where each element's points stand among all points."""
 
     point: Whole  # (e, q), of each of its q points
+    share: Array  # (e, q) 1, of the element's mass
 
     def of(self, state: State, row: int) -> Array:
         """Mean of a row over the points of each element (e,)."""
-        return np.asarray(state.points[:, row].ravel()[self.point].mean(axis=1))
+        return np.asarray((state.points[:, row].ravel()[self.point] * self.share).sum(axis=1))
 
     def rows(self, state: State, first: int, count: int) -> Array:
         """Means of some rows over the points of each element (count, e)."""
@@ -93,6 +94,8 @@ class Places(NamedTuple):
         """1 of each element that is left, 0 of an eroded one (e,): any of its points failed."""
         return np.asarray(state.points[:, ACTIVE].ravel()[self.point].min(axis=1))
 
-    def spring_energy(self, state: State) -> float:
-        """Energy [J] of the springs of all elements."""
-        return float(state.springs[:, SPRING_ENERGY].ravel()[self.point[:, 0]].sum())
+    def spring_energy(self, state: State) -> Array:
+        """Energy (e,) J of the springs of each element."""
+        if not len(state.springs):  # eight points need none
+            return np.zeros(len(self.point))
+        return np.asarray(state.springs[:, SPRING_ENERGY].ravel()[self.point[:, 0]])

@@ -22,9 +22,10 @@ def von_mises(places: Places, state: State) -> Array:
 
 
 def view(mesh: Mesh, places: Places, state: State) -> Fields:
-    """Corners of the outer faces of what is left, and means of the elements at each."""
+    """Corners of the outer faces of what is left, in a plane of its elements; means at each."""
     live = np.flatnonzero(places.active(state))
-    side, _ = outer_sides(mesh.corner[live])
+    planar = bool((mesh.side[:1, 2] < 0).any())
+    side = mesh.corner[live][:, 3::-1] if planar else outer_sides(mesh.corner[live])[0]
     node, cells = np.unique(side, return_inverse=True)
     corner = mesh.corner[live].ravel()
     count = np.maximum(np.bincount(corner, minlength=len(mesh.node)), 1)

@@ -12,11 +12,12 @@ Papers: Monaghan, Rep. Prog. Phys. 68 (2005) 1703; Libersky, Petschek, Carney, H
 J. Comput. Phys. 109 (1993) 67; Bonet & Lok, Comput. Methods Appl. Mech. Eng. 180 (1999) 97.
 """
 
+import math
 from typing import NamedTuple
 
 from numba import njit
 
-from quintet.components.shared.smoothing.cubic_spline import ZERO
+from quintet.components.shared.smoothing.cubic_spline import ONE
 from quintet.components.shared.smoothing.smoothing import Smoothing
 
 SINGULAR = 0.15  # determinant of Σ V_j (x_j - x_i) ⊗ ∇W_ij, below which none is corrected
@@ -35,21 +36,24 @@ class PairLaw(NamedTuple):
 
 
 @njit(inline="always")
-def approach(r2, dot, law):  # type: ignore[no-untyped-def]
-    """-μ = -h v·r/(r² + 0.01h²) [m/s] of two that come nearer; 0 of others."""
-    return law.smoothing.length * max(-dot, ZERO) / (r2 + law.softening)
+def inverses(r2, density_sum, law):  # type: ignore[no-untyped-def]
+    """1/r [1/m], 1/(r² + 0.01h²) [1/m2] and one over the sum of two densities, of one division."""
+    r, softened = math.sqrt(r2 + law.smoothing.tiny), r2 + law.softening
+    each = ONE / (r * softened * density_sum)
+    return each * softened * density_sum, each * r * density_sum, each * r * softened
 
 
 @njit(inline="always")
-def viscous_pressure(mu, sound_sum, density_sum, densities, law):  # type: ignore[no-untyped-def]
+def viscous_pressure(mu, sound_sum, per_density, densities, law):  # type: ignore[no-untyped-def]
     """Monaghan's artificial viscosity, as a pressure over η².
 
     Parameters
     ----------
     mu : float, m/s
-        |μ| of two that come nearer.
+        |μ| = -h v·r/(r² + 0.01h²) of two that come nearer, 0 of others.
     sound_sum : float, m/s
-    density_sum : float, kg/m3
+    per_density : float, m3/kg
+        One over the sum of their densities.
     densities : float, kg2/m6
         Product of their densities at the start.
 
@@ -63,7 +67,7 @@ def viscous_pressure(mu, sound_sum, density_sum, densities, law):  # type: ignor
     Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, eq. (4.2).
     """
     drag = law.linear * sound_sum + 2.0 * law.quadratic * mu
-    return mu * drag * densities / density_sum
+    return mu * drag * densities * per_density
 
 
 @njit(inline="always")

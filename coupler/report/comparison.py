@@ -143,7 +143,7 @@ def _draw_oscillation(panel: Any, ones: list[Expectation], computed: Curve) -> N
     if not math.isfinite(found.period) or not known:
         return
     times = np.linspace(part.times[0], part.times[-1], FINE)
-    label = f"with the expected {' and '.join(known)}"
+    label = f"as fitted to it, but with the expected {' and '.join(known)}"
     values = found._replace(**known).values(times)
     panel.plot(times, values, color=BAND, linewidth=1.2, linestyle="--", label=label)
 
@@ -165,9 +165,8 @@ def _draw_value(panel: Any, one: Expectation, computed: Curve) -> None:
             return
         if one.measure == "mean":  # about which the curve may swing far beyond what is allowed
             middle = mean(between(computed, *span))
-            style = {"color": COMPUTED, "linewidth": 1.2, "linestyle": "--"}
-            panel.plot(span, (middle, middle), label="mean of the computed", **style)
-        panel.plot(span, (value, value), color=BAND, linewidth=1.2, label=label)
+            panel.plot(span, (middle, middle), color=COMPUTED, linewidth=0.8, label="its mean")
+        panel.plot(span, (value, value), "--", color=BAND, linewidth=1.2, label=label)
         low, high = value - one.within, value + one.within
         panel.fill_between(span, low, high, color=BAND, alpha=0.25, linewidth=0)
 
@@ -239,5 +238,6 @@ def _verdict(one: Expectation, outcome: Outcome | None) -> str:
     verdict = "met" if outcome.met else "NOT met" if one.required else "not met, not required"
     share = ""
     if outcome.within:
-        share = f", {abs(outcome.value - outcome.reference) / outcome.within:.0%} of the tolerance"
+        used = abs(outcome.value - outcome.reference) / outcome.within
+        share = f", {used:.0%} of the tolerance used up"
     return f"{one.name}{what} {outcome.value:.4g}, {expected}{unit}: {verdict}{share}"

@@ -3,7 +3,8 @@
 A solver that waits, or computes, with the interpreter's lock held stops all Python of its process,
 the watchdog's thread included. The guard reads in memory that both share whom the run waits for and
 when the watchdog last looked. When it looks no more, the guard watches in its place, by the same
-rules; the stack and the exit status come from signal handlers that need no interpreter.
+rules; the stack and the exit status come from signal handlers that need no interpreter. If the
+process dies without a word, as one that the system kills for want of memory, it writes that down.
 """
 
 import contextlib
@@ -19,9 +20,10 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
+import psutil
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch import stack
@@ -36,11 +38,11 @@ from quintet.interfaces.serving.process import STACK_SIGNAL
 LOOKING = 0.2  # s between two looks
 SILENT = 1.0  # s without a look of its watchdog, after which a run is watched from here
 ENDED = 1.0  # s for the run to end by itself
+STILL = (psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP)
 CELLS = 4  # numbers that are kept of the run, and of every component
 # Its number is the exit status of a run that failed: the C library's _exit, as its handler, ends
 # the process with it.
 FAIL = signal.SIGQUIT
-PR_SET_PDEATHSIG = 1  # of prctl(2): a signal that comes when the parent ends
 
 
 class Guard:
@@ -83,10 +85,11 @@ class Guard:
 
     def follow(self, participant: Participant) -> None:
         """Note from now on when the coupler waits for a component."""
-        row = self._row(participant.name)
+        row: Any = self._row(participant.name).data  # written to faster than an array
 
         def note(since: float) -> None:
-            row[1], row[2] = participant.window, participant.built
+            if since:
+                row[1], row[2] = participant.window, participant.built
             row[0] = since
 
         participant.keeping_others_waiting.note = note
@@ -124,7 +127,6 @@ class Guard:
     def _guard(self) -> NoReturn:
         """Watch until the run ends, by itself or from here."""
         try:
-            ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
             os.setsid()
             signal.set_wakeup_fd(-1)
             for number in ENDING:
@@ -135,13 +137,13 @@ class Guard:
             os._exit(0)
 
     def _watch(self) -> None:
-        watchdog, own = Watchdog(self.stop, own=True, acts=self._is_silent), Watch("", self._run)
+        watchdog = Watchdog(self.stop, own=True, acts=self._is_silent)
         watched = [self._watched(name) for name in self.patience]
         last = time.monotonic()
         while os.getppid() == self._run:
             time.sleep(LOOKING)
             passed, last = min(time.monotonic() - last, LONGEST_LOOK), time.monotonic()
-            if own.stopped():
+            if self._stands_still():
                 continue
             for one in watched:
                 self._read(one.participant)
@@ -150,6 +152,17 @@ class Guard:
                     watchdog.fail(one, "kept the interpreter's lock when asked to end")
             if isinstance(watchdog.verdict, ComponentFailed):
                 self._end(watchdog.verdict)
+        for one in watched:
+            self._read(one.participant)
+        self._write_down(self._death([one.participant for one in watched]))
+
+    def _death(self, participants: Iterable[Participant]) -> ComponentFailed:
+        """Why the run's process is gone: whoever it waited for has most likely ended it."""
+        cause = f"process {self._run} is gone: it ended or was killed"
+        for one in participants:
+            if one.keeping_others_waiting.since:
+                return ComponentFailed(one.name, one.window, cause)
+        return ComponentFailed("coupler", int(self._shared[2]), cause)
 
     def _watched(self, name: str) -> Watched:
         participant = Participant(name, MemoryLine("", name))
@@ -166,14 +179,24 @@ class Guard:
     def _is_silent(self) -> bool:
         return time.monotonic() - float(self._shared[0]) > SILENT
 
+    def _stands_still(self) -> bool:
+        """Whether the run was stopped, by a user or a debugger."""
+        try:
+            return psutil.Process(self._run).status() in STILL
+        except psutil.Error:
+            return False
+
     def _signals(self) -> int:
         """Signals that asked for the end, read by the run or not."""
         return int(self._shared[1]) + self.stop.unread()
 
-    def _end(self, verdict: ComponentFailed) -> NoReturn:
+    def _write_down(self, verdict: ComponentFailed) -> None:
         self.report(verdict, int(self._shared[2]), float(self._shared[3]))
         sys.stdout.flush()
         sys.stderr.flush()
+
+    def _end(self, verdict: ComponentFailed) -> NoReturn:
+        self._write_down(verdict)
         os.kill(self._run, FAIL)
         limit = time.monotonic() + ENDED
         while os.getppid() == self._run and time.monotonic() < limit:

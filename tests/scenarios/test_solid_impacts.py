@@ -19,6 +19,14 @@ def test_a_bar_has_its_published_length_foot_and_strain(run_scene: Run) -> None:
     assert abs(found["ledger"]["energy_drift"]) < 3e-3
 
 
+def test_a_ball_perforates_the_plate_that_stops_one_of_half_its_size(run_scene: Run) -> None:
+    for preset in ("quick", "small"):
+        more = ("--set", "components.impact.spacing=8e-4")
+        found = run_scene("steel_ball_923", "--preset", preset, *more)
+        assert all(one["met"] for one in found["expect"]), found["expect"]
+        assert abs(found["ledger"]["energy_drift"]) < 3e-3
+
+
 @pytest.mark.full
 @pytest.mark.parametrize("preset", ["no_spall", "quarter"])
 def test_the_ball_without_spall_and_in_three_dimensions(run_scene: Run, preset: str) -> None:

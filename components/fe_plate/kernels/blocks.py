@@ -16,7 +16,8 @@ DEVIATOR = 0  # to 5: xx yy zz xy yz zx, Pa
 PRESSURE, VISCOUS = 6, 7  # Pa; that of the bulk viscosity
 ENERGY, STRAIN, TEMPERATURE, DAMAGE = 8, 9, 10, 11  # J/kg; plastic; K; 1
 ACTIVE = 12  # 1, and 0 once it has failed
-POINT_ROWS = 13
+DILATION = 13  # of eight points: how much its volume has grown beyond that of its element
+POINT_ROWS = 14
 # Rows of the springs that hold the hourglass patterns of elements with one point.
 SPRING, SPRING_ENERGY = 0, 12  # 12 rows N, J
 SPRING_ROWS = 13
@@ -27,15 +28,18 @@ COEFFICIENT = 48  # 18: ∂V/∂x of a corner is a sum of these by its signs, m2
 PATTERN, RATE = 66, 78  # 12 each: hourglass patterns of the corners, m, and their rates, m/s
 GRADIENT = 90  # 9: velocity gradient in the middle of the step, by rows, 1/s
 VOLUME, LENGTH, EDGE = 99, 100, 101  # m3, m, m
-RATIO, CHANGE = 102, 103  # V/V₀; of the specific volume over the step, m3/kg
+RATIO, CHANGE = 102, 103  # ρ₀/ρ; of the specific volume over the step, m3/kg
 SPEED = 104  # of sound, m/s
 STRESS = 105  # 6 rows, Pa
 TRIAL, SOFT, DELTA = 111, 112, 113  # Pa, equivalent; 1, thermal softening; plastic strain
 WORK = 114  # plastic, J/m3; on the springs, J
 OLD = 115  # 6 rows, deviator before the step, Pa
-JACOBIAN = 121  # 9: ∇ξ, ∇η, ∇ζ at points, 1/m
-SCRATCH = 130
-ROWS = 131
+COFACTOR = 121  # 9: V ∇ξ, V ∇η, V ∇ζ at points, m2
+FRAME = 130  # 9: axes of an element
+LOCAL = 139  # 6: along them, rates of strain or stresses
+SPECIFIC = 145  # V over the mass, m3/kg
+SCRATCH = 146
+ROWS = 147
 
 
 @njit(**INLINED)

@@ -20,6 +20,7 @@ from quintet.components.fe_plate.kernels.blocks import (
     RATE,
     RATIO,
     ROWS,
+    SPECIFIC,
     SPRING_ENERGY,
     SPRING_ROWS,
     STRESS,
@@ -73,7 +74,7 @@ def step_elements(
         load_corners(position, corner, begin, LANES, model.depth, X, work)
         load_corners(velocity, corner, begin, LANES, 0.0, V, work)
         mean_geometry(work, dt)
-        ratio = compare_volumes(points, base, start, begin, work)
+        ratio = compare_volumes(points, base, start, begin, work, law)
         if ratio < smallest:
             smallest, worst = ratio, smallest_of(work, begin)
         step = min(step, advance_material(points, base, work, law, resistance, dt))
@@ -83,12 +84,14 @@ def step_elements(
 
 
 @njit(**INLINED)
-def compare_volumes(points, base, start, begin, work):  # type: ignore[no-untyped-def]
+def compare_volumes(points, base, start, begin, work, law):  # type: ignore[no-untyped-def]
     """Write volumes over those at the start; return the least. Eroded elements are at rest."""
     for k in range(LANES):
         live = points[base + ACTIVE * LANES + k] > 0.0
         ratio = work[VOLUME * LANES + k] / start[begin + k]
-        work[RATIO * LANES + k] = ratio if live else 1.0
+        ratio = ratio if live else 1.0
+        work[RATIO * LANES + k] = ratio
+        work[SPECIFIC * LANES + k] = ratio / law.density
         for row in range(GRADIENT * LANES, (GRADIENT + 9) * LANES, LANES):
             work[row + k] = work[row + k] if live else 0.0
     return least(work, RATIO)

@@ -25,6 +25,7 @@ from quintet.components.fe_plate.kernels.blocks import (
     RATIO,
     SCRATCH,
     SOFT,
+    SPECIFIC,
     SPEED,
     STRAIN,
     STRESS,
@@ -38,7 +39,7 @@ from quintet.components.fe_plate.kernels.blocks import (
     put_six,
     six,
 )
-from quintet.components.shared.elementary import exponential
+from quintet.components.shared.elementary import exponential, logarithm
 from quintet.components.shared.materials.equation_of_state import (
     pressure_and_energy,
     sound_speed_squared,
@@ -55,7 +56,9 @@ from quintet.components.shared.materials.strength import (
 
 HUGE = 1e300  # these kernels take every number to be finite
 MOST = 12  # iterations of all lanes together
-CLOSE = 1e-4  # last change of ln Δ; what is left is its square
+CLOSE = 1e-3  # last change of ln Δ; what is left is half its square
+SMALL = 0.3  # least of the greatest plastic strain that is taken for a guess
+STRIDE = 0.7  # greatest change of ln Δ
 
 
 @njit(**INLINED)
@@ -95,7 +98,7 @@ def return_to_flow_stress(points, base, work, law, dt):  # type: ignore[no-untyp
     """Write plastic strains of the step; whether any point yields.
 
     Newton's method on g = se - 3GΔ - Y(ε + Δ, Δ/dt), all lanes at once. In ln Δ g is concave and
-    falls, by hardening and by the rate: from above it comes down to the root without passing it.
+    falls, by hardening and by the rate: from below it passes the root once, and comes down to it.
     """
     if law.hard >= HUGE:
         return False
@@ -108,12 +111,20 @@ def return_to_flow_stress(points, base, work, law, dt):  # type: ignore[no-untyp
             return False
     stiff = 3.0 * law.shear
     for k in range(LANES):
+        strain = points[base + STRAIN * LANES + k]
         soft = softening(points[base + TEMPERATURE * LANES + k], law)
         work[SOFT * LANES + k] = soft
         trial = work[TRIAL * LANES + k]
-        still, _, _ = flow_stress(points[base + STRAIN * LANES + k], 0.0, soft, law)
-        more = max(trial - still, 0.0)
-        work[DELTA * LANES + k] = more / stiff
+        # Most of the strain is plastic where it is large: at that rate the root is close.
+        rate = strain_rate(nine(work, GRADIENT, k))
+        moving, hardens, _ = flow_stress(strain, rate, soft, law)
+        still = moving / (1.0 + law.c * logarithm(max(rate / law.reference_rate, 1.0)))
+        close = (trial - moving) / (stiff + hardens)
+        above = max(trial - still, 0.0) / stiff
+        # Where it is small the rate takes up what the trial stress has beyond the flow stress.
+        beyond = (trial / max(still, 1.0) - 1.0) / max(law.c, 1e-9)
+        above = min(above, dt * law.reference_rate * exponential(beyond))
+        work[DELTA * LANES + k] = close if close > SMALL * above else above
     if greatest(work, DELTA) <= 0.0:
         return False
     for _ in range(MOST):
@@ -123,7 +134,7 @@ def return_to_flow_stress(points, base, work, law, dt):  # type: ignore[no-untyp
             stress, hardens, hastens = flow_stress(strain + delta, delta / dt, soft, law)
             slope = delta * (stiff + hardens + hastens / dt)
             gap = trial - stiff * delta - stress
-            moved = gap / slope if delta > 0.0 else 0.0
+            moved = min(gap / slope, STRIDE) if delta > 0.0 else 0.0
             work[SCRATCH * LANES + k] = abs(moved)
             work[DELTA * LANES + k] = delta * exponential(moved)
         if greatest(work, SCRATCH) <= CLOSE:
@@ -137,6 +148,15 @@ def return_to_flow_stress(points, base, work, law, dt):  # type: ignore[no-untyp
             law,
         )
     return True
+
+
+@njit(**INLINED)
+def strain_rate(gradient):  # type: ignore[no-untyped-def]
+    """Equivalent rate √(2/3 D':D') [1/s] of the deviator of a velocity gradient."""
+    l00, l01, l02, l10, l11, l12, l20, l21, l22 = gradient
+    trace, xy, yz, zx = l00 + l11 + l22, l01 + l10, l12 + l21, l20 + l02
+    squares = l00 * l00 + l11 * l11 + l22 * l22 - trace * trace / 3.0
+    return math.sqrt(max(2.0 / 3.0 * squares + (xy * xy + yz * yz + zx * zx) / 3.0, 0.0))
 
 
 @njit(**INLINED)
@@ -160,7 +180,7 @@ def press(points, base, work, law, dt):  # type: ignore[no-untyped-def]
         gradient = nine(work, GRADIENT, k)
         divergence = gradient[0] + gradient[4] + gradient[8]
         ratio = work[RATIO * LANES + k]
-        per_density = ratio / law.density
+        per_density = work[SPECIFIC * LANES + k]
         change = divergence * dt * per_density
         live = points[base + ACTIVE * LANES + k] > 0.0
         s = six(work, STRESS * LANES + k)
@@ -255,13 +275,14 @@ def resist(points, base, work, law, resistance, dt):  # type: ignore[no-untyped-
         sound = math.sqrt(sound_speed_squared(1.0 / ratio - 1.0, old, pressure, law))
         edge, rate = work[EDGE * LANES + k], max(0.0, -divergence)
         drag = (linear * sound + quadratic * quadratic * edge * rate) if rate > 0.0 else 0.0  # m/s
-        viscous = edge * rate * drag * law.density / ratio if live else 0.0
+        per_density = work[SPECIFIC * LANES + k]
+        viscous = edge * rate * drag / per_density if live else 0.0
         energy = old - 0.5 * viscous * work[CHANGE * LANES + k]
         slower = drag + damp * sound * sound / length
         trace, double = -pressure - viscous, 0.0
         if damp > 0.0:
             gradient = l00, l01, l02, l10, l11, l12, l20, l21, l22
-            energy += dt * ratio / law.density * damp * damping_power(gradient, law)
+            energy += dt * per_density * damp * damping_power(gradient, law)
             double = 2.0 * damp * law.shear
             trace += damp * (law.bulk - 2.0 / 3.0 * law.shear) * divergence
         points[at + VISCOUS * LANES] = viscous

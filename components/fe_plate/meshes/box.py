@@ -1,4 +1,4 @@
-"""Boxes of equal elements."""
+"""Boxes of equal elements, and rectangles in the plane of x and z."""
 
 import numpy as np
 
@@ -18,3 +18,20 @@ def box(part: Part) -> tuple[Array, Whole]:
     around = ((low, low), (high, low), (high, high), (low, high))
     corner = [number[x, y, z].ravel() for z in (low, high) for x, y in around]
     return node, np.stack(corner, axis=1)
+
+
+def rectangle(part: Part) -> tuple[Array, Whole]:
+    """Nodes (n, 3) m at y = 0 and corners (e, 8) of a rectangle; far corners are the same nodes.
+
+    Around each element from z to x, as seen from within a solid that extends along y.
+    """
+    assert part.elements is not None and part.lowest is not None and part.highest is not None
+    nx, _, nz = part.elements
+    x = np.linspace(part.lowest[0], part.highest[0], nx + 1)
+    z = np.linspace(part.lowest[2], part.highest[2], nz + 1)
+    across, up = np.meshgrid(x, z, indexing="ij")
+    node = np.stack([across, np.zeros_like(across), up], axis=-1).reshape(-1, 3)
+    number = np.arange(len(node)).reshape(nx + 1, nz + 1)
+    around = (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1])
+    quad = np.stack([one.ravel() for one in around], axis=1)
+    return node, np.concatenate([quad, quad], axis=1)

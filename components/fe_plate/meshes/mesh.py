@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.fe_plate.meshes.box import box
+from quintet.components.fe_plate.meshes.box import box, rectangle
 from quintet.components.fe_plate.meshes.cylinder import cylinder
 from quintet.components.fe_plate.meshes.params import Part
 from quintet.components.fe_plate.params import Faces, Fixed
@@ -19,6 +19,8 @@ from quintet.components.fe_plate.state import Array, Whole
 SIDES = np.array(
     [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
 )
+# Edges of an element in a plane, its inside on the left of the way from x to z.
+EDGES = np.array([(1, 0), (2, 1), (3, 2), (0, 3)])
 CLOSE = 1e-6  # of the mesh's size: nodes so near a box lie in it
 
 
@@ -28,21 +30,25 @@ class Mesh(NamedTuple):
     node: Array  # (n, 3) m
     corner: Whole  # (e, 8) nodes
     part: Whole  # (e,)
-    side: Whole  # (f, 4) nodes of the outer faces, seen from outside
+    side: Whole  # (f, 4) nodes of the outer faces, seen from outside; of edges two, and -1 twice
     owner: Whole  # (f,) element of each
 
 
-def mesh(parts: Sequence[Part]) -> Mesh:
+def mesh(parts: Sequence[Part], dimensions: int = 3) -> Mesh:
     """Make the mesh of some parts."""
     nodes, corners, first = [], [], 0
     for part in parts:
-        node, corner = box(part) if part.cylinder is None else cylinder(part.cylinder)
+        if dimensions == 2:
+            node, corner = rectangle(part)
+        else:
+            node, corner = box(part) if part.cylinder is None else cylinder(part.cylinder)
         nodes.append(node)
         corners.append(corner + first)
         first += len(node)
     number = np.repeat(np.arange(len(parts)), [len(one) for one in corners])
     corner = np.concatenate(corners)
-    return Mesh(np.concatenate(nodes), corner, number, *outer_sides(corner))
+    outer = outer_sides(corner) if dimensions == 3 else outer_edges(corner)
+    return Mesh(np.concatenate(nodes), corner, number, *outer)
 
 
 def outer_sides(corner: Whole) -> tuple[Whole, Whole]:
@@ -56,6 +62,17 @@ def outer_sides(corner: Whole) -> tuple[Whole, Whole]:
     return side[outer], owner[outer]
 
 
+def outer_edges(corner: Whole) -> tuple[Whole, Whole]:
+    """Edges (f, 4) of elements in a plane, -1 twice behind their nodes, and their elements (f,)."""
+    edge = corner[:, EDGES].reshape(-1, 2)
+    owner = np.repeat(np.arange(len(corner)), len(EDGES))
+    _, first, count = np.unique(
+        np.sort(edge, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    outer = np.sort(first[count == 1])
+    return np.pad(edge[outer], ((0, 0), (0, 2)), constant_values=-1), owner[outer]
+
+
 def inside(points: Array, box: Faces | Fixed) -> NDArray[np.bool_]:
     """Whether points (n, 3) m lie in a box, its edges included."""
     near = CLOSE * np.ptp(points, axis=0).max()
@@ -67,7 +84,7 @@ def faces_in(mesh: Mesh, boxes: Sequence[Faces]) -> Whole:
     """Numbers of the outer faces all of whose corners lie in one of some boxes."""
     found = np.zeros(len(mesh.side), bool)
     for one in boxes:
-        found |= inside(mesh.node, one)[mesh.side].all(axis=1)
+        found |= (inside(mesh.node, one)[mesh.side] | (mesh.side < 0)).all(axis=1)
     return np.flatnonzero(found)
 
 

@@ -105,6 +105,16 @@ class Part:
         speed = math.sqrt((made.bulk + 4.0 / 3.0 * made.shear) / made.density)
         return 1.0 / (speed * math.sqrt(bound))
 
+    def require_planar(self, where: str) -> None:
+        """Refuse a part that is no slab of one element, 1 m deep along y."""
+        deep = self.highest[1] - self.lowest[1] if self.highest and self.lowest else 0.0
+        along = self.elements[1] if self.elements else 0
+        if abs(deep - 1.0) > 1e-9 or along != 1:
+            raise ValueError(
+                f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
+                f"found {deep:g} m and {along} elements. Set both, or dimensions = 3."
+            )
+
     def _edges(self) -> tuple[float, ...]:
         if self.cylinder is not None:
             return self.cylinder.edges

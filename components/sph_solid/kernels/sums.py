@@ -7,12 +7,12 @@ from numba import njit, types
 from numba.extending import overload
 
 from quintet.components.shared.float_bits import bits_of
-from quintet.components.shared.smoothing.cubic_spline import ONE
+from quintet.components.shared.smoothing.cubic_spline import ONE, ZERO
 from quintet.components.shared.smoothing.smoothing import gradient
 from quintet.components.sph_solid.laws import (
     SINGULAR,
-    approach,
     inverse,
+    inverses,
     times,
     viscous_pressure,
 )
@@ -76,12 +76,10 @@ def sum_six(  # type: ignore[no-untyped-def]
         du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
         r2 = dx * dx + dy * dy + dz * dz
         dot = dx * du + dy * dv + dz * dw
-        per_r = ONE / math.sqrt(r2 + law.smoothing.tiny)
+        per_r, per_r2, per_density = inverses(r2, density + tension[k, 6], law)
         weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
-        mu = approach(r2, dot, law)
-        q = viscous_pressure(
-            mu, sound + moves[k, 3], density + tension[k, 6], start * tension[k, 7], law
-        )
+        mu = law.smoothing.length * max(-dot, ZERO) * per_r2
+        q = viscous_pressure(mu, sound + moves[k, 3], per_density, start * tension[k, 7], law)
         fastest = max(fastest, bits_of(mu))
         xx, yy, zz = t0 + tension[k, 0] - q, t1 + tension[k, 1] - q, t2 + tension[k, 2] - q
         xy, yz, zx = t3 + tension[k, 3], t4 + tension[k, 4], t5 + tension[k, 5]
@@ -104,12 +102,10 @@ def sum_nine(  # type: ignore[no-untyped-def]
         du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
         r2 = dx * dx + dy * dy + dz * dz
         dot = dx * du + dy * dv + dz * dw
-        per_r = ONE / math.sqrt(r2 + law.smoothing.tiny)
+        per_r, per_r2, per_density = inverses(r2, density + tension[k, 9], law)
         weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
-        mu = approach(r2, dot, law)
-        q = viscous_pressure(
-            mu, sound + moves[k, 3], density + tension[k, 9], start * tension[k, 10], law
-        )
+        mu = law.smoothing.length * max(-dot, ZERO) * per_r2
+        q = viscous_pressure(mu, sound + moves[k, 3], per_density, start * tension[k, 10], law)
         fastest = max(fastest, bits_of(mu))
         a0, a1, a2 = t0 + tension[k, 0] - q, t1 + tension[k, 1], t2 + tension[k, 2]
         a3, a4, a5 = t3 + tension[k, 3], t4 + tension[k, 4] - q, t5 + tension[k, 5]

@@ -7,7 +7,8 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from quintet.components.fe_plate.component import FePlate
-from quintet.components.fe_plate.kernels.blocks import DEVIATOR, PRESSURE, STRAIN
+from quintet.components.fe_plate.kernels.blocks import DEVIATOR, POINT_ROWS, PRESSURE, STRAIN
+from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.params import (
     Faces,
@@ -24,6 +25,7 @@ from quintet.interfaces.errors import StepError
 E, NU, RHO = 7e10, 0.3, 2700.0
 ELASTIC = Material(density=RHO, youngs_modulus=E, poissons_ratio=NU)
 CALM = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0}
+INTEGRATIONS = pytest.mark.parametrize("integration", ["reduced", "full"])
 
 
 def block(size, elements, material=ELASTIC, **given):
@@ -40,15 +42,17 @@ def distort(made, amount):
     return inner
 
 
+@INTEGRATIONS
 @pytest.mark.parametrize("amount", [0.0, 0.25])
-def test_patch_test(amount):
+def test_patch_test(amount, integration):
     """A linear field of velocity stresses all elements alike and leaves inner nodes without force.
 
     Of a distorted mesh too: Flanagan & Belytschko's mean gradient is the exact one.
     """
-    made = block((0.3, 0.3, 0.3), (3, 3, 3), **CALM)
+    made = block((0.3, 0.3, 0.3), (3, 3, 3), integration=integration, **CALM)
     inner = distort(made, amount * 0.1)
-    write_volumes(made.state.position, made.model.corner, 0.0, made.model.volume)
+    write = write_volumes if integration == "reduced" else write_point_volumes
+    write(made.state.position, made.model.corner, 0.0, made.model.volume)
     assert made.model.volume[made.places.point].sum() == pytest.approx(0.027, rel=1e-12)
     gradient = np.array([[1.0, 2.0, 3.0], [0.0, 1.5, 0.0], [0.5, 0.0, -1.0]])  # 1/s
     made.state.velocity[:] = made.state.position @ gradient.T
@@ -59,15 +63,17 @@ def test_patch_test(amount):
     stress = 2.0 * shear * (strain - np.trace(strain) / 3.0 * np.eye(3))
     size = np.abs(stress).max()
     exact = stress[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
-    deviator = made.places.rows(made.state, DEVIATOR, 6)
+    points = made.state.points.transpose(1, 0, 2).reshape(POINT_ROWS, -1)
+    deviator = points[DEVIATOR : DEVIATOR + 6, made.places.point.ravel()]
     assert np.abs(deviator - exact[:, None]).max() < 1e-5 * size
     assert np.abs(deviator - deviator[:, :1]).max() < 1e-9 * size
     assert made.places.of(made.state, PRESSURE) == pytest.approx(-bulk * np.trace(strain), rel=1e-5)
     assert np.abs(made.state.internal[inner]).max() < 1e-9 * size * 0.01  # of the force on a side
 
 
-def test_a_rotation_strains_nothing():
-    made = block((0.03, 0.02, 0.02), (3, 2, 2), **CALM)
+@INTEGRATIONS
+def test_a_rotation_strains_nothing(integration):
+    made = block((0.03, 0.02, 0.02), (3, 2, 2), integration=integration, **CALM)
     omega = np.array([200.0, -300.0, 150.0])  # rad/s
     middle = np.array([0.015, 0.01, 0.01])
     made.state.velocity[:] = np.cross(omega, made.state.position - middle)
@@ -85,8 +91,9 @@ def test_a_rotation_strains_nothing():
     assert energy == pytest.approx(start.kinetic + start.internal, rel=1e-5)
 
 
-def test_a_force_gives_its_impulse_and_its_work():
-    made = block((0.03, 0.02, 0.02), (3, 2, 2), mass_damping=0.0, **CALM)
+@INTEGRATIONS
+def test_a_force_gives_its_impulse_and_its_work(integration):
+    made = block((0.03, 0.02, 0.02), (3, 2, 2), integration=integration, **CALM)
     force = np.random.default_rng(1).normal(size=(len(made.surface), 3)) * 1e3  # N
     made.take({"node_load.force": force})
     for _ in range(300):
@@ -97,10 +104,11 @@ def test_a_force_gives_its_impulse_and_its_work():
     assert found.kinetic + found.internal == pytest.approx(work, rel=2e-3)
 
 
-def test_energy_is_kept_at_second_order():
+@INTEGRATIONS
+def test_energy_is_kept_at_second_order(integration):
     drifts = []
     for dt in (6e-7, 3e-7):
-        made = block((0.04, 0.02, 0.02), (4, 2, 2), **CALM)
+        made = block((0.04, 0.02, 0.02), (4, 2, 2), integration=integration, **CALM)
         made.state.velocity[:, 0] = 10.0 * np.sin(math.pi * made.state.position[:, 0] / 0.04)
         start = made.totals().kinetic
         for _ in range(round(6e-5 / dt)):
@@ -132,10 +140,13 @@ def greatest_frequency(made):
     return math.sqrt(found[0])
 
 
+@INTEGRATIONS
 @pytest.mark.parametrize("size", [(0.03, 0.03, 0.03), (0.09, 0.03, 0.01)])
 @pytest.mark.parametrize(("share", "grows"), [(0.98, False), (1.05, True)])
-def test_the_step_is_stable_below_twice_over_the_greatest_frequency(size, share, grows):
-    made = block(size, (3, 3, 3), **CALM)
+def test_the_step_is_stable_below_twice_over_the_greatest_frequency(
+    size, share, grows, integration
+):
+    made = block(size, (3, 3, 3), integration=integration, **CALM)
     dt = 2.0 / greatest_frequency(made)
     assert 0.4 < made.stable_dt() / 0.9 / dt <= 1.0  # the proven bound is below it
     made.state.velocity[:] = 1e-6 * np.random.default_rng(1).normal(size=(64, 3))
@@ -150,12 +161,13 @@ def test_the_step_is_stable_below_twice_over_the_greatest_frequency(size, share,
     assert (largest > 1e3 * start) == grows and (grows or largest < 10.0 * start)
 
 
-def test_patterns_without_strain_are_held():
+@INTEGRATIONS
+def test_patterns_without_strain_are_held(integration):
     """Modes that one quadrature point does not see swing, and do not grow."""
     node = block((0.01, 0.01, 0.01), (1, 1, 1)).mesh.node
     x, y, z = (2.0 * node / 0.01 - 1.0).T
     for pattern in (x * y, y * z, z * x, x * y * z):
-        made = block((0.01, 0.01, 0.01), (1, 1, 1), **CALM)
+        made = block((0.01, 0.01, 0.01), (1, 1, 1), integration=integration, **CALM)
         made.state.velocity[:, 0] = 0.01 * pattern
         largest = 0.0
         for _ in range(400):
@@ -252,12 +264,13 @@ def test_what_hangs_on_nodes_slows_them():
     assert made.totals().mass == pytest.approx(2e-6 * RHO)
 
 
-def test_threads_change_no_bit():
+@INTEGRATIONS
+def test_threads_change_no_bit(integration):
     part = Part(
         lowest=(0.0, 0.0, 0.0), highest=(0.01, 0.01, 0.03), elements=(12, 12, 36), material="steel"
     )
     wall = RigidWall(point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
-    params = FePlateParams(parts=(part,), rigid_walls=(wall,))
+    params = FePlateParams(parts=(part,), rigid_walls=(wall,), integration=integration)
     ends = []
     for threads in (1, 2):
         made = FePlate(params, Resources(threads=threads))

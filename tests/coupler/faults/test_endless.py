@@ -75,6 +75,18 @@ def test_over_memory_two_signals_end_what_holds_the_lock_of_python(faulty, tmp_p
     assert not run.processes()
 
 
+@pytest.mark.parametrize("by", ["os._exit", "SIGKILL"])
+def test_over_memory_a_death_without_a_word_is_written_down(faulty, tmp_path, by):
+    moment = tmp_path / "moment"
+    pong = f'fails_at = 60\nfails_by = "{by}"\nmoment = "{moment}"'
+    run = faulty("Faulty", "memory", pong, top="output.snapshots = 0.02", end=100.0)
+    assert run.wait() == (0 if by == "os._exit" else -signal.SIGKILL)
+    assert run.results["status"] == "failed" and "--resume" in run.results["resume"]
+    assert (run.results["fault"]["component"], run.results["fault"]["window"]) == ("pong", 60)
+    assert "pong failed in window 60: process" in run.err
+    assert "is gone: it ended or was killed" in run.err
+
+
 def test_over_memory_two_signals_end_compiled_code(faulty, tmp_path):
     run = hanging(faulty, tmp_path, "memory", "compiled loop")
     assert end(run, "SIGINT", "SIGINT") < AT_ONCE + LOADED

@@ -75,7 +75,7 @@ def test_a_curve_is_called_what_the_scene_calls_it(figure):
 
 def test_a_title_says_how_much_of_the_tolerance_is_used_up(figure):
     (panel,) = figure(END, values=True).axes
-    assert panel.get_title().endswith("met, 0% of the tolerance")
+    assert panel.get_title().endswith("met, 0% of the tolerance used up")
 
 
 def test_an_expected_oscillation_has_the_computed_phase(tmp_path, monkeypatch):
@@ -92,7 +92,7 @@ def test_an_expected_oscillation_has_the_computed_phase(tmp_path, monkeypatch):
         outcomes = [evaluate(period, recording, tmp_path)]
         comparison(tmp_path, [period], outcomes, recording, tmp_path / "c.png", values=True)
     line = kept[0].axes[0].get_lines()[1]
-    assert line.get_label() == "with the expected period"
+    assert line.get_label() == "as fitted to it, but with the expected period"
     t, x = line.get_data()
     expected = 0.3 + 0.1 * np.exp(-0.2 * t) * np.sin(2.0 * np.pi / 1.3 * t)
     assert x == pytest.approx(expected, abs=1e-6)
@@ -102,7 +102,7 @@ def test_single_values_are_drawn_where_the_scene_wants_pictures(figure):
     assert figure(TOP, END) is None
     band, point = figure(TOP, END, values=True).axes
     assert band.get_lines()[1].get_ydata().tolist() == [1.0, 1.0]
-    assert not np.any([line.get_label() == "mean of the computed" for line in band.get_lines()])
+    assert not np.any([line.get_label() == "its mean" for line in band.get_lines()])
     assert point.get_lines()[1].get_xydata().tolist() == [[0.9, 0.9]]
 
 

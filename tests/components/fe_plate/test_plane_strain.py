@@ -1,0 +1,112 @@
+"""Structures in two dimensions: plane strain, edges for faces, forces on 1 m."""
+
+import numpy as np
+import pytest
+
+from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.meshes.params import Part
+from quintet.components.fe_plate.params import Faces, FePlateParams, Fixed, Pressure, RigidWall
+from quintet.components.shared.materials.params import Material
+
+INTEGRATIONS = pytest.mark.parametrize("integration", ["reduced", "full"])
+EVERYWHERE = Faces(lowest=(-9.0, -9.0, -9.0), highest=(9.0, 9.0, 9.0))
+
+
+def slab(dimensions, **given):
+    part = Part(
+        lowest=(0.0, 0.0, 0.0),
+        highest=(0.04, 1.0, 0.02),
+        elements=(8, 1, 4),
+        material="steel",
+        velocity=(5.0, 0.0, -60.0),
+    )
+    return FePlate(FePlateParams(parts=(part,), dimensions=dimensions, **given))
+
+
+@INTEGRATIONS
+def test_it_moves_as_a_slab_that_is_held_along_y(integration):
+    """To rounding; eight points have axes that begin with another edge of the deformed element."""
+    close = 1e-9 if integration == "reduced" else 3e-3
+    wall = RigidWall(point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
+    held = Fixed(lowest=(-9.0, -9.0, -9.0), highest=(9.0, 9.0, 9.0), directions=("y",))
+    given = {"rigid_walls": (wall,), "integration": integration, "gravity": (0.0, 0.0, -9.81)}
+    flat, solid = slab(2, **given), slab(3, fixed=(held,), **given)
+    for _ in range(150):
+        dt = min(flat.stable_dt(), solid.stable_dt())
+        flat.step(dt)
+        solid.step(dt)
+    front = solid.mesh.node[:, 1] == 0.0
+    moved = flat.state.position - flat.mesh.node
+    np.testing.assert_allclose(
+        moved, (solid.state.position - solid.mesh.node)[front], atol=close * np.abs(moved).max()
+    )
+    mine, its = flat.totals(), solid.totals()
+    assert mine.mass == pytest.approx(7850.0 * 0.04 * 0.02)
+    assert mine.kinetic == pytest.approx(its.kinetic, rel=close)
+    assert mine.internal == pytest.approx(its.internal, rel=close)
+
+
+def test_edges_go_round_with_the_inside_on_their_left():
+    made = slab(2)
+    edge = made.describe()["faces.corner"].astype(int)
+    assert len(edge) == 24 and (edge[:, 2:] == -1).all()
+    assert made.describe()["faces.dimensions"] == [2.0]
+    start = made.describe()["faces.start"]
+    assert (start[:, 1] == 0.0).all()
+    first, last = start[edge[:, 0]], start[edge[:, 1]]
+    area = 0.5 * (first[:, 0] * last[:, 2] - last[:, 0] * first[:, 2]).sum()
+    assert area == pytest.approx(0.04 * 0.02)
+
+
+def test_a_pressure_pushes_inwards_with_its_edges_length():
+    top = Faces(lowest=(-1.0, -1.0, 0.02), highest=(1.0, 1.0, 0.02))
+    made = slab(2, pressures=(Pressure(faces=top, pressure=1e5),))
+    made.step(1e-9)
+    np.testing.assert_allclose(made.state.load.sum(axis=0), [0.0, 0.0, -1e5 * 0.04], atol=1e-9)
+    even = slab(2, pressures=(Pressure(faces=EVERYWHERE, pressure=1e5),))
+    even.step(1e-9)
+    assert np.abs(even.state.load.sum(axis=0)).max() < 1e-8
+    assert (even.state.load * (even.mesh.node - [0.02, 0.0, 0.01])).sum() < 0.0
+
+
+@INTEGRATIONS
+def test_a_strip_under_pressure_bends_as_plane_strain_has_it(integration):
+    """w = q L⁴/(384 D) of a clamped strip, and q L²/(8 κ G h) of its shear, κ = 5/6."""
+    length, height, load = 0.3, 0.01, 1e4
+    part = Part(
+        lowest=(0.0, 0.0, 0.0),
+        highest=(length, 1.0, height),
+        elements=(30, 1, 8 if integration == "reduced" else 1),
+        material=Material(density=2700.0, youngs_modulus=7e10, poissons_ratio=0.3),
+    )
+    ends = tuple(Fixed(lowest=(x, 0.0, 0.0), highest=(x, 0.0, height)) for x in (0.0, length))
+    top = Faces(lowest=(0.0, 0.0, height), highest=(length, 0.0, height))
+    made = FePlate(
+        FePlateParams(
+            parts=(part,),
+            fixed=ends,
+            pressures=(Pressure(faces=top, pressure=load),),
+            dimensions=2,
+            integration=integration,
+            mass_damping=12000.0,
+            viscosity_linear=0.0,
+            viscosity_quadratic=0.0,
+        )
+    )
+    dt = made.stable_dt()
+    for _ in range(round(0.0035 / dt)):
+        made.step(dt)
+    middle = np.flatnonzero(np.abs(made.mesh.node[:, 0] - 0.5 * length) < 1e-9)
+    moved = (made.state.position - made.mesh.node)[middle, 2].mean()
+    rigidity = 7e10 * height**3 / 12.0 / (1.0 - 0.3**2)
+    shear = 7e10 / 2.6
+    bent = load * length**4 / 384.0 / rigidity
+    assert moved == pytest.approx(-bent - load * length**2 * 1.2 / 8.0 / shear / height, rel=0.02)
+
+
+def test_a_part_that_is_no_slab_is_refused():
+    part = Part(
+        lowest=(0.0, 0.0, 0.0), highest=(1.0, 0.5, 1.0), elements=(2, 1, 2), material="steel"
+    )
+    with pytest.raises(ValueError, match=r"1 m deep along y in one element; found 0\.5 m"):
+        FePlateParams(parts=(part,), dimensions=2)
