@@ -102,7 +102,7 @@ class SphSolid(Component):
         )  # fmt: skip
         ends = np.array(displaced)
         spread = self.lists.spread(ends[:, :3].min(axis=0), ends[:, 3:].max(axis=0))
-        if self.lists.are_outworn(state, spread):
+        if self.lists.are_outworn(state, spread) and not self._still_hold(dt):
             self._search(dt)
         self._write_gradients()
         self._advance_materials(dt)
@@ -137,6 +137,9 @@ class SphSolid(Component):
         state, rows, count = self.state, self.rows, self.state.particles
         rows.place[:count, :3], rows.place[:count, 3] = state.position, state.volume
         rows.motion[:count, :3] = state.velocity
+
+    def _still_hold(self, dt: float) -> bool:
+        return self.lists.still_hold(self.state, self.rows.place[: self.state.particles], dt)
 
     def _search(self, dt: float) -> None:
         """List what is near in the middle of a step of dt [s], and sort by it."""

@@ -19,6 +19,7 @@ from quintet.components.shared.symmetry import (
     neighbours_and_images,
 )
 from quintet.components.shared.threads import Team
+from quintet.components.sph_solid.kernels.motion import meets_unlisted
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, Rows, State
 
@@ -26,6 +27,8 @@ from quintet.components.sph_solid.state import Array, Rows, State
 # each other by in it, both over the support: a search takes about as long as the sums over pairs.
 SKIN = 0.5
 LEAST, MOST = 0.01, 0.15  # of the support
+FEW = 64  # particles that are worth comparing with all others rather than searching
+WIDER = 0.1  # of its radius, that a ring may move
 
 
 class SolidLists:
@@ -43,6 +46,7 @@ class SolidLists:
         self.images = SymmetryImages(planes)
         axis = [Plane("x-", 0, 0.0, 1.0)] if params.axisymmetric else []
         self.mirrors = [*planes, *axis]  # what moves towards one meets what moves the other way
+        self.is_axisymmetric = params.axisymmetric
         self.near = NeighbourLists()
         self.points: Array = np.zeros((0, 3))  # (n + images, 3) m, references
 
@@ -65,6 +69,36 @@ class SolidLists:
     def are_outworn(self, state: State, spread: float) -> bool:
         """Whether pairs may act that the lists lack, by how far two have come apart or near [m]."""
         return not spread <= state.reach - self.support
+
+    def still_hold(self, state: State, middle: Array, dt: float) -> bool:
+        """Whether lists hold though particles have gone far: a few, which meet no others.
+
+        Parameters
+        ----------
+        state : State
+            With velocities of the step's middle.
+        middle : (n, 4) float array, m
+            Places there.
+        dt : float, s
+        """
+        places = np.ascontiguousarray(middle[:, :3]), state.position + dt * state.velocity
+        moved = [place - state.reference for place in places]
+        if not self.mirrors:
+            moved = [one - one.mean(axis=0) for one in moved]
+        furthest = np.maximum(*((one * one).sum(axis=1) for one in moved))
+        skin = state.reach - self.support
+        fast = np.flatnonzero(furthest > 0.25 * skin * skin)
+        if len(fast) > FEW:
+            return False
+        for plane in self.mirrors:
+            for place in places:
+                depth = plane.inward * (place[fast, plane.axis] - plane.position)
+                if (depth < self.support).any():
+                    return False
+        if self.is_axisymmetric:  # rings have their cuts of the radius that they had
+            if (np.abs(moved[1][fast, 0]) > WIDER * state.reference[fast, 0]).any():
+                return False
+        return not meets_unlisted(fast, *places, state.reference, self.support, skin)
 
     def widen(self, state: State, spread: float) -> None:
         """Choose how far the next lists reach, by what two approach each other in a step [m]."""

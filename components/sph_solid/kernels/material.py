@@ -127,7 +127,8 @@ def advance(
             pressure, whole = 0.0, energy
         energies[i], ratios[i], pressures[i] = whole, after, pressure
         if law.shocks:
-            warm = temperature(mu, whole, law)
+            # What has failed opens, and is not stretched.
+            warm = temperature(max(mu, 0.0) if failed else mu, whole, law)
         warmth[i] = warm
         squared = sound_speed_squared(mu, whole, pressure, law)
         if failed:

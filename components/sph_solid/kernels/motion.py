@@ -3,7 +3,7 @@
 from numba import njit
 
 from quintet.components.shared.numba_options import EXACT
-from quintet.components.sph_solid.state import Array
+from quintet.components.sph_solid.state import Array, Whole
 
 
 @njit(**EXACT)
@@ -61,6 +61,36 @@ def drift_half(
             place[i, d] = x
             motion[i, d] = velocity[i, d] + half * acceleration[i, d]
         motion[i, 3] = sound[i]
+
+
+@njit(**EXACT)
+def meets_unlisted(
+    fast: Whole, middle: Array, end: Array, reference: Array, support: float, skin: float
+) -> bool:
+    """Whether a particle meets one that may be missing in its list.
+
+    Parameters
+    ----------
+    fast : (k,) int array
+        Particles that have gone further than half the skin.
+    middle, end : (n, 3 or more) float arrays, m
+        Places in the step's middle and at its end.
+    reference : (n, 3) float array, m
+    support, skin : float, m
+    """
+    for q in range(fast.shape[0]):
+        i = fast[q]
+        for places in (middle, end):
+            for j in range(reference.shape[0]):
+                near, moved = 0.0, 0.0
+                for d in range(3):
+                    apart = places[i, d] - places[j, d]
+                    near += apart * apart
+                    apart -= reference[i, d] - reference[j, d]
+                    moved += apart * apart
+                if near < support * support and moved > skin * skin:
+                    return True
+    return False
 
 
 @njit(**EXACT)
