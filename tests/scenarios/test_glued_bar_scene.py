@@ -33,6 +33,20 @@ def test_other_ratios_of_steps_are_refused_with_the_reason(
 
 
 @pytest.mark.full
+@pytest.mark.parametrize("transport", ["zenoh", "mpi"])
+def test_bits_are_the_same_over_all_transports(
+    run_scene: Run, capsys: pytest.CaptureFixture[str], transport: str
+) -> None:
+    folders = [
+        str(run_scene("glued_bar", "--transport", one, "--set", "end=4e-6")["folder"])
+        for one in ("memory", transport)
+    ]
+    with pytest.raises(SystemExit) as ended:
+        main(["diff", *folders])
+    assert ended.value.code == 0, capsys.readouterr().out
+
+
+@pytest.mark.full
 @pytest.mark.parametrize("transits", [30, 100])
 def test_energy_of_the_coupled_bar_stays(run_scene: Run, transits: int) -> None:
     """Elements and particles of a step of their own size each, one exchange for every step."""

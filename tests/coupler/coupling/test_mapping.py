@@ -174,6 +174,15 @@ def test_points_beyond_the_rim_hang_on_the_rim():
     assert shape.weight.sum() == pytest.approx(1.0)
 
 
+def test_points_on_edges_and_corners_of_faces_hang_on_one_face_each():
+    position, face = _mesh()
+    found = project(position, position, face)
+    np.testing.assert_allclose(found.shape.map_consistent(position), position, atol=1e-12)
+    np.testing.assert_allclose(found.gap, 0.0, atol=1e-12)
+    np.testing.assert_allclose(found.beyond, 0.0, atol=1e-12)
+    assert found.shape.face.min() == 0 and found.shape.face.max() == len(face) - 1
+
+
 def test_projection_of_no_points_is_empty():
     position, face = _mesh()
     shape = project(np.zeros((0, 3)), position, face).shape

@@ -1,0 +1,1 @@
+"""Water comes to rest on an elastic plate: scene, exact by the theory of plates."""
