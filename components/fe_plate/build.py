@@ -1,5 +1,6 @@
 """A structure as its parameters describe it: mesh, masses, supports."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from quintet.components.fe_plate.kernels.blocks import LANES, TEMPERATURE
 from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
-from quintet.components.fe_plate.meshes.mesh import Mesh, faces_in, incident, inside, mesh
+from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, incident, mesh
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.state import (
     Array,
@@ -18,7 +19,7 @@ from quintet.components.fe_plate.state import (
     state_at_rest,
 )
 from quintet.components.shared.materials.params import material
-from quintet.components.shared.materials.solid import Solid, solid
+from quintet.components.shared.materials.solid import NEVER, Solid, solid
 from quintet.interfaces.errors import SceneError
 
 AXES = ("x", "y", "z")
@@ -40,11 +41,18 @@ class Structure(NamedTuple):
 
 def structure(params: FePlateParams) -> Structure:
     """Build a structure."""
-    made = mesh(params.parts, params.dimensions)
+    made = mesh(params.parts, params.dimensions, params.node_sets)
     depth = 1.0 if params.dimensions == 2 else 0.0  # m
-    laws = [solid(material(part.material)) for part in params.parts]
+    laws = [eroding(solid(material(part.material)), params.erosion) for part in params.parts]
     volume = np.empty(len(made.corner))
     write_volumes(made.node, made.corner, depth, volume)
+    if not (volume > 0.0).all():
+        worst = int(np.argmin(volume))
+        middle = np.array2string(made.node[made.corner[worst]].mean(axis=0), precision=4)
+        raise SceneError(
+            f"element {worst} at {middle} m must have a volume above 0; found "
+            f"{volume[worst]:.3g} m3: it is inside out. Turn its corners, or mesh it anew."
+        )
     density = np.array([law.density for law in laws])[made.part]
     nodes = len(made.node)
     share = np.repeat(density * volume / 8.0, 8)
@@ -62,17 +70,17 @@ def structure(params: FePlateParams) -> Structure:
         row[3] = row[:3] @ wall.point
     free: Array = np.ones((nodes, 3))
     for number, held in enumerate(params.fixed):
-        found = inside(made.node, held)
-        _require(found.any(), f"fixed.{number}: its box must hold a node; it holds none.")
+        found = chosen(made, held, f"fixed.{number}")
+        _require(found.any(), f"fixed.{number}: it must hold a node; it holds none.")
         for one in held.directions:
             free[found, AXES.index(one)] = 0.0
     if params.dimensions == 2:
         free[:, 1] = 0.0
     coupled: Whole = np.arange(len(made.side))
     if params.coupled_faces:
-        coupled = faces_in(made, params.coupled_faces)
+        coupled = faces_in(made, params.coupled_faces, "coupled_faces")
         _require(len(coupled) > 0, "coupled_faces: the boxes must hold an outer face; none does.")
-    pressed = [faces_in(made, [one.faces]) for one in params.pressures]
+    pressed = [faces_in(made, [one.faces], "pressures") for one in params.pressures]
     for number, faces in enumerate(pressed):
         _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
     model = Model(
@@ -89,6 +97,15 @@ def structure(params: FePlateParams) -> Structure:
     point = points * place[:, None] + np.arange(points)
     places = Places(point, own[point] / own[point].sum(axis=1, keepdims=True))
     return Structure(made, model, places, laws, first, volume, mass, coupled, pressed)
+
+
+def eroding(law: Solid, by: Sequence[str]) -> Solid:
+    """Numbers of a material that fails only by what a scene names."""
+    if "plastic_strain" not in by:
+        law = law._replace(failure_strain=NEVER)
+    if "damage" not in by:
+        law = law._replace(d1=0.0, d2=0.0)
+    return law if "spall" in by else law._replace(spall=NEVER)
 
 
 def in_blocks(part: Whole, parts: int, size: int) -> tuple[Whole, Whole, list[int]]:

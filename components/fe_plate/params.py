@@ -13,6 +13,34 @@ from quintet.interfaces.params import (
     parameters,
 )
 
+Erosion = Literal["plastic_strain", "damage", "spall"]
+
+
+def _box_or_set(where: str, box: tuple[Vector | None, Vector | None], name: str) -> None:
+    given = sum(one is not None for one in box)
+    if given != (0 if name else 2):
+        raise ValueError(
+            f"{where}: a box has lowest and highest, and no node_set; found {given} of them"
+            f"{' and a node_set' if name else ''}."
+        )
+
+
+@parameters
+class NodeSet:
+    """Nodes by a name, as files of meshes have them.
+
+    Parameters
+    ----------
+    name
+        By which `fixed`, `coupled_faces` and `pressures` choose them.
+    lowest, highest : m
+        A box; nodes within it at the start belong to the set.
+    """
+
+    name: str
+    lowest: Vector
+    highest: Vector
+
 
 @parameters
 class Fixed:
@@ -22,27 +50,39 @@ class Fixed:
     ----------
     lowest, highest : m
         A box; nodes within it at the start are held.
+    node_set
+        In place of the box: a set of `node_sets`, or of a mesh's file.
     directions
         Along which they keep their places; all for clamped ones, the normal for a symmetry plane.
     """
 
-    lowest: Vector
-    highest: Vector
+    lowest: Vector | None = None
+    highest: Vector | None = None
+    node_set: str = ""
     directions: tuple[Direction, ...] = ("x", "y", "z")
+
+    def __post_init__(self) -> None:
+        _box_or_set("fixed", (self.lowest, self.highest), self.node_set)
 
 
 @parameters
 class Faces:
-    """Outer faces, by a box.
+    """Outer faces, by a box or a set of nodes.
 
     Parameters
     ----------
     lowest, highest : m
         Faces all of whose corners lie in this box at the start.
+    node_set
+        In place of the box: faces all of whose corners belong to this set.
     """
 
-    lowest: Vector
-    highest: Vector
+    lowest: Vector | None = None
+    highest: Vector | None = None
+    node_set: str = ""
+
+    def __post_init__(self) -> None:
+        _box_or_set("faces", (self.lowest, self.highest), self.node_set)
 
 
 @parameters
@@ -130,6 +170,8 @@ class FePlateParams:
     ----------
     parts
         What it is made of; parts do not touch each other.
+    node_sets
+        Nodes by name.
     fixed
         Nodes that are held.
     coupled_faces
@@ -142,6 +184,9 @@ class FePlateParams:
         What is measured.
     gravity : m/s2
         Acceleration of free fall.
+    erosion
+        What erodes elements, where their material says it: a plastic strain (failure_strain),
+        damage, or the greatest principal stress (spall_stress). What is left out does nothing.
     dimensions
         In two, x and z, plane strain: parts are one element of 1 m deep along y, forces those on
         1 m, and faces edges.
@@ -161,12 +206,14 @@ class FePlateParams:
     """
 
     parts: tuple[Part, ...]
+    node_sets: tuple[NodeSet, ...] = ()
     fixed: tuple[Fixed, ...] = ()
     coupled_faces: tuple[Faces, ...] = ()
     pressures: tuple[Pressure, ...] = ()
     rigid_walls: tuple[RigidWall, ...] = ()
     gauges: Gauges = Gauges()
     gravity: Vector = (0.0, 0.0, 0.0)
+    erosion: tuple[Erosion, ...] = ("plastic_strain", "damage", "spall")
     dimensions: Literal[2, 3] = 3
     integration: Literal["reduced", "full"] = "reduced"
     courant: Fraction = 0.9

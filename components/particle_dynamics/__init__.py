@@ -1,4 +1,4 @@
-"""Lattices of mass points: pair forces of seven roots, drive, damping, baths, collisions.
+"""Lattices of mass points with drive, damping, baths, collisions; or spheres in free flight.
 
     m dv/dt = Σ F(r) e + δ (v_ij·e) e + …,   F = c Π(x - x_i) e(x) STEP(x, 2s, 1, 2, 0),   x = r/a
 
@@ -12,6 +12,9 @@ step's end, to second order. The driven pair's constraint is eliminated: its dis
 told, its mean moves by the mean force. Langevin's baths are those of BAOAB. Random collisions turn
 the relative velocity of nearest points into a random direction: momentum and energy stay, and heat
 is conducted by Fourier's law at any length, which the lattice alone does not do.
+
+Spheres move under the loads of a partner, constant over a step, and gravity; impacts among them and
+with walls are impulses with restitution, without friction.
 
 Energy is audited: kinetic + potential + dissipated - work of the drive - heat of the baths.
 
@@ -29,7 +32,7 @@ __all__ = ["MANIFEST", "ParticleDynamicsParams"]
 
 MANIFEST = Manifest(
     kind="particle_dynamics",
-    title="Lattices of mass points, driven and heated",
+    title="Lattices of mass points, driven and heated; spheres in flight",
     params=ParticleDynamicsParams,
     component="quintet.components.particle_dynamics.component:ParticleDynamics",
     ports=ports,

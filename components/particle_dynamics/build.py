@@ -51,6 +51,12 @@ class Built(NamedTuple):
     wall: Whole  # rows of the bathed points that are coupled
 
 
+def lattice_of(params: ParticleDynamicsParams) -> Lattice:
+    """Return the lattice of parameters that have one."""
+    assert params.lattice is not None
+    return params.lattice
+
+
 def lattice_points(lattice: Lattice) -> Array:
     """Places (n, 3) m, counted along z first."""
     axes = [np.arange(count) for count in lattice.points]
@@ -60,7 +66,8 @@ def lattice_points(lattice: Lattice) -> Array:
 
 def build(params: ParticleDynamicsParams) -> Built:
     """Build a lattice."""
-    lattice, start = params.lattice, lattice_points(params.lattice)
+    lattice = lattice_of(params)
+    start = lattice_points(lattice)
     spacing = lattice.spacing
     period = _period(lattice)
     frozen = np.array(sorted({_nearest(start, one) for one in params.frozen}), np.int64)
@@ -95,7 +102,7 @@ def build(params: ParticleDynamicsParams) -> Built:
 
 def initial_state(params: ParticleDynamicsParams, built: Built) -> State:
     """Points at their places, with random velocities if they are warm."""
-    lattice, model, count = params.lattice, built.model, len(built.start)
+    lattice, model, count = lattice_of(params), built.model, len(built.start)
     random = np.random.default_rng(params.seed)
     width = math.sqrt(2.0 * params.boltzmann * lattice.temperature / lattice.mass)
     velocity = width * random.normal(size=(count, 3))
@@ -140,7 +147,7 @@ def _law(
     params: ParticleDynamicsParams, start: Array, period: Array | None, frozen: Whole
 ) -> tuple[Law, float]:
     """Pair law, and the highest angular frequency [rad/s] of the lattice that it holds together."""
-    lattice, given = params.lattice, params.seven_roots
+    lattice, given = lattice_of(params), params.seven_roots
     table = params.force_table
     law: Law
     if given is None:
@@ -168,7 +175,7 @@ def _highest(
     law: Law, params: ParticleDynamicsParams, start: Array, period: Array | None, frozen: Whole
 ) -> float:
     """Highest angular frequency [rad/s] with the frozen points held."""
-    lattice = params.lattice
+    lattice = lattice_of(params)
     reach = math.sqrt(law.cutoff2) * CLOSE
     bonds = _bonds(start, reach, np.array(lattice.lowest), period)
     arm = start[bonds[:, 0]] - start[bonds[:, 1]]

@@ -1,13 +1,15 @@
-"""What a scene says about a lattice of mass points."""
+"""What a scene says about a lattice of mass points, or about spheres."""
 
 import math
 from typing import Annotated, Literal
 
 from pydantic import Field
 
+from quintet.components.particle_dynamics.spheres.params import Sphere, Wall
 from quintet.interfaces.params import (
     Count,
     DataFile,
+    Fraction,
     NotNegative,
     Positive,
     Vector,
@@ -223,12 +225,22 @@ class Averages:
 
 @parameters
 class ParticleDynamicsParams:
-    """A lattice, its pair force, what holds, drives and heats it.
+    """A lattice, its pair force, what holds, drives and heats it; or spheres that fly freely.
 
     Parameters
     ----------
     lattice
-        The points.
+        The points; this or `spheres`. All keys but those of spheres are the lattice's.
+    spheres
+        That fly freely under what a partner tells, bounce from each other and from walls.
+    walls
+        Planes from which spheres bounce.
+    gravity : m/s2
+        Acceleration of free fall of spheres.
+    restitution : 1
+        Of spheres that strike each other or a wall: normal velocity after over that before.
+    longest_step : s
+        Of spheres; without it any step is stable.
     seven_roots
         Their pair force, of seven roots; this or `force_table`.
     force_table
@@ -261,7 +273,12 @@ class ParticleDynamicsParams:
         the nearest is broken: the run ends, or goes on and says so.
     """
 
-    lattice: Lattice
+    lattice: Lattice | None = None
+    spheres: tuple[Sphere, ...] = ()
+    walls: tuple[Wall, ...] = ()
+    gravity: Vector = (0.0, 0.0, 0.0)
+    restitution: Fraction = 1.0
+    longest_step: Positive | None = None
     seven_roots: SevenRootForce | None = None
     force_table: DataFile | None = None
     damping: Damping | None = None
@@ -283,6 +300,12 @@ class ParticleDynamicsParams:
             raise ValueError(" ".join(wrong))
 
     def _rules(self) -> list[tuple[bool, str]]:
+        if (self.lattice is None) == (not self.spheres):
+            return [(True, "points are needed of one kind; give lattice or spheres.")]
+        if self.lattice is None:
+            strange = {"seven_roots", "force_table", "damping", "drive", "frozen", "baths"}
+            found = [name for name in sorted(strange) if getattr(self, name)]
+            return [(bool(found), f"{', '.join(found)}: of lattices only; remove from spheres.")]
         table, roots = self.force_table is not None, self.seven_roots is not None
         is_random = bool(self.baths) or self.collision_rate > 0.0
         is_literal = self.damping is not None and self.damping.range == "all"

@@ -1,4 +1,4 @@
-"""What a run of a lattice will need, estimated without making one."""
+"""What a run of points will need, estimated without making them."""
 
 import math
 
@@ -20,6 +20,8 @@ LIMIT = {"velocity_verlet": 2.0, "yoshida": 1.5734}
 def plan(params: ParticleDynamicsParams) -> Plan:
     """What a run will need."""
     lattice, given = params.lattice, params.seven_roots
+    if lattice is None:
+        return Plan(len(params.spheres), params.longest_step or math.inf, RATE, BYTES)
     if given is not None and given.top_frequency is not None:
         frequency = 2.0 * math.pi * given.top_frequency
     else:

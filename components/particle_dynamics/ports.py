@@ -4,6 +4,9 @@ from quintet.components.particle_dynamics.params import ParticleDynamicsParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
+    HEAT_FLOW,
+    LOAD,
+    MOTION,
     POSITION,
     TEMPERATURE,
     VELOCITY,
@@ -41,9 +44,18 @@ BATHS = Port(
     ),
 )
 
+# Of each sphere: heat that a partner gives it, and what it has become.
+HEAT = Port("heat", fields=(HEAT_FLOW,))
+SPHERES = Port(
+    "spheres",
+    fields=(POSITION, VELOCITY, TEMPERATURE, Field("diameter", (), "m")),
+)
+
 
 def ports(params: ParticleDynamicsParams) -> Ports:
     """Ports taken and given."""
+    if params.lattice is None:
+        return (LOAD, HEAT), (MOTION, SPHERES)
     baths = (BATHS,) if params.baths else ()
     coupled = any(one.coupled for one in params.baths)
     wall = (WALL_HEAT,) if coupled else ()

@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 
 from quintet.components.fe_plate.meshes.box import box, rectangle
 from quintet.components.fe_plate.meshes.cylinder import cylinder
+from quintet.components.fe_plate.meshes.files import read
 from quintet.components.fe_plate.meshes.params import Part
-from quintet.components.fe_plate.params import Faces, Fixed
+from quintet.components.fe_plate.params import Faces, Fixed, NodeSet
 from quintet.components.fe_plate.state import Array, Whole
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import unknown
 
 # Corners around each side of an element, seen from outside.
 SIDES = np.array(
@@ -32,23 +35,35 @@ class Mesh(NamedTuple):
     part: Whole  # (e,)
     side: Whole  # (f, 4) nodes of the outer faces, seen from outside; of edges two, and -1 twice
     owner: Whole  # (f,) element of each
+    sets: dict[str, Whole]  # nodes of each named set, of files and of the scene
 
 
-def mesh(parts: Sequence[Part], dimensions: int = 3) -> Mesh:
+def mesh(parts: Sequence[Part], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
     """Make the mesh of some parts."""
     nodes, corners, first = [], [], 0
+    named: dict[str, Whole] = {}
     for part in parts:
         if dimensions == 2:
             node, corner = rectangle(part)
+        elif part.cylinder is not None:
+            node, corner = cylinder(part.cylinder)
+        elif part.mesh is not None:
+            found = read(part.mesh.file)
+            node, corner = part.mesh.scale * found.node + part.mesh.move, found.corner
+            for name, rows in found.sets.items():
+                named[name] = np.append(named.get(name, rows[:0]), first + rows)
         else:
-            node, corner = box(part) if part.cylinder is None else cylinder(part.cylinder)
+            node, corner = box(part)
         nodes.append(node)
         corners.append(corner + first)
         first += len(node)
     number = np.repeat(np.arange(len(parts)), [len(one) for one in corners])
     corner = np.concatenate(corners)
     outer = outer_sides(corner) if dimensions == 3 else outer_edges(corner)
-    return Mesh(np.concatenate(nodes), corner, number, *outer)
+    node = np.concatenate(nodes)
+    for one in sets:
+        named[one.name] = np.flatnonzero(inside(node, one))
+    return Mesh(node, corner, number, *outer, named)
 
 
 def outer_sides(corner: Whole) -> tuple[Whole, Whole]:
@@ -73,18 +88,30 @@ def outer_edges(corner: Whole) -> tuple[Whole, Whole]:
     return np.pad(edge[outer], ((0, 0), (0, 2)), constant_values=-1), owner[outer]
 
 
-def inside(points: Array, box: Faces | Fixed) -> NDArray[np.bool_]:
+def chosen(mesh: Mesh, by: Faces | Fixed, where: str) -> NDArray[np.bool_]:
+    """Which nodes lie in a box, or belong to a set."""
+    if not by.node_set:
+        return inside(mesh.node, by)
+    if by.node_set not in mesh.sets:
+        raise SceneError(unknown(f"{where}: node_set {by.node_set}", by.node_set, mesh.sets))
+    found = np.zeros(len(mesh.node), bool)
+    found[mesh.sets[by.node_set]] = True
+    return found
+
+
+def inside(points: Array, box: Faces | Fixed | NodeSet) -> NDArray[np.bool_]:
     """Whether points (n, 3) m lie in a box, its edges included."""
+    assert box.lowest is not None and box.highest is not None
     near = CLOSE * np.ptp(points, axis=0).max()
     low, high = np.array(box.lowest) - near, np.array(box.highest) + near
     return np.asarray(((points >= low) & (points <= high)).all(axis=1))
 
 
-def faces_in(mesh: Mesh, boxes: Sequence[Faces]) -> Whole:
-    """Numbers of the outer faces all of whose corners lie in one of some boxes."""
+def faces_in(mesh: Mesh, boxes: Sequence[Faces], where: str) -> Whole:
+    """Numbers of the outer faces all of whose corners lie in one of some boxes, or sets."""
     found = np.zeros(len(mesh.side), bool)
     for one in boxes:
-        found |= (inside(mesh.node, one)[mesh.side] | (mesh.side < 0)).all(axis=1)
+        found |= (chosen(mesh, one, where)[mesh.side] | (mesh.side < 0)).all(axis=1)
     return np.flatnonzero(found)
 
 

@@ -3,8 +3,9 @@
 import math
 from typing import Literal
 
+from quintet.components.fe_plate.meshes.files import least_edge, read
 from quintet.components.shared.materials.params import Material, MaterialName, material
-from quintet.interfaces.params import Count, Positive, Vector, parameters
+from quintet.interfaces.params import Count, DataFile, Positive, Vector, parameters
 
 Direction = Literal["x", "y", "z"]
 
@@ -50,8 +51,32 @@ class Cylinder:
 
 
 @parameters
+class MeshFile:
+    """A mesh of 8-node solids from a file; others of its elements are left out.
+
+    Parameters
+    ----------
+    file
+        Beside the scene, in a format that meshio reads (Abaqus, Gmsh, Nastran, VTK, Exodus ...).
+    scale : m
+        That one unit of length in the file stands for.
+    move : m
+        By which the mesh is then moved.
+    """
+
+    file: DataFile
+    scale: Positive = 1.0
+    move: Vector = (0.0, 0.0, 0.0)
+
+    @property
+    def count(self) -> int:
+        """Number of its elements."""
+        return len(read(self.file).corner)
+
+
+@parameters
 class Part:
-    """A box of equal elements, or a cylinder.
+    """A box of equal elements, a cylinder, or a mesh from a file.
 
     Parameters
     ----------
@@ -59,7 +84,7 @@ class Part:
         Corners of a box.
     elements : 1
         How many along x, y and z.
-    cylinder
+    cylinder, mesh
         In place of the box.
     material
         Name of a material of the library, or its table.
@@ -71,16 +96,18 @@ class Part:
     highest: Vector | None = None
     elements: tuple[Count, Count, Count] | None = None
     cylinder: Cylinder | None = None
+    mesh: MeshFile | None = None
     material: MaterialName | Material
     velocity: Vector = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         box = (self.lowest, self.highest, self.elements)
         given = sum(one is not None for one in box)
-        if given != (3 if self.cylinder is None else 0):
+        others = sum(one is not None for one in (self.cylinder, self.mesh))
+        if (given, others) not in ((3, 0), (0, 1)):
             raise ValueError(
-                "part: a box has lowest, highest and elements, and no cylinder; found "
-                f"{given} of them{'' if self.cylinder is None else ' and a cylinder'}."
+                "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
+                f"found {given} keys of a box and {others} of the others. Give one."
             )
         if self.lowest is None or self.highest is None:
             return
@@ -95,6 +122,8 @@ class Part:
         """Number of its elements."""
         if self.cylinder is not None:
             return self.cylinder.count
+        if self.mesh is not None:
+            return self.mesh.count
         return math.prod(self.elements or ())
 
     @property
@@ -118,6 +147,8 @@ class Part:
     def _edges(self) -> tuple[float, ...]:
         if self.cylinder is not None:
             return self.cylinder.edges
+        if self.mesh is not None:
+            return (self.mesh.scale * least_edge(read(self.mesh.file)),) * 3
         assert self.lowest is not None and self.highest is not None and self.elements is not None
         sides = zip(self.lowest, self.highest, self.elements, strict=True)
         return tuple((b - a) / n for a, b, n in sides)

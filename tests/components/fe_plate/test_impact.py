@@ -1,5 +1,7 @@
 """Structures that strike a rigid wall: stable, or ended with a sentence that names the place."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from quintet.components.fe_plate.params import (
     FePlateParams,
     RigidWall,
 )
+from quintet.components.fe_plate.view import von_mises
+from quintet.components.shared.materials.params import JohnsonCook, Material, material
 
 WALL = RigidWall(point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
 
@@ -79,3 +83,27 @@ def test_the_wall_shortens_the_step_before_it_is_met():
     near, far = struck(10e3, "aluminium"), struck(10.0, "aluminium")
     assert near.stable_dt() < 0.3 * far.stable_dt()
     assert near.stable_dt() * 10e3 < 0.25 * 4e-4  # m, of an element
+
+
+def test_beyond_melting_nothing_bears_shear():
+    molten = dataclasses.replace(material("42CrMo4"), temperature=1900.0)
+    made = struck(300.0, molten)
+    start = made.totals().kinetic
+    end = advance(made, 300)
+    assert 0.9 * start < end < 1.001 * start
+    assert von_mises(made.places, made.state).max() < 1.0  # Pa
+    assert made.places.of(made.state, STRAIN).max() > 0.3
+
+
+def test_plastic_strains_beyond_five_stay_stable():
+    weak = Material(
+        density=7850.0,
+        youngs_modulus=2e11,
+        poissons_ratio=0.3,
+        johnson_cook=JohnsonCook(a=3e8),
+    )
+    made = struck(3500.0, weak)
+    start = made.totals().kinetic
+    end = advance(made, 1200)
+    assert made.places.of(made.state, STRAIN).max() > 5.0
+    assert 0.85 * start < end < 1.001 * start

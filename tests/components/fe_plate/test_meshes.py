@@ -2,13 +2,27 @@
 
 import math
 
+import meshio
 import numpy as np
 import pytest
 
 from quintet.components.fe_plate.component import FePlate
-from quintet.components.fe_plate.meshes.params import Cylinder, Part
-from quintet.components.fe_plate.params import Faces, FePlateParams, Gauges, Pressure
-from quintet.components.shared.materials.params import Material
+from quintet.components.fe_plate.kernels.blocks import STRAIN
+from quintet.components.fe_plate.meshes.params import Cylinder, MeshFile, Part
+from quintet.components.fe_plate.params import (
+    Faces,
+    FePlateParams,
+    Fixed,
+    Gauges,
+    NodeSet,
+    Pressure,
+)
+from quintet.components.shared.materials.params import (
+    JohnsonCook,
+    JohnsonCookDamage,
+    Material,
+)
+from quintet.interfaces.errors import SceneError
 
 ELASTIC = Material(density=2700.0, youngs_modulus=7e10, poissons_ratio=0.3)
 
@@ -79,3 +93,94 @@ def test_gauges_give_what_nodes_elements_and_parts_have():
     totals, found = made.totals(), made.give(frozenset(keys))
     assert found["part_gauge.kinetic"].sum() == pytest.approx(totals.kinetic, rel=1e-12)
     assert found["part_gauge.internal"].sum() == pytest.approx(totals.internal, abs=1e-9)
+
+
+def _hexahedra():
+    """A block of 2 x 1 x 1 elements in mm, with a stray node and a triangle."""
+    x, y, z = np.meshgrid([0.0, 10.0, 20.0], [0.0, 10.0], [0.0, 10.0], indexing="ij")
+    node = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    number = np.arange(12).reshape(3, 2, 2)
+    ring = ((0, 0), (1, 0), (1, 1), (0, 1))
+    corner = [[number[i + a, b, k] for k in (0, 1) for a, b in ring] for i in (0, 1)]
+    return np.concatenate([[[99.0, 0.0, 0.0]], node]), np.array(corner) + 1
+
+
+@pytest.mark.parametrize("name", ["block.inp", "block.vtk", "block.msh"])
+def test_a_mesh_is_read_from_a_file(tmp_path, name):
+    node, corner = _hexahedra()
+    left = np.flatnonzero(node[:, 0] == 0.0)
+    file = tmp_path / name
+    sets = {"left": left} if name.endswith("inp") else {}
+    cells = [("triangle", corner[:1, :3]), ("hexahedron", corner)]
+    meshio.Mesh(node, cells, point_sets=sets).write(file)
+    shape = MeshFile(file=str(file), scale=1e-3, move=(0.0, 0.0, 1.0))
+    held = (
+        Fixed(node_set="left") if sets else Fixed(lowest=(0.0, 0.0, 0.0), highest=(0.0, 1.0, 2.0))
+    )
+    params = FePlateParams(parts=(Part(mesh=shape, material=ELASTIC),), fixed=(held,))
+    made = FePlate(params)
+    assert made.items() == params.parts[0].count == 2
+    assert made.volume == pytest.approx([1e-6, 1e-6])
+    assert len(made.mesh.node) == 12 and (made.model.free == 0.0).sum() == 3 * 4
+    assert made.mesh.node[:, 2].min() == 1.0
+    assert made.stable_dt() < params.parts[0].expected_step * 1.1
+
+
+def test_elements_that_are_inside_out_are_named(tmp_path):
+    node, corner = _hexahedra()
+    corner[1] = corner[1][[4, 5, 6, 7, 0, 1, 2, 3]]
+    meshio.Mesh(node, [("hexahedron", corner)]).write(tmp_path / "block.vtk")
+    part = Part(mesh=MeshFile(file=str(tmp_path / "block.vtk")), material=ELASTIC)
+    with pytest.raises(SceneError, match=r"element 1 at .* found -1e\+03 m3: it is inside out"):
+        FePlate(FePlateParams(parts=(part,)))
+
+
+def test_files_without_solids_are_refused(tmp_path):
+    node, corner = _hexahedra()
+    meshio.Mesh(node, [("triangle", corner[:, :3])]).write(tmp_path / "flat.vtk")
+    part = Part(mesh=MeshFile(file=str(tmp_path / "flat.vtk")), material=ELASTIC)
+    with pytest.raises(SceneError, match="elements of kind hexahedron; found triangle"):
+        FePlate(FePlateParams(parts=(part,)))
+    (tmp_path / "none.vtk").write_text("nothing")
+    part = Part(mesh=MeshFile(file=str(tmp_path / "none.vtk")), material=ELASTIC)
+    with pytest.raises(SceneError, match="must be a mesh that meshio reads"):
+        FePlate(FePlateParams(parts=(part,)))
+
+
+def test_nodes_are_chosen_by_the_name_of_their_set():
+    sets = (NodeSet(name="foot", lowest=(0.0, 0.0, 0.3), highest=(1.0, 1.0, 0.3)),)
+    made = bar(node_sets=sets, fixed=(Fixed(node_set="foot", directions=("z",)),))
+    foot = made.mesh.node[:, 2] == 0.3
+    np.testing.assert_array_equal(made.model.free[:, 2] == 0.0, foot)
+    faces = bar(node_sets=sets, coupled_faces=(Faces(node_set="foot"),))
+    assert len(faces.surface) == foot.sum()
+    with pytest.raises(
+        SceneError, match=r"fixed.0: node_set foor is not known\. Did you mean foot"
+    ):
+        bar(node_sets=sets, fixed=(Fixed(node_set="foor"),))
+
+
+def test_elements_erode_by_what_the_scene_names():
+    brittle = Material(
+        density=2700.0,
+        youngs_modulus=7e10,
+        poissons_ratio=0.3,
+        johnson_cook=JohnsonCook(a=1e8),
+        failure_strain=0.05,
+        damage=JohnsonCookDamage(d1=0.02),
+        spall_stress=3e8,
+    )
+    part = Part(
+        lowest=(0.0, 0.0, 0.0), highest=(0.05, 0.01, 0.01), elements=(10, 2, 2), material=brittle
+    )
+    strains = {}
+    for by in ((), ("plastic_strain",), ("damage",)):
+        held = Fixed(lowest=(0.0, 0.0, 0.0), highest=(0.0, 0.01, 0.01))
+        made = FePlate(FePlateParams(parts=(part,), fixed=(held,), erosion=by))
+        made.state.velocity[made.mesh.node[:, 0] > 0.026] = (80.0, 0.0, 0.0)
+        for _ in range(400):
+            made.step(made.stable_dt())
+        left = made.places.active(made.state) > 0.0
+        strains[by] = made.places.of(made.state, STRAIN)[left].max()
+        assert left.all() == (not by)
+    assert strains[()] > 0.05 > strains[("plastic_strain",)] > 0.02 > strains[("damage",)]

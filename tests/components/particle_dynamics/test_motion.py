@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from quintet.components.particle_dynamics.averages import BlockMeans
-from quintet.components.particle_dynamics.component import ParticleDynamics
+from quintet.components.particle_dynamics.lattice_dynamics import LatticeDynamics
 from quintet.components.particle_dynamics.params import (
     Averages,
     Bath,
@@ -29,7 +29,7 @@ def lattice(cells=(3, 1, 1), **given):
     keys = {name: given.pop(name) for name in ("periodic", "temperature") if name in given}
     force = {"seven_roots": SevenRootForce(top_frequency=TOP), "boltzmann": 1.0}
     made = Lattice(cells=cells, spacing=A, mass=MASS, **keys)
-    return ParticleDynamics(ParticleDynamicsParams(lattice=made, **(force | given)))
+    return LatticeDynamics(ParticleDynamicsParams(lattice=made, **(force | given)))
 
 
 def bar(
@@ -269,7 +269,7 @@ def test_aluminium_itself_is_stepped():
     one = lattice((3, 1, 1), seven_roots=given)
     unit = one.built.law
     force = SevenRootForce(amplitude=stiffness / slope(unit, A))
-    made = ParticleDynamics(
+    made = LatticeDynamics(
         ParticleDynamicsParams(
             lattice=Lattice(cells=(3, 1, 1), spacing=A, mass=mass, temperature=300.0),
             seven_roots=force,

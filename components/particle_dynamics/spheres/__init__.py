@@ -1,0 +1,1 @@
+"""Spheres that fly under loads of a partner, and bounce."""

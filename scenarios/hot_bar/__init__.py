@@ -1,0 +1,1 @@
+"""A bar of mass points is heated by a driven pair: scene, edges of finite elements, comparison."""

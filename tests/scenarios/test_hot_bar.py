@@ -1,0 +1,40 @@
+"""The bars of mass points, coarse and short: drive, baths, and one conductivity."""
+
+import json
+
+import pytest
+
+from quintet.coupler.cli import main
+
+
+def run(folder, name, *arguments):
+    """Run a scene; return its results."""
+    with pytest.raises(SystemExit) as ended:
+        main(["run", name, *arguments, "--transport", "memory", "--out", str(folder / name)])
+    assert ended.value.code in (0, 1)  # shorter than what the scene expects
+    return json.loads((folder / name / "results.json").read_text())
+
+
+def value(results, name):
+    return next(one["value"] for one in results["expect"] if one["name"] == name)
+
+
+def test_a_driven_bar_of_16_points_accounts_for_its_energy(tmp_path):
+    found = run(tmp_path, "hot_bar", "--preset", "points16")
+    assert found["status"] == "done"
+    assert abs(value(found, "audit")) < 1e-3
+    assert value(found, "intact") == 1.0
+    # Fitted by the damping to a third; by chaos it scatters by 0.02 from seed to seed.
+    assert value(found, "level") == pytest.approx(0.335, abs=0.08)
+
+
+def test_a_bar_between_baths_has_the_temperatures_of_the_graph(tmp_path):
+    found = run(tmp_path, "hot_bar_baths", "--preset", "points16")
+    assert value(found, "mean") == pytest.approx(216.9, rel=0.05)
+    assert abs(value(found, "balance")) < 1e-3
+
+
+def test_heat_flows_by_fourier(tmp_path):
+    found = run(tmp_path, "conductivity", "--preset", "length10")
+    assert value(found, "heat flow") == pytest.approx(2.731e-7, rel=0.1)
+    assert abs(value(found, "balance")) < 2e-8
