@@ -20,6 +20,7 @@ def test_a_wave_passes_the_glue_both_ways_with_little_echo(run_scene: Run) -> No
     (link,) = found["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
     assert link["kinematic_residual"] <= 1e-12
+    assert found["unstable"] == []  # what runs ahead of the wave decides nothing
 
 
 def test_other_ratios_of_steps_are_refused_with_the_reason(
@@ -60,4 +61,4 @@ def test_energy_of_the_coupled_bar_stays(run_scene: Run, transits: int) -> None:
                 time, parts = float(row["time"]), ("kinetic", "potential", "internal")
                 energy[time] = energy.get(time, 0.0) + sum(float(row[one]) for one in parts)
     known = np.array([value for time, value in sorted(energy.items()) if time > LOADED])
-    assert np.abs(known / known[0] - 1.0).max() < 0.03
+    assert np.abs(known / known[0] - 1.0).max() < 0.01
