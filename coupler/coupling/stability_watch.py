@@ -93,11 +93,19 @@ class StabilityWatch:
     def __init__(self, links: Iterable[str]) -> None:
         self._made = {name: Made() for name in links}
         self.found: dict[str, Unstable] = {}
+        self.asks = False  # for the energies at the next window's end: a link is judged by them
 
     def look(self, coupling: "Coupling") -> list[Unstable]:
-        """Judge all links at a window's end; return what is found for the first time."""
+        """Judge all links at a window's end; return what is found for the first time.
+
+        A link that seems unstable is judged again a window later, by the energies of then: since
+        they were last told a wave may have begun.
+        """
         new, ledger = [], coupling.ledger
-        energy = ledger.energy
+        energy, known = ledger.energy, self.asks
+        if known:
+            energy.note(ledger.totals)
+        self.asks = False
         negligible = max(
             MOVING * energy.largest("kinetic", "internal"), NEGLIGIBLE * energy.largest(*KINDS)
         )
@@ -105,6 +113,9 @@ class StabilityWatch:
             made = self._made[name]
             made.add(account)
             if name not in self.found and made.is_unstable(coupling.windows.done, negligible):
+                self.asks = self.asks or not known
+                if not known:
+                    continue
                 gain, turnover = made.taken - made.given, made.turnover
                 if made.made_of_late():
                     gain, turnover = made.late, made.late_turnover
@@ -120,12 +131,14 @@ class StabilityWatch:
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
         return {
+            "asks": self.asks,
             "made": {name: asdict(one) for name, one in self._made.items()},
             "found": {name: asdict(one) for name, one in self.found.items()},
         }
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
+        self.asks = bool(state["asks"])
         self._made = {name: Made(**one) for name, one in state["made"].items()}
         self.found = {name: Unstable(**one) for name, one in state["found"].items()}
 

@@ -66,10 +66,11 @@ def run(
     observer.plan(windows)
     resume(coupling)
     observer.begin(coupling, described)
+    watch = coupling.ledger.watch
     while not windows.finished and not observer.wants_end():
-        advance(coupling, observer.due)
+        advance(coupling, lambda now: watch.asks or observer.due(now))
         coupling.ledger.close_window(coupling.all_late(), coupling.all_in_transit())
-        found = coupling.ledger.watch.look(coupling)
+        found = watch.look(coupling)
         observer.end_window(coupling)
         for one in found:
             observer.warn(str(one))
