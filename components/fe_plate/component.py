@@ -105,6 +105,7 @@ class FePlate(Component):
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
         self.hung = np.zeros(len(self.surface))  # kg, mass that hangs on the nodes
         self.glued = False  # whether particles hang on it
+        self.early = np.zeros((len(self.surface), 3))  # m/s, that velocities at a step's end lack
         self.accumulated = Accumulated()
         self.team = Team(resources.threads, FEWEST)
         self.shortest = self._shortest()  # m
@@ -163,16 +164,17 @@ class FePlate(Component):
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         self._write_loads()
-        early = self._hasten(dt) if self.glued else 0.0
+        if self.glued:
+            self._hasten(dt)
         done = kick_and_drift(self.model, self.state, dt, self.params.mass_damping)
         self.accumulated.time += dt
         self.accumulated.work += done
         self.bound = self._write_forces(dt)
         if self.glued:
-            self.state.velocity[self.surface] -= early
+            self.state.velocity[self.surface] -= self.early
 
-    def _hasten(self, dt: float) -> Array:
-        """Let the loads of partners act in the step's first half; return what is to be taken back.
+    def _hasten(self, dt: float) -> None:
+        """Let the loads of partners act in the step's first half, and not in its second one.
 
         Forces of glued particles are those where a step begins: felt half a step late they would
         feed energy in.
@@ -180,7 +182,7 @@ class FePlate(Component):
         rows = self.surface
         push = 0.5 * dt * self.model.inverse_mass[rows, None] * self.loads * self.model.free[rows]
         self.state.velocity[rows] += push
-        return np.asarray(push)
+        self.early = push
 
     def _write_loads(self) -> None:
         load, time = self.state.load, self.accumulated.time
@@ -257,13 +259,15 @@ class FePlate(Component):
         kept = {name: array.copy() for name, array in self.state._asdict().items()}
         total = self.accumulated
         kept["accumulated"] = np.array([total.time, total.work, self.bound])
-        return kept | {"loads": self.loads.copy(), "hung": self.hung.copy()}
+        own = {"loads": self.loads, "hung": self.hung, "early": self.early}
+        return kept | {name: array.copy() for name, array in own.items()}
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
         for name, array in self.state._asdict().items():
             array[:] = state[name]
-        self.loads[:], self.hung = state["loads"], np.array(state["hung"])
+        self.loads[:] = state["loads"]
+        self.hung, self.early = np.array(state["hung"]), np.array(state["early"])
         self.model.inverse_mass[self.surface] = 1.0 / (self.mass[self.surface] + self.hung)
         time, work, self.bound = state["accumulated"].tolist()
         self.accumulated = Accumulated(time, work)
@@ -275,13 +279,14 @@ class FePlate(Component):
         """
         s, whole = self.state, self.mass.copy()
         whole[self.surface] += self.hung
-        momentum = whole[:, None] * s.velocity
+        momentum, moving = whole[:, None] * s.velocity, s.velocity.copy()
+        moving[self.surface] += self.early if self.glued else 0.0
         energy = self.element_mass @ self.places.of(s, ENERGY) + self.places.spring_energy(s).sum()
         return Totals(
             mass=float(whole.sum()),
             momentum=momentum.sum(axis=0),
             angular_momentum=np.cross(s.position, momentum).sum(axis=0),
-            kinetic=0.5 * float((momentum * s.velocity).sum()),
+            kinetic=0.5 * float((whole[:, None] * moving * moving).sum()),
             potential=-float(whole @ (s.position @ self.model.gravity)),
             internal=float(energy),
         )

@@ -24,8 +24,8 @@ from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, Rows, State
 
 # The cost of a step is least with a skin of about this times the root of what particles approach
-# each other by in it, both over the support: a search takes about as long as the sums over pairs.
-SKIN = 0.5
+# each other by in it, both over the support: a search costs half as much as the sums over pairs.
+SKIN = 1.0
 LEAST, MOST = 0.01, 0.15  # of the support
 FEW = 64  # particles that are worth comparing with all others rather than searching
 WIDER = 0.1  # of its radius, that a ring may move

@@ -61,4 +61,4 @@ def test_energy_of_the_coupled_bar_stays(run_scene: Run, transits: int) -> None:
                 time, parts = float(row["time"]), ("kinetic", "potential", "internal")
                 energy[time] = energy.get(time, 0.0) + sum(float(row[one]) for one in parts)
     known = np.array([value for time, value in sorted(energy.items()) if time > LOADED])
-    assert np.abs(known / known[0] - 1.0).max() < 0.03
+    assert np.abs(known / known[0] - 1.0).max() < 0.01
