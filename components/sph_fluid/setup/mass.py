@@ -89,6 +89,6 @@ def mass_notes(params: "SphFluidParams") -> tuple[str, ...]:
     return (
         f"edges of the fluid are no multiples of the spacing, {params.spacing:g} m: particles of "
         f"density · spacing^{params.dimensions} would hold {-100.0 * change / (1.0 + change):+.2g} "
-        f"% of the mass asked for; they are {100.0 * change:+.2g} % heavier instead",
+        f"% of the mass asked for; so the mass of each is changed by {100.0 * change:+.2g} %",
         *uneven,
     )
