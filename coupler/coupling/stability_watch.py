@@ -28,7 +28,7 @@ SPAN = 32  # windows that count most: each older one by 1 - 1/SPAN less
 FEWEST = 12  # windows before a link is judged: a start with a jolt is over by then
 # Of the largest energy of any component, kinetic or internal, and of any kind: with less going
 # through, a link decides nothing, as at a body that the fluid has not reached, or ahead of a wave.
-MOVING, NEGLIGIBLE = 1e-2, 1e-9
+MOVING, NEGLIGIBLE = 5e-2, 1e-9
 QUIET = 0.1  # of the mean work of a window so far: with less going through, no window is judged
 
 
