@@ -140,7 +140,7 @@ class LatticeDynamics(Component):
             self.told[0], self.told[3] = time, int(np.argmin(near))
         if self.told[1] < 0.0 and self._intact() < INTACT:
             self.told[1] = time
-        if self.told[2] < 0.0 and abs(self._audit()) > MISSING:
+        if self.told[2] < 0.0 and abs(self._audit(*self._energies())) > MISSING:
             self.told[2] = time
         if self.params.on_loss == "stop" and (self.told[:2] >= 0.0).any():
             raise StepError(" ".join(self._sentences()))
@@ -191,11 +191,10 @@ class LatticeDynamics(Component):
         potential = sum_energies(state.position, self.pairs, built.law, built.period)
         return kinetic, float(potential + 0.5 * (bathed.tether * away).sum())
 
-    def _audit(self) -> float:
-        """Energy that is missing over what was put in since the start."""
+    def _audit(self, kinetic: float, potential: float) -> float:
+        """Energy that is missing over what was put in since the start, of energies [J] now."""
         state = self.state
         put_in = float(state.energies[WORK] + state.heat.sum())
-        kinetic, potential = self._energies()
         gained = kinetic + potential - self.initial + float(state.energies[DISSIPATED])
         baths = np.bincount(self.built.model.bathed.bath, state.heat, len(self.params.baths))
         size = abs(float(state.energies[WORK])) + float(np.abs(baths).sum())
@@ -243,7 +242,7 @@ class LatticeDynamics(Component):
             "dissipated": energies[DISSIPATED],
             "work": energies[WORK],
             "heat": self.state.heat.sum(),
-            "audit": self._audit(),
+            "audit": self._audit(kinetic, potential),
             "intact": self._intact(),
             "temperature": self.means.means(time, self._integrals())[0],
             "temperature_error": self.means.errors()[0],
