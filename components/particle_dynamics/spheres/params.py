@@ -12,7 +12,9 @@ class Sphere:
     position : m
         Of its centre at the start.
     diameter : m
+        Of the sphere: what it strikes with, and what loads and heat act on.
     density : kg/m3
+        Of its material.
     velocity : m/s
         With which it is launched.
     angular_velocity : rad/s
