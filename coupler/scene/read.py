@@ -89,7 +89,8 @@ def load(
         table["transport"] = transport
     if mistakes := mistakes or list(islice(extremes(table, ""), MOST_TOLD)):
         raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
-    made = _check(path, table, preset)
+    # Variants were told for the components of the file: each is checked when it is run instead.
+    made = _check(path, table, preset, try_variants=not swaps)
     asked = {"preset": preset, "settings": list(settings), "swaps": list(swaps)}
     made.asked = {"scene": str(path.resolve()), "transport": transport, **asked}
     return made
@@ -109,7 +110,7 @@ def parse(path: Path) -> dict[str, Any]:
         ) from error
 
 
-def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
+def _check(path: Path, table: dict[str, Any], preset: str, try_variants: bool = True) -> Scene:
     look_in(import_folders(path, table.get("components")))
     own = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, own, "scene")
@@ -140,7 +141,7 @@ def _check(path: Path, table: dict[str, Any], preset: str) -> Scene:
     if file is not None and not mistakes:
         gives = {name: one.gives for name, one in components.items()}
         scope = Scope(file.end, gives, len(links), [one.name for one in expect])
-        check = partial(_check, path, preset=preset)
+        check = partial(_check, path, preset=preset) if try_variants else None
     make_variant = variants.variant_maker(table, check)
     study, stability, wrong_variants = variants.read_variants(
         series[0], series[1], make_variant, scope

@@ -216,6 +216,14 @@ def test_a_replay_of_a_run_that_does_not_fit_is_told_as_the_scene_is_checked(cap
     assert ran(tmp_path, *replay[1:], "--set", "window=2e-3", "--out", "three") == 0
 
 
+def test_a_short_replay_is_not_held_against_longer_refinements(tmp_path):
+    path = write_scene(tmp_path, end=0.1)
+    refinement = '\n[[study]]\nlabel = "long"\nsettings = { end = 0.3 }\n'
+    path.write_text(path.read_text() + refinement)
+    assert ran(tmp_path, "--out", "one") == 0
+    assert ran(tmp_path, "--swap", "pong=replay@one", "--out", "two") == 0
+
+
 def test_a_replay_without_a_run_is_of_the_latest_one(capsys, tmp_path):
     write_scene(tmp_path, end=0.02)
     runs = tmp_path / "runs"
