@@ -1,9 +1,12 @@
 """The README shows what is there."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
@@ -39,3 +42,13 @@ def test_what_texts_for_developers_link_is_there(name):
     text = ROOT / ".github" / name
     for link in re.findall(r"\]\(([^)#]+)\)", text.read_text()):
         assert link.startswith("https://") or (text.parent / link).exists(), link
+
+
+def test_constraints_name_a_version_of_every_package_that_is_needed():
+    lines = (ROOT / ".github/constraints.txt").read_text().splitlines()[1:]
+    given = {canonicalize_name(Requirement(line).name) for line in lines}
+    assert all(str(Requirement(line).specifier).startswith("==") for line in lines)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    groups = [project["dependencies"], *project["optional-dependencies"].values()]
+    wanted = [Requirement(one).name for group in groups for one in group]
+    assert set(map(canonicalize_name, wanted)) <= given
