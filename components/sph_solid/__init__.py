@@ -19,17 +19,11 @@ Kazantsev & Chelakov (LOGOS), whose impacts of balls on plates it repeats.
 """
 
 from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.plan import plan
 from quintet.components.sph_solid.ports import SHOWS, ports
-from quintet.interfaces.manifest import Manifest, Plan
+from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "SphSolidParams"]
-
-RATE = 8e5  # particles stepped per second and thread
-
-
-def _plan(params: SphSolidParams) -> Plan:
-    return Plan(params.expected_count, params.expected_step, RATE, 1500.0)
-
 
 MANIFEST = Manifest(
     kind="sph_solid",
@@ -38,7 +32,7 @@ MANIFEST = Manifest(
     component="quintet.components.sph_solid.component:SphSolid",
     ports=ports,
     shows=SHOWS,
-    plan=_plan,
+    plan=plan,
     bench="quintet.components.sph_solid.bench:cases",
     conform="quintet.components.sph_solid.conform:cases",
 )

@@ -17,6 +17,7 @@ from quintet.components.sph_solid.kernels.pairs import Forces
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.pair_sums import pair_sums
 from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.plan import plan
 from quintet.components.sph_solid.ports import SHOWS, ports
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.component import (
@@ -29,16 +30,26 @@ from quintet.interfaces.component import (
     fields_of,
 )
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.manifest import Ports
+from quintet.interfaces.manifest import Plan, Ports
 
 FEWEST = 500  # particles that are worth handing to another thread
 LOAD = "glued_load.force"
 
 
 class SphSolid(Component):
-    """Moves elastic-plastic bodies of particles, which may hang on a partner's mesh."""
+    """Moves elastic-plastic bodies of particles, which may hang on a partner's mesh.
 
+    A class of one's own may derive from it, with a `Params` that derives from `SphSolidParams`: in
+    a scene it is a kind, ``module:Class``, with all ports of this one.
+    """
+
+    Params: type[SphSolidParams] = SphSolidParams
     shows = SHOWS
+
+    @classmethod
+    def plan_of(cls, params: SphSolidParams) -> Plan:
+        """What a run will need."""
+        return plan(params)
 
     @classmethod
     def ports_of(cls, params: SphSolidParams) -> Ports:

@@ -3,7 +3,7 @@
 Matplotlib is loaded by the functions that draw: a run without pictures does not need it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -91,14 +91,21 @@ def side_views(
         panel.locator_params(axis="x", nbins=_ticks(figure, panel))
         draw_walls(panel, still)
         draw_view(panel, view, scales, sizes)
+    _add_colour_bars(figure, panels, scales, views)
+    add_legend(figure, views[0], still)
+    return save(figure, out)
+
+
+def _add_colour_bars(
+    figure: Any, panels: Sequence[Any], scales: Mapping[Any, Any], views: Sequence[Sequence[Shown]]
+) -> None:
+    """Say beside the panels what colours stand for."""
     for one, scale in scales.items():
         bar = figure.colorbar(
             scale, ax=panels, label=bar_label(scale, views, one),
             extend=clipped_ends(scale, views, one), shrink=0.8, aspect=30, pad=0.02,
         )  # fmt: skip
         bar.formatter.set_powerlimits((-3, 4))
-    add_legend(figure, views[0], still)
-    return save(figure, out)
 
 
 def _said(region: Region | None, stretch: float, displacement_scale: float) -> str:

@@ -155,12 +155,30 @@ highest = [0.1, 0.1, 0.1]
 fields = ["thrown.faces.position"]
 """
 
+SOLID = """
+name = "thrown"
+end = 1e-6
+window = 1e-7
+transport = "memory"
+[components.thrown]
+kind = "{name}:Thrown"
+spacing = 0.01
+speed = 2.0
+[[components.thrown.bodies]]
+lowest = [0.0, 0.0, 0.0]
+highest = [0.04, 0.04, 0.04]
+material = "steel"
+[output]
+fields = ["thrown.bodies.position"]
+"""
+
 
 @pytest.mark.parametrize(
     ("kind", "cls", "text", "key"),
     [
         ("dem_bodies", "DemBodies", BODIES, "thrown.motion.position"),
         ("fe_plate", "FePlate", STRUCTURE, "thrown.faces.position"),
+        ("sph_solid", "SphSolid", SOLID, "thrown.bodies.position"),
     ],
 )
 def test_other_kinds_may_be_derived_from_alike(
