@@ -113,10 +113,3 @@ def faces_in(mesh: Mesh, boxes: Sequence[Faces], where: str) -> Whole:
     for one in boxes:
         found |= (chosen(mesh, one, where)[mesh.side] | (mesh.side < 0)).all(axis=1)
     return np.flatnonzero(found)
-
-
-def incident(corner: Whole, nodes: int) -> tuple[Whole, Whole]:
-    """Corners at each node, by their places in the flat table: those of node i from begin[i] on."""
-    order = np.argsort(corner.ravel(), kind="stable")
-    begin = np.searchsorted(corner.ravel()[order], np.arange(nodes + 1))
-    return begin, order
