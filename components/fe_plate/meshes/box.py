@@ -7,7 +7,7 @@ from quintet.components.fe_plate.state import Array, Whole
 
 
 def box(part: Part) -> tuple[Array, Whole]:
-    """Nodes (n, 3) m and corners (e, 8) of a box of equal elements."""
+    """Nodes (n, 3) m and corners (e, 8) of a box of equal elements, less what is cut out."""
     assert part.elements is not None and part.lowest is not None and part.highest is not None
     nx, ny, nz = part.elements
     ends = zip(part.lowest, part.highest, part.elements, strict=True)
@@ -16,8 +16,17 @@ def box(part: Part) -> tuple[Array, Whole]:
     number = np.arange(len(node)).reshape(nx + 1, ny + 1, nz + 1)
     low, high = slice(0, -1), slice(1, None)
     around = ((low, low), (high, low), (high, high), (low, high))
-    corner = [number[x, y, z].ravel() for z in (low, high) for x, y in around]
-    return node, np.stack(corner, axis=1)
+    corner = np.stack([number[x, y, z].ravel() for z in (low, high) for x, y in around], axis=1)
+    if part.cutout is None:
+        return node, corner
+    kept_out, cut = part.cutout, np.ones(part.elements, bool)
+    for along, (axis, middle) in enumerate(
+        zip(np.indices(part.elements), part.middles(), strict=True)
+    ):
+        within = (kept_out.lowest[along] <= middle) & (middle <= kept_out.highest[along])
+        cut &= within[axis]
+    kept, numbers = np.unique(corner[~cut.ravel()], return_inverse=True)
+    return node[kept], numbers.reshape(-1, 8)
 
 
 def rectangle(part: Part) -> tuple[Array, Whole]:

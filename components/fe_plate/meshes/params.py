@@ -3,8 +3,11 @@
 import math
 from typing import Literal
 
+import numpy as np
+
 from quintet.components.fe_plate.meshes.files import least_edge, read
 from quintet.components.shared.materials.params import Material, MaterialName, material
+from quintet.interfaces.component import Array
 from quintet.interfaces.params import Count, DataFile, Positive, Vector, parameters
 
 Direction = Literal["x", "y", "z"]
@@ -51,6 +54,27 @@ class Cylinder:
 
 
 @parameters
+class Cutout:
+    """A box that is cut out of a part.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Its corners; elements whose middle lies in it are left out.
+    """
+
+    lowest: Vector
+    highest: Vector
+
+    def __post_init__(self) -> None:
+        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
+            raise ValueError(
+                f"cutout: highest must be beyond lowest along every axis; found {self.lowest} and "
+                f"{self.highest} m."
+            )
+
+
+@parameters
 class MeshFile:
     """A mesh of 8-node solids from a file; others of its elements are left out.
 
@@ -84,6 +108,8 @@ class Part:
         Corners of a box.
     elements : 1
         How many along x, y and z.
+    cutout
+        What is left out of a box.
     cylinder, mesh
         In place of the box.
     material
@@ -95,6 +121,7 @@ class Part:
     lowest: Vector | None = None
     highest: Vector | None = None
     elements: tuple[Count, Count, Count] | None = None
+    cutout: Cutout | None = None
     cylinder: Cylinder | None = None
     mesh: MeshFile | None = None
     material: MaterialName | Material
@@ -110,7 +137,11 @@ class Part:
                 f"found {given} keys of a box and {others} of the others. Give one."
             )
         if self.lowest is None or self.highest is None:
+            if self.cutout is not None:
+                raise ValueError("part: cutout is of a box; found none. Leave it out.")
             return
+        if self.count == 0:
+            raise ValueError("part: cutout must leave an element; it leaves none.")
         if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
             raise ValueError(
                 f"part: highest must be beyond lowest along every axis; found {self.lowest} and "
@@ -124,7 +155,21 @@ class Part:
             return self.cylinder.count
         if self.mesh is not None:
             return self.mesh.count
-        return math.prod(self.elements or ())
+        return math.prod(self.elements or ()) - math.prod(self._cut())
+
+    def middles(self) -> tuple[Array, Array, Array]:
+        """Middles [m] of the elements of a box, along x, y and z."""
+        assert self.lowest is not None and self.highest is not None and self.elements is not None
+        ends = zip(self.lowest, self.highest, self.elements, strict=True)
+        along = [a + (b - a) * (np.arange(n) + 0.5) / n for a, b, n in ends]
+        return along[0], along[1], along[2]
+
+    def _cut(self) -> tuple[int, ...]:
+        """Elements that are cut out, along x, y and z."""
+        if self.cutout is None:
+            return (0,)
+        ends = zip(self.middles(), self.cutout.lowest, self.cutout.highest, strict=True)
+        return tuple(int(((a <= one) & (one <= b)).sum()) for one, a, b in ends)
 
     @property
     def expected_step(self) -> float:
@@ -143,6 +188,9 @@ class Part:
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
                 f"found {deep:g} m and {along} elements. Set both, or dimensions = 3."
             )
+
+        if self.cutout is not None:
+            raise ValueError(f"{where}: in two dimensions nothing is cut out. Make more parts.")
 
     def _edges(self) -> tuple[float, ...]:
         if self.cylinder is not None:
