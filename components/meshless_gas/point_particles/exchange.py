@@ -30,6 +30,7 @@ class Particles(NamedTuple):
     temperature: Array  # (p,) K
     diameter: Array  # (p,) m, of one
     mass: Array  # (p,) kg
+    heat_capacity: Array  # (p,) J/K
     number: Array  # (p,) 1
 
 
@@ -62,15 +63,15 @@ class Exchange:
         of = np.concatenate([np.arange(cloud.nodes), cloud.owner])
         self.volumes, self.spacing = cloud.volumes[of], cloud.spacing[of]
         self.summed = np.zeros((len(of), 2))
-        self.nodes(np.arange(len(of)))
+        self.look_among(np.arange(len(of)))
         self.resize(0)
 
-    def nodes(self, among: NDArray[np.int64]) -> None:
+    def look_among(self, among: NDArray[np.int64]) -> None:
         """Take these nodes (m,) for those that there are, others being covered by bodies."""
-        self.order = among.astype(np.int64)
-        self.axis = np.zeros(len(among), np.int8)
-        self.count = min(self.count, len(among))
-        build(self.images.positions, self.order, self.axis)
+        count = len(among)
+        self.tree = among.astype(np.int64), np.zeros(count, np.int8), np.zeros(count)
+        self.count = min(self.count, count)
+        build(self.images.positions, *self.tree)
 
     def resize(self, count: int) -> None:
         """Make room for so many particles."""
@@ -88,7 +89,7 @@ class Exchange:
         if self.planar:
             target = target * np.array([1.0, 0.0, 1.0])
         positions = self.images.positions
-        search(0, len(target), positions, self.order, self.axis, target, self.near, self.squares)
+        search(0, len(target), positions, *self.tree, target, self.near, self.squares)
         write_weights(self.squares, self.near, self.volumes, self.spacing, self.weights)
         self.force[:], self.heat[:] = 0.0, 0.0
 
@@ -106,7 +107,7 @@ class Exchange:
         if not len(self.heat):
             return math.inf
         rate = fastest(
-            self.rates, self.particles.mass, self.near, self.weights, primitive, self.volumes,
-            self.images.owner, self.summed, self.capacity,
+            self.rates, self.particles.mass, self.particles.heat_capacity, self.near,
+            self.weights, primitive, self.volumes, self.images.owner, self.summed, self.capacity,
         )  # fmt: skip
         return SHARE / rate if rate > 0.0 else math.inf

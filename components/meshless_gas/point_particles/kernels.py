@@ -1,8 +1,7 @@
 """Loops over particles: weights of nearby nodes, loads, and what the nodes lose."""
 
 import math
-
-import numpy as np
+from typing import Any
 
 from numba import njit
 from numpy.typing import NDArray
@@ -56,7 +55,7 @@ def write_weights(
 def exchange(
     drag: int, heating: int, transport: Transport, gamma: float, prandtl: float, share: float,
     velocity: Array, temperature: Array, diameter: Array, number: Array, near: Whole,
-    weights: Array, primitive: Array, volumes: Array, owner: NDArray[np.int32], turn: Array,
+    weights: Array, primitive: Array, volumes: Array, owner: NDArray[Any], turn: Array,
     force: Array, heat: Array, rates: Array, residual: Array | None,
 ) -> None:  # fmt: skip
     """Add up loads on particles, and take them from the nodes around them.
@@ -137,15 +136,15 @@ def exchange(
 
 @njit(**EXACT)
 def fastest(
-    rates: Array, mass: Array, near: Whole, weights: Array, primitive: Array, volumes: Array,
-    owner: NDArray[np.int32], summed: Array, capacity: float,
+    rates: Array, mass: Array, heat_capacity: Array, near: Whole, weights: Array,
+    primitive: Array, volumes: Array, owner: NDArray[Any], summed: Array, capacity: float,
 ) -> float:  # fmt: skip
     """Fastest relaxation [1/s] of particles and nodes towards each other.
 
     Parameters
     ----------
     rates : (p, 2) float array, kg/s and W/K
-    mass : (p,) float array, kg
+    mass, heat_capacity : (p,) float array, kg and J/K
     near, weights, primitive, volumes, owner
         As `exchange` has them.
     summed : (n, 2) float array
@@ -161,7 +160,7 @@ def fastest(
     real = primitive.shape[0] - owner.shape[0]
     particle = node = 0.0
     for i in range(near.shape[0]):
-        particle = max(particle, rates[i, 0] / mass[i])
+        particle = max(particle, rates[i, 0] / mass[i], rates[i, 1] / heat_capacity[i])
         for k in range(near.shape[1]):
             j = near[i, k]
             j = owner[j - real] if j >= real else j

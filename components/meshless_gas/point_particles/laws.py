@@ -8,7 +8,7 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.numba_options import EXACT, INNER
 
 STOKES, CLIFT_GAUVIN, HENDERSON, LOTH = range(4)
 DRAG = {"stokes": STOKES, "clift_gauvin": CLIFT_GAUVIN, "henderson": HENDERSON, "loth": LOTH}
@@ -149,7 +149,7 @@ def rarefaction(reynolds: float, mach: float, rarefied: float, gamma: float) -> 
     return creeping * (1.0 - share) + share * reynolds / 24.0 * free
 
 
-@njit(**INNER)
+@njit(**EXACT)
 def drag_factor(
     law: int, reynolds: float, mach: float, rarefied: float, warmth: float, gamma: float
 ) -> float:
@@ -170,7 +170,7 @@ def drag_factor(
     return 1.0
 
 
-@njit(**INNER)
+@njit(**EXACT)
 def nusselt(law: int, reynolds: float, mach: float, rarefied: float, prandtl: float) -> float:
     """Heat flow over π λ d (T - T_p).
 
