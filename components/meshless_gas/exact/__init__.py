@@ -1,0 +1,1 @@
+"""Exact solutions, for the scenes that have one."""
