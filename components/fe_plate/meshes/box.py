@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from quintet.components.fe_plate.meshes.params import Part
-from quintet.components.fe_plate.state import Array, Whole
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.components.fe_plate.meshes.params import Shape, cut_out
 
 
-def box(part: Part) -> tuple[Array, Whole]:
+def box(part: Shape) -> tuple[Array, Whole]:
     """Nodes (n, 3) m and corners (e, 8) of a box of equal elements, less what is cut out."""
     assert part.elements is not None and part.lowest is not None and part.highest is not None
     nx, ny, nz = part.elements
@@ -19,17 +19,13 @@ def box(part: Part) -> tuple[Array, Whole]:
     corner = np.stack([number[x, y, z].ravel() for z in (low, high) for x, y in around], axis=1)
     if part.cutout is None:
         return node, corner
-    kept_out, cut = part.cutout, np.ones(part.elements, bool)
-    for along, (axis, middle) in enumerate(
-        zip(np.indices(part.elements), part.middles(), strict=True)
-    ):
-        within = (kept_out.lowest[along] <= middle) & (middle <= kept_out.highest[along])
-        cut &= within[axis]
-    kept, numbers = np.unique(corner[~cut.ravel()], return_inverse=True)
+    x, y, z = cut_out(part)
+    left = ~(x[:, None, None] & y[None, :, None] & z[None, None, :])
+    kept, numbers = np.unique(corner[left.ravel()], return_inverse=True)
     return node[kept], numbers.reshape(-1, 8)
 
 
-def rectangle(part: Part) -> tuple[Array, Whole]:
+def rectangle(part: Shape) -> tuple[Array, Whole]:
     """Nodes (n, 3) m at y = 0 and corners (e, 8) of a rectangle; far corners are the same nodes.
 
     Around each element from z to x, as seen from within a solid that extends along y.

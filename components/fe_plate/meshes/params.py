@@ -1,15 +1,16 @@
 """What a scene says about the parts of a structure: their shapes, meshes, materials."""
 
 import math
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.fe_plate.meshes.files import least_edge, read
 from quintet.components.shared.materials.params import Material, MaterialName, material
-from quintet.interfaces.component import Array
 from quintet.interfaces.params import Count, DataFile, Positive, Vector, parameters
 
+Flags = NDArray[np.bool_]
 Direction = Literal["x", "y", "z"]
 
 
@@ -55,7 +56,7 @@ class Cylinder:
 
 @parameters
 class Cutout:
-    """A box that is cut out of a part.
+    """A box that is cut out of another.
 
     Parameters
     ----------
@@ -65,13 +66,6 @@ class Cutout:
 
     lowest: Vector
     highest: Vector
-
-    def __post_init__(self) -> None:
-        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
-            raise ValueError(
-                f"cutout: highest must be beyond lowest along every axis; found {self.lowest} and "
-                f"{self.highest} m."
-            )
 
 
 @parameters
@@ -96,6 +90,81 @@ class MeshFile:
     def count(self) -> int:
         """Number of its elements."""
         return len(read(self.file).corner)
+
+
+class Shape(Protocol):
+    """What a mesh is made of: the keys that parts of any physics have."""
+
+    @property
+    def lowest(self) -> Vector | None:
+        """Lowest corner [m] of a box."""
+
+    @property
+    def highest(self) -> Vector | None:
+        """Highest corner [m] of a box."""
+
+    @property
+    def elements(self) -> tuple[int, int, int] | None:
+        """How many elements a box has along x, y and z."""
+
+    @property
+    def cutout(self) -> Cutout | None:
+        """What is left out of a box."""
+
+    @property
+    def cylinder(self) -> Cylinder | None:
+        """In place of the box."""
+
+    @property
+    def mesh(self) -> MeshFile | None:
+        """In place of the box."""
+
+
+def require_shape(part: Shape) -> None:
+    """Refuse a part that is not one of a box, a cylinder and a mesh."""
+    box = (part.lowest, part.highest, part.elements)
+    given = sum(one is not None for one in box)
+    others = sum(one is not None for one in (part.cylinder, part.mesh))
+    if (given, others) not in ((3, 0), (0, 1)):
+        raise ValueError(
+            "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
+            f"found {given} keys of a box and {others} of the others. Give one."
+        )
+    if part.lowest is None or part.highest is None:
+        if part.cutout is not None:
+            raise ValueError("part: cutout is of a box; found none. Leave it out.")
+        return
+    if not all(a < b for a, b in zip(part.lowest, part.highest, strict=True)):
+        raise ValueError(
+            f"part: highest must be beyond lowest along every axis; found {part.lowest} and "
+            f"{part.highest} m."
+        )
+    if count_elements(part) == 0:
+        raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
+
+
+def cut_out(part: Shape) -> tuple[Flags, Flags, Flags]:
+    """Which elements of a box have a middle within its cutout, along each of x, y and z."""
+    assert part.elements is not None and part.lowest is not None and part.highest is not None
+    found = []
+    for along, count in enumerate(part.elements):
+        low, high = part.lowest[along], part.highest[along]
+        middle = low + (high - low) * (np.arange(count) + 0.5) / count
+        inside = np.zeros(count, bool)
+        if part.cutout is not None:
+            inside = (part.cutout.lowest[along] <= middle) & (middle <= part.cutout.highest[along])
+        found.append(inside)
+    return found[0], found[1], found[2]
+
+
+def count_elements(part: Shape) -> int:
+    """Number of a part's elements."""
+    if part.cylinder is not None:
+        return part.cylinder.count
+    if part.mesh is not None:
+        return part.mesh.count
+    left_out = [int(one.sum()) for one in cut_out(part)]
+    return math.prod(part.elements or ()) - math.prod(left_out)
 
 
 @parameters
@@ -128,48 +197,12 @@ class Part:
     velocity: Vector = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        box = (self.lowest, self.highest, self.elements)
-        given = sum(one is not None for one in box)
-        others = sum(one is not None for one in (self.cylinder, self.mesh))
-        if (given, others) not in ((3, 0), (0, 1)):
-            raise ValueError(
-                "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
-                f"found {given} keys of a box and {others} of the others. Give one."
-            )
-        if self.lowest is None or self.highest is None:
-            if self.cutout is not None:
-                raise ValueError("part: cutout is of a box; found none. Leave it out.")
-            return
-        if self.count == 0:
-            raise ValueError("part: cutout must leave an element; it leaves none.")
-        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
-            raise ValueError(
-                f"part: highest must be beyond lowest along every axis; found {self.lowest} and "
-                f"{self.highest} m."
-            )
+        require_shape(self)
 
     @property
     def count(self) -> int:
         """Number of its elements."""
-        if self.cylinder is not None:
-            return self.cylinder.count
-        if self.mesh is not None:
-            return self.mesh.count
-        return math.prod(self.elements or ()) - math.prod(self._cut())
-
-    def middles(self) -> tuple[Array, Array, Array]:
-        """Middles [m] of the elements of a box, along x, y and z."""
-        assert self.lowest is not None and self.highest is not None and self.elements is not None
-        ends = zip(self.lowest, self.highest, self.elements, strict=True)
-        along = [a + (b - a) * (np.arange(n) + 0.5) / n for a, b, n in ends]
-        return along[0], along[1], along[2]
-
-    def _cut(self) -> tuple[int, ...]:
-        """Elements that are cut out, along x, y and z."""
-        if self.cutout is None:
-            return (0,)
-        ends = zip(self.middles(), self.cutout.lowest, self.cutout.highest, strict=True)
-        return tuple(int(((a <= one) & (one <= b)).sum()) for one, a, b in ends)
+        return count_elements(self)
 
     @property
     def expected_step(self) -> float:
