@@ -1,12 +1,16 @@
 """What a scene says about the parts of a structure: their shapes, meshes, materials."""
 
 import math
-from typing import Literal
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.fe_plate.meshes.files import least_edge, read
 from quintet.components.shared.materials.params import Material, MaterialName, material
 from quintet.interfaces.params import Count, DataFile, Positive, Vector, parameters
 
+Flags = NDArray[np.bool_]
 Direction = Literal["x", "y", "z"]
 
 
@@ -51,6 +55,20 @@ class Cylinder:
 
 
 @parameters
+class Cutout:
+    """A box that is cut out of another.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Its corners; elements whose middle lies in it are left out.
+    """
+
+    lowest: Vector
+    highest: Vector
+
+
+@parameters
 class MeshFile:
     """A mesh of 8-node solids from a file; others of its elements are left out.
 
@@ -74,6 +92,81 @@ class MeshFile:
         return len(read(self.file).corner)
 
 
+class Shape(Protocol):
+    """What a mesh is made of: the keys that parts of any physics have."""
+
+    @property
+    def lowest(self) -> Vector | None:
+        """Lowest corner [m] of a box."""
+
+    @property
+    def highest(self) -> Vector | None:
+        """Highest corner [m] of a box."""
+
+    @property
+    def elements(self) -> tuple[int, int, int] | None:
+        """How many elements a box has along x, y and z."""
+
+    @property
+    def cutout(self) -> Cutout | None:
+        """What is left out of a box."""
+
+    @property
+    def cylinder(self) -> Cylinder | None:
+        """In place of the box."""
+
+    @property
+    def mesh(self) -> MeshFile | None:
+        """In place of the box."""
+
+
+def require_shape(part: Shape) -> None:
+    """Refuse a part that is not one of a box, a cylinder and a mesh."""
+    box = (part.lowest, part.highest, part.elements)
+    given = sum(one is not None for one in box)
+    others = sum(one is not None for one in (part.cylinder, part.mesh))
+    if (given, others) not in ((3, 0), (0, 1)):
+        raise ValueError(
+            "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
+            f"found {given} keys of a box and {others} of the others. Give one."
+        )
+    if part.lowest is None or part.highest is None:
+        if part.cutout is not None:
+            raise ValueError("part: cutout is of a box; found none. Leave it out.")
+        return
+    if not all(a < b for a, b in zip(part.lowest, part.highest, strict=True)):
+        raise ValueError(
+            f"part: highest must be beyond lowest along every axis; found {part.lowest} and "
+            f"{part.highest} m."
+        )
+    if count_elements(part) == 0:
+        raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
+
+
+def cut_out(part: Shape) -> tuple[Flags, Flags, Flags]:
+    """Which elements of a box have a middle within its cutout, along each of x, y and z."""
+    assert part.elements is not None and part.lowest is not None and part.highest is not None
+    found = []
+    for along, count in enumerate(part.elements):
+        low, high = part.lowest[along], part.highest[along]
+        middle = low + (high - low) * (np.arange(count) + 0.5) / count
+        inside = np.zeros(count, bool)
+        if part.cutout is not None:
+            inside = (part.cutout.lowest[along] <= middle) & (middle <= part.cutout.highest[along])
+        found.append(inside)
+    return found[0], found[1], found[2]
+
+
+def count_elements(part: Shape) -> int:
+    """Number of a part's elements."""
+    if part.cylinder is not None:
+        return part.cylinder.count
+    if part.mesh is not None:
+        return part.mesh.count
+    left_out = [int(one.sum()) for one in cut_out(part)]
+    return math.prod(part.elements or ()) - math.prod(left_out)
+
+
 @parameters
 class Part:
     """A box of equal elements, a cylinder, or a mesh from a file.
@@ -84,6 +177,8 @@ class Part:
         Corners of a box.
     elements : 1
         How many along x, y and z.
+    cutout
+        What is left out of a box.
     cylinder, mesh
         In place of the box.
     material
@@ -95,36 +190,19 @@ class Part:
     lowest: Vector | None = None
     highest: Vector | None = None
     elements: tuple[Count, Count, Count] | None = None
+    cutout: Cutout | None = None
     cylinder: Cylinder | None = None
     mesh: MeshFile | None = None
     material: MaterialName | Material
     velocity: Vector = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        box = (self.lowest, self.highest, self.elements)
-        given = sum(one is not None for one in box)
-        others = sum(one is not None for one in (self.cylinder, self.mesh))
-        if (given, others) not in ((3, 0), (0, 1)):
-            raise ValueError(
-                "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
-                f"found {given} keys of a box and {others} of the others. Give one."
-            )
-        if self.lowest is None or self.highest is None:
-            return
-        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
-            raise ValueError(
-                f"part: highest must be beyond lowest along every axis; found {self.lowest} and "
-                f"{self.highest} m."
-            )
+        require_shape(self)
 
     @property
     def count(self) -> int:
         """Number of its elements."""
-        if self.cylinder is not None:
-            return self.cylinder.count
-        if self.mesh is not None:
-            return self.mesh.count
-        return math.prod(self.elements or ())
+        return count_elements(self)
 
     @property
     def expected_step(self) -> float:
@@ -143,6 +221,9 @@ class Part:
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
                 f"found {deep:g} m and {along} elements. Set both, or dimensions = 3."
             )
+
+        if self.cutout is not None:
+            raise ValueError(f"{where}: in two dimensions nothing is cut out. Make more parts.")
 
     def _edges(self) -> tuple[float, ...]:
         if self.cylinder is not None:
