@@ -101,6 +101,7 @@ class Totals:
     kinetic: float = 0.0  # J
     potential: float = 0.0  # J, gravity
     internal: float = 0.0  # J, elastic and thermal
+    work: float = 0.0  # J, done on it so far by what no link brings: loads of the scene, walls
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,12 @@ from quintet.components.fe_plate.kernels.blocks import ENERGY
 from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.kernels.flow import HUGE
-from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift, sum_parted
+from quintet.components.fe_plate.kernels.nodes import (
+    kick,
+    kick_and_drift,
+    kinetic_energy,
+    sum_parted,
+)
 from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.plan import plan
@@ -51,6 +56,7 @@ class Accumulated:
 
     time: float = 0.0  # s
     work: float = 0.0  # J, of the loads
+    outside: float = 0.0  # J, of it that of pressures; less what mass damping took
 
 
 class FePlate(Component):
@@ -168,10 +174,19 @@ class FePlate(Component):
         self._write_loads()
         if self.glued:
             self._hasten(dt)
-        done = kick_and_drift(self.model, self.state, dt, self.params.mass_damping)
-        self.accumulated.time += dt
-        self.accumulated.work += done
+        total, damping = self.accumulated, self.params.mass_damping
+        kept = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
+        if damping:
+            total.outside -= (1.0 - kept) * kinetic_energy(self.model, self.state)
+        done = kick_and_drift(self.model, self.state, dt, damping)
+        total.time += dt
+        total.work += done
+        if self.params.pressures:
+            mean = self.state.mean_velocity[self.surface]
+            total.outside += done - dt * float((mean * self.loads).sum())
         self.bound = self._write_forces(dt)
+        if damping:
+            total.outside -= (1.0 / kept - 1.0) * kinetic_energy(self.model, self.state)
         if self.glued:
             self.state.velocity[self.surface] -= self.early
 
@@ -265,7 +280,7 @@ class FePlate(Component):
         """Copy out all state."""
         kept = {name: array.copy() for name, array in self._arrays().items()}
         total = self.accumulated
-        kept["accumulated"] = np.array([total.time, total.work, self.bound])
+        kept["accumulated"] = np.array([total.time, total.work, total.outside, self.bound])
         own = {"loads": self.loads, "hung": self.hung, "early": self.early}
         return kept | {name: array.copy() for name, array in own.items()}
 
@@ -277,13 +292,14 @@ class FePlate(Component):
         self.loads[:] = state["loads"]
         self.hung, self.early = np.array(state["hung"]), np.array(state["early"])
         self.model.inverse_mass[self.surface] = 1.0 / (self.mass[self.surface] + self.hung)
-        time, work, self.bound = state["accumulated"].tolist()
-        self.accumulated = Accumulated(time, work)
+        time, work, outside, self.bound = state["accumulated"].tolist()
+        self.accumulated = Accumulated(time, work, outside)
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, with what hangs on the nodes.
 
-        Internal is strain, plastic work and stabilisation.
+        Internal is strain, plastic work and stabilisation; work is that of pressures, rigid walls
+        and mass damping.
         """
         s, whole = self.state, self.mass.copy()
         whole[self.surface] += self.hung
@@ -297,6 +313,7 @@ class FePlate(Component):
             kinetic=0.5 * float((whole[:, None] * moving * moving).sum()),
             potential=-float(whole @ (s.position @ self.model.gravity)),
             internal=float(energy),
+            work=self.accumulated.outside + float(s.wall_work.sum()),
         )
 
     def view(self) -> Fields:
