@@ -222,7 +222,11 @@ class Component(ABC):
         return {}
 
     def walls(self) -> Fields:
-        """What stands still around it, for pictures: ``points`` and ``cells`` as in a view."""
+        """What stands still around it, for pictures: ``points`` and ``cells`` as in a view.
+
+        Optional ``support`` (cells,) tells which are walls, clamped faces of bodies and planes of
+        symmetry, by the numbers of `interfaces.faces`; without it all are walls.
+        """
         return {}
 
     def notes(self) -> tuple[str, ...]:

@@ -28,6 +28,7 @@ from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.plan import plan
 from quintet.components.fe_plate.ports import SHOWS, ports
 from quintet.components.fe_plate.state import Array, Resistance, Whole
+from quintet.components.fe_plate.supports import supports
 from quintet.components.fe_plate.view import view
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -319,6 +320,10 @@ class FePlate(Component):
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""
         return view(self.mesh, self.places, self.state)
+
+    def walls(self) -> Fields:
+        """Return rigid walls, clamped faces and planes of symmetry."""
+        return supports(self.params, self.mesh)
 
     def items(self) -> int:
         """Count the elements."""
