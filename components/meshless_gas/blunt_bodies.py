@@ -12,7 +12,6 @@ import numpy as np
 from quintet.interfaces.component import Array
 
 
-
 class ShockShape(NamedTuple):
     """Numbers of a correlation for the bow shock of a sphere or a cylinder."""
 

@@ -30,8 +30,6 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
     through = (cloud.areas[rows] * fluxes.primitive[rows, 1:4]).sum(axis=1)
     through *= fluxes.primitive[rows, 0]
     inflow, outflow = through[through > 0.0].sum(), -through[through < 0.0].sum()
-    inner = domain.inner
-    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
     return {
         "balance.mass": now[:1],
         "balance.momentum": now[None, 1:4],
@@ -45,8 +43,15 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
         "balance.inflow": np.array([inflow]),
         "balance.outflow": np.array([outflow]),
         "balance.imbalance": np.array([(inflow - outflow) / inflow if inflow > 0.0 else 0.0]),
-        "balance.change": np.array([np.sqrt((rate * rate).mean())]),
+        "balance.change": np.array([density_change(state, domain, fluxes)]),
     }
+
+
+def density_change(state: State, domain: Domain, fluxes: Fluxes) -> float:
+    """Root mean square of the relative change of densities in the steps that nodes bear."""
+    inner = domain.inner
+    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
+    return float(np.sqrt((rate * rate).mean()))
 
 
 def errors(params: MeshlessGasParams, state: State, cloud: Cloud) -> Fields:

@@ -78,7 +78,7 @@ def sphere_cap(
 
 
 def geodesic(frequency: int) -> tuple[Array, NDArray[np.int64]]:
-    """Points (m, 3) on the unit sphere and triangles (f, 3) of an icosahedron with divided edges."""
+    """Points (m, 3) of the unit sphere, and triangles (f, 3): an icosahedron's, divided."""
     corners, sides = _icosahedron()
     share = [
         (i, j, frequency - i - j) for i in range(frequency + 1) for j in range(frequency + 1 - i)
@@ -133,9 +133,7 @@ def _areas(points: Array, faces: NDArray[np.int64]) -> Array:
     return areas * (4.0 * math.pi / areas.sum())
 
 
-def _adjacent(
-    faces: NDArray[np.int64], count: int
-) -> tuple[Whole, NDArray[np.bool_]]:
+def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
     """Neighbours (m, a) by triangles, padded with -1, and which points lie beside none."""
     pairs = np.vstack([faces[:, [k, (k + 1) % 3]] for k in range(3)])
     pairs = np.vstack([pairs, pairs[:, ::-1]])

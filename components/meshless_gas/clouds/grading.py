@@ -24,6 +24,7 @@ def geometric(first: Array | float, total: Array | float, layers: int) -> Array:
         Begins with zero; evenly spaced where `first` reaches a share of the total.
     """
     total, first = np.broadcast_arrays(np.atleast_1d(total), np.atleast_1d(first))
+    first = np.minimum(first, total / layers)
     low, high = np.full(len(total), 1.0), np.full(len(total), 10.0)
     for _ in range(ROUNDS):
         middle = 0.5 * (low + high)
@@ -32,14 +33,6 @@ def geometric(first: Array | float, total: Array | float, layers: int) -> Array:
     thickness = low ** np.arange(layers)[:, None]
     inner = np.vstack([np.zeros(len(total)), np.cumsum(thickness, axis=0)])
     return np.asarray(inner / inner[-1] * total)
-
-
-def two_sided(total: float, layers: int, strength: float) -> Array:
-    """Distances (layers + 1,) m that are dense at both ends, by a hyperbolic tangent."""
-    share = np.linspace(-1.0, 1.0, layers + 1)
-    if strength == 0.0:
-        return np.asarray(0.5 * total * (share + 1.0))
-    return np.asarray(0.5 * total * (np.tanh(strength * share) / np.tanh(strength) + 1.0))
 
 
 def _sum(ratio: Array, layers: int) -> Array:

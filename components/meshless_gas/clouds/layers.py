@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.clouds.cloud import GHOST, KINDS, Cloud, Kinds, Whole
+from quintet.components.meshless_gas.clouds.cloud import GHOST, INNER, KINDS, Cloud, Kinds, Whole
 from quintet.interfaces.component import Array
 
 NONE = -1
@@ -61,7 +61,8 @@ def layered(
     surface : Surface
     bounds : Bounds
     is_cross : bool
-        Neighbours on the node's own layer, and the two above and below it, only.
+        Neighbours on the node's own layer, and the two above and below it, only: in boundary
+        layers the mean over three layers, which others take, smears what is thin.
 
     Returns
     -------
@@ -74,8 +75,10 @@ def layered(
     flat = places.reshape(-1, 3)
     images = np.einsum("gij,gj->gi", turn, flat[owner])
     positions = np.vstack([flat, images + np.tile(surface.ghost_shift, (layers, 1))])
-    patch, neighbours = _patches(layers, bounds), _neighbours(layers, surface, is_cross)
+    patch, neighbours = _patches(layers, bounds), _neighbours(layers, surface, False)
     kind = bounds.kinds[patch]
+    if is_cross:
+        neighbours = _without_diagonals(neighbours, _neighbours(layers, surface, True), kind)
     volumes = _volumes(places, bounds.areas)
     normals, areas = _faces(places, surface, bounds, volumes)
     whole = len(positions)
@@ -150,6 +153,13 @@ def _neighbours(layers: int, surface: Surface, is_cross: bool) -> Whole:
     return np.where(rows == NONE, own, rows).astype(np.int32)
 
 
+def _without_diagonals(full: Whole, cross: Whole, kind: Kinds) -> Whole:
+    """Neighbours along lines alone, but where a corner would have none within."""
+    inner = np.concatenate([kind == INNER, np.zeros(int(full.max()) + 1 - len(kind), bool)])
+    lacks = ~np.any(inner[cross], axis=1)
+    return np.where(lacks[:, None], full[:, : cross.shape[1]], cross)
+
+
 def _spacing(positions: Array, neighbours: Whole, source: Whole) -> Array:
     """Distance (n,) m of each node's nearest neighbour."""
     apart = positions[neighbours] - positions[: len(neighbours), None]
@@ -168,9 +178,7 @@ def _volumes(places: Array, areas: Array) -> Array:
     return volumes.ravel()
 
 
-def _faces(
-    places: Array, surface: Surface, bounds: Bounds, volumes: Array
-) -> tuple[Array, Array]:
+def _faces(places: Array, surface: Surface, bounds: Bounds, volumes: Array) -> tuple[Array, Array]:
     """Normals (n, 3) into the gas and areas (n, 3) m2 along them, of boundary nodes."""
     layers, count = places.shape[:2]
     normals, areas = np.zeros((2, layers, count, 3))
@@ -183,8 +191,7 @@ def _faces(
     beside = places[:, surface.inward[edge]] - places[:, edge]
     gap = np.sqrt((beside**2).sum(axis=2))[:, :, None]
     beside /= gap
-    between = slice(1, layers - 1)
-    normals[between, edge] = beside[between]
+    normals[1:, edge] = beside[1:]
     half = volumes.reshape(layers, count)[:, edge, None] / (0.5 * gap)
     areas[:, edge] += beside * half
     return normals.reshape(-1, 3), areas.reshape(-1, 3)

@@ -43,6 +43,7 @@ def sphere_meridian(
     reach: Reach,
     faces: Mapping[str, str],
     patches: Mapping[str, int],
+    is_cross: bool = False,
 ) -> LayeredCloud:
     """Nodes round a sphere in the half-plane z > 0 of a flow along x.
 
@@ -56,6 +57,8 @@ def sphere_meridian(
     reach : Reach
     faces, patches
         What is at the "wall", at "far" and, where gas leaves, at the "exit"; their numbers.
+    is_cross : bool
+        Fewer neighbours: of other layers only what is straight above and below.
 
     Returns
     -------
@@ -81,7 +84,7 @@ def sphere_meridian(
         ring * (radius + distance) ** 2,
         reach.weight,
     )
-    return layered(places, surface, bounds)
+    return layered(places, surface, bounds, is_cross)
 
 
 def last_patch(angle: Array, outer: Array, reach: Reach, patches: Mapping[str, int]) -> Whole:

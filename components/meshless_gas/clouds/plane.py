@@ -1,4 +1,4 @@
-"""Clouds of one plane: layers over a line of wall, and round a circle."""
+"""Clouds of one plane: layers over a line of wall."""
 
 import math
 from collections.abc import Mapping
@@ -6,7 +6,6 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.blunt_bodies import CYLINDER, shock_radius
 from quintet.components.meshless_gas.clouds.cloud import Whole
 from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
@@ -16,7 +15,7 @@ from quintet.components.meshless_gas.clouds.layers import (
     kinds_of,
     layered,
 )
-from quintet.components.meshless_gas.clouds.meridian import Reach, last_patch
+from quintet.components.meshless_gas.clouds.meridian import Reach
 from quintet.interfaces.component import Array
 
 
@@ -28,22 +27,6 @@ def line(count: int) -> Surface:
     is_edge = (node == 0) | (node == count - 1)
     inward = np.clip(node, 1, count - 2)
     return _surface(neighbours, [], np.zeros((0, 3)), is_edge, inward)
-
-
-def periodic_line(count: int, period: Array) -> Surface:
-    """Neighbours on a line of nodes that repeats itself, shifted by a vector (3,) m."""
-    node = np.arange(count)
-    neighbours = np.stack([node - 1, node + 1], axis=1)
-    neighbours[0, 0], neighbours[-1, 1] = count, count + 1
-    shift = np.stack([-period, period])
-    return _surface(neighbours, [count - 1, 0], shift, np.zeros(count, bool), node)
-
-
-def ring(count: int) -> Surface:
-    """Neighbours on a line of nodes that closes."""
-    node = np.arange(count)
-    neighbours = np.stack([(node - 1) % count, (node + 1) % count], axis=1)
-    return _surface(neighbours, [], np.zeros((0, 3)), np.zeros(count, bool), node)
 
 
 def _surface(
@@ -70,6 +53,7 @@ def wall_line(
     numbers: tuple[Whole, Whole, Whole],
     kinds: NDArray[np.int8],
     weight: float,
+    is_cross: bool,
 ) -> LayeredCloud:
     """Layers over a line of wall in the plane x, z.
 
@@ -87,6 +71,8 @@ def wall_line(
         What nodes of each boundary are.
     weight : float, 1
         Of the least squares.
+    is_cross : bool
+        Without diagonal neighbours.
 
     Returns
     -------
@@ -105,7 +91,7 @@ def wall_line(
         share[[0, -1]] += 0.5 * (math.sqrt((surface.ghost_shift[0] ** 2).sum()) - length.sum())
     areas = np.repeat(share[None], len(distance), axis=0)
     bounds = Bounds(*numbers, kinds, np.tile(up, (len(foot), 1)), areas, weight)
-    return layered(places, surface, bounds)
+    return layered(places, surface, bounds, is_cross)
 
 
 def plate(
@@ -116,6 +102,7 @@ def plate(
     finest: float,
     faces: Mapping[str, str],
     patches: Mapping[str, int],
+    is_cross: bool = True,
 ) -> LayeredCloud:
     """Layers over a flat plate from x = 0 on, and over a stretch of free stream ahead of it.
 
@@ -127,8 +114,10 @@ def plate(
     finest : float, m
         Distance of nodes at the leading edge.
     faces, patches
-        What is at the plate ("wall"), before it ("ahead"), upstream and above ("far") and
+        What is at the plate ("wall"), before it ("ahead"), upstream ("inlet"), above ("far") and
         downstream ("exit"); their numbers.
+    is_cross : bool
+        Without diagonal neighbours.
     """
     behind = geometric(finest, length, reach.rays)[:, 0]
     before = -geometric(finest, ahead, max(4, reach.rays // 4))[:0:-1, 0]
@@ -136,55 +125,10 @@ def plate(
     foot = np.stack([x, np.zeros(len(x)), np.zeros(len(x))], axis=1)
     distance = geometric(reach.first, height, reach.layers)[:, 0]
     edge = np.zeros(len(x), np.int32)
-    edge[0], edge[-1] = patches["far"], patches["exit"]
+    edge[0], edge[-1] = patches["inlet"], patches["exit"]
     first = np.where(x < 0.0, patches["ahead"], patches["wall"]).astype(np.int32)
     last = np.full(len(x), patches["far"], np.int32)
     numbers = (first, last, edge)
-    return wall_line(foot, distance, line(len(x)), numbers, kinds_of(faces, patches), reach.weight)
-
-
-def cylinder_plane(
-    centre: Array,
-    radius: float,
-    mach: float,
-    reach: Reach,
-    faces: Mapping[str, str],
-    patches: Mapping[str, int],
-) -> LayeredCloud:
-    """Layers round a circle in the plane x, z, in a flow along x.
-
-    Parameters
-    ----------
-    centre : (3,) m
-    radius : float, m
-    mach : float
-        Above 1 the cloud follows the bow shock, else it is a ring.
-    reach : Reach
-        Its sector is not read.
-    faces, patches
-        What is at the "wall", at "far" and, where gas leaves, at the "exit"; their numbers.
-
-    Returns
-    -------
-    LayeredCloud
-        Per metre of depth.
-    """
-    angle = (np.arange(reach.rays) + 0.5) * 2.0 * math.pi / reach.rays
-    outward = np.stack([-np.cos(angle), np.zeros(reach.rays), np.sin(angle)], axis=1)
-    folded = np.minimum(angle, 2.0 * math.pi - angle)
-    outer = np.full(reach.rays, reach.farthest)
-    if mach > 1.0:
-        gap = shock_radius(folded, mach, CYLINDER) - 1.0
-        outer = np.minimum(radius * (1.0 + reach.margin * gap), reach.farthest)
-    distance = geometric(reach.first, outer - radius, reach.layers)
-    places = centre + outward * (radius + distance)[:, :, None]
-    bounds = Bounds(
-        np.full(reach.rays, patches["wall"], np.int32),
-        last_patch(folded, outer, reach, patches),
-        np.zeros(reach.rays, np.int32),
-        kinds_of(faces, patches),
-        outward,
-        2.0 * math.pi / reach.rays * (radius + distance),
-        reach.weight,
+    return wall_line(
+        foot, distance, line(len(x)), numbers, kinds_of(faces, patches), reach.weight, is_cross
     )
-    return layered(places, ring(reach.rays), bounds)

@@ -9,7 +9,7 @@ pair feels its own difference: without it the flux does not see waves of two spa
 import numpy as np
 from numba import njit
 
-from quintet.components.meshless_gas.viscous.laws import sutherland
+from quintet.components.meshless_gas.transport import sutherland
 from quintet.components.shared.numba_options import FAST, INNER
 
 TWO_THIRDS = 2.0 / 3.0
@@ -38,6 +38,17 @@ def write_temperature_gradients(  # type: ignore[no-untyped-def]
             y += coefficients[i, k, 1] * rise
             z += coefficients[i, k, 2] * rise
         gradients[i, 0], gradients[i, 1], gradients[i, 2] = x, y, z
+
+
+@njit(**FAST)
+def write_ghost_slopes(owner, turn, gradients):  # type: ignore[no-untyped-def]
+    """Turn gradients (n, 3) of a scalar to the ghosts of their nodes."""
+    first = gradients.shape[0] - owner.shape[0]
+    for g in range(owner.shape[0]):
+        x, y, z = gradients[owner[g], 0], gradients[owner[g], 1], gradients[owner[g], 2]
+        for a in range(3):
+            along = turn[g, a, 0] * x + turn[g, a, 1] * y + turn[g, a, 2] * z
+            gradients[first + g, a] = along
 
 
 @njit(**INNER, fastmath=True)
@@ -133,25 +144,28 @@ def add_viscous(  # type: ignore[no-untyped-def]
 
 
 @njit(**FAST)
-def viscous_rate(  # type: ignore[no-untyped-def]
-    first, last, rows, positions, primitive, transported, neighbours, coefficients, gamma, law, rate
-):
-    """Add to each node's rate (n,) 1/s, one over its step, what diffusion demands.
+def shorten_bounds(  # type: ignore[no-untyped-def]
+    first, last, rows, positions, primitive, transported, neighbours, coefficients, gamma, law,
+    bounds,
+):  # fmt: skip
+    """Shorten the step (n,) s that each node bears by what diffusion adds; return the least.
 
-    References
-    ----------
-    The sum over pairs of 2 |c_ij| / |r_ij| · γ μ / (Pr ρ).
+    1/Δt_i is raised by Σ_j 2 |c_ij|/|r_ij| · γ μ/(Pr ρ).
     """
-    prandtl = gamma / (gamma - 1.0) * law.gas_constant / law.conduction
+    least, heat = np.inf, gamma / (gamma - 1.0) * law.gas_constant
+    factor = 2.0 * gamma * law.conduction / heat
     for row in range(first, last):
         i = np.uintp(rows[row])
         total = 0.0
         for k in range(neighbours.shape[1]):
-            j = neighbours[i, k]
+            j = np.uintp(neighbours[i, k])
             c, r = 0.0, 0.0
             for axis in range(3):
                 c += coefficients[i, k, axis] ** 2
                 r += (positions[j, axis] - positions[i, axis]) ** 2
             if r > 0.0:
                 total += np.sqrt(c / r)
-        rate[i] += 2.0 * total * gamma * transported[i, 1] / (prandtl * primitive[i, 0])
+        rate = total * factor * transported[i, 1] / primitive[i, 0]
+        bounds[i] = 1.0 / (1.0 / bounds[i] + rate)
+        least = min(least, bounds[i])
+    return least

@@ -1,48 +1,8 @@
-"""Transport in a perfect gas.
-
-Papers: Sutherland, Phil. Mag. 36 (1893) 507.
-"""
-
-import math
-from typing import NamedTuple
+"""Slopes at a wall."""
 
 from numba import njit
 
 from quintet.components.shared.numba_options import INNER
-
-
-class Transport(NamedTuple):
-    """Numbers of viscosity and conduction."""
-
-    viscosity: float  # Pa s, at the reference temperature
-    reference: float  # K
-    sutherland: float  # K; negative: the viscosity is constant
-    conduction: float  # J/kg/K, c_p / Pr: conductivity over viscosity
-    gas_constant: float  # J/kg/K
-
-
-@njit(**INNER)
-def sutherland(temperature, law):  # type: ignore[no-untyped-def]
-    """Dynamic viscosity of a gas.
-
-    Parameters
-    ----------
-    temperature : float, K
-    law : Transport
-
-    Returns
-    -------
-    float, Pa s
-
-    References
-    ----------
-    Sutherland, Phil. Mag. 36 (1893) 507.
-    """
-    if law.sutherland < 0.0:
-        return law.viscosity
-    ratio = temperature / law.reference
-    rise = (law.reference + law.sutherland) / (temperature + law.sutherland)
-    return law.viscosity * ratio * math.sqrt(ratio) * rise
 
 
 @njit(**INNER)
@@ -58,5 +18,8 @@ def wall_slope(at_wall, first, second, near, far):  # type: ignore[no-untyped-de
     Returns
     -------
     float, 1/m times the value's unit
+        Of first order where there is no second, 0 where there is none.
     """
+    if not far > near:
+        return (first - at_wall) / near if near > 0.0 else 0.0
     return ((first - at_wall) * far / near - (second - at_wall) * near / far) / (far - near)

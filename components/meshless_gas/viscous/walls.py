@@ -1,24 +1,23 @@
 """What a no-slip wall does to the gas, and the gas to the wall."""
 
+import math
+
 from numba import njit
 
-from quintet.components.meshless_gas.viscous.laws import sutherland, wall_slope
+from quintet.components.meshless_gas.transport import sutherland
+from quintet.components.meshless_gas.viscous.laws import wall_slope
 from quintet.components.shared.numba_options import EXACT
 
 
-
 @njit(**EXACT)
-def hold_walls(first, last, rows, neighbours, weights, velocity, temperature, law, primitive):  # type: ignore[no-untyped-def]
+def hold_walls(rows, neighbours, weights, velocity, temperature, law, primitive):  # type: ignore[no-untyped-def]
     """Give nodes of no-slip walls the wall's velocity and temperature, the gas's pressure.
 
     Parameters
     ----------
-    first, last : int
-        Walls that are written.
     rows : (w,)
-        Their nodes.
-    neighbours : (w, K)
-        Nodes of the gas near each; weights 0 where there are fewer.
+        Nodes of walls.
+    neighbours : (n, K)
     weights : (w, K)
         With sum 1: of no slope along the normal.
     velocity : (w, 3) m/s
@@ -28,10 +27,12 @@ def hold_walls(first, last, rows, neighbours, weights, velocity, temperature, la
     primitive : (n, 5)
         The rows are written.
     """
-    for n in range(first, last):
+    for n in range(rows.shape[0]):
         pressure, warmth = 0.0, 0.0
         for k in range(neighbours.shape[1]):
-            j, share = neighbours[n, k], weights[n, k]
+            j, share = neighbours[rows[n], k], weights[n, k]
+            if share == 0.0:
+                continue
             pressure += share * primitive[j, 4]
             warmth += share * primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
         if temperature[n] > 0.0:
@@ -44,19 +45,33 @@ def hold_walls(first, last, rows, neighbours, weights, velocity, temperature, la
 
 @njit(**EXACT)
 def write_tractions(  # type: ignore[no-untyped-def]
-    first, last, rows, off_wall, positions, normals, velocity, primitive, law, friction, heat
+    rows, above, positions, normals, velocity, primitive, law, friction, heat
 ):
-    """Friction (w, 3) Pa and heat flux (w,) W/m2 into walls, of second order.
+    """Write friction (w, 3) Pa and heat flux (w,) W/m2 into walls, of second order.
 
-    Parabolas through the wall and two nodes above it: the least-squares slope of the wall's node
-    falls 8 to 15 % short where the layer of temperature is eight spacings thick.
+    By parabolas through the wall and two nodes above it: the least-squares slope at the wall falls
+    8 to 15 % short where the layer of temperature is eight spacings thick.
+
+    Parameters
+    ----------
+    rows : (w,)
+        Nodes of walls.
+    above : (w, 2)
+        Two nodes above each.
+    positions : (n, 3) m
+    normals : (n, 3) 1
+        Into the gas.
+    velocity : (w, 3) m/s
+        Of the walls.
+    primitive : (n, 5)
+    law : Transport
     """
-    for n in range(first, last):
-        i, j, k = rows[n], off_wall[n, 0], off_wall[n, 1]
+    for n in range(rows.shape[0]):
+        i, j, k = rows[n], above[n, 0], above[n, 1]
         near, far, along = 0.0, 0.0, 0.0
         for axis in range(3):
-            near += (positions[j, axis] - positions[i, axis]) * normals[n, axis]
-            far += (positions[k, axis] - positions[i, axis]) * normals[n, axis]
+            near += (positions[j, axis] - positions[i, axis]) * normals[i, axis]
+            far += (positions[k, axis] - positions[i, axis]) * normals[i, axis]
         wall = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
         mu = sutherland(wall, law)
         one = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
@@ -67,6 +82,20 @@ def write_tractions(  # type: ignore[no-untyped-def]
                 velocity[n, axis], primitive[j, 1 + axis], primitive[k, 1 + axis], near, far
             )
             friction[n, axis] = mu * slope
-            along += friction[n, axis] * normals[n, axis]
+            along += friction[n, axis] * normals[i, axis]
         for axis in range(3):
-            friction[n, axis] -= along * normals[n, axis]
+            friction[n, axis] -= along * normals[i, axis]
+
+
+@njit(**EXACT)
+def add_wall_flows(rows, areas, velocity, friction, heat, flows):  # type: ignore[no-untyped-def]
+    """Take what friction and conduction give to walls from what enters: (5,) kg/s, N, W."""
+    for n in range(rows.shape[0]):
+        size = 0.0
+        for axis in range(3):
+            size += areas[rows[n], axis] ** 2
+        size = math.sqrt(size)
+        flows[4] -= size * heat[n]
+        for axis in range(3):
+            flows[1 + axis] -= size * friction[n, axis]
+            flows[4] -= size * friction[n, axis] * velocity[n, axis]
