@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.boundaries import Boundary, Gas
 from quintet.components.meshless_gas.clouds.bodies import layered_cloud
 from quintet.components.meshless_gas.clouds.box import box
 from quintet.components.meshless_gas.clouds.cloud import (
@@ -24,7 +25,7 @@ from quintet.components.meshless_gas.kernels.boundaries import (
     write_weights,
 )
 from quintet.components.meshless_gas.kernels.motion import write_conservative
-from quintet.components.meshless_gas.params import Boundary, Gas, MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import State
 from quintet.components.meshless_gas.stencils import Stencils, nearest_neighbours, stencils
 from quintet.components.meshless_gas.transport import Transport

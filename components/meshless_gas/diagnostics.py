@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INFLOW, INNER, OUTFLOW, Cloud
 from quintet.components.meshless_gas.exact import states_at
-from quintet.components.meshless_gas.params import Gas, MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.interfaces.component import Array, Fields, Totals
 

@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell, pitot_pressure
+from quintet.components.meshless_gas.boundaries import GasState
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.bodies import mach_number
 from quintet.components.meshless_gas.clouds.cloud import WALLS
-from quintet.components.meshless_gas.params import GasState, MeshlessGasParams, Plate
+from quintet.components.meshless_gas.clouds.params import Plate
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array, Fields
 
 NEAR_AXIS = 0.25  # rad from the direction against the flow, over which values at it are fitted

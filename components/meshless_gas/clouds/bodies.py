@@ -5,12 +5,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from quintet.components.meshless_gas.boundaries import GasState
 from quintet.components.meshless_gas.clouds.cap import sphere_cap
 from quintet.components.meshless_gas.clouds.layers import LayeredCloud
 from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
 from quintet.components.meshless_gas.clouds.params import Layers, Plate, Sphere
 from quintet.components.meshless_gas.clouds.plane import plate
-from quintet.components.meshless_gas.params import GasState, MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams
 
 
 def layered_cloud(
