@@ -1,9 +1,6 @@
-"""What is told of a gas: balances, errors, probes, and why a step failed."""
-
-from collections.abc import Sequence
+"""What is told of a gas: balances, errors, and why a step failed."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INFLOW, INNER, OUTFLOW, Cloud
@@ -64,14 +61,6 @@ def errors(params: MeshlessGasParams, state: State, cloud: Cloud) -> Fields:
     }
 
 
-def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]]) -> NDArray[np.int64]:
-    """Nodes that are nearest to some places."""
-    positions = cloud.positions[: cloud.nodes]
-    return np.array(
-        [int(((positions - np.array(one)) ** 2).sum(axis=1).argmin()) for one in places], np.int64
-    )
-
-
 def temperature(primitive: Array, gas: Gas) -> Array:
     """Temperature (n,) K."""
     return np.asarray(primitive[:, 4] / (gas.gas_constant * primitive[:, 0]))
@@ -81,19 +70,6 @@ def mach(primitive: Array, gas: Gas) -> Array:
     """Mach number (n,)."""
     square = (primitive[:, 1:4] ** 2).sum(axis=1)
     return np.asarray(np.sqrt(square * primitive[:, 0] / (gas.gamma * primitive[:, 4])))
-
-
-def probes(rows: NDArray[np.int64], cloud: Cloud, state: State, gas: Gas) -> Fields:
-    """Fields of the port `probes`."""
-    found = state.primitive[rows]
-    return {
-        "probes.position": cloud.positions[rows],
-        "probes.velocity": found[:, 1:4].copy(),
-        "probes.density": found[:, 0].copy(),
-        "probes.pressure": found[:, 4].copy(),
-        "probes.temperature": temperature(found, gas),
-        "probes.mach": mach(found, gas),
-    }
 
 
 def totals(state: State, cloud: Cloud) -> Totals:
