@@ -3,11 +3,13 @@
 import numpy as np
 
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import INFLOW, INNER, OUTFLOW, Cloud
+from quintet.components.meshless_gas.clouds.cloud import INNER, Cloud
 from quintet.components.meshless_gas.exact import states_at
 from quintet.components.meshless_gas.params import Gas, MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.interfaces.component import Array, Fields, Totals
+
+ROUNDING = 1e-12  # of the mass flow at the speed of sound
 
 
 def held(state: State, cloud: Cloud) -> Array:
@@ -23,9 +25,7 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
     mass, energy = state.begun[0], state.begun[4]
     scale = np.array([mass, *[np.sqrt(2.0 * mass * energy)] * 3, energy])
     drift = (now - state.begun - entered) / scale
-    rows = domain.bounding[np.isin(cloud.kind[domain.bounding], (INFLOW, OUTFLOW))]
-    through = (cloud.areas[rows] * fluxes.primitive[rows, 1:4]).sum(axis=1)
-    through *= fluxes.primitive[rows, 0]
+    through = _through(domain, fluxes.primitive, gamma)
     inflow, outflow = through[through > 0.0].sum(), -through[through < 0.0].sum()
     inner = domain.inner
     rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
@@ -44,6 +44,14 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
         "balance.imbalance": np.array([(inflow - outflow) / inflow if inflow > 0.0 else 0.0]),
         "balance.change": np.array([np.sqrt((rate * rate).mean())]),
     }
+
+
+def _through(domain: Domain, primitive: Array, gamma: float) -> Array:
+    """Mass (a,) kg/s that enters at boundary nodes; 0 where it is rounding, as at walls."""
+    states, areas = primitive[domain.bounding], domain.cloud.areas[domain.bounding]
+    through = states[:, 0] * (areas * states[:, 1:4]).sum(axis=1)
+    sound = np.sqrt(gamma * states[:, 4] * states[:, 0]) * np.abs(areas).sum(axis=1)
+    return np.where(np.abs(through) > ROUNDING * sound, through, 0.0)
 
 
 def errors(params: MeshlessGasParams, state: State, cloud: Cloud) -> Fields:
