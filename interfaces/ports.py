@@ -96,6 +96,7 @@ SPHERES = Port(
     fields=(POSITION, VELOCITY, TEMPERATURE, Field("diameter", (), "m")),
     static=(
         Field("mass", (), "kg"),
+        Field("heat_capacity", (), "J/K"),
         Field("number", (), "1"),  # that it stands for
     ),
 )

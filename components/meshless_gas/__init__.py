@@ -13,3 +13,22 @@ the meshless algorithm; Katz & Jameson, AIAA J. 48 (2010) 1756; Kim, Kim & Rho, 
 (2001) 38; van Albada, van Leer & Roberts, Astron. Astrophys. 108 (1982) 76; Shu & Osher, J. Comput.
 Phys. 77 (1988) 439.
 """
+
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.plan import plan
+from quintet.components.meshless_gas.ports import SHOWS, ports
+from quintet.interfaces.manifest import Manifest
+
+__all__ = ["MANIFEST", "MeshlessGasParams"]
+
+MANIFEST = Manifest(
+    kind="meshless_gas",
+    title="Compressible gas on clouds of nodes",
+    params=MeshlessGasParams,
+    component="quintet.components.meshless_gas.component:MeshlessGas",
+    ports=ports,
+    shows=SHOWS,
+    plan=plan,
+    bench="quintet.components.meshless_gas.bench:cases",
+    conform="quintet.components.meshless_gas.conform:cases",
+)

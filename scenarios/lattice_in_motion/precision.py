@@ -46,9 +46,9 @@ def main(study: str) -> None:
         mine = [one for one in rows if one[0] == integrator]
         for _, step, error, audit, seconds in mine:
             print(f"{integrator:16} {step:16.3f} {error:20.2e} {audit:13.2e} {seconds:19.3f}")
-        seconds = [one[4] for one in mine]
-        left.loglog(seconds, [one[2] for one in mine], "o-", label=integrator)
-        right.loglog(seconds, [one[3] for one in mine], "o-", label=integrator)
+        spent = [one[4] for one in mine]
+        left.loglog(spent, [one[2] for one in mine], "o-", label=integrator)
+        right.loglog(spent, [one[3] for one in mine], "o-", label=integrator)
         for one in mine:
             left.annotate(f"{one[1]:.2g}", (one[4], one[2]), fontsize=7)
     left.set(ylabel="error of places, root mean square over a (labels: step x frequency)")

@@ -57,6 +57,7 @@ class SphereDynamics(Component):
             "motion.size": np.repeat(2.0 * one.radius[:, None], 3, axis=1),
             "motion.mass": one.mass.copy(),
             "spheres.mass": one.mass.copy(),
+            "spheres.heat_capacity": one.capacity.copy(),
             "spheres.number": one.parcel.copy(),
         }
 
