@@ -99,6 +99,30 @@ class Steady:
 
 
 @parameters
+class Front:
+    """A straight line on which a front is looked for.
+
+    Parameters
+    ----------
+    begin, end : m
+        Of the line.
+    field
+        What the front is a jump of.
+    level : kg/m3 or Pa
+        Of the field: the front is where it is first passed, from the line's begin on.
+    """
+
+    begin: Vector
+    end: Vector
+    field: Literal["density", "pressure"] = "density"
+    level: Positive
+
+    def __post_init__(self) -> None:
+        if self.begin == self.end:
+            raise ValueError("fronts: a line must end elsewhere than it begins. Correct it.")
+
+
+@parameters
 class MeshlessGasParams:
     """A gas on a cloud of nodes, and how it is computed.
 
@@ -146,6 +170,8 @@ class MeshlessGasParams:
         When the flow has settled; the force on the walls is then what is given.
     probes : m
         Places; of the node that is nearest to each the state is given.
+    fronts
+        Lines on which shocks are looked for.
     """
 
     gas: Gas = Gas()
@@ -167,6 +193,7 @@ class MeshlessGasParams:
     local_steps: bool = False
     steady: Steady | None = None
     probes: tuple[Vector, ...] = ()
+    fronts: tuple[Front, ...] = ()
 
     def __post_init__(self) -> None:
         for sentence in (*self._wrong_clouds(), *self._wrong_states(), *self._wrong_walls()):
