@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from quintet.components.meshless_gas.clouds.params import Box
+from quintet.components.meshless_gas.moving.params import Moving
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -221,6 +222,8 @@ class MeshlessGasParams:
     local_steps
         Whether each node takes the step that it bears, towards a steady flow: times are then those
         of the node of the shortest step.
+    moving
+        Bodies that carry clouds of nodes of their own; none if not said.
     probes : m
         Places; of the node that is nearest to each the state is given.
     """
@@ -238,6 +241,7 @@ class MeshlessGasParams:
     limiter_threshold: NotNegative = 1e-6
     courant: Positive = 0.7
     local_steps: bool = False
+    moving: Moving | None = None
     probes: tuple[Vector, ...] = ()
 
     def __post_init__(self) -> None:

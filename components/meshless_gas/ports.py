@@ -3,7 +3,7 @@
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import POSITION, TEMPERATURE, VELOCITY
+from quintet.interfaces.ports import HEAT, LOAD, MOTION, POSITION, TEMPERATURE, VELOCITY
 
 DENSITY = Field("density", (), "kg/m3")
 PRESSURE = Field("pressure", (), "Pa")
@@ -52,9 +52,38 @@ ERROR = Port(
 # Of the node nearest to each place.
 PROBES = Port("probes", fields=(POSITION, VELOCITY, DENSITY, PRESSURE, TEMPERATURE, MACH))
 
+# Of bodies that carry clouds, all of them; forces are means over the step.
+BODIES = Port(
+    "bodies",
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("force", (3,), "N"),
+        # Over ½ρU² and the area that faces the flow, of the state at the start and the body's
+        # velocity there.
+        Field("coefficient", (3,), "1"),
+        Field("highest_pressure", (), "Pa"),  # on the wall
+        Field("uncovered", (), "1"),  # nodes of all clouds that came back since the start
+    ),
+)
+# Nodes of the walls of those bodies, one body after another, each from upstream round to z.
+SURFACE = Port(
+    "surface",
+    fields=(
+        POSITION,
+        Field("body", (), "1"),
+        Field("angle", (), "rad"),  # at the centre, from upstream
+        PRESSURE,
+    ),
+)
+
 
 def ports(params: MeshlessGasParams) -> Ports:
     """Ports taken and given."""
     known = params.riemann is not None or params.vortex is not None
     given = (BALANCE, *((ERROR,) if known else ()), *((PROBES,) if params.probes else ()))
-    return (), given
+    if params.moving is None:
+        return (), given
+    driven = any(one.is_driven for one in params.moving.bodies)
+    bodies = (BODIES, SURFACE, *((LOAD, HEAT) if driven else ()))
+    return (MOTION,) if driven else (), (*given, *bodies)
