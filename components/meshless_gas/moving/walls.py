@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from quintet.components.meshless_gas.laws import smoothness
+from quintet.components.meshless_gas.laws import SENSED, WIDTH
 from quintet.components.shared.numba_options import EXACT, INNER
 
 LEAST = 0.3  # of the first node's density and pressure: what a wall's state must keep
@@ -51,9 +51,8 @@ def hold_slip_walls(
     state = np.empty(5)
     for n in range(rows.shape[0]):
         i, j, k = rows[n], above[n, 0], above[n, 1]
-        keep = smoothness(
-            min(primitive[j, 4], primitive[k, 4]), math.inf, primitive[j, 4], primitive[k, 4]
-        )
+        ratio = min(primitive[j, 4], primitive[k, 4]) / max(primitive[j, 4], primitive[k, 4])
+        keep = min(max((ratio - SENSED) / WIDTH, 0.0), 1.0)
         share = keep * heights[n, 0] / (heights[n, 1] - heights[n, 0])
         for q in range(5):
             state[q] = primitive[j, q] + share * (primitive[j, q] - primitive[k, q])
