@@ -10,10 +10,9 @@ from quintet.components.meshless_gas.diagnostics import (
     balance,
     errors,
     failure,
-    nearest_nodes,
-    probes,
     totals,
 )
+from quintet.components.meshless_gas.gauges import fronts, line, nearest_nodes, probes
 from quintet.components.meshless_gas.kernels.boundaries import boundary_flows, write_boundaries
 from quintet.components.meshless_gas.kernels.ghosts import (
     write_ghost_gradients,
@@ -95,7 +94,8 @@ class MeshlessGas(Component):
         self.planar = True if params.planar else None
         self.sloped = True if params.order == 2 else None
         self.steps = self.fluxes.steps if params.local_steps else None
-        self.probed = nearest_nodes(cloud, params.probes)
+        self.probed = nearest_nodes(cloud, params.probes, self.team)
+        self.lines = [line(cloud, one, self.team) for one in params.fronts]
         self._take_over()
 
     def prepare(self, fields: Fields) -> None:
@@ -212,7 +212,10 @@ class MeshlessGas(Component):
         if "error" in ports_wanted:
             given.update(errors(self.params, self.state, self.domain.cloud))
         if "probes" in ports_wanted:
-            given.update(probes(self.probed, self.domain.cloud, self.state, self.params.gas))
+            cloud, gas = self.domain.cloud, self.params.gas
+            given.update(probes(self.probed, cloud, self.state.primitive, gas))
+        if "fronts" in ports_wanted:
+            given.update(fronts(self.lines, self.state.primitive))
         if self.moving is not None:
             given.update(self.moving_outputs(self.moving, self.state.primitive, self.params))
         return {key: given[key] for key in wanted}

@@ -189,6 +189,30 @@ class Vortex:
 
 
 @parameters
+class Front:
+    """A straight line on which a front is looked for.
+
+    Parameters
+    ----------
+    begin, end : m
+        Of the line.
+    field
+        What the front is a jump of.
+    level : kg/m3 or Pa
+        Of the field: the front is where it is first passed, from the line's begin on.
+    """
+
+    begin: Vector
+    end: Vector
+    field: Literal["density", "pressure"] = "density"
+    level: Positive
+
+    def __post_init__(self) -> None:
+        if self.begin == self.end:
+            raise ValueError("fronts: a line must end elsewhere than it begins. Correct it.")
+
+
+@parameters
 class MeshlessGasParams:
     """A gas on a cloud of nodes, and how it is computed.
 
@@ -226,6 +250,8 @@ class MeshlessGasParams:
         Bodies that carry clouds of nodes of their own; none if not said.
     probes : m
         Places; of the node that is nearest to each the state is given.
+    fronts
+        Lines on which shocks are looked for.
     """
 
     gas: Gas = Gas()
@@ -243,6 +269,7 @@ class MeshlessGasParams:
     local_steps: bool = False
     moving: Moving | None = None
     probes: tuple[Vector, ...] = ()
+    fronts: tuple[Front, ...] = ()
 
     def __post_init__(self) -> None:
         for sentence in (*self._wrong_states(), *self._wrong_faces()):

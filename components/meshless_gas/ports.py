@@ -3,8 +3,9 @@
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import HEAT, LOAD, MOTION, POSITION, TEMPERATURE, VELOCITY
+from quintet.interfaces.ports import HEAT, LOAD, MOTION, TEMPERATURE, VELOCITY
 
+POSITION = Field("position", (3,), "m")
 DENSITY = Field("density", (), "kg/m3")
 PRESSURE = Field("pressure", (), "Pa")
 MACH = Field("mach", (), "1")
@@ -51,6 +52,17 @@ ERROR = Port(
 )
 # Of the node nearest to each place.
 PROBES = Port("probes", fields=(POSITION, VELOCITY, DENSITY, PRESSURE, TEMPERATURE, MACH))
+# On each line, where a front is; and the angle to x, about y, of the straight line that fits best
+# through this front and all before it, 0 of the first.
+FRONTS = Port(
+    "fronts",
+    fields=(
+        POSITION,
+        Field("distance", (), "m"),  # from where the line begins
+        Field("angle", (), "rad"),
+        Field("found", (), "1"),  # whether there is one; else it is said to be at the line's end
+    ),
+)
 
 # Of bodies that carry clouds, all of them; forces are means over the step.
 BODIES = Port(
@@ -81,7 +93,8 @@ SURFACE = Port(
 def ports(params: MeshlessGasParams) -> Ports:
     """Ports taken and given."""
     known = params.riemann is not None or params.vortex is not None
-    given = (BALANCE, *((ERROR,) if known else ()), *((PROBES,) if params.probes else ()))
+    read = (*((PROBES,) if params.probes else ()), *((FRONTS,) if params.fronts else ()))
+    given = (BALANCE, *((ERROR,) if known else ()), *read)
     if params.moving is None:
         return (), given
     driven = any(one.is_driven for one in params.moving.bodies)
