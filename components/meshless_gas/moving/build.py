@@ -24,6 +24,7 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
             f"bodies that carry clouds need two dimensions and {BLOCK} neighbours at least; found "
             f"{params.dimensions} and {params.neighbours}. Correct dimensions and neighbours."
         )
+    assert params.box is not None
     if keys.axisymmetric and (params.kind_of("z-") != "symmetry" or params.box.lowest[2] != 0.0):
         raise SceneError(
             "an axisymmetric flow needs a box that begins at z = 0 with symmetry there; found "
