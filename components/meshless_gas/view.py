@@ -51,7 +51,9 @@ def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams
 
 
 def walls(params: MeshlessGasParams) -> Fields:
-    """Faces of the box that are walls."""
+    """Faces of the box that are walls; of clouds round bodies none."""
+    if params.box is None:
+        return {}
     faces = [name for name in params.boundaries if params.kind_of(name) == "slip"]
     low, high = list(params.box.lowest), list(params.box.highest)
     if params.planar:
