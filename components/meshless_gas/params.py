@@ -7,6 +7,7 @@ from pydantic import Field
 
 from quintet.components.meshless_gas.boundaries import HOLDING, Boundary, Gas, GasState
 from quintet.components.meshless_gas.clouds.params import Box, Plate, Sphere
+from quintet.components.meshless_gas.moving.params import Moving
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -168,6 +169,8 @@ class MeshlessGasParams:
         of the node of the shortest step.
     steady
         When the flow has settled; the force on the walls is then what is given.
+    moving
+        Bodies that carry clouds of nodes of their own; none if not said.
     probes : m
         Places; of the node that is nearest to each the state is given.
     fronts
@@ -192,6 +195,7 @@ class MeshlessGasParams:
     courant: Positive = 0.7
     local_steps: bool = False
     steady: Steady | None = None
+    moving: Moving | None = None
     probes: tuple[Vector, ...] = ()
     fronts: tuple[Front, ...] = ()
 

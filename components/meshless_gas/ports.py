@@ -3,7 +3,7 @@
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import TEMPERATURE, VELOCITY
+from quintet.interfaces.ports import HEAT, LOAD, MOTION, TEMPERATURE, VELOCITY
 
 POSITION = Field("position", (3,), "m")
 DENSITY = Field("density", (), "kg/m3")
@@ -89,10 +89,40 @@ FRONTS = Port(
     ),
 )
 
+# Of bodies that carry clouds, all of them; forces are means over the step.
+BODIES = Port(
+    "bodies",
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("force", (3,), "N"),
+        # Over ½ρU² and the area that faces the flow, of the state at the start and the body's
+        # velocity there.
+        Field("coefficient", (3,), "1"),
+        Field("highest_pressure", (), "Pa"),  # on the wall
+        Field("uncovered", (), "1"),  # nodes of all clouds that came back since the start
+    ),
+)
+# Nodes of the walls of those bodies, one body after another, each from upstream round to z.
+SURFACE = Port(
+    "surface",
+    fields=(
+        POSITION,
+        Field("body", (), "1"),
+        Field("angle", (), "rad"),  # at the centre, from upstream
+        PRESSURE,
+    ),
+)
+
 
 def ports(params: MeshlessGasParams) -> Ports:
     """Ports taken and given."""
     known = params.riemann is not None or params.vortex is not None
     read = (*((PROBES,) if params.probes else ()), *((FRONTS,) if params.fronts else ()))
     felt = (WALL, body(params)) if has_walls(params) else ()
-    return (), (BALANCE, *((ERROR,) if known else ()), *read, *felt)
+    given = (BALANCE, *((ERROR,) if known else ()), *read, *felt)
+    if params.moving is None:
+        return (), given
+    driven = any(one.is_driven for one in params.moving.bodies)
+    bodies = (BODIES, SURFACE, *((LOAD, HEAT) if driven else ()))
+    return (MOTION,) if driven else (), (*given, *bodies)
