@@ -93,7 +93,13 @@ HEAT = Port("heat", fields=(HEAT_FLOW,))
 # told, loaded and heated as all of them together; its diameter is that of one.
 SPHERES = Port(
     "spheres",
-    fields=(POSITION, VELOCITY, TEMPERATURE, Field("diameter", (), "m")),
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("acceleration", (3,), "m/s2"),  # by all but the load, as of gravity
+        TEMPERATURE,
+        Field("diameter", (), "m"),
+    ),
     static=(
         Field("mass", (), "kg"),
         Field("heat_capacity", (), "J/K"),

@@ -19,6 +19,7 @@ from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.params import Boundary, Gas, MeshlessGasParams
 from quintet.components.meshless_gas.state import State
 from quintet.components.meshless_gas.stencils import Stencils, nearest_neighbours, stencils
+from quintet.components.meshless_gas.transport import Transport
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
@@ -85,6 +86,18 @@ def _box(params: MeshlessGasParams, names: list[str]) -> Cloud:
         weight=one.weight,
         neighbours=params.neighbours,
         planar=params.planar,
+    )
+
+
+def transport_of(gas: Gas) -> Transport:
+    """Viscosity and conduction of a gas."""
+    heat = gas.gamma * gas.gas_constant / (gas.gamma - 1.0)  # J/(kg K), c_p
+    return Transport(
+        viscosity=gas.viscosity,
+        reference=gas.reference_temperature,
+        sutherland=gas.sutherland,
+        conduction=heat / gas.prandtl,
+        gas_constant=gas.gas_constant,
     )
 
 

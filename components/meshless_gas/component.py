@@ -82,7 +82,23 @@ class MeshlessGas(Component):
         self.sloped = True if params.order == 2 else None
         self.steps = self.fluxes.steps if params.local_steps else None
         self.probed = nearest_nodes(cloud, params.probes)
+        self.particles = None
+        if params.particles is not None:
+            # Imported, and compiled, only where there are particles.
+            from quintet.components.meshless_gas.point_particles.partner import Partner
+
+            self.particles = Partner(params, self.domain)
         self._take_over()
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Learn how heavy particles are."""
+        if self.particles is not None:
+            self.particles.bind(static)
+
+    def prime(self, fields: Fields) -> None:
+        """Learn where particles are at the start."""
+        if self.particles is not None:
+            self.particles.prime(fields, self.fluxes.primitive)
 
     def prepare(self, fields: Fields) -> None:
         """Compile all kernels: try a step, and come back."""
@@ -93,18 +109,27 @@ class MeshlessGas(Component):
         self.load(kept)
 
     def stable_dt(self) -> float:
-        """Return the share `courant` of what the slowest node bears."""
-        return self.params.courant * self.bound
+        """Return the share `courant` of what the slowest node bears, or what particles allow."""
+        flow = self.params.courant * self.bound
+        if self.particles is None:
+            return flow
+        return min(flow, self.particles.stable_dt(self.fluxes.primitive))
 
     def take(self, fields: Fields) -> None:
-        """Take nothing: the gas is alone."""
+        """Set where particles are, how fast and how hot."""
+        if self.particles is not None:
+            self.particles.take(fields)
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; of local steps that of the node that bears least."""
         state, work, own = self.state, self.fluxes, self.domain
         work.start[:] = state.conservative
+        if self.particles is not None:
+            self.particles.place()
         for old, new, share in STAGES:
             self._write_rates()
+            if self.particles is not None:
+                self.particles.add(work.primitive, work.residual, dt, (old, new, share))
             state.entered += share * dt * work.flows
             wrong = self.team.run(
                 advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
@@ -114,6 +139,8 @@ class MeshlessGas(Component):
                 raise StepError(self._failure(max(wrong), dt))
             self._fill()
         state.time += dt
+        if self.particles is not None:
+            state.entered -= dt * self.particles.given()
         self._look_ahead()
 
     def _failure(self, row: int, dt: float) -> str:
@@ -182,15 +209,19 @@ class MeshlessGas(Component):
             given.update(errors(self.params, self.state, self.domain.cloud))
         if "probes" in ports_wanted:
             given.update(probes(self.probed, self.domain.cloud, self.state, self.params.gas))
+        if self.particles is not None:
+            given.update(self.particles.loads())
         return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; boundary nodes and ghosts follow from it."""
-        return self.state.save()
+        return self.state.save() | ({} if self.particles is None else self.particles.save())
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
         self.state.load(state)
+        if self.particles is not None:
+            self.particles.load(state)
         self._take_over()
 
     def totals(self) -> Totals:

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from quintet.interfaces.manifest import ConformCase
 
 BOX = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 1.0, 1.0], "spacing": 0.1, "jitter": 0.3}
@@ -38,6 +40,12 @@ def cases() -> tuple[ConformCase, ...]:
         },
         "boundaries": {"x-": closed, "x+": closed},
     }
+    dusty = {
+        "box": {**BOX, "jitter": 0.0},
+        "neighbours": 8,
+        "initial": {"temperature": 300.0, "pressure": 1e5},
+        "particles": {"heat": "fox"},
+    }
     coarse = {**BOX, "spacing": 0.25}
     space = {
         "box": coarse,
@@ -57,4 +65,26 @@ def cases() -> tuple[ConformCase, ...]:
         ),
         ConformCase("shock tube", tube, dt=STEP, still=False, smooth=False),
         ConformCase("gas in space", space, dt=STEP),
+        ConformCase(
+            "particles in a gas",
+            dusty,
+            static={
+                "particles.mass": np.full(2, 0.02),
+                "particles.heat_capacity": np.full(2, 20.0),
+                "particles.number": np.full(2, 1e7),
+            },
+            rest={
+                "particles.position": np.array([[0.52, 0.0, 0.33], [0.61, 0.0, 0.77]]),
+                "particles.velocity": np.zeros((2, 3)),
+                "particles.acceleration": np.zeros((2, 3)),
+                "particles.temperature": np.full(2, 300.0),
+                "particles.diameter": np.full(2, 1e-5),
+            },
+            scale={
+                "particles.position": 0.02,
+                "particles.velocity": 10.0,
+                "particles.temperature": 20.0,
+            },
+            dt=5e-5,
+        ),
     )

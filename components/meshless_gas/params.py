@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from quintet.components.meshless_gas.clouds.params import Box
+from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -25,10 +26,23 @@ class Gas:
         Ratio of the specific heats.
     gas_constant : J/(kg K)
         p = ρ R T.
+    viscosity : Pa s
+        At the reference temperature.
+    reference_temperature : K
+        Of the viscosity.
+    sutherland : K
+        Sutherland's constant, by which the viscosity rises with the temperature; with 0 it rises as
+        the root of it.
+    prandtl : 1
+        c_p μ/λ.
     """
 
     gamma: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.4
     gas_constant: Positive = 287.05
+    viscosity: Positive = 1.78e-5
+    reference_temperature: Positive = 273.15
+    sutherland: NotNegative = 110.4
+    prandtl: Positive = 0.72
 
 
 @parameters
@@ -223,6 +237,8 @@ class MeshlessGasParams:
         of the node of the shortest step.
     probes : m
         Places; of the node that is nearest to each the state is given.
+    particles
+        How spheres of a partner are felt that are smaller than the spacing.
     """
 
     gas: Gas = Gas()
@@ -239,6 +255,7 @@ class MeshlessGasParams:
     courant: Positive = 0.7
     local_steps: bool = False
     probes: tuple[Vector, ...] = ()
+    particles: PointParticles | None = None
 
     def __post_init__(self) -> None:
         for sentence in (*self._wrong_states(), *self._wrong_faces()):

@@ -1,9 +1,11 @@
 """What a gas takes and gives: balances; its error where the solution is known; probes."""
 
+from dataclasses import replace
+
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import POSITION, TEMPERATURE, VELOCITY
+from quintet.interfaces.ports import HEAT, LOAD, POSITION, SPHERES, TEMPERATURE, VELOCITY
 from quintet.interfaces.units import add_unit
 
 add_unit("kg/m4")  # of a density's gradient
@@ -26,7 +28,8 @@ BALANCE = Port(
         Field("mass", (), "kg"),
         Field("momentum", (3,), "N s"),
         Field("energy", (), "J"),
-        # What came in through the boundary since the start, pressure's part included.
+        # What came in through the boundary since the start, pressure's part included, and from
+        # particles.
         Field("mass_entered", (), "kg"),
         Field("momentum_entered", (3,), "N s"),
         Field("energy_entered", (), "J"),
@@ -53,10 +56,17 @@ ERROR = Port(
 )
 # Of the node nearest to each place.
 PROBES = Port("probes", fields=(POSITION, VELOCITY, DENSITY, PRESSURE, TEMPERATURE, MACH))
+# Spheres that nodes do not resolve, as the partner has them, and what the gas does to them; a point
+# is not turned, its torque is 0.
+PARTICLES = replace(SPHERES, name="particles")
+PARTICLE_LOAD = replace(LOAD, name="particle_load")
+PARTICLE_HEAT = replace(HEAT, name="particle_heat")
 
 
 def ports(params: MeshlessGasParams) -> Ports:
     """Ports taken and given."""
     known = params.riemann is not None or params.vortex is not None
     given = (BALANCE, *((ERROR,) if known else ()), *((PROBES,) if params.probes else ()))
-    return (), given
+    if params.particles is None:
+        return (), given
+    return (PARTICLES,), (*given, PARTICLE_LOAD, PARTICLE_HEAT)

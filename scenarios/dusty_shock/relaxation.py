@@ -1,0 +1,129 @@
+"""Behind a steady shock in a dusty gas: conservation laws and two equations of relaxation.
+
+Gas and dust enter the shock at one velocity and temperature. The gas jumps, the dust does not; then
+drag and heat bring them together, while mass, momentum and energy of both stay:
+
+    ρ u = m,   m u + p + η m v = const,   m (c_p T + u²/2) + η m (c T_d + v²/2) = const,
+    v dv/dx = 18 μ f(Re) (u - v)/(ρ_d d²),   v dT_d/dx = 6 λ Nu (T - T_d)/(ρ_d c d²)
+
+Carrier, J. Fluid Mech. 4 (1958) 376; Miura & Glass, Proc. R. Soc. A 382 (1982) 373 (shock tube).
+Drag by Clift & Gauvin and heat by Ranz & Marshall are written here anew, apart from the solver's.
+
+Run as a program it writes `velocity.csv` and `warmer.csv` (above its first temperature), what a
+grain of dust does after the shock has met it, and prints what the scene is made of.
+"""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+GAMMA, GAS_CONSTANT, PRANDTL = 1.4, 287.05, 0.72
+CP = GAMMA * GAS_CONSTANT / (GAMMA - 1.0)  # J/(kg K)
+PRESSURE, TEMPERATURE = 1e5, 300.0  # Pa, K, of the dusty gas at rest
+DENSITY = PRESSURE / (GAS_CONSTANT * TEMPERATURE)
+SIZE, MATERIAL, CAPACITY = 1e-5, 2500.0, 766.0  # m, kg/m3, J/(kg K): crown glass
+LOADING = 0.5  # mass of dust over that of gas
+
+
+def viscosity(temperature: float) -> float:
+    """Dynamic viscosity [Pa s] by Sutherland."""
+    return 1.78e-5 * (temperature / 273.15) ** 1.5 * (273.15 + 110.4) / (temperature + 110.4)
+
+
+@dataclass(frozen=True)
+class Shock:
+    """A steady shock, in its own frame; arrays are over time since a grain was met."""
+
+    speed: float  # m/s, into the gas at rest
+    time: np.ndarray  # (n,) s
+    behind: np.ndarray  # (n,) m
+    velocity: np.ndarray  # (n,) m/s, of the grain; where the gas was at rest the grain is too
+    temperature: np.ndarray  # (n,) K, of the grain
+    gas: np.ndarray  # (n, 3) m/s, K, Pa where the grain is; velocity in the laboratory
+
+
+def gas_with(dust: float, heat: float, speed: float) -> tuple[float, float, float]:
+    """Velocity [m/s] in the shock's frame, temperature [K] and pressure [Pa] of the gas.
+
+    Of the subsonic state that momentum and energy leave it where dust has a velocity and a
+    temperature.
+    """
+    flux = DENSITY * speed
+    push = flux * speed + PRESSURE + LOADING * flux * (speed - dust)  # m u + p
+    energy = CP * TEMPERATURE + 0.5 * speed**2
+    energy += LOADING * (CAPACITY * (TEMPERATURE - heat) + 0.5 * (speed**2 - dust**2))
+    # p = ρ R T, T = (energy - u²/2)/cp:  (γ+1)/(2γ) u² - push/m u + (γ-1)/γ energy = 0
+    a, b, c = (GAMMA + 1.0) / (2.0 * GAMMA), push / flux, (GAMMA - 1.0) / GAMMA * energy
+    u = (b - math.sqrt(b * b - 4.0 * a * c)) / (2.0 * a)
+    return u, (energy - 0.5 * u * u) / CP, push - flux * u
+
+
+def relax(speed: float, end: float, count: int = 400) -> Shock:
+    """Follow a grain for a time [s] after the shock."""
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        _, v, heat = state
+        u, warm, pressure = gas_with(v, heat, speed)
+        density, mu = pressure / (GAS_CONSTANT * warm), viscosity(warm)
+        reynolds = density * abs(u - v) * SIZE / mu
+        drag = 1.0 + 0.15 * reynolds**0.687
+        drag += 0.0175 * reynolds / (1.0 + 42500.0 * max(reynolds, 1e-12) ** -1.16)
+        pull = 18.0 * mu / (MATERIAL * SIZE**2) * drag * (u - v)
+        nusselt = 2.0 + 0.6 * math.sqrt(reynolds) * PRANDTL ** (1.0 / 3.0)
+        gain = 6.0 * nusselt * mu * CP / PRANDTL / (MATERIAL * CAPACITY * SIZE**2) * (warm - heat)
+        return [v, pull, gain]
+
+    time = end * np.linspace(0.0, 1.0, count) ** 2
+    start = [0.0, speed, TEMPERATURE]
+    found = solve_ivp(rates, (0.0, end), start, t_eval=time, method="LSODA", rtol=1e-9, atol=1e-9)
+    behind, v, heat = found.y
+    gas = np.array([gas_with(*pair, speed) for pair in zip(v, heat, strict=True)])
+    gas[:, 0] = speed - gas[:, 0]
+    return Shock(speed, time, behind, speed - v, heat, gas)
+
+
+def equilibrium(speed: float) -> tuple[float, float, float]:
+    """Velocity [m/s] in the laboratory, temperature [K] and pressure [Pa] far behind."""
+
+    def lack(v: float) -> float:
+        # With the dust as fast as the gas its temperature follows from that of the gas.
+        return gas_with(v, warmth(v), speed)[0] - v
+
+    def warmth(v: float) -> float:
+        return brentq(lambda heat: gas_with(v, heat, speed)[1] - heat, 200.0, 3000.0)
+
+    v = brentq(lack, 0.2 * speed, 0.8 * speed)
+    u, warm, pressure = gas_with(v, warmth(v), speed)
+    return speed - u, warm, pressure
+
+
+def driver(speed: float, temperature: float = TEMPERATURE) -> float:
+    """Pressure [Pa] of clean gas at rest whose expansion drives this shock."""
+    velocity, _, pressure = equilibrium(speed)
+    sound = math.sqrt(GAMMA * GAS_CONSTANT * temperature)
+    return pressure * (1.0 - 0.5 * (GAMMA - 1.0) * velocity / sound) ** (
+        -2.0 * GAMMA / (GAMMA - 1.0)
+    )
+
+
+def main() -> None:
+    """Write the curves of a grain, and print what the scene needs."""
+    sound = math.sqrt(GAMMA * GAS_CONSTANT * TEMPERATURE)
+    speed = 1.6 * sound
+    shock = relax(speed, 6e-3)
+    folder = Path(__file__).parent
+    warmer = shock.temperature - TEMPERATURE
+    for name, curve in (("velocity", shock.velocity), ("warmer", warmer)):
+        table = np.stack([shock.time, curve], -1)
+        np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=f"s,{name}", comments="")
+    print("shock", speed, "far behind", equilibrium(speed), "driver", driver(speed))
+    for k in range(0, 400, 40):
+        print(shock.time[k], shock.behind[k], shock.velocity[k], shock.temperature[k], shock.gas[k])
+
+
+if __name__ == "__main__":
+    main()
