@@ -99,6 +99,7 @@ SPHERES = Port(
         Field("acceleration", (3,), "m/s2"),  # by all but the load, as of gravity
         TEMPERATURE,
         Field("diameter", (), "m"),
+        Field("launched", (), "1", kind="flag"),  # 0: not there yet
     ),
     static=(
         Field("mass", (), "kg"),

@@ -79,6 +79,7 @@ def cases() -> tuple[ConformCase, ...]:
                 "particles.acceleration": np.zeros((2, 3)),
                 "particles.temperature": np.full(2, 300.0),
                 "particles.diameter": np.full(2, 1e-5),
+                "particles.launched": np.ones(2),
             },
             scale={
                 "particles.position": 0.02,
@@ -86,5 +87,7 @@ def cases() -> tuple[ConformCase, ...]:
                 "particles.temperature": 20.0,
             },
             dt=5e-5,
+            still=False,  # temperatures are those of the gas to rounding
+            smooth=False,  # its change is that of the last stage
         ),
     )

@@ -6,9 +6,6 @@ from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import HEAT, LOAD, POSITION, SPHERES, TEMPERATURE, VELOCITY
-from quintet.interfaces.units import add_unit
-
-add_unit("kg/m4")  # of a density's gradient
 
 DENSITY = Field("density", (), "kg/m3")
 PRESSURE = Field("pressure", (), "Pa")
@@ -19,7 +16,8 @@ SHOWS = (
     VELOCITY,
     TEMPERATURE,
     MACH,
-    Field("density_gradient", (), "kg/m4"),  # its size, as in a schlieren picture
+    Field("schlieren", (), "1"),
+    Field("spacing", (), "m"),  # of nodes
 )
 # Of all nodes, one row; sums of densities over their volumes.
 BALANCE = Port(

@@ -9,8 +9,9 @@ drag and heat bring them together, while mass, momentum and energy of both stay:
 Carrier, J. Fluid Mech. 4 (1958) 376; Miura & Glass, Proc. R. Soc. A 382 (1982) 373 (shock tube).
 Drag by Clift & Gauvin and heat by Ranz & Marshall are written here anew, apart from the solver's.
 
-Run as a program it writes `velocity.csv` and `warmer.csv` (above its first temperature), what a
-grain of dust does after the shock has met it, and prints what the scene is made of.
+Run as a program, ``python -m quintet.scenarios.dusty_shock.relaxation``, it writes `velocity.csv`
+and `warmer.csv` (above its first temperature), what a grain of dust does after the shock has met
+it, and prints what the scene is made of.
 """
 
 import math
@@ -25,6 +26,7 @@ GAMMA, GAS_CONSTANT, PRANDTL = 1.4, 287.05, 0.72
 CP = GAMMA * GAS_CONSTANT / (GAMMA - 1.0)  # J/(kg K)
 PRESSURE, TEMPERATURE = 1e5, 300.0  # Pa, K, of the dusty gas at rest
 DENSITY = PRESSURE / (GAS_CONSTANT * TEMPERATURE)
+SOUND = math.sqrt(GAMMA * GAS_CONSTANT * TEMPERATURE)  # m/s
 SIZE, MATERIAL, CAPACITY = 1e-5, 2500.0, 766.0  # m, kg/m3, J/(kg K): crown glass
 LOADING = 0.5  # mass of dust over that of gas
 
@@ -101,28 +103,19 @@ def equilibrium(speed: float) -> tuple[float, float, float]:
     return speed - u, warm, pressure
 
 
-def driver(speed: float, temperature: float = TEMPERATURE) -> float:
-    """Pressure [Pa] of clean gas at rest whose expansion drives this shock."""
-    velocity, _, pressure = equilibrium(speed)
-    sound = math.sqrt(GAMMA * GAS_CONSTANT * temperature)
-    return pressure * (1.0 - 0.5 * (GAMMA - 1.0) * velocity / sound) ** (
-        -2.0 * GAMMA / (GAMMA - 1.0)
-    )
-
-
 def main() -> None:
     """Write the curves of a grain, and print what the scene needs."""
-    sound = math.sqrt(GAMMA * GAS_CONSTANT * TEMPERATURE)
-    speed = 1.6 * sound
+    speed = 1.6 * SOUND
     shock = relax(speed, 6e-3)
     folder = Path(__file__).parent
     warmer = shock.temperature - TEMPERATURE
     for name, curve in (("velocity", shock.velocity), ("warmer", warmer)):
         table = np.stack([shock.time, curve], -1)
         np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=f"s,{name}", comments="")
-    print("shock", speed, "far behind", equilibrium(speed), "driver", driver(speed))
-    for k in range(0, 400, 40):
-        print(shock.time[k], shock.behind[k], shock.velocity[k], shock.temperature[k], shock.gas[k])
+    velocity, warm, pressure = equilibrium(speed)
+    print(f"shock {speed:.4f} m/s; far behind {velocity:.4f} m/s, {warm:.4f} K, {pressure:.1f} Pa")
+    mass = MATERIAL * math.pi / 6.0 * SIZE**3
+    print(f"grains in a cubic metre: {LOADING * DENSITY / mass:.6g}")
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""A bar between two baths: scene, conductivity that does not depend on its length."""
+"""Spheres on springs that strike in a row."""

@@ -83,7 +83,7 @@ def exchange(
     """
     for i in range(near.shape[0]):
         density = u = v = w = pressure = inside = 0.0
-        for k in range(near.shape[1]):
+        for k in range(near.shape[1] if particles.launched[i] > 0.0 else 0):
             j, part = near[i, k], weights[i, k]
             inside += part
             density += part * primitive[j, 0]

@@ -26,6 +26,7 @@ class Particles(NamedTuple):
     acceleration: Array  # (p, 3) m/s2, by all but the gas
     temperature: Array  # (p,) K
     diameter: Array  # (p,) m, of one
+    launched: Array  # (p,) 1; 0 of those that are not there yet
     mass: Array  # (p,) kg
     heat_capacity: Array  # (p,) J/K
     number: Array  # (p,) 1
@@ -34,7 +35,7 @@ class Particles(NamedTuple):
     def empty(cls, count: int) -> "Particles":
         """So many, of which nothing is known."""
         vectors = [np.zeros((count, 3)) for _ in range(3)]
-        scalars = [np.ones(count) for _ in range(5)]
+        scalars = [np.ones(count) for _ in range(6)]
         return cls(*vectors, *scalars)
 
 

@@ -10,9 +10,18 @@ from quintet.components.meshless_gas.point_particles.particles import Particles
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import StepError
 
-TOLD = ("position", "velocity", "acceleration", "temperature", "diameter")
+TOLD = ("position", "velocity", "acceleration", "temperature", "diameter", "launched")
 SUMS = ("force", "heat", "power", "rates")
 STATIC = ("mass", "heat_capacity", "number")
+
+
+def periods(params: MeshlessGasParams) -> list[tuple[int, float, float]]:
+    """Axes along which the gas repeats: number, lowest place [m] and length [m]."""
+    found, box = [], params.box
+    for axis, name in enumerate("xyz"):
+        if params.kind_of(f"{name}-") == "periodic" and not (params.planar and name == "y"):
+            found.append((axis, box.lowest[axis], box.highest[axis] - box.lowest[axis]))
+    return found
 
 
 class Partner:
@@ -29,6 +38,7 @@ class Partner:
         advanced[domain.inner] = True
         images = advanced[domain.cloud.owner]
         self.exchange.look_among(np.flatnonzero(np.concatenate([advanced, images])))
+        self.periods = periods(params)
         self.hold(0)
 
     def hold(self, count: int) -> None:
@@ -53,7 +63,7 @@ class Partner:
     def _find_rates(self, primitive: Array) -> None:
         """Find how stiff the exchange is, without any exchange."""
         self.exchange.add(primitive, None, 0.0, STAGES[0])
-        self.exchange.place(self.particles)
+        self.place()
 
     def take(self, fields: Fields) -> None:
         """Take what is told of them for the coming step."""
@@ -71,8 +81,11 @@ class Partner:
             )
 
     def place(self) -> None:
-        """Begin a step: find the nodes around them."""
-        self.exchange.place(self.particles)
+        """Begin a step: find the nodes around them, or around their images in a periodic box."""
+        x = self.particles.position.copy()
+        for axis, low, length in self.periods:
+            x[:, axis] = low + np.mod(x[:, axis] - low, length)
+        self.exchange.place(self.particles._replace(position=x))
 
     def add(
         self, primitive: Array, residual: Array, dt: float, stage: tuple[float, float, float]

@@ -128,6 +128,7 @@ class SphereDynamics(Component):
             "spheres.acceleration": self._own_acceleration(),
             "spheres.temperature": self.temperature,
             "spheres.diameter": 2.0 * self.spheres.radius,
+            "spheres.launched": self.flies.astype(float),
         }
         return {key: given[key].copy() for key in wanted}
 

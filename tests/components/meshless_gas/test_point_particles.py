@@ -80,6 +80,7 @@ def dust(position, velocity=(0.0, 0.0, 0.0), temperature=TEMPERATURE, number=1.0
         acceleration=np.zeros((count, 3)),
         temperature=np.full(count, temperature),
         diameter=np.full(count, SIZE),
+        launched=np.ones(count),
         mass=np.full(count, number * MASS),
         heat_capacity=np.full(count, number * MASS * WARMTH),
         number=np.full(count, number),
@@ -101,6 +102,15 @@ def test_weights_are_shares_of_one_and_change_continuously():
     assert np.abs(np.diff(found)).max() < 5.0 * 0.6 / 2000
     exact = places[:, 0] - 2.0 * places[:, 2]
     assert np.abs(found - exact).max() < 0.5 * 0.1 * math.sqrt(5.0)
+
+
+def test_particles_before_their_launch_are_not_there():
+    gas = Gas(drag="loth")
+    one = dust([[0.3, 0.0, 0.5], [0.7, 0.0, 0.5]], velocity=(30.0, 0.0, 0.0))
+    gas.step(one._replace(launched=np.array([1.0, 0.0])), 1e-6)
+    assert gas.exchange.loads.force[0, 0] < 0.0
+    assert not gas.exchange.loads.force[1].any()
+    assert not gas.exchange.loads.rates[1].any()
 
 
 def test_particles_beyond_the_nodes_feel_nothing():
