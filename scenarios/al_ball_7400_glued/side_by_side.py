@@ -1,8 +1,8 @@
 """Von Mises stress side by side: ``python -m quintet.scenarios.al_ball_7400_glued.side_by_side``.
 
-PURE and GLUED are folders of runs of a quarter of `al_ball_7400` and of this scene. Left of the
-axis the cut through particles alone, mirrored, right of it particles glued to finite elements;
-drawn into `von_mises.png` beside the second run.
+PURE and GLUED are folders of runs of `al_ball_7400`, a quarter or rings, and of this scene. Left of
+the axis the cut through particles alone, mirrored, right of it particles glued to finite elements;
+drawn into `von_mises.png` beside the second run. Printed is which layers of the plate have failed.
 """
 
 import sys
@@ -20,6 +20,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 WIDTH, LOW, HIGH = 0.0402, -0.0185, 0.006  # m, of what is drawn
+NEAR = 1.2e-3  # m, about the axis
 GREATEST = 6e8  # Pa, at the colour bar's end
 
 
@@ -52,8 +53,23 @@ def spacing_of(folder: Path) -> float:
     """Distance [m] of neighbouring particles at the start, from the first picture's plate."""
     view = read_step(folder / "impact.vtkhdf", 0)[1]
     far = view["points"][np.argsort(view["points"][:, 0])][-2000:]
-    gaps = np.diff(np.unique(np.round(far[:, 1], 5)))
+    gaps = np.diff(np.unique(np.round(far[:, 2], 5)))
     return float(np.median(gaps[gaps > 1e-4]))
+
+
+def failed_layers(folder: Path) -> str:
+    """Depths [mm] at the start of the plate's layers that have failed about the axis."""
+    file = folder / "impact.vtkhdf"
+    start, end = read_step(file, 0)[1], read_step(file, len(times(file)) - 1)[1]
+    place = start["points"]
+    axis = (end["body"] == 1) & (np.hypot(place[:, 0], place[:, 1]) < NEAR)
+    depth = np.round(-1e3 * place[axis, 2], 2)
+    damage = end["damage"][axis]
+    failed = [z for z in np.unique(depth) if damage[depth == z].mean() > 0.5]
+    whole = np.setdiff1d(depth, failed)
+    return (
+        f"failed {', '.join(f'{z:g}' for z in failed)}; whole {', '.join(f'{z:g}' for z in whole)}"
+    )
 
 
 def main(pure: str, glued: str) -> None:
@@ -84,6 +100,8 @@ def main(pure: str, glued: str) -> None:
     )
     figure.savefig(other / "von_mises.png", dpi=90, bbox_inches="tight")
     print(other / "von_mises.png")
+    for folder in (one, other):
+        print(f"{folder}, layers about the axis by depth [mm]: {failed_layers(folder)}")
 
 
 if __name__ == "__main__":

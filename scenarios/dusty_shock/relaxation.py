@@ -11,16 +11,24 @@ Drag by Clift & Gauvin and heat by Ranz & Marshall are written here anew, apart 
 
 Run as a program, ``python -m quintet.scenarios.dusty_shock.relaxation``, it writes `velocity.csv`
 and `warmer.csv` (above its first temperature), what a grain of dust does after the shock has met
-it, and prints what the scene is made of.
+it, and prints what the scene is made of; with the folder of a run it draws `profile.png` there.
 """
 
 import math
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+
+from quintet.coupler.files.recording import Recording
+from quintet.interfaces.component import Array
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
 
 GAMMA, GAS_CONSTANT, PRANDTL = 1.4, 287.05, 0.72
 CP = GAMMA * GAS_CONSTANT / (GAMMA - 1.0)  # J/(kg K)
@@ -29,6 +37,7 @@ DENSITY = PRESSURE / (GAS_CONSTANT * TEMPERATURE)
 SOUND = math.sqrt(GAMMA * GAS_CONSTANT * TEMPERATURE)  # m/s
 SIZE, MATERIAL, CAPACITY = 1e-5, 2500.0, 766.0  # m, kg/m3, J/(kg K): crown glass
 LOADING = 0.5  # mass of dust over that of gas
+MACH, MET = 1.6, 100.0  # 1, m/s: a grain that is as fast has met the shock
 
 
 def viscosity(temperature: float) -> float:
@@ -103,9 +112,46 @@ def equilibrium(speed: float) -> tuple[float, float, float]:
     return speed - u, warm, pressure
 
 
+def front(position: Array, velocity: Array) -> float:
+    """Place [m] of the shock: of where grains have a given speed, less how far behind that is."""
+    order = np.argsort(position)
+    x, v = position[order], velocity[order]
+    last = int(np.flatnonzero(v > MET)[-1])
+    place = x[last] + (v[last] - MET) / (v[last] - v[last + 1]) * (x[last + 1] - x[last])
+    exact = relax(MACH * SOUND, 1e-3)
+    return float(place + np.interp(MET, exact.velocity, exact.behind))
+
+
+def draw(run: str) -> None:
+    """Draw gas and dust behind the shock at the end of a run, with the exact relaxation."""
+    with Recording(Path(run)) as recording:
+        dust = {n: recording.field("dust", f"spheres.{n}")[-1] for n in ("position", "velocity")}
+        warm = recording.field("dust", "spheres.temperature")[-1]
+        names = ("position", "velocity", "temperature", "pressure")
+        gas = {name: recording.field("gas", f"probes.{name}")[-1] for name in names}
+    x, v = dust["position"][:, 0], dust["velocity"][:, 0]
+    shock, exact = front(x, v), relax(MACH * SOUND, 4e-3)
+    figure, axes = plt.subplots(1, 3, figsize=(13, 4), sharex=True)
+    curves = (
+        ("velocity [m/s]", gas["velocity"][:, 0], v, exact.gas[:, 0], exact.velocity),
+        ("temperature [K]", gas["temperature"], warm, exact.gas[:, 1], exact.temperature),
+        ("pressure [bar]", gas["pressure"] / 1e5, None, exact.gas[:, 2] / 1e5, None),
+    )
+    for axis, (name, of_gas, of_dust, exact_gas, exact_dust) in zip(axes, curves, strict=True):
+        axis.plot(exact.behind, exact_gas, "k", linewidth=1.0, label="exact")
+        axis.plot(shock - gas["position"][:, 0], of_gas, "o", label="gas")
+        if of_dust is not None:
+            axis.plot(exact.behind, exact_dust, "k", linewidth=1.0)
+            axis.plot(shock - x, of_dust, ".", markersize=3, label="dust")
+        axis.set(xlim=(-0.05, 0.5), xlabel="behind the shock [m]", ylabel=name)
+        axis.legend()
+    figure.tight_layout()
+    figure.savefig(Path(run) / "profile.png", dpi=90)
+
+
 def main() -> None:
     """Write the curves of a grain, and print what the scene needs."""
-    speed = 1.6 * SOUND
+    speed = MACH * SOUND
     shock = relax(speed, 6e-3)
     folder = Path(__file__).parent
     warmer = shock.temperature - TEMPERATURE
@@ -119,4 +165,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) > 1:
+        draw(sys.argv[1])
+    else:
+        main()

@@ -18,6 +18,8 @@ STATIC = ("mass", "heat_capacity", "number")
 def periods(params: MeshlessGasParams) -> list[tuple[int, float, float]]:
     """Axes along which the gas repeats: number, lowest place [m] and length [m]."""
     found, box = [], params.box
+    if box is None:
+        return []
     for axis, name in enumerate("xyz"):
         if params.kind_of(f"{name}-") == "periodic" and not (params.planar and name == "y"):
             found.append((axis, box.lowest[axis], box.highest[axis] - box.lowest[axis]))
