@@ -1,12 +1,14 @@
 """A gas on a cloud of nodes, stepped by SSP-RK3."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quintet.components.meshless_gas.build import domain, initial_state
 from quintet.components.meshless_gas.diagnostics import (
     balance,
+    density_change,
     errors,
     failure,
     totals,
@@ -25,10 +27,12 @@ from quintet.components.meshless_gas.kernels.motion import (
     write_sound,
 )
 from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
-from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
 from quintet.components.meshless_gas.state import Fluxes
+from quintet.components.meshless_gas.steady import Settling
+from quintet.components.meshless_gas.surface import Surface
 from quintet.components.meshless_gas.view import view, walls
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -43,6 +47,9 @@ from quintet.interfaces.component import (
 )
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.manifest import Plan, Ports
+
+if TYPE_CHECKING:
+    from quintet.components.meshless_gas.moving.clouds import MovingClouds
 
 FEWEST = 32  # blocks of nodes that are worth handing to another thread
 
@@ -70,16 +77,34 @@ class MeshlessGas(Component):
     def __init__(self, params: MeshlessGasParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.gamma, self.team = params.gas.gamma, Team(resources.threads, FEWEST)
-        self.domain = domain(params, self.team)
+        self.moving: MovingClouds | None = None
+        if params.moving is not None:
+            # Scenes without bodies that carry clouds import none of this.
+            from quintet.components.meshless_gas.moving.build import moving_clouds, soft_start
+            from quintet.components.meshless_gas.moving.outputs import outputs
+
+            self.moving, self.moving_outputs = moving_clouds(params, self.team), outputs
+        self.domain = domain(params, self.team) if self.moving is None else self.moving.domain
         cloud = self.domain.cloud
         self.state = initial_state(params, cloud)
+        if self.moving is not None:
+            soft_start(self.moving, self.state, self.gamma)
         self.fluxes = Fluxes.empty(cloud.nodes, len(cloud.owner))
         self.bound = 0.0  # s, step that all nodes bear at a Courant number of 1
-        self.frame: Array | None = None  # (n, 3) m/s, velocities of nodes
+        # (n, 3) m/s, velocities of nodes
+        self.frame: Array | None = None if self.moving is None else self.moving.frame
         # What is None is not compiled.
         self.planar = True if params.planar else None
         self.sloped = True if params.order == 2 else None
         self.steps = self.fluxes.steps if params.local_steps else None
+        self.viscous = None
+        if params.viscous:
+            # Compiled only where the gas has friction.
+            from quintet.components.meshless_gas.viscous.terms import Viscous
+
+            self.viscous = Viscous(params, self.domain, self.team)
+        self.surface = Surface(params, self.domain) if has_walls(params) else None
+        self.settling = Settling(params.steady) if params.steady is not None else None
         self.probed = nearest_nodes(cloud, params.probes, self.team)
         self.lines = [line(cloud, one, self.team) for one in params.fronts]
         self._take_over()
@@ -94,17 +119,33 @@ class MeshlessGas(Component):
 
     def stable_dt(self) -> float:
         """Return the share `courant` of what the slowest node bears."""
+        if self.settling is not None and self.settling.is_settled:
+            return math.inf
         return self.params.courant * self.bound
 
     def take(self, fields: Fields) -> None:
-        """Take nothing: the gas is alone."""
+        """Take the motion of bodies, if a partner moves some."""
+        if self.moving is not None:
+            self.moving.take(fields)
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; of local steps that of the node that bears least."""
-        state, work, own = self.state, self.fluxes, self.domain
+        state, work = self.state, self.fluxes
+        if self.settling is not None and self.settling.is_settled:
+            state.time += dt
+            return
+        if self.moving is not None:
+            self.moving.begin(dt, work.primitive, state.conservative)
+            self.domain = self.moving.domain
+            self._fill()
+        own = self.domain
         work.start[:] = state.conservative
-        for old, new, share in STAGES:
+        for stage, (old, new, share) in enumerate(STAGES):
+            if self.moving is not None:
+                self.moving.place(stage, dt)
             self._write_rates()
+            if self.moving is not None:
+                self.moving.add_rates(share, work.primitive, self.gamma, work.residual)
             state.entered += share * dt * work.flows
             wrong = self.team.run(
                 advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
@@ -113,8 +154,28 @@ class MeshlessGas(Component):
             if max(wrong) >= 0:
                 raise StepError(self._failure(max(wrong), dt))
             self._fill()
+        if self.moving is not None:
+            self.moving.end(dt)
         state.time += dt
         self._look_ahead()
+        if self.settling is not None and self.settling.is_due():
+            self._settle()
+
+    def _settle(self) -> None:
+        """Look whether the flow is steady."""
+        assert self.settling is not None
+        force = np.zeros(3)
+        if self.surface is not None:
+            self._feel()
+            force = self.surface.force(self.fluxes.primitive)
+        change = density_change(self.state, self.domain, self.fluxes)
+        self.settling.look(change, force, self.state.time)
+
+    def _feel(self) -> None:
+        """Take friction and heat flux of walls, as the state is."""
+        if self.viscous is not None and self.surface is not None:
+            one = self.viscous
+            self.surface.take(one.rows, one.friction, one.heat)
 
     def _failure(self, row: int, dt: float) -> str:
         place = self.domain.cloud.positions[self.domain.inner[row]]
@@ -136,8 +197,16 @@ class MeshlessGas(Component):
             own.weights, own.patches, self.frame, self.gamma, self.params.gas.gas_constant,
             work.primitive,
         )  # fmt: skip
+        if self.viscous is not None:
+            self.viscous.hold(work.primitive)
+        if self.moving is not None:
+            self.moving.hold_walls(work.primitive, self.gamma)
         write_ghost_states(cloud.owner, cloud.turn, work.primitive)
         boundary_flows(own.bounding, cloud.areas, work.primitive, self.gamma, work.flows)
+        if self.viscous is not None:
+            self.viscous.add_flows(work.primitive, work.flows)
+        if self.moving is not None:
+            self.moving.load(work.primitive, work.flows)
 
     def _write_rates(self) -> None:
         """Rates of change of density, momentum and energy, of states that are filled."""
@@ -154,6 +223,8 @@ class MeshlessGas(Component):
             work.lowest, neighbours, coefficients, self.frame, self.planar, self.sloped,
             self.gamma, self.params.limiter_threshold, work.residual,
         )  # fmt: skip
+        if self.viscous is not None:
+            self.viscous.add(work)
 
     def _look_ahead(self) -> None:
         """Find the step that each node bears."""
@@ -164,6 +235,8 @@ class MeshlessGas(Component):
             own.stencils.neighbours, own.stencils.coefficients, self.frame, work.bounds,
         )  # fmt: skip
         self.bound = min(least)
+        if self.viscous is not None:
+            self.bound = self.viscous.shorten(work)
         if not (0.0 < self.bound < math.inf):
             raise StepError(
                 f"the gas must have a stable step at t = {self.state.time:.6g} s; found "
@@ -185,15 +258,28 @@ class MeshlessGas(Component):
             given.update(probes(self.probed, cloud, self.state.primitive, gas))
         if "fronts" in ports_wanted:
             given.update(fronts(self.lines, self.state.primitive))
+        if self.moving is not None:
+            given.update(self.moving_outputs(self.moving, self.state.primitive, self.params))
+        if self.surface is not None and ports_wanted & {"wall", "body"}:
+            self._feel()
+            settled = float(self.settling is not None and self.settling.is_settled)
+            given.update(self.surface.wall(self.fluxes.primitive))
+            given.update(self.surface.body(self.fluxes.primitive, settled))
         return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; boundary nodes and ghosts follow from it."""
-        return self.state.save()
+        kept = self.state.save() | (self.settling.save() if self.settling is not None else {})
+        return kept | (self.moving.save() if self.moving is not None else {})
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
+        if self.moving is not None:
+            self.moving.restore(state)
+            self.domain = self.moving.domain
         self.state.load(state)
+        if self.settling is not None:
+            self.settling.load(state)
         self._take_over()
 
     def totals(self) -> Totals:
@@ -205,7 +291,7 @@ class MeshlessGas(Component):
         return view(self.state, self.domain, self.fluxes, self.params)
 
     def walls(self) -> Fields:
-        """Walls of a box."""
+        """Walls of a box, or the wall of a body."""
         return walls(self.params)
 
     def items(self) -> int:

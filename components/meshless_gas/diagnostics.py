@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, Cloud
 from quintet.components.meshless_gas.exact import states_at
-from quintet.components.meshless_gas.params import Gas, MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.interfaces.component import Array, Fields, Totals
 
@@ -27,8 +28,6 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
     drift = (now - state.begun - entered) / scale
     through = _through(domain, fluxes.primitive, gamma)
     inflow, outflow = through[through > 0.0].sum(), -through[through < 0.0].sum()
-    inner = domain.inner
-    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
     return {
         "balance.mass": now[:1],
         "balance.momentum": now[None, 1:4],
@@ -42,8 +41,15 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
         "balance.inflow": np.array([inflow]),
         "balance.outflow": np.array([outflow]),
         "balance.imbalance": np.array([(inflow - outflow) / inflow if inflow > 0.0 else 0.0]),
-        "balance.change": np.array([np.sqrt((rate * rate).mean())]),
+        "balance.change": np.array([density_change(state, domain, fluxes)]),
     }
+
+
+def density_change(state: State, domain: Domain, fluxes: Fluxes) -> float:
+    """Root mean square of the relative change of densities in the steps that nodes bear."""
+    inner = domain.inner
+    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
+    return float(np.sqrt((rate * rate).mean()))
 
 
 def _through(domain: Domain, primitive: Array, gamma: float) -> Array:

@@ -1,9 +1,9 @@
 """What a gas takes and gives: balances; its error where the solution is known; probes."""
 
-from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import TEMPERATURE, VELOCITY
+from quintet.interfaces.ports import HEAT, LOAD, MOTION, TEMPERATURE, VELOCITY
 
 POSITION = Field("position", (3,), "m")
 DENSITY = Field("density", (), "kg/m3")
@@ -52,6 +52,31 @@ ERROR = Port(
 )
 # Of the node nearest to each place.
 PROBES = Port("probes", fields=(POSITION, VELOCITY, DENSITY, PRESSURE, TEMPERATURE, MACH))
+# Nodes of a body's wall, or of walls that hold the gas.
+WALL = Port(
+    "wall",
+    fields=(
+        POSITION,
+        PRESSURE,
+        Field("friction", (3,), "Pa"),
+        Field("heat_flux", (), "W/m2"),  # into the wall
+    ),
+)
+
+
+def body(params: MeshlessGasParams) -> Port:
+    """Sums over walls, less the pressure of the stream; of whole rings where it has an axis."""
+    names = ["settled"]  # whether the flow is steady: 1 if it is
+    if params.box is None:
+        names.append("drag_coefficient")  # by the cross-section of a sphere, the area of a plate
+    if params.sphere is not None:
+        names.append("pitot_ratio")  # pressure where the flow meets it, over that of Rayleigh
+        if params.boundaries["wall"].temperature is not None:
+            names.append("heat_ratio")  # heat flux there, over that of Fay and Riddell
+    fields = (Field("force", (3,), "N"), Field("heat", (), "W"))
+    return Port("body", fields=(*fields, *(Field(name, (), "1") for name in names)))
+
+
 # On each line, where a front is; and the angle to x, about y, of the straight line that fits best
 # through this front and all before it, 0 of the first.
 FRONTS = Port(
@@ -64,9 +89,40 @@ FRONTS = Port(
     ),
 )
 
+# Of bodies that carry clouds, all of them; forces are means over the step.
+BODIES = Port(
+    "bodies",
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("force", (3,), "N"),
+        # Over ½ρU² and the area that faces the flow, of the state at the start and the body's
+        # velocity there.
+        Field("coefficient", (3,), "1"),
+        Field("highest_pressure", (), "Pa"),  # on the wall
+        Field("uncovered", (), "1"),  # nodes of all clouds that came back since the start
+    ),
+)
+# Nodes of the walls of those bodies, one body after another, each from upstream round to z.
+SURFACE = Port(
+    "surface",
+    fields=(
+        POSITION,
+        Field("body", (), "1"),
+        Field("angle", (), "rad"),  # at the centre, from upstream
+        PRESSURE,
+    ),
+)
+
 
 def ports(params: MeshlessGasParams) -> Ports:
     """Ports taken and given."""
     known = params.riemann is not None or params.vortex is not None
     read = (*((PROBES,) if params.probes else ()), *((FRONTS,) if params.fronts else ()))
-    return (), (BALANCE, *((ERROR,) if known else ()), *read)
+    felt = (WALL, body(params)) if has_walls(params) else ()
+    given = (BALANCE, *((ERROR,) if known else ()), *read, *felt)
+    if params.moving is None:
+        return (), given
+    driven = any(one.is_driven for one in params.moving.bodies)
+    bodies = (BODIES, SURFACE, *((LOAD, HEAT) if driven else ()))
+    return (MOTION,) if driven else (), (*given, *bodies)
