@@ -208,15 +208,20 @@ class MeshlessGas(Component):
         if self.moving is not None:
             self.moving.load(work.primitive, work.flows)
 
+    def _write_gradients(self) -> None:
+        """Gradients of states that are filled."""
+        own, work, cloud = self.domain, self.fluxes, self.domain.cloud
+        self.team.run(
+            write_gradients, len(own.every), own.every, work.primitive, *own.stencils,
+            self.planar, work.gradients, work.lowest,
+        )  # fmt: skip
+        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
+
     def _write_rates(self) -> None:
         """Rates of change of density, momentum and energy, of states that are filled."""
         own, work, cloud = self.domain, self.fluxes, self.domain.cloud
         neighbours, coefficients = own.stencils
-        self.team.run(
-            write_gradients, len(own.every), own.every, work.primitive, neighbours, coefficients,
-            self.planar, work.gradients, work.lowest,
-        )  # fmt: skip
-        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
+        self._write_gradients()
         blocks = -(-len(own.inner) // LANES)
         self.team.run(
             write_residuals, blocks, own.inner, cloud.positions, work.primitive, work.gradients,
@@ -288,6 +293,7 @@ class MeshlessGas(Component):
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""
+        self._write_gradients()
         return view(self.state, self.domain, self.fluxes, self.params)
 
     def walls(self) -> Fields:
