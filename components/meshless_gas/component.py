@@ -107,7 +107,23 @@ class MeshlessGas(Component):
         self.settling = Settling(params.steady) if params.steady is not None else None
         self.probed = nearest_nodes(cloud, params.probes, self.team)
         self.lines = [line(cloud, one, self.team) for one in params.fronts]
+        self.particles = None
+        if params.particles is not None:
+            # Compiled only where there are particles.
+            from quintet.components.meshless_gas.point_particles.partner import Partner
+
+            self.particles = Partner(params, self.domain)
         self._take_over()
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Learn how heavy particles are."""
+        if self.particles is not None:
+            self.particles.bind(static)
+
+    def prime(self, fields: Fields) -> None:
+        """Learn where particles are at the start."""
+        if self.particles is not None:
+            self.particles.prime(fields, self.fluxes.primitive)
 
     def prepare(self, fields: Fields) -> None:
         """Compile all kernels: try a step, and come back."""
@@ -118,15 +134,20 @@ class MeshlessGas(Component):
         self.load(kept)
 
     def stable_dt(self) -> float:
-        """Return the share `courant` of what the slowest node bears."""
+        """Return the share `courant` of what the slowest node bears, or what particles allow."""
         if self.settling is not None and self.settling.is_settled:
             return math.inf
-        return self.params.courant * self.bound
+        flow = self.params.courant * self.bound
+        if self.particles is None:
+            return flow
+        return min(flow, self.particles.stable_dt(self.fluxes.primitive))
 
     def take(self, fields: Fields) -> None:
-        """Take the motion of bodies, if a partner moves some."""
+        """Take the motion of bodies, if a partner moves some, and of particles."""
         if self.moving is not None:
             self.moving.take(fields)
+        if self.particles is not None:
+            self.particles.take(fields)
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; of local steps that of the node that bears least."""
@@ -140,12 +161,16 @@ class MeshlessGas(Component):
             self._fill()
         own = self.domain
         work.start[:] = state.conservative
+        if self.particles is not None:
+            self.particles.place()
         for stage, (old, new, share) in enumerate(STAGES):
             if self.moving is not None:
                 self.moving.place(stage, dt)
             self._write_rates()
             if self.moving is not None:
                 self.moving.add_rates(share, work.primitive, self.gamma, work.residual)
+            if self.particles is not None:
+                self.particles.add(work.primitive, work.residual, dt, (old, new, share))
             state.entered += share * dt * work.flows
             wrong = self.team.run(
                 advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
@@ -156,6 +181,8 @@ class MeshlessGas(Component):
             self._fill()
         if self.moving is not None:
             self.moving.end(dt)
+        if self.particles is not None:
+            state.entered -= dt * self.particles.given()
         state.time += dt
         self._look_ahead()
         if self.settling is not None and self.settling.is_due():
@@ -263,6 +290,8 @@ class MeshlessGas(Component):
             given.update(probes(self.probed, cloud, self.state.primitive, gas))
         if "fronts" in ports_wanted:
             given.update(fronts(self.lines, self.state.primitive))
+        if self.particles is not None:
+            given.update(self.particles.loads())
         if self.moving is not None:
             given.update(self.moving_outputs(self.moving, self.state.primitive, self.params))
         if self.surface is not None and ports_wanted & {"wall", "body"}:
@@ -275,6 +304,7 @@ class MeshlessGas(Component):
     def save(self) -> Fields:
         """Copy out all state; boundary nodes and ghosts follow from it."""
         kept = self.state.save() | (self.settling.save() if self.settling is not None else {})
+        kept |= self.particles.save() if self.particles is not None else {}
         return kept | (self.moving.save() if self.moving is not None else {})
 
     def load(self, state: Fields) -> None:
@@ -285,6 +315,8 @@ class MeshlessGas(Component):
         self.state.load(state)
         if self.settling is not None:
             self.settling.load(state)
+        if self.particles is not None:
+            self.particles.load(state)
         self._take_over()
 
     def totals(self) -> Totals:
