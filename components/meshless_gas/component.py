@@ -172,6 +172,7 @@ class MeshlessGas(Component):
             if self.particles is not None:
                 self.particles.add(work.primitive, work.residual, dt, (old, new, share))
             state.entered += share * dt * work.flows
+            state.work += share * dt * self._outer_power()
             wrong = self.team.run(
                 advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
                 old, new, self.gamma, state.conservative, work.primitive,
@@ -187,6 +188,13 @@ class MeshlessGas(Component):
         self._look_ahead()
         if self.settling is not None and self.settling.is_due():
             self._settle()
+
+    def _outer_power(self) -> float:
+        """Energy [W] that comes in now, but for what bodies do that a partner moves."""
+        power = float(self.fluxes.flows[4])
+        if self.moving is not None:
+            power -= float(self.moving.loads[self.moving.driven, 6].sum())
+        return power
 
     def _settle(self) -> None:
         """Look whether the flow is steady."""
