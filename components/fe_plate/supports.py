@@ -16,7 +16,7 @@ from quintet.interfaces.faces import CLAMPED, SYMMETRY, WALL, polygons
 AXES = ("x", "y", "z")
 FLAT = 1e-6  # of a normal: what of it may lie along other axes
 REACH = 0.75  # of the structure's diagonal: how far a rigid wall is drawn from its foot
-BEYOND = 0.05  # of the diagonal: how far a plane of symmetry is drawn beyond its face
+BEYOND = 0.15  # of the diagonal: how far a plane of symmetry is drawn beyond its face
 
 
 def supports(params: FePlateParams, mesh: Mesh) -> Fields:
