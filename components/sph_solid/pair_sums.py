@@ -53,12 +53,13 @@ class ParticleSums:
 
 def pair_sums(params: SphSolidParams, team: Team) -> PairSums:
     """Sums over particles, over rings, or over the neighbours of the start."""
-    # What a scene does not have is left out.
     if params.axisymmetric:
+        # Rings are left out of scenes that have none.
         from quintet.components.sph_solid.rings import Rings
 
         return Rings(params.length, team)
     if params.total_lagrangian:
+        # So are sums over the neighbours of the start.
         from quintet.components.sph_solid.reference_sums import ReferenceSums
 
         return ReferenceSums(PENALTY, team)
