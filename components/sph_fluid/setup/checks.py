@@ -94,7 +94,8 @@ def check_obstacles(params: "SphFluidParams") -> None:
         _check_corners(name, box, params.spacing)
         low, high = box
         across = (0, 1, 2) if params.dimensions == 3 else (0, 2)
-        if (width := min(high[axis] - low[axis] for axis in across)) < least:
+        width = min(high[axis] - low[axis] for axis in across)
+        if width < least - ROUNDING * params.spacing:
             raise ValueError(
                 f"{name} must be at least {least:g} m across, twice the wall_offset; found "
                 f"{width:g} m. Refine the spacing, or lower wall_offset."
