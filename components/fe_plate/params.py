@@ -5,7 +5,6 @@ from typing import Literal
 
 from quintet.components.fe_plate.meshes.params import Direction, Part
 from quintet.interfaces.params import (
-    Fraction,
     NotNegative,
     Number,
     Positive,
@@ -194,7 +193,7 @@ class FePlateParams:
         Reduced: one quadrature point an element, with stabilisation; full: eight, with strains
         assumed so that bending is exact: seven times the work.
     courant : 1
-        Share of the greatest step that is proven stable.
+        Share of the greatest step that is proven stable; that of a mesh may be twice as great.
     hourglass : 1
         Stiffness of the stabilisation of one point, as a share of the element's own.
     viscosity_linear, viscosity_quadratic : 1
@@ -216,7 +215,7 @@ class FePlateParams:
     erosion: tuple[Erosion, ...] = ("plastic_strain", "damage", "spall")
     dimensions: Literal[2, 3] = 3
     integration: Literal["reduced", "full"] = "reduced"
-    courant: Fraction = 0.9
+    courant: Positive = 0.9
     hourglass: NotNegative = 0.05
     viscosity_linear: NotNegative = 0.06
     viscosity_quadratic: NotNegative = 1.5
@@ -226,8 +225,6 @@ class FePlateParams:
     def __post_init__(self) -> None:
         if not self.parts:
             raise ValueError("parts must be at least one; found none. Add [[parts]].")
-        if self.courant == 0.0:
-            raise ValueError("courant must be above 0; found 0.")
         if self.dimensions == 2:
             for number, part in enumerate(self.parts):
                 part.require_planar(f"parts.{number}")
