@@ -87,6 +87,19 @@ PLANAR_MOTION = replace(
     ),
 )
 LOAD = Port("load", fields=(FORCE, TORQUE))
+# Into each body, from a flow around it.
+HEAT = Port("heat", fields=(HEAT_FLOW,))
+# Spheres in a flow that is coarser than they are. One that stands for a number of equal ones is
+# told, loaded and heated as all of them together; its diameter is that of one.
+SPHERES = Port(
+    "spheres",
+    fields=(POSITION, VELOCITY, TEMPERATURE, Field("diameter", (), "m")),
+    static=(
+        Field("mass", (), "kg"),
+        Field("heat_capacity", (), "J/K"),
+        Field("number", (), "1"),  # that it stands for
+    ),
+)
 
 # Meshes: faces that move, loaded at their nodes.
 MESH = (

@@ -13,8 +13,9 @@ told, its mean moves by the mean force. Langevin's baths are those of BAOAB. Ran
 the relative velocity of nearest points into a random direction: momentum and energy stay, and heat
 is conducted by Fourier's law at any length, which the lattice alone does not do.
 
-Spheres move under the loads of a partner, constant over a step, and gravity; impacts among them and
-with walls are impulses with restitution, without friction.
+Spheres move under the loads of a partner, constant over a step, gravity and tethers, by the same
+schemes; they turn to fourth order (Magnus's series). Impacts among them and with walls are impulses
+with restitution, without friction.
 
 Energy is audited: kinetic + potential + dissipated - work of the drive - heat of the baths.
 

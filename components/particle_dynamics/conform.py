@@ -55,6 +55,17 @@ def cases() -> tuple[ConformCase, ...]:
             dt=1e-3,
             forces=("load.force",),
         ),
+        ConformCase(
+            "spheres on springs, Yoshida",
+            {
+                "spheres": [{**one, "tether": 50.0, "parcel": 2.0} for one in spheres],
+                "collisions": False,
+                "integrator": "yoshida",
+            },
+            rest=loads,
+            scale={"load.force": 1.0, "load.torque": 1e-3, "heat.heat_flow": 10.0},
+            dt=1e-3,
+        ),
         ConformCase("lattice", LATTICE, dt=STEP),
         ConformCase("driven", driven, dt=STEP, still=False),
         ConformCase(

@@ -239,8 +239,10 @@ class ParticleDynamicsParams:
         Acceleration of free fall of spheres.
     restitution : 1
         Of spheres that strike each other or a wall: normal velocity after over that before.
+    collisions
+        Whether spheres strike each other; parcels do not.
     longest_step : s
-        Of spheres; without it any step is stable.
+        Of spheres; without it tethers and closing speeds alone limit the step.
     seven_roots
         Their pair force, of seven roots; this or `force_table`.
     force_table
@@ -261,7 +263,7 @@ class ParticleDynamicsParams:
     boltzmann : J/K
         k: a point has 3/2 k T of kinetic energy.
     integrator
-        Of second order, or Yoshida's of fourth; with damping both are of second.
+        Of second order, or Yoshida's of fourth; of lattices with damping both are of second.
     courant : 1
         Share of the greatest stable step by the highest frequency: 2/ω, of Yoshida's 1.573/ω.
     steps_at_once : 1
@@ -278,6 +280,7 @@ class ParticleDynamicsParams:
     walls: tuple[Wall, ...] = ()
     gravity: Vector = (0.0, 0.0, 0.0)
     restitution: Fraction = 1.0
+    collisions: bool = True
     longest_step: Positive | None = None
     seven_roots: SevenRootForce | None = None
     force_table: DataFile | None = None
@@ -305,7 +308,15 @@ class ParticleDynamicsParams:
         if self.lattice is None:
             strange = {"seven_roots", "force_table", "damping", "drive", "frozen", "baths"}
             found = [name for name in sorted(strange) if getattr(self, name)]
-            return [(bool(found), f"{', '.join(found)}: of lattices only; remove from spheres.")]
+            parcels = any(one.parcel != 1.0 for one in self.spheres)
+            return [
+                (bool(found), f"{', '.join(found)}: of lattices only; remove from spheres."),
+                (
+                    parcels and self.collisions,
+                    "spheres: a parcel has no size of its own to strike with; "
+                    "say collisions = false.",
+                ),
+            ]
         table, roots = self.force_table is not None, self.seven_roots is not None
         is_random = bool(self.baths) or self.collision_rate > 0.0
         is_literal = self.damping is not None and self.damping.range == "all"

@@ -21,7 +21,8 @@ def plan(params: ParticleDynamicsParams) -> Plan:
     """What a run will need."""
     lattice, given = params.lattice, params.seven_roots
     if lattice is None:
-        return Plan(len(params.spheres), params.longest_step or math.inf, RATE, BYTES)
+        count = sum(one.count for one in params.spheres)
+        return Plan(count, params.longest_step or math.inf, RATE, BYTES)
     if given is not None and given.top_frequency is not None:
         frequency = 2.0 * math.pi * given.top_frequency
     else:

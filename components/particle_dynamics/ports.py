@@ -4,10 +4,11 @@ from quintet.components.particle_dynamics.params import ParticleDynamicsParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
-    HEAT_FLOW,
+    HEAT,
     LOAD,
     MOTION,
     POSITION,
+    SPHERES,
     TEMPERATURE,
     VELOCITY,
     WALL_HEAT,
@@ -42,13 +43,6 @@ BATHS = Port(
         Field("heat_flow", (), "W"),
         Field("heat_flow_error", (), "W"),
     ),
-)
-
-# Of each sphere: heat that a partner gives it, and what it has become.
-HEAT = Port("heat", fields=(HEAT_FLOW,))
-SPHERES = Port(
-    "spheres",
-    fields=(POSITION, VELOCITY, TEMPERATURE, Field("diameter", (), "m")),
 )
 
 

@@ -38,3 +38,9 @@ def test_heat_flows_by_fourier(tmp_path):
     found = run(tmp_path, "conductivity", "--preset", "length10")
     assert value(found, "heat flow") == pytest.approx(2.731e-7, rel=0.1)
     assert abs(value(found, "balance")) < 2e-8
+
+
+def test_a_bar_of_elements_has_the_temperatures_of_its_mesh(tmp_path):
+    found = run(tmp_path, "hot_bar_elements", "--preset", "quick")
+    assert value(found, "mean") == pytest.approx(168.16, rel=2e-3)
+    assert value(found, "heat") > 0.0

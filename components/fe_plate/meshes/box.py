@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from quintet.components.fe_plate.meshes.params import Part
-from quintet.components.fe_plate.state import Array, Whole
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.components.fe_plate.meshes.params import Shape
 
 
-def box(part: Part) -> tuple[Array, Whole]:
+def box(part: Shape) -> tuple[Array, Whole]:
     """Nodes (n, 3) m and corners (e, 8) of a box of equal elements."""
     assert part.elements is not None and part.lowest is not None and part.highest is not None
     nx, ny, nz = part.elements
@@ -20,7 +20,7 @@ def box(part: Part) -> tuple[Array, Whole]:
     return node, np.stack(corner, axis=1)
 
 
-def rectangle(part: Part) -> tuple[Array, Whole]:
+def rectangle(part: Shape) -> tuple[Array, Whole]:
     """Nodes (n, 3) m at y = 0 and corners (e, 8) of a rectangle; far corners are the same nodes.
 
     Around each element from z to x, as seen from within a solid that extends along y.

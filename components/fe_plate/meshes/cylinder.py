@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.params import Cylinder
-from quintet.components.fe_plate.state import Array, Whole
 
 CORE = 0.5  # half the width of the square, as a share of the radius
 ROUND = 0.5  # how far its rim goes from a square (0) to a circle (1)

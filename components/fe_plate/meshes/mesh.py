@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.box import box, rectangle
 from quintet.components.fe_plate.meshes.cylinder import cylinder
 from quintet.components.fe_plate.meshes.files import read
-from quintet.components.fe_plate.meshes.params import Part
+from quintet.components.fe_plate.meshes.params import Shape
 from quintet.components.fe_plate.params import Faces, Fixed, NodeSet
-from quintet.components.fe_plate.state import Array, Whole
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
 
@@ -38,7 +38,7 @@ class Mesh(NamedTuple):
     sets: dict[str, Whole]  # nodes of each named set, of files and of the scene
 
 
-def mesh(parts: Sequence[Part], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
+def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
     """Make the mesh of some parts."""
     nodes, corners, first = [], [], 0
     named: dict[str, Whole] = {}

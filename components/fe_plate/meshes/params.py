@@ -1,7 +1,7 @@
 """What a scene says about the parts of a structure: their shapes, meshes, materials."""
 
 import math
-from typing import Literal
+from typing import Literal, Protocol
 
 from quintet.components.fe_plate.meshes.files import least_edge, read
 from quintet.components.shared.materials.params import Material, MaterialName, material
@@ -74,6 +74,58 @@ class MeshFile:
         return len(read(self.file).corner)
 
 
+class Shape(Protocol):
+    """What a mesh is made of: the keys that parts of any physics have."""
+
+    @property
+    def lowest(self) -> Vector | None:
+        """Lowest corner [m] of a box."""
+
+    @property
+    def highest(self) -> Vector | None:
+        """Highest corner [m] of a box."""
+
+    @property
+    def elements(self) -> tuple[int, int, int] | None:
+        """How many elements a box has along x, y and z."""
+
+    @property
+    def cylinder(self) -> Cylinder | None:
+        """In place of the box."""
+
+    @property
+    def mesh(self) -> MeshFile | None:
+        """In place of the box."""
+
+
+def require_shape(part: Shape) -> None:
+    """Refuse a part that is not one of a box, a cylinder and a mesh."""
+    box = (part.lowest, part.highest, part.elements)
+    given = sum(one is not None for one in box)
+    others = sum(one is not None for one in (part.cylinder, part.mesh))
+    if (given, others) not in ((3, 0), (0, 1)):
+        raise ValueError(
+            "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
+            f"found {given} keys of a box and {others} of the others. Give one."
+        )
+    if part.lowest is None or part.highest is None:
+        return
+    if not all(a < b for a, b in zip(part.lowest, part.highest, strict=True)):
+        raise ValueError(
+            f"part: highest must be beyond lowest along every axis; found {part.lowest} and "
+            f"{part.highest} m."
+        )
+
+
+def count_elements(part: Shape) -> int:
+    """Number of a part's elements."""
+    if part.cylinder is not None:
+        return part.cylinder.count
+    if part.mesh is not None:
+        return part.mesh.count
+    return math.prod(part.elements or ())
+
+
 @parameters
 class Part:
     """A box of equal elements, a cylinder, or a mesh from a file.
@@ -101,30 +153,12 @@ class Part:
     velocity: Vector = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        box = (self.lowest, self.highest, self.elements)
-        given = sum(one is not None for one in box)
-        others = sum(one is not None for one in (self.cylinder, self.mesh))
-        if (given, others) not in ((3, 0), (0, 1)):
-            raise ValueError(
-                "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
-                f"found {given} keys of a box and {others} of the others. Give one."
-            )
-        if self.lowest is None or self.highest is None:
-            return
-        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
-            raise ValueError(
-                f"part: highest must be beyond lowest along every axis; found {self.lowest} and "
-                f"{self.highest} m."
-            )
+        require_shape(self)
 
     @property
     def count(self) -> int:
         """Number of its elements."""
-        if self.cylinder is not None:
-            return self.cylinder.count
-        if self.mesh is not None:
-            return self.mesh.count
-        return math.prod(self.elements or ())
+        return count_elements(self)
 
     @property
     def expected_step(self) -> float:

@@ -5,15 +5,16 @@ import math
 from numba import njit
 
 from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.search.cells import Whole
 from quintet.interfaces.component import Array
 
 
 @njit(**EXACT)
-def bounce(
+def bounce_from_walls(
     position: Array, velocity: Array, radius: Array, mass: Array, moves: Array, walls: Array,
     restitution: float,
 ) -> float:  # fmt: skip
-    """Give spheres that overlap and approach the impulse of a frictionless impact.
+    """Turn back spheres that reach into a wall and approach it, without friction.
 
     Parameters
     ----------
@@ -21,7 +22,7 @@ def bounce(
         Velocities are changed.
     radius, mass : (n,) float array, m and kg
     moves : (n,) bool array
-        Whether a sphere has been launched; one that has not is as heavy as a wall.
+        Whether a sphere has been launched.
     walls : (w, 4) float array
         Unit normals and offsets [m].
     restitution : float
@@ -42,7 +43,36 @@ def bounce(
                 for k in range(3):
                     velocity[i, k] -= (1.0 + restitution) * speed * walls[w, k]
                 lost += 0.5 * mass[i] * speed * speed * (1.0 - restitution * restitution)
-        for j in range(i + 1, position.shape[0]):
+    return lost
+
+
+@njit(**EXACT)
+def bounce(
+    position: Array, velocity: Array, radius: Array, mass: Array, moves: Array, begin: Whole,
+    other: Whole, restitution: float,
+) -> float:  # fmt: skip
+    """Give spheres that overlap and approach the impulse of a frictionless impact.
+
+    Parameters
+    ----------
+    position, velocity : (n, 3) float array, m and m/s
+        Velocities are changed.
+    radius, mass : (n,) float array, m and kg
+    moves : (n,) bool array
+        Whether a sphere has been launched; one that has not is as heavy as a wall.
+    begin, other : (n + 1,) and (m,) int array
+        Spheres that may overlap with each: ``other[begin[i]:begin[i + 1]]``.
+    restitution : float
+
+    Returns
+    -------
+    float
+        Kinetic energy [J] that was lost.
+    """
+    lost = 0.0
+    for i in range(position.shape[0]):
+        for place in range(begin[i], begin[i + 1]):
+            j = other[place]
             inverse = moves[i] / mass[i] + moves[j] / mass[j]
             square, along = 0.0, 0.0
             for k in range(3):

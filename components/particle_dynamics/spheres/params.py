@@ -1,11 +1,38 @@
 """What a scene says about spheres."""
 
-from quintet.interfaces.params import NotNegative, Number, Positive, Vector, parameters
+from quintet.interfaces.params import (
+    Count,
+    NotNegative,
+    Number,
+    Positive,
+    PositiveVector,
+    Vector,
+    parameters,
+)
+
+
+@parameters
+class Copies:
+    """A lattice of equal spheres; they count as spheres in its order, x slowest.
+
+    Parameters
+    ----------
+    number : 1
+        How many along x, y and z.
+    spacing : m
+        From one copy to the next.
+    interval : s
+        From the launch of one copy to that of the next.
+    """
+
+    number: tuple[Count, Count, Count]
+    spacing: PositiveVector
+    interval: NotNegative = 0.0
 
 
 @parameters
 class Sphere:
-    """A rigid sphere; as a point, if nobody looks at its size.
+    """A rigid sphere, or a lattice of equal ones; as a point, if nobody looks at its size.
 
     Parameters
     ----------
@@ -25,6 +52,12 @@ class Sphere:
         At the start, the same throughout.
     specific_heat : J/(kg K)
         Of its temperature.
+    tether : N/m
+        Of a spring that pulls it back to its first position.
+    parcel : 1
+        How many equal ones it stands for: mass, loads and heat are those of all of them.
+    copies
+        A lattice of such spheres, the first at `position`.
     """
 
     position: Vector
@@ -35,6 +68,17 @@ class Sphere:
     launch: NotNegative = 0.0
     temperature: Positive = 300.0
     specific_heat: Positive = 1000.0
+    tether: NotNegative = 0.0
+    parcel: Positive = 1.0
+    copies: Copies | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of spheres."""
+        if self.copies is None:
+            return 1
+        x, y, z = self.copies.number
+        return x * y * z
 
 
 @parameters

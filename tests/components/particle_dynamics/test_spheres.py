@@ -1,4 +1,4 @@
-"""Spheres: exact flight, launches, impacts with walls and each other."""
+"""Spheres: exact flight, launches, tethers, impacts with walls and each other."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,10 @@ from quintet.components.particle_dynamics.params import (
     ParticleDynamicsParams,
     SevenRootForce,
 )
-from quintet.components.particle_dynamics.spheres.params import Sphere, Wall
+from quintet.components.particle_dynamics.plan import LIMIT
+from quintet.components.particle_dynamics.spheres.pairs import NearPairs
+from quintet.components.particle_dynamics.spheres.params import Copies, Sphere, Wall
+from quintet.interfaces import rotation
 
 G = (0.0, 0.0, -9.81)  # m/s2
 
@@ -96,3 +99,167 @@ def test_parameters_are_of_a_lattice_or_of_spheres():
         ParticleDynamicsParams(lattice=lattice, spheres=(one,), seven_roots=force)
     with pytest.raises(ValueError, match="of lattices only"):
         ParticleDynamicsParams(spheres=(one,), seven_roots=force)
+
+
+def _orders(errors):
+    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+
+
+@pytest.mark.parametrize(
+    ("integrator", "order", "finest"), [("velocity_verlet", 2.0, 2e-3), ("yoshida", 4.0, 2e-5)]
+)
+def test_a_tethered_sphere_swings_with_the_order_of_its_scheme(integrator, order, finest):
+    """x = x0 + (v/ω) sin ωt + (f/k) (1 - cos ωt), over one period and a half."""
+    errors = []
+    for steps in (40, 80, 160):
+        made = spheres(
+            {"position": (1.0, 0.0, 0.0), "velocity": (0.0, 2.0, 0.0), "tether": 3.0},
+            integrator=integrator,
+        )
+        mass = made.totals().mass
+        frequency = np.sqrt(3.0 / mass)
+        end, swing = 3.1 * np.pi / frequency, 2.0 / frequency
+        made.take({"load.force": np.array([[3.0 * swing, 0.0, 0.0]])})
+        for _ in range(steps):
+            made.step(end / steps)
+        turned = frequency * end
+        exact = [1.0 + swing * (1.0 - np.cos(turned)), swing * np.sin(turned), 0.0]
+        found = made.give({"motion.position"})["motion.position"][0]
+        errors.append(np.abs(found - exact).max() / swing)
+    assert errors[-1] < finest
+    assert _orders(errors) == pytest.approx(order, abs=0.15)
+
+
+@pytest.mark.parametrize("integrator", ["velocity_verlet", "yoshida"])
+def test_energy_of_a_tethered_sphere_swings_and_does_not_drift(integrator):
+    made = spheres(
+        {"position": (0.0, 0.0, 0.0), "velocity": (0.0, 2.0, 0.0), "tether": 3.0},
+        integrator=integrator,
+        courant=0.3,
+    )
+    dt = made.stable_dt()
+    assert dt == pytest.approx(0.3 * LIMIT[integrator] / np.sqrt(3.0 / made.totals().mass))
+    energies = []
+    for _ in range(2000):
+        made.step(dt)
+        total = made.totals()
+        energies.append(total.kinetic + total.potential)
+    assert np.ptp(energies) < 0.1 * energies[0]
+    assert np.ptp(energies[1000:]) == pytest.approx(np.ptp(energies[:1000]), rel=1e-2)
+
+
+def test_a_sphere_whose_axis_turns_is_followed_to_fourth_order():
+    """A torque across the spin, against ten thousand short turns about the spin of the middle."""
+    spin, turning, end = np.array([0.0, 0.0, 3.0]), np.array([2.0, 1.0, 0.0]), 1.0
+    exact = np.array([[1.0, 0.0, 0.0, 0.0]])
+    h = 1e-4
+    for step in range(10_000):
+        angle = h * (spin + turning * (step + 0.5) * h)
+        exact = rotation.product(rotation.exponential(angle[None]), exact)
+    errors = []
+    for steps in (4, 8, 16):
+        made = spheres({"position": (0.0, 0.0, 0.0), "angular_velocity": tuple(spin)})
+        inertia = 0.4 * made.totals().mass * 0.01**2
+        made.take({"load.torque": inertia * turning[None]})
+        for _ in range(steps):
+            made.step(end / steps)
+        errors.append(np.abs(made.give({"motion.orientation"})["motion.orientation"] - exact).max())
+    assert _orders(errors) == pytest.approx(4.0, abs=0.2)
+
+
+def test_cells_find_the_pairs_that_a_look_at_all_finds():
+    random = np.random.default_rng(3)
+    position = random.uniform(0.0, 1.0, (300, 3))
+    position[5] = [1e9, -3e8, 0.0]  # beyond the numbered cells
+    position[6] = [1e9, -3e8, 0.01]
+    radius = random.uniform(0.01, 0.06, 300)
+    near = NearPairs(radius)
+    begin, other = near.at(position)
+    found = {(i, int(j)) for i in range(300) for j in other[begin[i] : begin[i + 1]]}
+    apart = np.linalg.norm(position[:, None] - position, axis=-1)
+    overlap = np.argwhere(np.triu(apart < radius[:, None] + radius, 1))
+    assert len(overlap) > 50
+    assert {tuple(one) for one in overlap.tolist()} <= found
+    assert all(np.all(np.diff(other[begin[i] : begin[i + 1]]) > 0) for i in range(300))
+    along = np.array([1.0, 0.0, 0.0])
+    near.at(position + 0.49 * near.skin * along)
+    assert np.array_equal(near.listed, position)  # not yet outworn
+    near.at(position + 0.51 * near.skin * along)
+    assert not np.array_equal(near.listed, position)
+
+
+def test_a_list_made_anew_changes_no_bit():
+    def gas():
+        return spheres(
+            {
+                "position": (0.0, 0.0, 0.0),
+                "velocity": (1.0, 0.0, 0.0),
+                "copies": Copies(number=(3, 3, 3), spacing=(0.05, 0.03, 0.03)),
+            },
+            {
+                "position": (0.021, 0.004, 0.003),
+                "copies": Copies(number=(3, 3, 3), spacing=(0.05, 0.03, 0.03)),
+            },
+            restitution=0.8,
+        )
+
+    one, other = gas(), gas()
+    for step in range(60):
+        one.step(1e-3)
+        other.step(1e-3)
+        if step % 7 == 0:
+            kept, other = other.save(), gas()
+            other.load(kept)
+    assert one.totals().internal > 0.0
+    for key, array in one.save().items():
+        assert np.array_equal(array, other.save()[key]), key
+
+
+def test_copies_are_launched_one_after_another():
+    made = spheres(
+        {
+            "position": (0.0, 0.0, 0.0),
+            "velocity": (0.0, 0.0, 1.0),
+            "copies": Copies(number=(3, 1, 1), spacing=(0.1, 0.1, 0.1), interval=0.5),
+        }
+    )
+    for _ in range(6):
+        made.step(0.2)
+    position = made.give({"motion.position"})["motion.position"]
+    assert position[:, 0] == pytest.approx([0.0, 0.1, 0.2])
+    assert position[:, 2] == pytest.approx([1.2, 0.7, 0.2])
+
+
+def test_a_parcel_moves_as_one_of_its_spheres():
+    keys = {"position": (0.0, 0.0, 0.0), "angular_velocity": (0.0, 1.0, 0.0)}
+    one = spheres(keys)
+    many = spheres(keys | {"parcel": 1e4}, collisions=False)
+    load = {
+        "load.force": np.array([[1.0, 2.0, 0.0]]),
+        "load.torque": np.array([[0.0, 0.0, 1e-4]]),
+        "heat.heat_flow": np.array([3.0]),
+    }
+    one.take(load)
+    many.take({key: 1e4 * array for key, array in load.items()})
+    assert many.describe()["spheres.number"] == 1e4
+    for made in (one, many):
+        made.step(0.01)
+    for key, array in one.save().items():
+        if key not in ("force", "torque", "heat", "rest"):
+            assert many.save()[key] == pytest.approx(array, rel=1e-12, abs=1e-15), key
+    assert many.totals().kinetic == pytest.approx(1e4 * one.totals().kinetic)
+    with pytest.raises(ValueError, match="collisions = false"):
+        spheres(keys | {"parcel": 2.0})
+
+
+def test_no_sphere_may_cross_another_in_a_step():
+    made = spheres(
+        {"position": (0.0, 0.0, 0.0), "velocity": (10.0, 0.0, 0.0)},
+        {"position": (0.0, 1.0, 0.0), "velocity": (9.0, 0.0, 0.0)},
+    )
+    assert made.stable_dt() == pytest.approx(0.25 * 0.02 / 1.0)
+    walled = spheres(
+        {"position": (0.0, 0.0, 1.0), "velocity": (0.0, 0.0, -4.0)},
+        walls=(Wall(normal=(0.0, 0.0, 1.0)),),
+    )
+    assert walled.stable_dt() == pytest.approx(0.25 * 0.02 / 4.0)

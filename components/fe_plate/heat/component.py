@@ -1,0 +1,148 @@
+"""A body that conducts heat: steady, or stepped by Alexander's scheme."""
+
+import math
+
+import numpy as np
+
+from quintet.components.fe_plate.heat.build import build, initial_state
+from quintet.components.fe_plate.heat.kernels import conduct, solve
+from quintet.components.fe_plate.heat.params import FeHeatParams
+from quintet.components.fe_plate.heat.ports import SHOWS, ports
+from quintet.components.fe_plate.heat.view import view
+from quintet.components.fe_plate.meshes.arrays import Array
+from quintet.components.fe_plate.meshes.mesh import faces_in
+from quintet.interfaces.component import Component, Fields, Keys, Totals
+from quintet.interfaces.errors import SceneError, StepError
+
+# Share of the step that each stage is implicit by (Alexander 1977, theorem 5).
+STAGE = 1.0 - 1.0 / math.sqrt(2.0)
+MOST = 20_000  # iterations
+
+
+class FeHeat(Component):
+    """Finds the temperatures of a body from what holds and heats it.
+
+    Parameters
+    ----------
+    params : FeHeatParams
+        Parts, what is held, fluxes.
+    """
+
+    shows = SHOWS
+
+    def __init__(self, params: FeHeatParams) -> None:
+        self.params, (self.takes, self.gives) = params, ports(params)
+        self.model = build(params)
+        mesh = self.model.mesh
+        coupled = np.arange(len(mesh.side))
+        if params.coupled_faces:
+            coupled = faces_in(mesh, params.coupled_faces, "coupled_faces")
+        if not len(coupled):
+            raise SceneError(
+                "coupled_faces: the boxes must hold an outer face; none does. Correct the boxes."
+            )
+        faces = mesh.side[coupled]
+        self.surface = np.unique(faces)  # nodes
+        self.corner = np.searchsorted(self.surface, faces)  # (f, 4) among these
+        self.gauges = [
+            int(np.argmin(((mesh.node - one) ** 2).sum(axis=1))) for one in params.node_gauges
+        ]
+        self.state = initial_state(params, self.model, len(self.surface))
+
+    def describe(self) -> Fields:
+        """State where the nodes of the surface are, and the corners of its faces."""
+        return {
+            "node_temperature.start": self.model.mesh.node[self.surface],
+            "node_temperature.corner": self.corner.astype(np.float64),
+        }
+
+    def stable_dt(self) -> float:
+        """Return the step that the scene says; all are stable."""
+        return self.params.longest_step or math.inf
+
+    def take(self, fields: Fields) -> None:
+        """Set the heat [W] that enters at nodes of the surface; without it none."""
+        heat = fields.get("node_heat.heat_flow")
+        self.state.heat[:] = 0.0 if heat is None else heat
+
+    def step(self, dt: float) -> None:
+        """Advance by exactly dt [s], or find what is steady."""
+        load = self.model.source.copy()
+        load[self.surface] += self.state.heat
+        if self.params.steady:
+            none = np.zeros_like(load)
+            gained = self._net_flow(self._solved(none, load, self.state.temperature), load)
+        else:
+            gained = self._advance(dt, load)
+        held = self.model.holder >= 0
+        flow = np.bincount(self.model.holder[held], -gained[held], len(self.state.held))
+        self.state.held[:] = flow
+
+    def _advance(self, dt: float, load: Array) -> Array:
+        """Step the temperatures [K]; return the mean net heat (n,) W that came to each node."""
+        before, model = self.state.temperature, self.model
+        shift = model.capacity / (STAGE * dt)
+        first = self._net_flow(self._solved(shift, load + shift * before, before.copy()), load)
+        carried = load + shift * before + (1.0 - STAGE) / STAGE * first
+        second = self._net_flow(self._solved(shift, carried, before.copy()), load)
+        gained = (1.0 - STAGE) * first + STAGE * second
+        before += model.free * dt * gained / model.capacity
+        return np.asarray(gained)
+
+    def _net_flow(self, temperature: Array, load: Array) -> Array:
+        """Heat (n,) W that comes to each node: load, and what others conduct to it."""
+        flow = np.empty_like(temperature)
+        conduct(self.model.conductance, temperature, flow)
+        return flow + load
+
+    def _solved(self, shift: Array, load: Array, guess: Array) -> Array:
+        model = self.model
+        made, left = solve(
+            model.conductance, shift, model.free, load, guess, self.params.tolerance, MOST
+        )
+        if not left <= self.params.tolerance:
+            raise StepError(
+                f"temperatures: {made} iterations must bring the residual below "
+                f"{self.params.tolerance:g}; it is {left:.3g}. Raise the tolerance, or make "
+                "elements of more equal shape."
+            )
+        return guess
+
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out temperatures and heat flows."""
+        temperature, model = self.state.temperature, self.model
+        given: dict[str, Array] = {}
+        if "node_temperature.temperature" in wanted:
+            given["node_temperature.temperature"] = temperature[self.surface]
+        if "parts.temperature" in wanted:
+            weighed = np.bincount(model.part, model.volume * temperature)
+            given["parts.temperature"] = weighed / np.bincount(model.part, model.volume)
+        if "held.heat_flow" in wanted:
+            given["held.heat_flow"] = self.state.held.copy()
+        if "node_gauge.temperature" in wanted:
+            given["node_gauge.temperature"] = temperature[self.gauges]
+        return given
+
+    def save(self) -> Fields:
+        """Copy out all state."""
+        return {name: array.copy() for name, array in self.state._asdict().items()}
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state, bit for bit."""
+        for name, array in self.state._asdict().items():
+            array[:] = state[name]
+
+    def totals(self) -> Totals:
+        """Mass, and heat above 0 K where the capacity is told."""
+        parts = np.bincount(self.model.part, self.model.volume)  # m3
+        density = [one.density or 0.0 for one in self.params.parts]
+        heat = float(self.model.capacity @ self.state.temperature)
+        return Totals(mass=float(parts @ density), internal=heat)
+
+    def view(self) -> Fields:
+        """Outer faces with their temperatures."""
+        return view(self.model.mesh, self.state.temperature)
+
+    def items(self) -> int:
+        """Count the elements."""
+        return len(self.model.mesh.corner)

@@ -1,0 +1,166 @@
+"""What a scene says about a body that conducts heat."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from quintet.components.fe_plate.meshes.params import (
+    Cylinder,
+    MeshFile,
+    count_elements,
+    require_shape,
+)
+from quintet.components.fe_plate.params import Faces, NodeSet
+from quintet.interfaces.params import (
+    Count,
+    NotNegative,
+    Number,
+    Positive,
+    Vector,
+    parameters,
+)
+
+Tolerance = Annotated[float, Field(gt=0.0, le=1e-3)]
+
+
+@parameters
+class ConductingPart:
+    """A box of equal elements, a cylinder, or a mesh from a file, of one material.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Corners of a box.
+    elements : 1
+        How many along x, y and z.
+    cylinder, mesh
+        In place of the box.
+    conductivity : W/(m K)
+        k.
+    density : kg/m3
+        ρ; needed unless only steady temperatures are sought.
+    specific_heat : J/(kg K)
+        c; needed likewise.
+    temperature : K
+        At the start.
+    """
+
+    lowest: Vector | None = None
+    highest: Vector | None = None
+    elements: tuple[Count, Count, Count] | None = None
+    cylinder: Cylinder | None = None
+    mesh: MeshFile | None = None
+    conductivity: Positive
+    density: Positive | None = None
+    specific_heat: Positive | None = None
+    temperature: NotNegative = 298.0
+
+    def __post_init__(self) -> None:
+        require_shape(self)
+
+    @property
+    def count(self) -> int:
+        """Number of its elements."""
+        return count_elements(self)
+
+    @property
+    def capacity(self) -> float:
+        """Of a cubic metre [J/(m3 K)]; 0 if it is not told."""
+        return (self.density or 0.0) * (self.specific_heat or 0.0)
+
+
+@parameters
+class Held:
+    """Nodes that are held at a temperature, whatever heat that takes.
+
+    Parameters
+    ----------
+    point : m
+        The node nearest to here.
+    lowest, highest : m
+        In place of the point, a box: nodes within it.
+    node_set
+        In place of these, a set of `node_sets`, or of a mesh's file.
+    temperature : K
+        At which they are held.
+    """
+
+    point: Vector | None = None
+    lowest: Vector | None = None
+    highest: Vector | None = None
+    node_set: str = ""
+    temperature: NotNegative
+
+    def __post_init__(self) -> None:
+        box = sum(one is not None for one in (self.lowest, self.highest))
+        ways = (self.point is not None, box > 0, bool(self.node_set))
+        if sum(ways) != 1 or box == 1:
+            raise ValueError(
+                "held: nodes are chosen by a point, by lowest and highest of a box, or by a "
+                f"node_set; found {sum(ways)} of these. Give one."
+            )
+
+
+@parameters
+class Flux:
+    """Heat that enters through outer faces.
+
+    Parameters
+    ----------
+    faces
+        Through which it enters.
+    flux : W/m2
+        Of each square metre; negative cools.
+    """
+
+    faces: Faces
+    flux: Number
+
+
+@parameters
+class FeHeatParams:
+    """A body that conducts heat, what holds its temperatures and what heats it.
+
+    Parameters
+    ----------
+    parts
+        What it is made of; parts do not touch each other.
+    node_sets
+        Nodes by name.
+    held
+        Nodes at given temperatures; of those that are named twice the last holds.
+    fluxes
+        Heat through outer faces; all others are insulated.
+    coupled_faces
+        Outer faces that partners see; all if none are said.
+    node_gauges : m
+        Points: the temperature [K] of the node that is nearest to each is given.
+    steady
+        Whether each step finds the temperatures that would be reached in the end.
+    longest_step : s
+        Without it a step is as long as is asked for: all are stable.
+    tolerance : 1
+        Of the linear systems: residual over right side.
+    """
+
+    parts: tuple[ConductingPart, ...]
+    node_sets: tuple[NodeSet, ...] = ()
+    held: tuple[Held, ...] = ()
+    fluxes: tuple[Flux, ...] = ()
+    coupled_faces: tuple[Faces, ...] = ()
+    node_gauges: tuple[Vector, ...] = ()
+    steady: bool = False
+    longest_step: Positive | None = None
+    tolerance: Tolerance = 1e-10
+
+    def __post_init__(self) -> None:
+        if not self.parts:
+            raise ValueError("parts must be at least one; found none. Add [[parts]].")
+        for number, part in enumerate(self.parts):
+            if not self.steady and part.capacity == 0.0:
+                raise ValueError(
+                    f"parts.{number}: what is not steady must have density and specific_heat. "
+                    "Give both, or steady = true."
+                )
+        if self.steady and self.longest_step is not None:
+            raise ValueError("longest_step has no meaning where all is steady. Remove one.")

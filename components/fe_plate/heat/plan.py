@@ -1,0 +1,15 @@
+"""What a run of conduction will need, estimated without a mesh."""
+
+import math
+
+from quintet.components.fe_plate.heat.params import FeHeatParams
+from quintet.interfaces.manifest import Plan
+
+RATE = 2e5  # elements stepped per second and thread
+BYTES = 700.0  # of an element
+
+
+def plan(params: FeHeatParams) -> Plan:
+    """What a run will need."""
+    count = sum(one.count for one in params.parts)
+    return Plan(count, params.longest_step or math.inf, RATE, BYTES)

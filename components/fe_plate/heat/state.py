@@ -1,0 +1,28 @@
+"""Arrays of a conducting body: the matrix, what is held, and temperatures."""
+
+from typing import NamedTuple
+
+from quintet.components.fe_plate.heat.kernels import Matrix
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.components.fe_plate.meshes.mesh import Mesh
+
+
+class Model(NamedTuple):
+    """What never changes; n nodes, p parts."""
+
+    mesh: Mesh
+    conductance: Matrix
+    capacity: Array  # (n,) J/K
+    volume: Array  # (n,) m3, that a node stands for
+    part: Whole  # (n,)
+    free: Array  # (n,) 1, or 0 of nodes that are held
+    holder: Whole  # (n,) number of what holds a node, -1 of none
+    source: Array  # (n,) W, of fluxes
+
+
+class State(NamedTuple):
+    """What changes."""
+
+    temperature: Array  # (n,) K
+    heat: Array  # (nodes of the surface,) W, of partners
+    held: Array  # (h,) W, mean flow of the last step from what holds nodes into the body

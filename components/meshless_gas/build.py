@@ -1,0 +1,122 @@
+"""A gas as its parameters describe it: its cloud, its boundaries, its state at the start."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.meshless_gas.clouds.box import box
+from quintet.components.meshless_gas.clouds.cloud import INFLOW, INNER, OUTFLOW, SLIP, Cloud
+from quintet.components.meshless_gas.exact import states_at
+from quintet.components.meshless_gas.kernels.boundaries import (
+    BACK_PRESSURE,
+    PATCH_COLUMNS,
+    TOTAL_PRESSURE,
+    TOTAL_TEMPERATURE,
+    write_weights,
+)
+from quintet.components.meshless_gas.kernels.motion import write_conservative
+from quintet.components.meshless_gas.params import Boundary, Gas, MeshlessGasParams
+from quintet.components.meshless_gas.state import State
+from quintet.components.meshless_gas.stencils import Stencils, nearest_neighbours, stencils
+from quintet.components.shared.threads import Team
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
+
+Rows = NDArray[np.int32]
+
+
+class Domain(NamedTuple):
+    """All that is known before the first step."""
+
+    cloud: Cloud
+    stencils: Stencils
+    inner: Rows  # (m,) nodes that are advanced
+    every: Rows  # (n,) all nodes but ghosts
+    edges: Rows  # (b,) inflows, outflows and slip walls
+    weights: Array  # (b, K) 1, of their neighbours within
+    bounding: Rows  # (a,) all boundary nodes
+    patches: Array  # (p, PATCH_COLUMNS), what the scene says of each boundary
+
+
+def domain(params: MeshlessGasParams, team: Team) -> Domain:
+    """Build the cloud, and the coefficients of its derivatives."""
+    names = [name for name in params.boundaries if params.kind_of(name) not in ("periodic",)]
+    cloud = _box(params, names)
+    neighbours = nearest_neighbours(cloud, params.neighbours, team)
+    made = stencils(cloud, neighbours, params.planar, team)
+    kind = cloud.kind[: cloud.nodes]
+    edges = _rows(np.isin(kind, (INFLOW, OUTFLOW, SLIP)))
+    weights = np.empty((len(edges), neighbours.shape[1]))
+    lacks = write_weights(edges, cloud.kind, cloud.normals, neighbours, made.coefficients, weights)
+    if lacks >= 0:
+        place = np.array2string(cloud.positions[edges[lacks]], precision=4)
+        raise SceneError(
+            f"boundary nodes must have a neighbour within; that at {place} m has none among its "
+            f"{params.neighbours}. Raise neighbours."
+        )
+    patches = np.array([patch(params.boundaries[name], params.gas) for name in names])
+    return Domain(
+        cloud=cloud,
+        stencils=made,
+        inner=_rows(kind == INNER),
+        every=np.arange(cloud.nodes, dtype=np.int32),
+        edges=edges,
+        weights=weights,
+        bounding=_rows(kind != INNER),
+        patches=patches.reshape(-1, PATCH_COLUMNS),
+    )
+
+
+def _rows(chosen: NDArray[np.bool_]) -> Rows:
+    return np.flatnonzero(chosen).astype(np.int32)
+
+
+def _box(params: MeshlessGasParams, names: list[str]) -> Cloud:
+    one = params.box
+    return box(
+        one.lowest,
+        one.highest,
+        one.spacing,
+        {name: params.kind_of(name) for name in params.boundaries},
+        {name: number for number, name in enumerate(names)},
+        jitter=one.jitter,
+        seed=one.seed,
+        weight=one.weight,
+        neighbours=params.neighbours,
+        planar=params.planar,
+    )
+
+
+def patch(boundary: Boundary, gas: Gas) -> Array:
+    """What a boundary says, as kernels take it."""
+    row = np.zeros(PATCH_COLUMNS)
+    if boundary.state is not None:
+        row[:5] = boundary.state.primitive(gas)
+    if boundary.total is not None:
+        row[1:4] = np.array(boundary.total.direction) / np.linalg.norm(boundary.total.direction)
+        row[TOTAL_PRESSURE] = boundary.total.pressure
+        row[TOTAL_TEMPERATURE] = boundary.total.temperature
+    row[BACK_PRESSURE] = boundary.pressure or 0.0
+    return row
+
+
+def initial_state(params: MeshlessGasParams, cloud: Cloud) -> State:
+    """State at the start."""
+    positions = cloud.positions[: cloud.nodes]
+    if params.riemann is not None or params.vortex is not None:
+        primitive = states_at(params, positions, 0.0)
+    else:
+        assert params.initial is not None
+        primitive = np.tile(params.initial.primitive(params.gas), (len(positions), 1))
+        for zone in params.zones:
+            held = (positions >= zone.lowest) & (positions <= zone.highest)
+            if params.planar:
+                held[:, 1] = True
+            primitive[held.all(axis=1)] = zone.state.primitive(params.gas)
+    if params.planar:
+        primitive[:, 2] = 0.0
+    conservative = np.empty_like(primitive)
+    write_conservative(primitive, params.gas.gamma, conservative)
+    begun = cloud.volumes[: cloud.nodes] @ conservative
+    return State(conservative, primitive, np.zeros(5), begun)

@@ -1,0 +1,1 @@
+"""Clouds of nodes: where they are, what each is, and which are near to each."""

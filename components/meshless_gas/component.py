@@ -1,0 +1,210 @@
+"""A gas on a cloud of nodes, stepped by SSP-RK3."""
+
+import math
+
+import numpy as np
+
+from quintet.components.meshless_gas.build import domain, initial_state
+from quintet.components.meshless_gas.diagnostics import (
+    balance,
+    errors,
+    failure,
+    nearest_nodes,
+    probes,
+    totals,
+)
+from quintet.components.meshless_gas.kernels.boundaries import boundary_flows, write_boundaries
+from quintet.components.meshless_gas.kernels.ghosts import (
+    write_ghost_gradients,
+    write_ghost_states,
+)
+from quintet.components.meshless_gas.kernels.gradients import write_gradients
+from quintet.components.meshless_gas.kernels.motion import (
+    STAGES,
+    advance,
+    write_bounds,
+    write_sound,
+)
+from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.plan import plan
+from quintet.components.meshless_gas.ports import SHOWS, ports
+from quintet.components.meshless_gas.state import Fluxes
+from quintet.components.meshless_gas.view import view, walls
+from quintet.components.shared.threads import Team
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Array,
+    Component,
+    Fields,
+    Keys,
+    Resources,
+    Totals,
+    fields_of,
+)
+from quintet.interfaces.errors import StepError
+from quintet.interfaces.manifest import Plan, Ports
+
+FEWEST = 32  # blocks of nodes that are worth handing to another thread
+
+
+class MeshlessGas(Component):
+    """Moves a gas through the nodes of a cloud.
+
+    A class of one's own may derive from it, with a `Params` that derives from `MeshlessGasParams`:
+    in a scene it is a kind, ``module:Class``, with all ports of this one.
+    """
+
+    Params: type[MeshlessGasParams] = MeshlessGasParams
+    shows = SHOWS
+
+    @classmethod
+    def plan_of(cls, params: MeshlessGasParams) -> Plan:
+        """What a run will need."""
+        return plan(params)
+
+    @classmethod
+    def ports_of(cls, params: MeshlessGasParams) -> Ports:
+        """Balances; errors where the solution is known; probes if there are any."""
+        return ports(params)
+
+    def __init__(self, params: MeshlessGasParams, resources: Resources = ONE_THREAD) -> None:
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
+        self.gamma, self.team = params.gas.gamma, Team(resources.threads, FEWEST)
+        self.domain = domain(params, self.team)
+        cloud = self.domain.cloud
+        self.state = initial_state(params, cloud)
+        self.fluxes = Fluxes.empty(cloud.nodes, len(cloud.owner))
+        self.bound = 0.0  # s, step that all nodes bear at a Courant number of 1
+        self.frame: Array | None = None  # (n, 3) m/s, velocities of nodes
+        # What is None is not compiled.
+        self.planar = True if params.planar else None
+        self.sloped = True if params.order == 2 else None
+        self.steps = self.fluxes.steps if params.local_steps else None
+        self.probed = nearest_nodes(cloud, params.probes)
+        self._take_over()
+
+    def prepare(self, fields: Fields) -> None:
+        """Compile all kernels: try a step, and come back."""
+        kept = self.save()
+        self.take(fields)
+        self.step(1e-3 * self.stable_dt())
+        self.give(frozenset(fields_of(self.gives)))
+        self.load(kept)
+
+    def stable_dt(self) -> float:
+        """Return the share `courant` of what the slowest node bears."""
+        return self.params.courant * self.bound
+
+    def take(self, fields: Fields) -> None:
+        """Take nothing: the gas is alone."""
+
+    def step(self, dt: float) -> None:
+        """Advance by exactly dt [s]; of local steps that of the node that bears least."""
+        state, work, own = self.state, self.fluxes, self.domain
+        work.start[:] = state.conservative
+        for old, new, share in STAGES:
+            self._write_rates()
+            state.entered += share * dt * work.flows
+            wrong = self.team.run(
+                advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
+                old, new, self.gamma, state.conservative, work.primitive,
+            )  # fmt: skip
+            if max(wrong) >= 0:
+                raise StepError(self._failure(max(wrong), dt))
+            self._fill()
+        state.time += dt
+        self._look_ahead()
+
+    def _failure(self, row: int, dt: float) -> str:
+        place = self.domain.cloud.positions[self.domain.inner[row]]
+        found = self.fluxes.primitive[self.domain.inner[row]]
+        return failure(place, found, self.state.time, dt, self.bound)
+
+    def _take_over(self) -> None:
+        """Go on from the state, as it is at the start or was saved."""
+        self.fluxes.primitive[: self.domain.cloud.nodes] = self.state.primitive
+        self.state.primitive = self.fluxes.primitive[: self.domain.cloud.nodes]
+        self._fill()
+        self._look_ahead()
+
+    def _fill(self) -> None:
+        """Write the states of boundary nodes and ghosts; what comes through the boundary now."""
+        own, work, cloud = self.domain, self.fluxes, self.domain.cloud
+        write_boundaries(
+            own.edges, cloud.kind, cloud.patch, cloud.normals, own.stencils.neighbours,
+            own.weights, own.patches, self.frame, self.gamma, self.params.gas.gas_constant,
+            work.primitive,
+        )  # fmt: skip
+        write_ghost_states(cloud.owner, cloud.turn, work.primitive)
+        boundary_flows(own.bounding, cloud.areas, work.primitive, self.gamma, work.flows)
+
+    def _write_rates(self) -> None:
+        """Rates of change of density, momentum and energy, of states that are filled."""
+        own, work, cloud = self.domain, self.fluxes, self.domain.cloud
+        neighbours, coefficients = own.stencils
+        self.team.run(
+            write_gradients, len(own.every), own.every, work.primitive, neighbours, coefficients,
+            self.planar, work.gradients, work.lowest,
+        )  # fmt: skip
+        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
+        blocks = -(-len(own.inner) // LANES)
+        self.team.run(
+            write_residuals, blocks, own.inner, cloud.positions, work.primitive, work.gradients,
+            work.lowest, neighbours, coefficients, self.frame, self.planar, self.sloped,
+            self.gamma, self.params.limiter_threshold, work.residual,
+        )  # fmt: skip
+
+    def _look_ahead(self) -> None:
+        """Find the step that each node bears."""
+        own, work = self.domain, self.fluxes
+        write_sound(0, len(work.sound), work.primitive, self.gamma, work.sound)
+        least = self.team.run(
+            write_bounds, len(own.inner), own.inner, work.primitive, work.sound,
+            own.stencils.neighbours, own.stencils.coefficients, self.frame, work.bounds,
+        )  # fmt: skip
+        self.bound = min(least)
+        if not (0.0 < self.bound < math.inf):
+            raise StepError(
+                f"the gas must have a stable step at t = {self.state.time:.6g} s; found "
+                f"{self.bound:g} s. Lower courant."
+            )
+        if self.steps is not None:
+            np.divide(work.bounds, self.bound, out=work.steps)
+
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out balances, errors and probes."""
+        given: dict[str, Array] = {}
+        ports_wanted = {key.partition(".")[0] for key in wanted}
+        if "balance" in ports_wanted:
+            given.update(balance(self.state, self.domain, self.fluxes, self.gamma))
+        if "error" in ports_wanted:
+            given.update(errors(self.params, self.state, self.domain.cloud))
+        if "probes" in ports_wanted:
+            given.update(probes(self.probed, self.domain.cloud, self.state, self.params.gas))
+        return {key: given[key] for key in wanted}
+
+    def save(self) -> Fields:
+        """Copy out all state; boundary nodes and ghosts follow from it."""
+        return self.state.save()
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state, bit for bit."""
+        self.state.load(state)
+        self._take_over()
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies of all nodes."""
+        return totals(self.state, self.domain.cloud)
+
+    def view(self) -> Fields:
+        """Nodes, and the state at each."""
+        return view(self.state, self.domain, self.fluxes, self.params)
+
+    def walls(self) -> Fields:
+        """Walls of a box."""
+        return walls(self.params)
+
+    def items(self) -> int:
+        """Count the nodes."""
+        return self.domain.cloud.nodes

@@ -1,0 +1,60 @@
+"""What the laws of the contract are tried on: gas at rest, a vortex, a shock tube, a wedge."""
+
+from typing import Any
+
+from quintet.interfaces.manifest import ConformCase
+
+BOX = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 1.0, 1.0], "spacing": 0.1, "jitter": 0.3}
+AIR: dict[str, Any] = {"density": 1.2, "pressure": 1.0}
+STEP = 0.02  # s
+
+
+def cases() -> tuple[ConformCase, ...]:
+    """Gas at rest in a box of walls; moving gas between inflow, outflow and a wall; in space."""
+    closed = {"kind": "slip"}
+    wind = AIR | {"velocity": [3.0, 0.0, -0.2]}
+    rest = {
+        "box": BOX,
+        "initial": AIR,
+        "boundaries": {"x-": closed, "x+": closed, "z-": closed, "z+": closed},
+        "probes": [[0.5, 0.0, 0.5]],
+    }
+    stream = {
+        "box": BOX,
+        "initial": wind,
+        "boundaries": {
+            "x-": {"kind": "inflow", "state": wind},
+            "x+": {"kind": "outflow"},
+            "z-": closed,
+            "z+": {"kind": "inflow", "state": wind},
+        },
+    }
+    tube = {
+        "box": BOX,
+        "riemann": {
+            "position": 0.5,
+            "left": {"density": 1.0, "pressure": 1.0},
+            "right": {"density": 0.125, "pressure": 0.1},
+        },
+        "boundaries": {"x-": closed, "x+": closed},
+    }
+    coarse = {**BOX, "spacing": 0.25}
+    space = {
+        "box": coarse,
+        "initial": AIR,
+        "dimensions": 3,
+        "neighbours": 14,
+        "boundaries": {"z-": {"kind": "symmetry"}, "z+": {"kind": "symmetry"}},
+    }
+    return (
+        ConformCase("gas at rest", rest, dt=STEP),
+        ConformCase(
+            "stream over a wall",
+            stream,
+            dt=0.2 * STEP,
+            still=False,
+            smooth=False,  # it is limited, and the wall stops what strikes it
+        ),
+        ConformCase("shock tube", tube, dt=STEP, still=False, smooth=False),
+        ConformCase("gas in space", space, dt=STEP),
+    )

@@ -1,0 +1,121 @@
+"""What is told of a gas: balances, errors, probes, and why a step failed."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.clouds.cloud import INFLOW, INNER, OUTFLOW, Cloud
+from quintet.components.meshless_gas.exact import states_at
+from quintet.components.meshless_gas.params import Gas, MeshlessGasParams
+from quintet.components.meshless_gas.state import Fluxes, State
+from quintet.interfaces.component import Array, Fields, Totals
+
+
+def held(state: State, cloud: Cloud) -> Array:
+    """Mass, momentum and energy (5,) kg, N s, J of all nodes."""
+    volumes = cloud.volumes[: cloud.nodes]
+    return np.array([(volumes * state.conservative[:, q]).sum() for q in range(5)])
+
+
+def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Fields:
+    """Fields of the port `balance`."""
+    cloud, entered = domain.cloud, state.entered
+    now = held(state, cloud)
+    mass, energy = state.begun[0], state.begun[4]
+    scale = np.array([mass, *[np.sqrt(2.0 * mass * energy)] * 3, energy])
+    drift = (now - state.begun - entered) / scale
+    rows = domain.bounding[np.isin(cloud.kind[domain.bounding], (INFLOW, OUTFLOW))]
+    through = (cloud.areas[rows] * fluxes.primitive[rows, 1:4]).sum(axis=1)
+    through *= fluxes.primitive[rows, 0]
+    inflow, outflow = through[through > 0.0].sum(), -through[through < 0.0].sum()
+    inner = domain.inner
+    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
+    return {
+        "balance.mass": now[:1],
+        "balance.momentum": now[None, 1:4],
+        "balance.energy": now[4:],
+        "balance.mass_entered": entered[:1].copy(),
+        "balance.momentum_entered": entered[None, 1:4].copy(),
+        "balance.energy_entered": entered[4:].copy(),
+        "balance.mass_drift": drift[:1],
+        "balance.momentum_drift": drift[None, 1:4],
+        "balance.energy_drift": drift[4:],
+        "balance.inflow": np.array([inflow]),
+        "balance.outflow": np.array([outflow]),
+        "balance.imbalance": np.array([(inflow - outflow) / inflow if inflow > 0.0 else 0.0]),
+        "balance.change": np.array([np.sqrt((rate * rate).mean())]),
+    }
+
+
+def errors(params: MeshlessGasParams, state: State, cloud: Cloud) -> Fields:
+    """Fields of the port `error`: over nodes within."""
+    inner = np.flatnonzero(cloud.kind[: cloud.nodes] == INNER)
+    exact = states_at(params, cloud.positions[inner], state.time)
+    off = np.abs(state.primitive[inner] - exact)
+    volumes = cloud.volumes[inner]
+    mean = (volumes[:, None] * off).sum(axis=0) / volumes.sum()
+    return {
+        "error.density": mean[:1],
+        "error.velocity": mean[1:2],
+        "error.pressure": mean[4:],
+        "error.largest_density": np.array([off[:, 0].max()]),
+    }
+
+
+def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]]) -> NDArray[np.int64]:
+    """Nodes that are nearest to some places."""
+    positions = cloud.positions[: cloud.nodes]
+    return np.array(
+        [int(((positions - np.array(one)) ** 2).sum(axis=1).argmin()) for one in places], np.int64
+    )
+
+
+def temperature(primitive: Array, gas: Gas) -> Array:
+    """Temperature (n,) K."""
+    return np.asarray(primitive[:, 4] / (gas.gas_constant * primitive[:, 0]))
+
+
+def mach(primitive: Array, gas: Gas) -> Array:
+    """Mach number (n,)."""
+    square = (primitive[:, 1:4] ** 2).sum(axis=1)
+    return np.asarray(np.sqrt(square * primitive[:, 0] / (gas.gamma * primitive[:, 4])))
+
+
+def probes(rows: NDArray[np.int64], cloud: Cloud, state: State, gas: Gas) -> Fields:
+    """Fields of the port `probes`."""
+    found = state.primitive[rows]
+    return {
+        "probes.position": cloud.positions[rows],
+        "probes.velocity": found[:, 1:4].copy(),
+        "probes.density": found[:, 0].copy(),
+        "probes.pressure": found[:, 4].copy(),
+        "probes.temperature": temperature(found, gas),
+        "probes.mach": mach(found, gas),
+    }
+
+
+def totals(state: State, cloud: Cloud) -> Totals:
+    """Mass, momentum and energies of all nodes."""
+    volumes, positions = cloud.volumes[: cloud.nodes], cloud.positions[: cloud.nodes]
+    momenta = volumes[:, None] * state.conservative[:, 1:4]
+    kinetic = 0.5 * float((momenta * state.primitive[:, 1:4]).sum())
+    now = held(state, cloud)
+    return Totals(
+        mass=float(now[0]),
+        momentum=now[1:4],
+        angular_momentum=np.cross(positions, momenta).sum(axis=0),
+        kinetic=kinetic,
+        internal=float(now[4]) - kinetic,
+    )
+
+
+def failure(place: Array, found: Array, time: float, dt: float, bound: float) -> str:
+    """Say that a state is none."""
+    where = np.array2string(place, precision=4)
+    return (
+        f"density and pressure must stay above 0; the node at {where} m has {found[0]:.3g} kg/m3 "
+        f"and {found[4]:.3g} Pa in the step from t = {time:.6g} s by {dt:.3g} s, "
+        f"{dt / bound:.2f} of 1/Σ(|v·c| + a|c|). Lower courant, or refine the cloud there."
+    )

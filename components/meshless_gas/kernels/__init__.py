@@ -1,0 +1,1 @@
+"""Loops over nodes: gradients, residuals, boundaries, steps in time."""

@@ -1,0 +1,61 @@
+"""All arrays of a gas that change, and the numbers of its scheme."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.interfaces.component import Array, Fields
+
+
+@dataclass(slots=True)
+class State:
+    """What is remembered from one step to the next; n nodes, ghosts left out."""
+
+    conservative: Array  # (n, 5) kg/m3, kg/(m2 s), J/m3
+    primitive: Array  # (n, 5) kg/m3, m/s, Pa, in the laboratory's frame
+    entered: Array  # (5,) kg, N s, J, through the boundary since the start
+    begun: Array  # (5,) kg, N s, J, at the start
+    time: float = 0.0  # s
+
+    def save(self) -> dict[str, NDArray[Any]]:
+        """Copy out everything."""
+        return {part.name: np.array(getattr(self, part.name)) for part in fields(self)}
+
+    def load(self, saved: Fields) -> None:
+        """Come back to a saved state, in the same arrays."""
+        for name in ("conservative", "primitive", "entered", "begun"):
+            getattr(self, name)[:] = saved[name]
+        self.time = float(saved["time"])
+
+
+@dataclass(slots=True)
+class Fluxes:
+    """What a stage computes from the states of nodes, m with their ghosts."""
+
+    primitive: Array  # (m, 5), of nodes and ghosts
+    gradients: Array  # (m, 5, 3)
+    lowest: Array  # (m,) Pa, least pressure of a node and its neighbours
+    residual: Array  # (n, 5) kg/(m3 s), N/m3, W/m3
+    start: Array  # (n, 5), conservative, at the step's start
+    sound: Array  # (m,) m/s
+    bounds: Array  # (n,) s, steps that nodes bear at a Courant number of 1
+    steps: Array  # (n,) 1, steps of nodes over the shortest
+    flows: Array  # (5,) kg/s, N, W, through the boundary
+
+    @classmethod
+    def empty(cls, nodes: int, ghosts: int) -> "Fluxes":
+        """Make room."""
+        whole = nodes + ghosts
+        return cls(
+            primitive=np.zeros((whole, 5)),
+            gradients=np.zeros((whole, 5, 3)),
+            lowest=np.zeros(whole),
+            residual=np.zeros((nodes, 5)),
+            start=np.zeros((nodes, 5)),
+            sound=np.ones(whole),
+            bounds=np.ones(nodes),
+            steps=np.ones(nodes),
+            flows=np.zeros(5),
+        )

@@ -1,0 +1,34 @@
+"""What a picture shows of a gas: its nodes with their states, and the walls of its box."""
+
+import numpy as np
+
+from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.diagnostics import mach, temperature
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.state import Fluxes, State
+from quintet.interfaces.component import Fields
+from quintet.interfaces.faces import box, polygons
+
+
+def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams) -> Fields:
+    """Nodes, with the gradients of the last stage."""
+    nodes = domain.cloud.nodes
+    gradient = fluxes.gradients[:nodes, 0]
+    return {
+        "points": domain.cloud.positions[:nodes].copy(),
+        "density": state.primitive[:, 0].copy(),
+        "pressure": state.primitive[:, 4].copy(),
+        "velocity": state.primitive[:, 1:4].copy(),
+        "temperature": temperature(state.primitive, params.gas),
+        "mach": mach(state.primitive, params.gas),
+        "density_gradient": np.sqrt((gradient * gradient).sum(axis=1)),
+    }
+
+
+def walls(params: MeshlessGasParams) -> Fields:
+    """Faces of the box that are walls."""
+    faces = [name for name in params.boundaries if params.kind_of(name) == "slip"]
+    low, high = list(params.box.lowest), list(params.box.highest)
+    if params.planar:
+        low[1], high[1] = -0.5, 0.5
+    return polygons(box(low, high, faces))

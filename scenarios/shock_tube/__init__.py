@@ -1,0 +1,1 @@
+"""Sod's shock tube, and harder ones as presets."""

@@ -1,0 +1,212 @@
+"""Conduction of heat against exact solutions, another code, and its own account."""
+
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from skfem import Basis, ElementHex1, MeshHex, asm, condense, solve
+from skfem.models.poisson import laplace
+
+from quintet.components.fe_plate.heat.component import FeHeat
+from quintet.components.fe_plate.heat.params import ConductingPart, FeHeatParams, Flux, Held
+from quintet.components.fe_plate.meshes.params import Cylinder
+from quintet.components.fe_plate.params import Faces
+from quintet.interfaces.errors import SceneError
+
+K, RHO_C = 2.0, 3.0  # W/(m K), J/(m3 K)
+HOT, COLD, BEYOND = (0.0, 0.01, 0.01), (0.03, 0.0, 0.0), (0.03, 0.0, 0.01)  # m, of Arinchev's bar
+# Mean temperature [K] by elements across, 10 mm, of another solver: exact, by cosine transforms.
+MEANS = {1: 179.05, 2: 183.32, 3: 177.47, 4: 175.15, 6: 172.45, 8: 171.05, 12: 169.62, 24: 168.16}
+
+
+def block(size, elements, temperature=0.0, **given):
+    part = ConductingPart(
+        lowest=(0.0, 0.0, 0.0), highest=size, elements=elements, temperature=temperature,
+        conductivity=K, density=RHO_C, specific_heat=1.0,
+    )  # fmt: skip
+    return FeHeat(FeHeatParams(parts=(part,), **given))
+
+
+def face(at, size, temperature):
+    """Nodes across x held at a temperature."""
+    return Held(lowest=(at, 0.0, 0.0), highest=(at, *size[1:]), temperature=temperature)
+
+
+def bar_with_points(n):
+    points = [(HOT, 500.0), (COLD, 0.0), (BEYOND, 0.0)]
+    held = tuple(Held(point=one, temperature=kelvin) for one, kelvin in points)
+    return block((0.03, 0.01, 0.01), (3 * n, n, n), 170.0, steady=True, held=held)
+
+
+def test_temperatures_held_at_points_depend_on_the_mesh():
+    """The mean is that of the table; the heat that enters goes to nothing with the elements."""
+    flow = {}
+    for n, mean in MEANS.items():
+        made = bar_with_points(n)
+        made.step(1.0)
+        found = made.give({"parts.temperature", "held.heat_flow"})
+        assert found["parts.temperature"][0] == pytest.approx(mean, rel=2e-3)
+        assert abs(found["held.heat_flow"].sum()) < 1e-8 * found["held.heat_flow"][0]
+        flow[n] = found["held.heat_flow"][0] / K
+    assert flow[24] == pytest.approx(95.1 * 0.01 / 24, rel=0.01)
+    assert flow[12] / flow[24] == pytest.approx(2.0, rel=0.02)
+
+
+def test_temperatures_are_those_of_another_code():
+    """scikit-fem, trilinear elements, of the same mesh, to what conjugate gradients leave."""
+    n = 4
+    made = bar_with_points(n)
+    made.step(1.0)
+    lines = [np.linspace(0.0, 0.01 * k, k * n + 1) for k in (3, 1, 1)]
+    mesh = MeshHex.init_tensor(*lines)
+    held = [int(np.argmin(((mesh.p.T - one) ** 2).sum(axis=1))) for one in (HOT, COLD, BEYOND)]
+    x = np.zeros(mesh.p.shape[1])
+    x[held[0]] = 500.0
+    other = solve(*condense(asm(laplace, Basis(mesh, ElementHex1())), x=x, D=np.array(held)))
+    order = np.lexsort(np.round(mesh.p[::-1], 9))
+    assert made.state.temperature == pytest.approx(other[order], abs=1e-6)
+
+
+def test_a_linear_temperature_is_exact_in_any_mesh():
+    """Along a cylinder, whose elements are squares that were made round."""
+    part = ConductingPart(
+        cylinder=Cylinder(radius=0.5, length=2.0, elements=(2, 2, 3)), conductivity=K
+    )
+    ends = [Held(lowest=(-1, -1, z), highest=(1, 1, z), temperature=t) for z, t in ((0, 9), (2, 5))]
+    made = FeHeat(FeHeatParams(parts=(part,), held=tuple(ends), steady=True))
+    made.step(1.0)
+    mesh = made.model.mesh
+    assert made.state.temperature == pytest.approx(9.0 - 2.0 * mesh.node[:, 2], abs=1e-8)
+    area = made.model.volume.sum() / 2.0
+    flow = made.give({"held.heat_flow"})["held.heat_flow"]
+    assert flow == pytest.approx([2.0 * K * area, -2.0 * K * area], rel=1e-8)
+
+
+def test_steady_heat_through_half_a_side_follows_its_series():
+    """A square plate, heated on half of one side and held on the opposite: within 0.5 %."""
+    n, flux = 16, 5.0
+    heated = Faces(lowest=(0.0, 0.0, 0.0), highest=(0.0, 0.5, 0.1))
+    made = block(
+        (1.0, 1.0, 0.1), (n, n, 1), steady=True,
+        held=(face(1.0, (1.0, 1.0, 0.1), 0.0),), fluxes=(Flux(faces=heated, flux=flux),),
+    )  # fmt: skip
+    made.step(1.0)
+    x, y, _ = made.model.mesh.node.T
+    exact = 0.5 * flux / K * (1.0 - x)
+    for m in range(1, 200, 2):
+        w = m * math.pi
+        # cosh is taken out, so that nothing overflows
+        ratio = (np.exp(-w * x) - np.exp(-w * (2.0 - x))) / (1.0 + math.exp(-2.0 * w))
+        exact += 2.0 * flux / (K * w * w) * math.sin(0.5 * w) * np.cos(w * y) * ratio
+    assert np.abs(made.state.temperature - exact).max() < 5e-3 * exact.max()
+
+
+def cooled(dt, n=32, seconds=0.15):
+    """A slab that was at 1 K, whose ends are at 0 K since the start; temperatures and places."""
+    size = (1.0, 1.0 / n, 1.0 / n)
+    ends = (face(0.0, size, 0.0), face(1.0, size, 0.0))
+    made = block(size, (n, 1, 1), 1.0, held=ends)
+    for _ in range(round(seconds / dt)):
+        made.step(dt)
+    return made.state.temperature, made.model.mesh.node[:, 0]
+
+
+def test_a_slab_cools_as_its_series_says():
+    """Within 0.5 % of the highest temperature; at second order in the step."""
+    found, x = cooled(0.01)
+    exact = np.zeros_like(x)
+    for m in range(1, 40, 2):
+        fading = math.exp(-K / RHO_C * (m * math.pi) ** 2 * 0.15)
+        exact += 4.0 / (m * math.pi) * np.sin(m * math.pi * x) * fading
+    assert np.abs(found - exact).max() < 5e-3 * exact.max()
+    fine, _ = cooled(0.15 / 128)
+    errors = [np.abs(cooled(0.15 / steps)[0] - fine).max() for steps in (8, 16)]
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.25)
+
+
+def test_a_flux_heats_as_its_series_says():
+    """One end of an insulated slab (Carslaw & Jaeger 1959, section 3.8): within 0.5 %."""
+    n, flux, seconds = 32, 5.0, 0.3
+    size = (1.0, 0.1, 0.1)
+    heated = Faces(lowest=(0.0, 0.0, 0.0), highest=(0.0, 0.1, 0.1))
+    made = block(
+        size, (n, 1, 1), fluxes=(Flux(faces=heated, flux=flux),), node_gauges=((0.0, 0.0, 0.0),)
+    )
+    for _ in range(60):
+        made.step(seconds / 60)
+    time = K / RHO_C * seconds
+    series = sum(
+        math.exp(-((m * math.pi) ** 2) * time) / m**2 for m in range(1, 40)
+    ) * 2.0 / math.pi**2  # fmt: skip
+    exact = flux / K * (time + 1.0 / 3.0 - series)
+    assert made.give({"node_gauge.temperature"})["node_gauge.temperature"][0] == pytest.approx(
+        exact, rel=5e-3
+    )
+    assert made.totals().internal == pytest.approx(flux * 0.01 * seconds, rel=1e-12)
+
+
+def test_heat_is_conserved_whatever_the_tolerance():
+    """What partners and holders give is what the body gains, to rounding."""
+    size = (0.3, 0.2, 0.2)
+    made = block(size, (3, 2, 2), 3.0, tolerance=1e-3, held=(face(0.0, size, 7.0),))
+    heat = np.random.default_rng(1).normal(size=len(made.surface))
+    before, dt = made.totals().internal, 0.02
+    made.take({"node_heat.heat_flow": heat})
+    made.step(dt)
+    given = heat.sum() + made.give({"held.heat_flow"})["held.heat_flow"].sum()
+    assert made.totals().internal - before == pytest.approx(dt * given, rel=1e-10)
+
+
+def test_conduction_and_mechanics_import_nothing_of_each_other():
+    code = (
+        "import importlib, json, sys; importlib.import_module(sys.argv[1]); "
+        "print(json.dumps([n for n in sys.modules if n.startswith('quintet.components.fe_plate')]))"
+    )
+    found = {}
+    for name in ("fe_plate.component", "fe_plate.heat.component"):
+        line = [sys.executable, "-c", code, f"quintet.components.{name}"]
+        said = subprocess.run(line, capture_output=True, text=True, check=True).stdout
+        found[name] = set(json.loads(said))
+    assert not any(".heat" in one for one in found["fe_plate.component"])
+    strange = {"component", "kernels", "state", "build", "laws"}
+    parts = [one.split(".")[3:] for one in found["fe_plate.heat.component"]]
+    assert not any(one and one[0] in strange for one in parts)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"steady": True}, "must be held at a temperature somewhere"),
+        ({"held": (Held(lowest=(9, 9, 9), highest=(9, 9, 9), temperature=1),)}, "holds none"),
+        ({"coupled_faces": (Faces(lowest=(9, 9, 9), highest=(9, 9, 9)),)}, "must hold an outer"),
+    ],
+)
+def test_what_cannot_be_built_is_refused(given, words):
+    with pytest.raises(SceneError, match=words):
+        block((1.0, 1.0, 1.0), (1, 1, 1), **given)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Held(temperature=1.0), "found 0 of these"),
+        (lambda: Held(point=(0, 0, 0), node_set="a", temperature=1.0), "found 2 of these"),
+        (lambda: FeHeatParams(parts=()), "at least one"),
+        (
+            lambda: FeHeatParams(
+                parts=(
+                    ConductingPart(
+                        lowest=(0, 0, 0), highest=(1, 1, 1), elements=(1, 1, 1), conductivity=1
+                    ),
+                )
+            ),
+            "density and specific_heat",
+        ),
+    ],
+)
+def test_what_contradicts_itself_is_refused(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
