@@ -1,6 +1,7 @@
 """A structure as its parameters describe it: mesh, masses, supports."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -8,11 +9,13 @@ import numpy as np
 from quintet.components.fe_plate.kernels.blocks import LANES, TEMPERATURE
 from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
-from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, incident, mesh
+from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, mesh
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.state import (
     Array,
+    Index,
     Model,
+    Parted,
     Places,
     State,
     Whole,
@@ -30,6 +33,7 @@ class Structure(NamedTuple):
 
     mesh: Mesh
     model: Model
+    parted: Parted
     places: Places  # of the elements' points
     laws: list[Solid]  # of the parts
     first: list[int]  # block of each part, and the end of all
@@ -39,13 +43,15 @@ class Structure(NamedTuple):
     pressed: list[Whole]  # for each pressure the outer faces that it acts on
 
 
-def structure(params: FePlateParams) -> Structure:
-    """Build a structure."""
+def structure(
+    params: FePlateParams, ends: Callable[[int], list[int]] = lambda blocks: [0, blocks]
+) -> Structure:
+    """Build a structure; `ends` tells where the shares of a number of blocks end, from 0 on."""
     made = mesh(params.parts, params.dimensions, params.node_sets)
     depth = 1.0 if params.dimensions == 2 else 0.0  # m
     laws = [eroding(solid(material(part.material)), params.erosion) for part in params.parts]
     volume = np.empty(len(made.corner))
-    write_volumes(made.node, made.corner, depth, volume)
+    write_volumes(made.node, made.corner.astype(np.uint32), depth, volume)
     if not (volume > 0.0).all():
         worst = int(np.argmin(volume))
         middle = np.array2string(made.node[made.corner[worst]].mean(axis=0), precision=4)
@@ -59,11 +65,11 @@ def structure(params: FePlateParams) -> Structure:
     mass = np.bincount(made.corner.ravel(), share, nodes).astype(np.float64)
     points = 8 if params.integration == "full" else 1  # of an element
     place, element, first = in_blocks(made.part, len(laws), LANES // points)
-    corner, own = made.corner[element], volume[element]
+    corner, own = made.corner[element].astype(np.uint32), volume[element]
     if points == 8:
         own = np.empty(8 * len(corner))
         write_point_volumes(made.node, corner, depth, own)
-    begin, at = incident(made.corner, nodes)
+    target, filled, parted = targets(corner, place, first, ends, nodes)
     walls = np.zeros((len(params.rigid_walls), 4))
     for row, wall in zip(walls, params.rigid_walls, strict=True):
         row[:3] = np.array(wall.normal) / np.linalg.norm(wall.normal)
@@ -85,18 +91,18 @@ def structure(params: FePlateParams) -> Structure:
         _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
     model = Model(
         corner=corner,
+        target=target,
+        filled=filled,
         volume=own,
         depth=depth,
         inverse_mass=1.0 / mass,
         free=free,
-        begin=begin,
-        at=8 * place[at // 8] + at % 8,
         gravity=np.array(params.gravity),
         walls=walls,
     )
     point = points * place[:, None] + np.arange(points)
     places = Places(point, own[point] / own[point].sum(axis=1, keepdims=True))
-    return Structure(made, model, places, laws, first, volume, mass, coupled, pressed)
+    return Structure(made, model, parted, places, laws, first, volume, mass, coupled, pressed)
 
 
 def eroding(law: Solid, by: Sequence[str]) -> Solid:
@@ -124,11 +130,43 @@ def in_blocks(part: Whole, parts: int, size: int) -> tuple[Whole, Whole, list[in
     return np.concatenate(place), np.concatenate(element), first
 
 
+def targets(
+    corner: Index, place: Whole, first: list[int], ends: Callable[[int], list[int]], nodes: int
+) -> tuple[Index, Index, Parted]:
+    """Rows of forces that corners act on, places of each block that are filled, and parted nodes.
+
+    A node all of whose elements one thread steps is acted on at once; of others each corner has a
+    row of its own, in the order of the elements, so that the sum is the same.
+    """
+    used = np.zeros(len(corner), bool)
+    used[place] = True
+    size = len(corner) // first[-1]
+    filled = used.reshape(-1, size).sum(axis=1).astype(np.uint32)
+    shares = [a + end for a, b in pairwise(first) for end in ends(b - a)[1:]]
+    none: Whole = np.zeros(0, np.int64)
+    if len(shares) == len(first) - 1:  # whole parts
+        return corner, filled, Parted(none, none)
+    share = np.repeat(np.searchsorted(shares, np.arange(first[-1]), "right"), size)
+    flat, number = corner[used].ravel(), np.repeat(share[used], 8)
+    lowest, highest = np.full(nodes, len(shares)), np.zeros(nodes, np.int64)
+    np.minimum.at(lowest, flat, number)
+    np.maximum.at(highest, flat, number)
+    is_parted = lowest < highest
+    at = np.flatnonzero(is_parted[corner.ravel()] & np.repeat(used, 8))
+    at = at[np.argsort(corner.ravel()[at], kind="stable")]
+    target = corner.copy()
+    target.ravel()[at] = nodes + np.arange(len(at))
+    node = np.flatnonzero(is_parted)
+    begin = nodes + np.searchsorted(corner.ravel()[at], np.append(node, nodes))
+    return target, filled, Parted(node, begin)
+
+
 def initial_state(params: FePlateParams, built: Structure) -> State:
     """Temperatures and velocities that the parts have at the start; nothing is strained."""
     model, first, node = built.model, built.first, built.mesh.node
     springs = 0 if params.integration == "full" else first[-1]  # blocks
-    made = state_at_rest(node, first[-1], springs, len(model.corner), len(model.walls))
+    rows = max(len(node), int(model.target.max()) + 1)
+    made = state_at_rest(node, first[-1], springs, rows, len(model.walls))
     for k, part in enumerate(params.parts):
         made.points[first[k] : first[k + 1], TEMPERATURE] = built.laws[k].temperature
         made.velocity[np.unique(built.mesh.corner[built.mesh.part == k])] = part.velocity

@@ -17,8 +17,8 @@ from quintet.components.fe_plate.gauges import (
 from quintet.components.fe_plate.kernels.blocks import ENERGY
 from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
-from quintet.components.fe_plate.kernels.material import HUGE
-from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift
+from quintet.components.fe_plate.kernels.flow import HUGE
+from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift, sum_parted
 from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.ports import SHOWS
@@ -36,6 +36,7 @@ from quintet.interfaces.component import (
 from quintet.interfaces.errors import StepError
 
 FEWEST = 128  # blocks that are worth handing to another thread
+SHARES = 4  # of each thread: where they meet, forces are summed once more
 SQUASHED = 4.0  # least steps in which what meets a wall moves by an element
 SMALLEST = 0.02  # of an element's volume at the start: below it, it has been turned inside out
 Stepped = tuple[float, float, int]  # largest step [s], least volume over the first one, of which
@@ -70,9 +71,11 @@ class FePlate(Component):
 
     def __init__(self, params: FePlateParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
-        built = structure(params)
+        self.team = Team(resources.threads, FEWEST, SHARES)
+        built = structure(params, self.team.ends)
         self.mesh, self.model, self.mass = built.mesh, built.model, built.mass
         self.laws, self.first, self.pressed = built.laws, built.first, built.pressed
+        self.parted = built.parted
         self.places, self.volume = built.places, built.volume
         self.element_mass = (
             built.volume * np.array([one.density for one in self.laws])[self.mesh.part]
@@ -97,7 +100,6 @@ class FePlate(Component):
         self.glued = False  # whether particles hang on it
         self.early = np.zeros((len(self.surface), 3))  # m/s, that velocities at a step's end lack
         self.accumulated = Accumulated()
-        self.team = Team(resources.threads, FEWEST)
         self.shortest = self._shortest()  # m
         self.bound = self._write_forces(0.0)  # s
 
@@ -197,6 +199,7 @@ class FePlate(Component):
             least, worst = min((one[1], one[2]) for one in found)
             if not least > SMALLEST:
                 raise self._inside_out(worst, least)
+        sum_parted(self.parted, self.state.forces)
         ahead = 2.0 * min(bound, 1.0)  # s
         squares, closing = kick(self.model, self.state, dt, self.params.mass_damping, ahead)
         if not math.isfinite(squares):
@@ -244,9 +247,13 @@ class FePlate(Component):
             found |= of_parts(self.mesh, self.places, self.state, self.element_mass)
         return found
 
+    def _arrays(self) -> dict[str, Array]:
+        """All that moves; of the forces those on nodes: the others are none between steps."""
+        return {**self.state._asdict(), "forces": self.state.internal}
+
     def save(self) -> Fields:
         """Copy out all state."""
-        kept = {name: array.copy() for name, array in self.state._asdict().items()}
+        kept = {name: array.copy() for name, array in self._arrays().items()}
         total = self.accumulated
         kept["accumulated"] = np.array([total.time, total.work, self.bound])
         own = {"loads": self.loads, "hung": self.hung, "early": self.early}
@@ -254,7 +261,8 @@ class FePlate(Component):
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
-        for name, array in self.state._asdict().items():
+        self.state.forces[:] = 0.0
+        for name, array in self._arrays().items():
             array[:] = state[name]
         self.loads[:] = state["loads"]
         self.hung, self.early = np.array(state["hung"]), np.array(state["early"])

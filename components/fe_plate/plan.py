@@ -3,7 +3,7 @@
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.interfaces.manifest import Plan
 
-RATE = 4e6  # elements stepped per second and thread
+RATE = 5e6  # elements stepped per second and thread
 BYTES = 1000.0  # of an element
 
 

@@ -15,6 +15,7 @@ from quintet.components.fe_plate.kernels.blocks import (
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
+Index = NDArray[np.uint32]  # half the bytes of others, and no number from the end
 
 
 class Model(NamedTuple):
@@ -24,15 +25,22 @@ class Model(NamedTuple):
     load no node.
     """
 
-    corner: Whole  # (places, 8) nodes
+    corner: Index  # (places, 8) nodes
+    target: Index  # (places, 8) rows of forces that corners act on
+    filled: Index  # (b,) places of a block that are not left over
     volume: Array  # (b LANES,) m3, of points at the start
     depth: float  # m, along y, of elements in a plane; 0 of solids
     inverse_mass: Array  # (n,) 1/kg, with what hangs on the nodes
     free: Array  # (n, 3) 1 or 0: whether a node moves along an axis
-    begin: Whole  # (n + 1,) corners at node i: at[begin[i]] ... at[begin[i + 1] - 1]
-    at: Whole  # (8 e,) place among all corners
     gravity: Array  # (3,) m/s2
     walls: Array  # (w, 4) unit normal and offset of rigid walls: normal·x ≥ offset
+
+
+class Parted(NamedTuple):
+    """Nodes whose elements are shared out among threads: each of their corners has its own row."""
+
+    node: Whole  # (p,)
+    begin: Whole  # (p + 1,) rows of forces at node[i]: begin[i] ... begin[i + 1] - 1
 
 
 class Resistance(NamedTuple):
@@ -50,16 +58,20 @@ class State(NamedTuple):
     position: Array  # (n, 3) m
     velocity: Array  # (n, 3) m/s
     mean_velocity: Array  # (n, 3) m/s, displacement of the last step over it
-    internal: Array  # (n, 3) N, force of the elements on the nodes
+    forces: Array  # (rows, 3) N, of the elements: on the nodes, then on corners by themselves
     load: Array  # (n, 3) N, from outside
     points: Array  # (b, POINT_ROWS, LANES), stresses and all that belongs to the material
     springs: Array  # (b or 0, SPRING_ROWS, LANES), of the hourglass patterns
-    corner_force: Array  # (places, 8, 3) N, of elements on their corners
     wall_impulse: Array  # (w,) N s, on each rigid wall so far
 
+    @property
+    def internal(self) -> Array:
+        """Force [N] of the elements on the nodes (n, 3)."""
+        return self.forces[: len(self.position)]
 
-def state_at_rest(nodes: Array, blocks: int, springs: int, places: int, walls: int) -> State:
-    """State at rest at nodes (n, 3) m."""
+
+def state_at_rest(nodes: Array, blocks: int, springs: int, rows: int, walls: int) -> State:
+    """State at rest at nodes (n, 3) m, with some rows of forces."""
     still = np.zeros_like(nodes)
     points = np.zeros((blocks, POINT_ROWS, LANES))
     points[:, ACTIVE] = 1.0
@@ -67,11 +79,10 @@ def state_at_rest(nodes: Array, blocks: int, springs: int, places: int, walls: i
         position=nodes.copy(),
         velocity=still.copy(),
         mean_velocity=still.copy(),
-        internal=still.copy(),
+        forces=np.zeros((rows, 3)),
         load=still.copy(),
         points=points,
         springs=np.zeros((springs, SPRING_ROWS, LANES)),
-        corner_force=np.zeros((places, 8, 3)),
         wall_impulse=np.zeros(walls),
     )
 

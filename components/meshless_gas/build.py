@@ -5,8 +5,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.boundaries import Boundary, Gas
+from quintet.components.meshless_gas.clouds.bodies import layered_cloud
 from quintet.components.meshless_gas.clouds.box import box
-from quintet.components.meshless_gas.clouds.cloud import INFLOW, INNER, OUTFLOW, SLIP, Cloud
+from quintet.components.meshless_gas.clouds.cloud import (
+    INFLOW,
+    INNER,
+    OUTFLOW,
+    SLIP,
+    Cloud,
+    Whole,
+)
 from quintet.components.meshless_gas.exact import states_at
 from quintet.components.meshless_gas.kernels.boundaries import (
     BACK_PRESSURE,
@@ -16,9 +25,10 @@ from quintet.components.meshless_gas.kernels.boundaries import (
     write_weights,
 )
 from quintet.components.meshless_gas.kernels.motion import write_conservative
-from quintet.components.meshless_gas.params import Boundary, Gas, MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import State
 from quintet.components.meshless_gas.stencils import Stencils, nearest_neighbours, stencils
+from quintet.components.meshless_gas.transport import Transport
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
@@ -42,8 +52,7 @@ class Domain(NamedTuple):
 def domain(params: MeshlessGasParams, team: Team) -> Domain:
     """Build the cloud, and the coefficients of its derivatives."""
     names = [name for name in params.boundaries if params.kind_of(name) not in ("periodic",)]
-    cloud = _box(params, names)
-    neighbours = nearest_neighbours(cloud, params.neighbours, team)
+    cloud, neighbours = _cloud(params, names, team)
     made = stencils(cloud, neighbours, params.planar, team)
     kind = cloud.kind[: cloud.nodes]
     edges = _rows(np.isin(kind, (INFLOW, OUTFLOW, SLIP)))
@@ -53,9 +62,10 @@ def domain(params: MeshlessGasParams, team: Team) -> Domain:
         place = np.array2string(cloud.positions[edges[lacks]], precision=4)
         raise SceneError(
             f"boundary nodes must have a neighbour within; that at {place} m has none among its "
-            f"{params.neighbours}. Raise neighbours."
+            f"{neighbours.shape[1]}. Raise neighbours."
         )
-    patches = np.array([patch(params.boundaries[name], params.gas) for name in names])
+    given = [patch(params.boundaries[name], params.gas) for name in names]
+    patches = np.array([np.zeros(PATCH_COLUMNS), *given])
     return Domain(
         cloud=cloud,
         stencils=made,
@@ -64,7 +74,7 @@ def domain(params: MeshlessGasParams, team: Team) -> Domain:
         edges=edges,
         weights=weights,
         bounding=_rows(kind != INNER),
-        patches=patches.reshape(-1, PATCH_COLUMNS),
+        patches=patches,
     )
 
 
@@ -72,19 +82,38 @@ def _rows(chosen: NDArray[np.bool_]) -> Rows:
     return np.flatnonzero(chosen).astype(np.int32)
 
 
-def _box(params: MeshlessGasParams, names: list[str]) -> Cloud:
+def _cloud(params: MeshlessGasParams, names: list[str], team: Team) -> tuple[Cloud, Whole]:
+    """Nodes, and neighbours of each."""
+    faces = {name: params.kind_of(name) for name in params.boundaries}
+    patches = {name: 1 + number for number, name in enumerate(names)}
+    if params.box is None:
+        made = layered_cloud(params, faces, patches)
+        return made.cloud, made.neighbours
     one = params.box
-    return box(
+    cloud = box(
         one.lowest,
         one.highest,
         one.spacing,
-        {name: params.kind_of(name) for name in params.boundaries},
-        {name: number for number, name in enumerate(names)},
+        faces,
+        patches,
         jitter=one.jitter,
         seed=one.seed,
         weight=one.weight,
         neighbours=params.neighbours,
         planar=params.planar,
+    )
+    return cloud, nearest_neighbours(cloud, params.neighbours, team)
+
+
+def transport_of(gas: Gas) -> Transport:
+    """Viscosity and conduction of a gas."""
+    heat = gas.gamma * gas.gas_constant / (gas.gamma - 1.0)  # J/(kg K), c_p
+    return Transport(
+        viscosity=gas.viscosity,
+        reference=gas.reference_temperature,
+        sutherland=gas.sutherland,
+        conduction=heat / gas.prandtl,
+        gas_constant=gas.gas_constant,
     )
 
 

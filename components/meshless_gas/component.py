@@ -7,12 +7,12 @@ import numpy as np
 from quintet.components.meshless_gas.build import domain, initial_state
 from quintet.components.meshless_gas.diagnostics import (
     balance,
+    density_change,
     errors,
     failure,
-    nearest_nodes,
-    probes,
     totals,
 )
+from quintet.components.meshless_gas.gauges import fronts, line, nearest_nodes, probes
 from quintet.components.meshless_gas.kernels.boundaries import boundary_flows, write_boundaries
 from quintet.components.meshless_gas.kernels.ghosts import (
     write_ghost_gradients,
@@ -26,10 +26,12 @@ from quintet.components.meshless_gas.kernels.motion import (
     write_sound,
 )
 from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
-from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
 from quintet.components.meshless_gas.state import Fluxes
+from quintet.components.meshless_gas.steady import Settling
+from quintet.components.meshless_gas.surface import Surface
 from quintet.components.meshless_gas.view import view, walls
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -81,7 +83,16 @@ class MeshlessGas(Component):
         self.planar = True if params.planar else None
         self.sloped = True if params.order == 2 else None
         self.steps = self.fluxes.steps if params.local_steps else None
-        self.probed = nearest_nodes(cloud, params.probes)
+        self.viscous = None
+        if params.viscous:
+            # Compiled only where the gas has friction.
+            from quintet.components.meshless_gas.viscous.terms import Viscous
+
+            self.viscous = Viscous(params, self.domain, self.team)
+        self.surface = Surface(params, self.domain) if has_walls(params) else None
+        self.settling = Settling(params.steady) if params.steady is not None else None
+        self.probed = nearest_nodes(cloud, params.probes, self.team)
+        self.lines = [line(cloud, one, self.team) for one in params.fronts]
         self._take_over()
 
     def prepare(self, fields: Fields) -> None:
@@ -94,6 +105,8 @@ class MeshlessGas(Component):
 
     def stable_dt(self) -> float:
         """Return the share `courant` of what the slowest node bears."""
+        if self.settling is not None and self.settling.is_settled:
+            return math.inf
         return self.params.courant * self.bound
 
     def take(self, fields: Fields) -> None:
@@ -102,6 +115,9 @@ class MeshlessGas(Component):
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; of local steps that of the node that bears least."""
         state, work, own = self.state, self.fluxes, self.domain
+        if self.settling is not None and self.settling.is_settled:
+            state.time += dt
+            return
         work.start[:] = state.conservative
         for old, new, share in STAGES:
             self._write_rates()
@@ -115,6 +131,24 @@ class MeshlessGas(Component):
             self._fill()
         state.time += dt
         self._look_ahead()
+        if self.settling is not None and self.settling.is_due():
+            self._settle()
+
+    def _settle(self) -> None:
+        """Look whether the flow is steady."""
+        assert self.settling is not None
+        force = np.zeros(3)
+        if self.surface is not None:
+            self._feel()
+            force = self.surface.force(self.fluxes.primitive)
+        change = density_change(self.state, self.domain, self.fluxes)
+        self.settling.look(change, force, self.state.time)
+
+    def _feel(self) -> None:
+        """Take friction and heat flux of walls, as the state is."""
+        if self.viscous is not None and self.surface is not None:
+            one = self.viscous
+            self.surface.take(one.rows, one.friction, one.heat)
 
     def _failure(self, row: int, dt: float) -> str:
         place = self.domain.cloud.positions[self.domain.inner[row]]
@@ -136,8 +170,12 @@ class MeshlessGas(Component):
             own.weights, own.patches, self.frame, self.gamma, self.params.gas.gas_constant,
             work.primitive,
         )  # fmt: skip
+        if self.viscous is not None:
+            self.viscous.hold(work.primitive)
         write_ghost_states(cloud.owner, cloud.turn, work.primitive)
         boundary_flows(own.bounding, cloud.areas, work.primitive, self.gamma, work.flows)
+        if self.viscous is not None:
+            self.viscous.add_flows(work.primitive, work.flows)
 
     def _write_rates(self) -> None:
         """Rates of change of density, momentum and energy, of states that are filled."""
@@ -154,6 +192,8 @@ class MeshlessGas(Component):
             work.lowest, neighbours, coefficients, self.frame, self.planar, self.sloped,
             self.gamma, self.params.limiter_threshold, work.residual,
         )  # fmt: skip
+        if self.viscous is not None:
+            self.viscous.add(work)
 
     def _look_ahead(self) -> None:
         """Find the step that each node bears."""
@@ -164,6 +204,8 @@ class MeshlessGas(Component):
             own.stencils.neighbours, own.stencils.coefficients, self.frame, work.bounds,
         )  # fmt: skip
         self.bound = min(least)
+        if self.viscous is not None:
+            self.bound = self.viscous.shorten(work)
         if not (0.0 < self.bound < math.inf):
             raise StepError(
                 f"the gas must have a stable step at t = {self.state.time:.6g} s; found "
@@ -181,16 +223,26 @@ class MeshlessGas(Component):
         if "error" in ports_wanted:
             given.update(errors(self.params, self.state, self.domain.cloud))
         if "probes" in ports_wanted:
-            given.update(probes(self.probed, self.domain.cloud, self.state, self.params.gas))
+            cloud, gas = self.domain.cloud, self.params.gas
+            given.update(probes(self.probed, cloud, self.state.primitive, gas))
+        if "fronts" in ports_wanted:
+            given.update(fronts(self.lines, self.state.primitive))
+        if self.surface is not None and ports_wanted & {"wall", "body"}:
+            self._feel()
+            settled = float(self.settling is not None and self.settling.is_settled)
+            given.update(self.surface.wall(self.fluxes.primitive))
+            given.update(self.surface.body(self.fluxes.primitive, settled))
         return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; boundary nodes and ghosts follow from it."""
-        return self.state.save()
+        return self.state.save() | (self.settling.save() if self.settling is not None else {})
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
         self.state.load(state)
+        if self.settling is not None:
+            self.settling.load(state)
         self._take_over()
 
     def totals(self) -> Totals:
@@ -202,7 +254,7 @@ class MeshlessGas(Component):
         return view(self.state, self.domain, self.fluxes, self.params)
 
     def walls(self) -> Fields:
-        """Walls of a box."""
+        """Walls of a box, or the wall of a body."""
         return walls(self.params)
 
     def items(self) -> int:

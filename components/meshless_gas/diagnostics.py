@@ -1,16 +1,16 @@
-"""What is told of a gas: balances, errors, probes, and why a step failed."""
-
-from collections.abc import Sequence
+"""What is told of a gas: balances, errors, and why a step failed."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import INFLOW, INNER, OUTFLOW, Cloud
+from quintet.components.meshless_gas.clouds.cloud import INNER, Cloud
 from quintet.components.meshless_gas.exact import states_at
-from quintet.components.meshless_gas.params import Gas, MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.interfaces.component import Array, Fields, Totals
+
+ROUNDING = 1e-12  # of the mass flow at the speed of sound
 
 
 def held(state: State, cloud: Cloud) -> Array:
@@ -26,12 +26,8 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
     mass, energy = state.begun[0], state.begun[4]
     scale = np.array([mass, *[np.sqrt(2.0 * mass * energy)] * 3, energy])
     drift = (now - state.begun - entered) / scale
-    rows = domain.bounding[np.isin(cloud.kind[domain.bounding], (INFLOW, OUTFLOW))]
-    through = (cloud.areas[rows] * fluxes.primitive[rows, 1:4]).sum(axis=1)
-    through *= fluxes.primitive[rows, 0]
+    through = _through(domain, fluxes.primitive, gamma)
     inflow, outflow = through[through > 0.0].sum(), -through[through < 0.0].sum()
-    inner = domain.inner
-    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
     return {
         "balance.mass": now[:1],
         "balance.momentum": now[None, 1:4],
@@ -45,8 +41,23 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
         "balance.inflow": np.array([inflow]),
         "balance.outflow": np.array([outflow]),
         "balance.imbalance": np.array([(inflow - outflow) / inflow if inflow > 0.0 else 0.0]),
-        "balance.change": np.array([np.sqrt((rate * rate).mean())]),
+        "balance.change": np.array([density_change(state, domain, fluxes)]),
     }
+
+
+def density_change(state: State, domain: Domain, fluxes: Fluxes) -> float:
+    """Root mean square of the relative change of densities in the steps that nodes bear."""
+    inner = domain.inner
+    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
+    return float(np.sqrt((rate * rate).mean()))
+
+
+def _through(domain: Domain, primitive: Array, gamma: float) -> Array:
+    """Mass (a,) kg/s that enters at boundary nodes; 0 where it is rounding, as at walls."""
+    states, areas = primitive[domain.bounding], domain.cloud.areas[domain.bounding]
+    through = states[:, 0] * (areas * states[:, 1:4]).sum(axis=1)
+    sound = np.sqrt(gamma * states[:, 4] * states[:, 0]) * np.abs(areas).sum(axis=1)
+    return np.where(np.abs(through) > ROUNDING * sound, through, 0.0)
 
 
 def errors(params: MeshlessGasParams, state: State, cloud: Cloud) -> Fields:
@@ -64,14 +75,6 @@ def errors(params: MeshlessGasParams, state: State, cloud: Cloud) -> Fields:
     }
 
 
-def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]]) -> NDArray[np.int64]:
-    """Nodes that are nearest to some places."""
-    positions = cloud.positions[: cloud.nodes]
-    return np.array(
-        [int(((positions - np.array(one)) ** 2).sum(axis=1).argmin()) for one in places], np.int64
-    )
-
-
 def temperature(primitive: Array, gas: Gas) -> Array:
     """Temperature (n,) K."""
     return np.asarray(primitive[:, 4] / (gas.gas_constant * primitive[:, 0]))
@@ -81,19 +84,6 @@ def mach(primitive: Array, gas: Gas) -> Array:
     """Mach number (n,)."""
     square = (primitive[:, 1:4] ** 2).sum(axis=1)
     return np.asarray(np.sqrt(square * primitive[:, 0] / (gas.gamma * primitive[:, 4])))
-
-
-def probes(rows: NDArray[np.int64], cloud: Cloud, state: State, gas: Gas) -> Fields:
-    """Fields of the port `probes`."""
-    found = state.primitive[rows]
-    return {
-        "probes.position": cloud.positions[rows],
-        "probes.velocity": found[:, 1:4].copy(),
-        "probes.density": found[:, 0].copy(),
-        "probes.pressure": found[:, 4].copy(),
-        "probes.temperature": temperature(found, gas),
-        "probes.mach": mach(found, gas),
-    }
 
 
 def totals(state: State, cloud: Cloud) -> Totals:

@@ -12,6 +12,7 @@ from quintet.components.shared.numba_options import FAST
 # Always part of the loop that calls it, so that vectors are made of it.
 INLINED = FAST | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
 SENSED, WIDTH = 0.2, 0.3  # pressure ratio below which slopes vanish, and over which they grow
+COLLIDING = 4.0  # ram pressure over pressure above which streams collide
 LEAST = 0.05  # of the smaller of two densities or pressures: below it slopes are left out
 GATE = 0.5  # Mach number of the flow into a wall above which the wall pushes back
 
@@ -39,13 +40,15 @@ def half_step(upwind, across, threshold):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def smoothness(lowest_i, lowest_j, pressure_i, pressure_j):  # type: ignore[no-untyped-def]
+def smoothness(lowest_i, lowest_j, pressure_i, pressure_j, ram):  # type: ignore[no-untyped-def]
     """Share of the slopes that is kept: 0 where the least pressure near is far below the pair's.
 
     A jump within a node's cloud spoils its gradient, and with it the mirror image that the limiter
-    compares with; the limiter cannot see it.
+    compares with; the limiter cannot see it. Streams that collide count with their `ram` pressure
+    ρ Δu² [Pa] before there is a shock between them, where it is `COLLIDING` times the pressure.
     """
-    ratio = min(lowest_i, lowest_j) / max(pressure_i, pressure_j)
+    most = max(pressure_i, pressure_j)
+    ratio = min(lowest_i, lowest_j) / (most + max(ram - COLLIDING * most, 0.0))
     return min(max((ratio - SENSED) / WIDTH, 0.0), 1.0)
 
 

@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from quintet.components.meshless_gas.clouds.params import Box
+from quintet.components.meshless_gas.boundaries import HOLDING, Boundary, Gas, GasState
+from quintet.components.meshless_gas.clouds.params import Box, Plate, Sphere
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -14,120 +15,11 @@ from quintet.interfaces.params import (
     parameters,
 )
 
-
-@parameters
-class Gas:
-    """A perfect gas.
-
-    Parameters
-    ----------
-    gamma : 1
-        Ratio of the specific heats.
-    gas_constant : J/(kg K)
-        p = ρ R T.
-    """
-
-    gamma: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.4
-    gas_constant: Positive = 287.05
-
-
-@parameters
-class GasState:
-    """A state of the gas.
-
-    Parameters
-    ----------
-    density : kg/m3
-        This or the temperature.
-    temperature : K
-        This or the density.
-    velocity : m/s
-        In two dimensions along x and z.
-    pressure : Pa
-        Of nothing it would have no temperature.
-    """
-
-    density: Positive | None = None
-    temperature: Positive | None = None
-    velocity: Vector = (0.0, 0.0, 0.0)
-    pressure: Positive
-
-    def __post_init__(self) -> None:
-        if (self.density is None) == (self.temperature is None):
-            raise ValueError("a state of the gas needs density or temperature, one of them.")
-
-    def primitive(self, gas: Gas) -> tuple[float, float, float, float, float]:
-        """Density, velocity and pressure."""
-        density = self.density
-        if density is None:
-            assert self.temperature is not None
-            density = self.pressure / (gas.gas_constant * self.temperature)
-        return density, *self.velocity, self.pressure
-
-    def fastest(self, gas: Gas) -> float:
-        """Speed [m/s] of its fastest wave."""
-        density, u, v, w, pressure = self.primitive(gas)
-        return math.hypot(u, v, w) + math.sqrt(gas.gamma * pressure / density)
-
-
-@parameters
-class TotalState:
-    """Gas at rest, from which an inflow comes without losses.
-
-    Parameters
-    ----------
-    pressure : Pa
-        At rest.
-    temperature : K
-        At rest.
-    direction : 1
-        Of the flow; of any length above 0.
-    """
-
-    pressure: Positive
-    temperature: Positive
-    direction: Vector = (1.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        if not any(self.direction):
-            raise ValueError("total: direction must not be 0. Say where the gas flows.")
-
-
-@parameters
-class Boundary:
-    """What is at a part of the boundary.
-
-    Parameters
-    ----------
-    kind
-        "periodic" and "symmetry" have images of what is within beyond them; a "slip" wall lets the
-        gas pass along it; "inflow" has the state that is given, "outflow" that of the gas which
-        leaves.
-    state
-        Of an inflow: all of it, as of what flows faster than sound.
-    total
-        Of an inflow, in place of the state: it then has the pressure of the gas that it meets.
-    pressure : Pa
-        Beyond an outflow, where it is slower than sound; if not given nothing comes from there.
-    """
-
-    kind: Literal["periodic", "symmetry", "slip", "inflow", "outflow"]
-    state: GasState | None = None
-    total: TotalState | None = None
-    pressure: Positive | None = None
-
-    def __post_init__(self) -> None:
-        said = [one for one in ("state", "total", "pressure") if getattr(self, one) is not None]
-        wrong = {
-            "inflow": len(said) != 1 or "pressure" in said,
-            "outflow": bool(set(said) - {"pressure"}),
-        }
-        if wrong.get(self.kind, bool(said)):
-            need = {"inflow": "state or total", "outflow": "pressure or nothing"}
-            raise ValueError(
-                f"a boundary of kind {self.kind} takes {need.get(self.kind, 'nothing')}; found "
-                f"{' and '.join(said) or 'nothing'}. Correct it."
-            )
+# Boundaries of clouds in layers.
+NAMES = {
+    "sphere": ("wall", "far", "exit"),
+    "plate": ("wall", "ahead", "inlet", "far", "exit"),
+}
 
 
 @parameters
@@ -188,6 +80,49 @@ class Vortex:
 
 
 @parameters
+class Steady:
+    """When a flow counts as settled: from then on the gas is left as it is.
+
+    Parameters
+    ----------
+    steps : 1
+        Between two looks.
+    change : 1
+        Largest root mean square of the densities' relative change in a step.
+    force : 1
+        Largest change of the force on walls from look to look, over it.
+    """
+
+    steps: Annotated[int, Field(ge=1)] = 200
+    change: Positive = 1e-5
+    force: Positive = 1e-4
+
+
+@parameters
+class Front:
+    """A straight line on which a front is looked for.
+
+    Parameters
+    ----------
+    begin, end : m
+        Of the line.
+    field
+        What the front is a jump of.
+    level : kg/m3 or Pa
+        Of the field: the front is where it is first passed, from the line's begin on.
+    """
+
+    begin: Vector
+    end: Vector
+    field: Literal["density", "pressure"] = "density"
+    level: Positive
+
+    def __post_init__(self) -> None:
+        if self.begin == self.end:
+            raise ValueError("fronts: a line must end elsewhere than it begins. Correct it.")
+
+
+@parameters
 class MeshlessGasParams:
     """A gas on a cloud of nodes, and how it is computed.
 
@@ -197,10 +132,20 @@ class MeshlessGasParams:
         Which gas.
     dimensions
         In 2 the gas lies in the plane of x and z, and is 1 m deep.
+    axisymmetric
+        In 2 dimensions: whether the plane is a meridional one, z the distance from the axis x, and
+        sums are those of whole rings.
     box
-        A box of nodes.
+        A box of nodes; this, a sphere or a plate.
+    sphere
+        Nodes round a sphere; in 2 dimensions axisymmetric.
+    plate
+        Nodes over a flat plate, in 2 dimensions.
     boundaries
-        What is at the faces of a box, ``x-`` to ``z+``; periodic where nothing is said.
+        What is at the faces of a box, ``x-`` to ``z+``, periodic where nothing is said; or at the
+        named boundaries of another cloud.
+    viscous
+        Whether friction and heat conduction are computed, as walls that hold the gas need.
     initial
         State at the start.
     zones
@@ -210,7 +155,7 @@ class MeshlessGasParams:
     vortex
         In the initial state.
     neighbours : 1
-        Of each node; the nearest.
+        Of each node of a box; the nearest.
     order
         Of the scheme in space.
     limiter_threshold : 1
@@ -221,28 +166,88 @@ class MeshlessGasParams:
     local_steps
         Whether each node takes the step that it bears, towards a steady flow: times are then those
         of the node of the shortest step.
+    steady
+        When the flow has settled; the force on the walls is then what is given.
     probes : m
         Places; of the node that is nearest to each the state is given.
+    fronts
+        Lines on which shocks are looked for.
     """
 
     gas: Gas = Gas()
     dimensions: Literal[2, 3] = 2
-    box: Box
+    axisymmetric: bool = False
+    box: Box | None = None
+    sphere: Sphere | None = None
+    plate: Plate | None = None
     boundaries: dict[str, Boundary] = Field(default_factory=dict)
     initial: GasState | None = None
     zones: tuple[Zone, ...] = ()
     riemann: Riemann | None = None
     vortex: Vortex | None = None
+    viscous: bool = False
     neighbours: Annotated[int, Field(ge=2, le=64)] = 9
     order: Literal[1, 2] = 2
     limiter_threshold: NotNegative = 1e-6
     courant: Positive = 0.7
     local_steps: bool = False
+    steady: Steady | None = None
     probes: tuple[Vector, ...] = ()
+    fronts: tuple[Front, ...] = ()
 
     def __post_init__(self) -> None:
-        for sentence in (*self._wrong_states(), *self._wrong_faces()):
+        for sentence in (*self._wrong_clouds(), *self._wrong_states(), *self._wrong_walls()):
             raise ValueError(sentence)
+        for sentence in self._wrong_faces() if self.box is not None else self._wrong_names():
+            raise ValueError(sentence)
+
+    def _wrong_clouds(self) -> list[str]:
+        """What does not fit between the cloud and the dimensions."""
+        found = []
+        said = [name for name in ("box", "sphere", "plate") if getattr(self, name) is not None]
+        if len(said) != 1:
+            found.append(
+                f"a gas needs a box, a sphere or a plate of nodes, one of them; found "
+                f"{' and '.join(said) or 'none'}. Correct it."
+            )
+        if self.axisymmetric and (self.dimensions == 3 or self.sphere is None):
+            found.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")
+        if self.sphere is not None and self.dimensions == 2 and not self.axisymmetric:
+            found.append("a sphere in 2 dimensions must be axisymmetric. Say axisymmetric = true.")
+        if self.vortex is not None and self.box is None:
+            found.append("a vortex drifts through a periodic box. Give a box.")
+        if self.plate is not None and self.dimensions == 3:
+            found.append("a plate is of 2 dimensions. Leave dimensions out.")
+        return found
+
+    def _wrong_walls(self) -> list[str]:
+        """What does not fit between walls and friction."""
+        holding = [n for n, one in self.boundaries.items() if one.kind in HOLDING]
+        if holding and not self.viscous:
+            return [f"boundaries.{holding[0]} holds the gas by friction. Say viscous = true."]
+        return []
+
+    def _wrong_names(self) -> list[str]:
+        """What does not fit among the boundaries of a cloud in layers."""
+        names = NAMES["sphere" if self.sphere is not None else "plate"]
+        found = [
+            f"boundaries.{name} is not known. Known here: {', '.join(names)}."
+            for name in self.boundaries
+            if name not in names
+        ]
+        found += [
+            f"boundaries.{name} must be given. Say what is there."
+            for name in names
+            if name not in self.boundaries
+        ]
+        found += [
+            f"boundaries.{name} of a cloud in layers cannot be {one.kind}. Take a wall or a flow."
+            for name, one in self.boundaries.items()
+            if one.kind in ("periodic", "symmetry")
+        ]
+        if not found and self.sphere is not None and self.boundaries["far"].state is None:
+            found.append("boundaries.far must be an inflow of a given state round a sphere.")
+        return found
 
     def _wrong_states(self) -> list[str]:
         """What does not fit among the states at the start."""
@@ -264,6 +269,7 @@ class MeshlessGasParams:
 
     def _wrong_faces(self) -> list[str]:
         """What does not fit among the faces of the box."""
+        assert self.box is not None
         found, axes = [], ("xz" if self.dimensions == 2 else "xyz")
         names = [axis + side for axis in axes for side in "-+"]
         for name in self.boundaries:
@@ -292,12 +298,19 @@ class MeshlessGasParams:
     @property
     def planar(self) -> bool:
         """Whether nothing depends on y, nor moves along it."""
-        return self.dimensions == 2
+        return self.dimensions == 2 and not self.axisymmetric
+
+    @property
+    def cloud(self) -> Box | Sphere | Plate:
+        """The table that describes the nodes."""
+        found = self.box or self.sphere or self.plate
+        assert found is not None
+        return found
 
     @property
     def expected_count(self) -> int:
         """About how many nodes there will be."""
-        return self.box.expected_count(self.dimensions)
+        return self.cloud.expected_count(self.dimensions)
 
     @property
     def expected_step(self) -> float:
@@ -307,4 +320,10 @@ class MeshlessGasParams:
         if self.riemann is not None:
             states += [self.riemann.left, self.riemann.right]
         fastest = max(one.fastest(self.gas) for one in states if one is not None)
-        return 0.5 * self.courant * self.box.spacing / fastest
+        return 0.5 * self.courant * self.cloud.finest_spacing / fastest
+
+
+def has_walls(params: MeshlessGasParams) -> bool:
+    """Whether what walls feel is given: of bodies, and of walls that hold the gas."""
+    holding = any(one.kind in HOLDING for one in params.boundaries.values())
+    return params.box is None or holding

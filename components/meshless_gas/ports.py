@@ -1,13 +1,11 @@
 """What a gas takes and gives: balances; its error where the solution is known; probes."""
 
-from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import POSITION, TEMPERATURE, VELOCITY
-from quintet.interfaces.units import add_unit
+from quintet.interfaces.ports import TEMPERATURE, VELOCITY
 
-add_unit("kg/m4")  # of a density's gradient
-
+POSITION = Field("position", (3,), "m")
 DENSITY = Field("density", (), "kg/m3")
 PRESSURE = Field("pressure", (), "Pa")
 MACH = Field("mach", (), "1")
@@ -17,7 +15,8 @@ SHOWS = (
     VELOCITY,
     TEMPERATURE,
     MACH,
-    Field("density_gradient", (), "kg/m4"),  # its size, as in a schlieren picture
+    Field("schlieren", (), "1"),
+    Field("spacing", (), "m"),  # of nodes
 )
 # Of all nodes, one row; sums of densities over their volumes.
 BALANCE = Port(
@@ -53,10 +52,47 @@ ERROR = Port(
 )
 # Of the node nearest to each place.
 PROBES = Port("probes", fields=(POSITION, VELOCITY, DENSITY, PRESSURE, TEMPERATURE, MACH))
+# Nodes of a body's wall, or of walls that hold the gas.
+WALL = Port(
+    "wall",
+    fields=(
+        POSITION,
+        PRESSURE,
+        Field("friction", (3,), "Pa"),
+        Field("heat_flux", (), "W/m2"),  # into the wall
+    ),
+)
+
+
+def body(params: MeshlessGasParams) -> Port:
+    """Sums over walls, less the pressure of the stream; of whole rings where it has an axis."""
+    names = ["settled"]  # whether the flow is steady: 1 if it is
+    if params.box is None:
+        names.append("drag_coefficient")  # by the cross-section of a sphere, the area of a plate
+    if params.sphere is not None:
+        names.append("pitot_ratio")  # pressure where the flow meets it, over that of Rayleigh
+        if params.boundaries["wall"].temperature is not None:
+            names.append("heat_ratio")  # heat flux there, over that of Fay and Riddell
+    fields = (Field("force", (3,), "N"), Field("heat", (), "W"))
+    return Port("body", fields=(*fields, *(Field(name, (), "1") for name in names)))
+
+
+# On each line, where a front is; and the angle to x, about y, of the straight line that fits best
+# through this front and all before it, 0 of the first.
+FRONTS = Port(
+    "fronts",
+    fields=(
+        POSITION,
+        Field("distance", (), "m"),  # from where the line begins
+        Field("angle", (), "rad"),
+        Field("found", (), "1"),  # whether there is one; else it is said to be at the line's end
+    ),
+)
 
 
 def ports(params: MeshlessGasParams) -> Ports:
     """Ports taken and given."""
     known = params.riemann is not None or params.vortex is not None
-    given = (BALANCE, *((ERROR,) if known else ()), *((PROBES,) if params.probes else ()))
-    return (), given
+    read = (*((PROBES,) if params.probes else ()), *((FRONTS,) if params.fronts else ()))
+    felt = (WALL, body(params)) if has_walls(params) else ()
+    return (), (BALANCE, *((ERROR,) if known else ()), *read, *felt)

@@ -6,8 +6,32 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.faces import box, polygons
+
+DARKEST = 15.0  # exponent of the steepest gradient
+
+
+def schlieren(gradient: Array) -> Array:
+    """Brightness of a numerical schlieren picture, 1 where density is uniform.
+
+    Parameters
+    ----------
+    gradient : (n,) float array, kg/m4
+        Size of the density's gradient.
+
+    Returns
+    -------
+    (n,) float array
+
+    References
+    ----------
+    Quirk, Int. J. Numer. Meth. Fluids 18 (1994) 555.
+    """
+    largest = float(gradient.max(initial=0.0))
+    if not largest > 0.0:
+        return np.ones_like(gradient)
+    return np.asarray(np.exp(-DARKEST * gradient / largest))
 
 
 def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams) -> Fields:
@@ -16,17 +40,20 @@ def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams
     gradient = fluxes.gradients[:nodes, 0]
     return {
         "points": domain.cloud.positions[:nodes].copy(),
+        "spacing": domain.cloud.spacing[:nodes].copy(),
         "density": state.primitive[:, 0].copy(),
         "pressure": state.primitive[:, 4].copy(),
         "velocity": state.primitive[:, 1:4].copy(),
         "temperature": temperature(state.primitive, params.gas),
         "mach": mach(state.primitive, params.gas),
-        "density_gradient": np.sqrt((gradient * gradient).sum(axis=1)),
+        "schlieren": schlieren(np.sqrt((gradient * gradient).sum(axis=1))),
     }
 
 
 def walls(params: MeshlessGasParams) -> Fields:
-    """Faces of the box that are walls."""
+    """Faces of the box that are walls; of clouds round bodies none."""
+    if params.box is None:
+        return {}
     faces = [name for name in params.boundaries if params.kind_of(name) == "slip"]
     low, high = list(params.box.lowest), list(params.box.highest)
     if params.planar:

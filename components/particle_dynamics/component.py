@@ -39,6 +39,10 @@ class ParticleDynamics(Component):
         """Static fields of what is moved."""
         return self.moved.describe()
 
+    def prepare(self, fields: Fields) -> None:
+        """Compile the kernels of a lattice."""
+        self.moved.prepare(fields)
+
     def stable_dt(self) -> float:
         """Largest step of what is moved."""
         return self.moved.stable_dt()

@@ -25,6 +25,7 @@ from quintet.interfaces.component import (
     Fields,
     Keys,
     Totals,
+    fields_of,
 )
 from quintet.interfaces.errors import StepError
 
@@ -64,6 +65,14 @@ class LatticeDynamics(Component):
         if not len(self.built.wall):
             return {}
         return {"wall_heat.position": self.built.model.bathed.rest[self.built.wall]}
+
+    def prepare(self, fields: Fields) -> None:
+        """Compile all kernels: try one step, and come back."""
+        kept = self.save()
+        self.take(fields)
+        self.step(self._step())
+        self.give(frozenset(fields_of(self.gives)))
+        self.load(kept)
 
     def stable_dt(self) -> float:
         """Return so many steps at once as are asked for."""

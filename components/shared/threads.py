@@ -20,12 +20,19 @@ class Team:
         self.size, self.fewest, self.shares = size, fewest, shares
         self._pool = ThreadPoolExecutor(size - 1) if size > 1 else None  # and who calls `run`
 
-    def run(self, kernel: Callable[..., Any], rows: int, *arguments: Any) -> list[Any]:
-        """Call ``kernel(first, last, *arguments)`` on shares of the rows; return every result."""
+    def ends(self, rows: int) -> list[int]:
+        """Where the shares of some rows begin and end, from 0 on."""
         shares = min(self.shares * self.size, rows // self.fewest)
         if self._pool is None or shares < 2:
+            return [0, rows]
+        return [rows * share // shares for share in range(shares + 1)]
+
+    def run(self, kernel: Callable[..., Any], rows: int, *arguments: Any) -> list[Any]:
+        """Call ``kernel(first, last, *arguments)`` on shares of the rows; return every result."""
+        ends = self.ends(rows)
+        shares = len(ends) - 1
+        if self._pool is None or shares < 2:
             return [kernel(0, rows, *arguments)]
-        ends = [rows * share // shares for share in range(shares + 1)]
         found: list[Any] = [None] * shares
         left = iter(range(shares))
 

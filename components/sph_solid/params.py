@@ -7,7 +7,6 @@ from pydantic import Field
 
 from quintet.components.shared.materials.params import Material, MaterialName, material
 from quintet.interfaces.params import (
-    Fraction,
     NotNegative,
     Number,
     Positive,
@@ -210,7 +209,7 @@ class SphSolidParams:
     glued: tuple[Region, ...] = ()
     gauges: tuple[Vector, ...] = ()
     levels: tuple[Level, ...] = ()
-    courant: Fraction = 0.5
+    courant: Positive = 0.5
     viscosity_linear: NotNegative = 1.0
     viscosity_quadratic: NotNegative = 2.0
     kernel_correction: bool = False
@@ -224,7 +223,6 @@ class SphSolidParams:
                 any(one.body >= len(self.bodies) for one in self.levels),
                 f"levels: body must be below {len(self.bodies)}, their number.",
             ),
-            (self.courant == 0.0, "courant must be above 0; found 0."),
             (
                 len(set(sides)) < len(sides),
                 f"symmetry: a side must have one plane at most; found {', '.join(sides)}.",

@@ -150,6 +150,7 @@ def _within(shown: Shown, region: Region | None) -> Shown:
         None if shown.values is None else shown.values[order],
         [shown.faces[k] for k in faces],
         None if shown.face_values is None else shown.face_values[faces],
+        None if shown.spacing is None else shown.spacing[order],
     )
 
 

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from quintet.coupler.report.field_drawing import draw_field, is_field
 from quintet.coupler.report.view_steps import Quantity, Shown, spacing
 from quintet.interfaces.component import Array
 
 LIGHT = np.array([-0.4, -0.8, 0.6])  # towards the light; the eye looks along +y
 PLAIN = ("#ccaa7a", "#8fb0c9", "#b5c98f", "#c99a8f")  # of what no field colours, by component
 MAPS = ("viridis", "plasma", "cividis", "inferno")  # of quantities
+PHOTOGRAPHS = ("schlieren", "shadowgraph")  # quantities in grey, as on photographs of flows
 WALL, BACK = "#444444", "#9aa5ad"  # walls seen from their edge, and from their face
 BEHIND = 0.12  # opacity of the shade of walls
 CLIPPED = 0.5  # % of all values that may be beyond either end of the colours
@@ -51,7 +53,8 @@ def colour_scales(views: Sequence[Sequence[Shown]]) -> dict[Quantity, Any]:
         if not high > low:
             low, high = (0.0, 1.0) if not high else (high - abs(high), high + abs(high))
         norm = Normalize(float(low), float(high))
-        scales[one] = ScalarMappable(norm, MAPS[len(scales) % len(MAPS)])
+        colours = "gray" if one.name in PHOTOGRAPHS else MAPS[len(scales) % len(MAPS)]
+        scales[one] = ScalarMappable(norm, colours)
     return scales
 
 
@@ -117,6 +120,9 @@ def draw_view(
 ) -> None:
     """Draw all components: bodies last, for what is in front of them would hide them."""
     for place, shown in enumerate(view):
+        if is_field(shown):
+            draw_field(panel, shown, scales)
+            continue
         _draw_points(panel, shown, scales, sizes[shown.name], PLAIN[place % len(PLAIN)])
     for place, shown in enumerate(view):
         _draw_faces(panel, shown, scales, PLAIN[place % len(PLAIN)])
@@ -196,6 +202,9 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Array]) -> No
             if shown.face_values is not None and shown.quantity:
                 front, by = "none", f" (coloured by {shown.quantity.name})"
             handles.append(Patch(facecolor=front, edgecolor="black", label=shown.name + by))
+        elif is_field(shown) and shown.quantity:
+            by = f"{shown.name}: {shown.quantity.name}"
+            handles.append(Patch(facecolor="none", edgecolor="#999999", label=by))
         elif len(shown.points) and not _is_named(shown):
             by = f" (coloured by {shown.quantity.name})" if coloured and shown.quantity else ""
             what = "spheres" if shown.radius.any() else "particles" if len(shown.points) > 1 else ""

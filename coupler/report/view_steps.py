@@ -12,6 +12,7 @@ from quintet.interfaces.component import Array
 
 SAMPLE = 24  # points from whose nearest neighbours the spacing is estimated; fewer have none
 DISPLACEMENT = "displacement"  # from where points were at the start
+SPACING = "spacing"  # of nodes that sample a continuum; points without it are particles
 NAMES = {"velocity": "speed"}  # of the magnitude of a vector
 
 
@@ -39,6 +40,7 @@ class Shown:
     values: Array | None  # (n,)
     faces: list[Array]  # (k, 3) m each
     face_values: Array | None  # (faces,)
+    spacing: Array | None = None  # (n,) m, of nodes that sample a continuum
 
 
 def view_files(run: Path) -> list[Path]:
@@ -96,6 +98,7 @@ def read(
         values[loose] if values is not None and over_points else None,
         corners_of(view),
         _of_faces(values, cells, over_points) if name in fields else None,
+        view[SPACING][loose] if SPACING in view else None,
     )
 
 

@@ -1,12 +1,16 @@
 """Hotness along edges against finite elements: ``python -m quintet.scenarios.hot_bar.edges RUN``.
 
-RUN is the folder of a run of this scene; several of the same lattice are an ensemble. Prints the
-L2 and the largest difference of each and of their mean, and draws `edges.png` beside the first run.
+RUN is the folder of a run of this scene or a preset; those of one lattice are an ensemble. Prints
+the L2 and the largest difference of each and of their mean, the level in the whole run and in its
+thirds. Draws `edges_160.png`, by the number of points, beside the first run, and `sizes.png` of
+several lattices.
 """
 
+import json
 import sys
 import tomllib
 from pathlib import Path
+from typing import NamedTuple
 
 import matplotlib
 import numpy as np
@@ -29,6 +33,21 @@ def hotness(folder: Path) -> Array:
     return np.stack([grid[:, -1, -1], grid[:, 0, 0]])
 
 
+def by_thirds(folder: Path) -> Array:
+    """Mean hotness (3,) of what is neither driven nor frozen in each third of a run.
+
+    Over the hotness of the hottest point in the whole run: the mean of the three is the level.
+    """
+    lattice = tomllib.loads((folder / "scene.toml").read_text())["components"]["bar"]["lattice"]
+    bulk = np.ones([cells + 1 for cells in lattice["cells"]], bool)
+    bulk[0, -2:, -1] = bulk[-1, 0, 0] = bulk[-1, 0, -1] = False
+    with Recording(folder) as recording:
+        mean = recording.field("bar", "points.hotness")  # (windows + 1, n) J, since the start
+    rows = np.arange(4) * (len(mean) - 1) // 3
+    own = np.diff(rows[:, None] * mean[rows], axis=0) / np.diff(rows)[:, None]
+    return np.asarray(own[:, bulk.ravel()].mean(axis=1) / mean[-1].max())
+
+
 def reference(points: int) -> tuple[Array, Array]:
     """Places (k,) m and temperatures (2, k) of finite elements for a lattice of so many points."""
     rows = np.loadtxt(Path(__file__).with_name("edges.csv"), delimiter=",", comments="#")
@@ -36,17 +55,26 @@ def reference(points: int) -> tuple[Array, Array]:
     return mine[0][:, 2], np.stack([one[:, 3] for one in mine])
 
 
-def main(folders: list[str]) -> None:
-    """Print and draw."""
-    found = np.stack([hotness(Path(one)) for one in folders])
-    along = found.shape[2]
-    points = along * ((along - 1) // 3 + 1) ** 2
+class Ensemble(NamedTuple):
+    """L2 of the runs of one lattice, and the processor time [s] of each."""
+
+    points: int
+    errors: Array
+    seconds: Array
+
+
+def compare(points: int, folders: list[Path], out: Path) -> Ensemble:
+    """Print how the runs of one lattice differ from finite elements, and draw their edges."""
     place, exact = reference(points)
+    found = np.stack([hotness(one) for one in folders])
     gap = found - exact
     each = np.sqrt((gap**2).mean(axis=(1, 2)))
     for name, one, largest in zip(folders, each, np.abs(gap).max(axis=(1, 2)), strict=True):
         print(f"{name}: L2 {one:.3f}, largest {largest:.3f}")
     mean = np.sqrt((gap.mean(axis=0) ** 2).mean())
+    thirds = np.stack([by_thirds(one) for one in folders])
+    level = thirds.mean(axis=1)
+    print(f"level {level.mean():.3f} ± {level.std():.3f}; thirds {thirds.mean(axis=0).round(2)}")
     print(f"{points} points: L2 {each.mean():.3f} ± {each.std():.3f}; of their mean {mean:.3f}")
     figure, axes = plt.subplots(1, 2, figsize=(10, 4), sharey=True)
     for edge, axis in enumerate(axes):
@@ -59,7 +87,43 @@ def main(folders: list[str]) -> None:
     axes[0].set_ylabel("hotness over that of the hottest point")
     axes[0].legend()
     figure.tight_layout()
-    figure.savefig(Path(folders[0]).parent / "edges.png", dpi=90)
+    figure.savefig(out / f"edges_{points}.png", dpi=90)
+    return Ensemble(points, each, np.array([timing(one)["cpu"] for one in folders]))
+
+
+def timing(folder: Path) -> dict[str, float]:
+    """What the bar of a run took, and its number of points."""
+    results = json.loads((folder / "results.json").read_text())
+    found: dict[str, float] = results["timing"]["components"]["bar"]
+    return found
+
+
+def draw_sizes(ensembles: list[Ensemble], out: Path) -> None:
+    """Draw error over the number of points and over processor time."""
+    means = [float(one.errors.mean()) for one in ensembles]
+    scatter = [float(one.errors.std()) for one in ensembles]
+    spent = [float(one.seconds.mean()) for one in ensembles]
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4), sharey=True)
+    labelled = (([one.points for one in ensembles], "points"), (spent, "processor time [s]"))
+    for axis, (places, label) in zip(axes, labelled, strict=True):
+        axis.errorbar(places, means, scatter, fmt="o-", capsize=3)
+        axis.set(xscale="log", xlabel=label, ylim=(0.0, None))
+    axes[0].set_ylabel("L2 of hotness against finite elements")
+    figure.tight_layout()
+    figure.savefig(out / "sizes.png", dpi=90)
+
+
+def main(folders: list[str]) -> None:
+    """Print and draw."""
+    runs = [Path(one) for one in folders]
+    sizes = sorted({int(timing(one)["items"]) for one in runs})
+    out = runs[0].parent
+    ensembles = [
+        compare(points, [one for one in runs if timing(one)["items"] == points], out)
+        for points in sizes
+    ]
+    if len(sizes) > 1:
+        draw_sizes(ensembles, out)
 
 
 if __name__ == "__main__":

@@ -12,9 +12,8 @@ def found(run_scene: Run) -> dict:
     return run_scene("flyer", "--preset", "quick")
 
 
-@pytest.mark.parametrize("name", ["stress", "arrival", "spall_plane", "spalled_layer", "target"])
-def test_shock_and_spall_are_where_the_equation_of_state_has_them(found: dict, name: str) -> None:
-    assert found["by_name"][name]["met"], found["by_name"][name]
+def test_shock_release_and_spall_are_where_the_material_has_them(found: dict) -> None:
+    assert all(one["met"] for one in found["expect"]), found["expect"]
 
 
 def test_energy_is_kept_through_shock_release_and_spall(found: dict) -> None:
@@ -22,7 +21,7 @@ def test_energy_is_kept_through_shock_release_and_spall(found: dict) -> None:
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("preset", ["steel", "fast"])
+@pytest.mark.parametrize("preset", ["steel", "fast", "thick"])
 def test_other_materials_and_speeds_are_as_close(run_scene: Run, preset: str) -> None:
     found = run_scene("flyer", "--preset", preset)
     assert all(one["met"] for one in found["expect"]), found["expect"]

@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from quintet.components.fe_plate.meshes.params import (
+    Cutout,
     Cylinder,
     MeshFile,
     count_elements,
@@ -33,6 +34,8 @@ class ConductingPart:
         Corners of a box.
     elements : 1
         How many along x, y and z.
+    cutout
+        What is left out of a box.
     cylinder, mesh
         In place of the box.
     conductivity : W/(m K)
@@ -48,6 +51,7 @@ class ConductingPart:
     lowest: Vector | None = None
     highest: Vector | None = None
     elements: tuple[Count, Count, Count] | None = None
+    cutout: Cutout | None = None
     cylinder: Cylinder | None = None
     mesh: MeshFile | None = None
     conductivity: Positive

@@ -55,14 +55,14 @@ def transposed(r):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def assume_strains(points, base, work, law):  # type: ignore[no-untyped-def]
+def assume_strains(points, work, law):  # type: ignore[no-untyped-def]
     """Replace the rates of strain within the velocity gradients by the assumed ones."""
     for k in range(LANES):
         l00, l01, l02, l10, l11, l12, l20, l21, l22 = nine(work, GRADIENT, k)
         strain = l00, l11, l22, 0.5 * (l01 + l10), 0.5 * (l12 + l21), 0.5 * (l20 + l02)
         put_six(work, LOCAL * LANES + k, turned(strain, nine(work, FRAME, k)))
     for first in range(0, LANES, POINTS):
-        mix(work, first, lateral(points, base, first, law), True)
+        mix(work, first, lateral(points, first, law), True)
     for k in range(LANES):
         l00, l01, l02, l10, l11, l12, l20, l21, l22 = nine(work, GRADIENT, k)
         wxy, wyz, wzx = 0.5 * (l01 - l10), 0.5 * (l12 - l21), 0.5 * (l20 - l02)
@@ -73,24 +73,24 @@ def assume_strains(points, base, work, law):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def spread_stresses(points, base, work, law):  # type: ignore[no-untyped-def]
+def spread_stresses(points, work, law):  # type: ignore[no-untyped-def]
     """Replace stresses by those that do the same work on the gradients of the displacements."""
     for k in range(LANES):
         stress = six(work, STRESS * LANES + k)
         put_six(work, LOCAL * LANES + k, turned(stress, nine(work, FRAME, k)))
     for first in range(0, LANES, POINTS):
-        mix(work, first, lateral(points, base, first, law), False)
+        mix(work, first, lateral(points, first, law), False)
     for k in range(LANES):
         back = turned(six(work, LOCAL * LANES + k), transposed(nine(work, FRAME, k)))
         put_six(work, STRESS * LANES + k, back)
 
 
 @njit(**INLINED)
-def lateral(points, base, first, law):  # type: ignore[no-untyped-def]
+def lateral(points, first, law):  # type: ignore[no-untyped-def]
     """Lateral strain over that of bending: ν/(1 - ν) = (3K - 2G)/(3K + 4G); 1 after yielding."""
     most = 0.0
     for k in range(first, first + POINTS):
-        most = max(most, points[base + STRAIN * LANES + k])
+        most = max(most, points[STRAIN * LANES + k])
     if most > 0.0:
         return 1.0
     return (3.0 * law.bulk - 2.0 * law.shear) / (3.0 * law.bulk + 4.0 * law.shear)

@@ -32,14 +32,16 @@ RATIO, CHANGE = 102, 103  # ρ₀/ρ; of the specific volume over the step, m3/k
 SPEED = 104  # of sound, m/s
 STRESS = 105  # 6 rows, Pa
 TRIAL, SOFT, DELTA = 111, 112, 113  # Pa, equivalent; 1, thermal softening; plastic strain
+LOGARITHM = 147  # of DELTA
 WORK = 114  # plastic, J/m3; on the springs, J
 OLD = 115  # 6 rows, deviator before the step, Pa
 COFACTOR = 121  # 9: V ∇ξ, V ∇η, V ∇ζ at points, m2
 FRAME = 130  # 9: axes of an element
 LOCAL = 139  # 6: along them, rates of strain or stresses
+PLACE, ENDS = 139, 140  # in the isentrope's table; 4: energies and slopes of its two rows, J/kg
 SPECIFIC = 145  # V over the mass, m3/kg
 SCRATCH = 146
-ROWS = 147
+ROWS = 148
 
 
 @njit(**INLINED)
@@ -62,14 +64,18 @@ def load_corners(values, corner, first, count, beyond, row, out):  # type: ignor
 
 
 @njit(**INLINED)
-def store_corners(row, work, first, count, out):  # type: ignore[no-untyped-def]
-    """Put rows of corner values where they stand for all elements, (e, 8, 3)."""
+def take_from_corners(row, work, first, count, target, out):  # type: ignore[no-untyped-def]
+    """Take rows of corner values from those (rows, 3) that they act on, element by element.
+
+    Each sum is made in the order of the elements: the same bits however these are shared out.
+    """
     for lane in range(count):
         for a in range(8):
             at = (row + 3 * a) * LANES + lane
-            out[first + lane, a, 0] = work[at]
-            out[first + lane, a, 1] = work[at + LANES]
-            out[first + lane, a, 2] = work[at + 2 * LANES]
+            node = target[first + lane, a]
+            out[node, 0] -= work[at]
+            out[node, 1] -= work[at + LANES]
+            out[node, 2] -= work[at + 2 * LANES]
 
 
 @njit(**INLINED)

@@ -48,11 +48,12 @@ from quintet.components.fe_plate.kernels.blocks import (
     put_six,
     put_three,
     six,
-    store_corners,
+    take_from_corners,
     three,
 )
+from quintet.components.fe_plate.kernels.flow import HUGE
 from quintet.components.fe_plate.kernels.geometry import cross, dot, to_middle
-from quintet.components.fe_plate.kernels.material import HUGE, advance_material
+from quintet.components.fe_plate.kernels.material import advance_material
 from quintet.components.fe_plate.state import Array, Model, Resistance, State, Whole
 from quintet.components.shared.elementary import exponential
 from quintet.components.shared.materials.solid import Solid
@@ -71,47 +72,49 @@ CUBE = math.sqrt(8.0 / 3.0)  # edge of a cube times √Σ|∇N|² at its points
 def step_eight_points(
     first: int, last: int, model: Model, state: State, law: Solid, resistance: Resistance, dt: float
 ) -> tuple[float, float, int]:
-    """Advance the stresses of elements and write the forces on their corners.
+    """Advance the stresses of elements and take the forces on their corners from the nodes.
 
     As `elements.step_elements`; the place that is returned is that of a point.
     """
     position, velocity = state.position, state.mean_velocity
-    corner, start, out = model.corner, model.volume, state.corner_force
+    corner, start, filled = model.corner, model.volume, model.filled
+    target, forces = model.target, state.forces
     points = state.points.reshape(-1)
     work = np.zeros(ROWS * LANES)
     step, smallest, worst = HUGE, HUGE, first * LANES
     for block in range(first, last):
-        begin, base = block * PER, block * LANES * POINT_ROWS
-        erode(points, base)
+        begin, at = block * PER, block * LANES
+        own, before = points[at * POINT_ROWS : (at + LANES) * POINT_ROWS], start[at : at + LANES]
+        erode(own)
         load_corners(position, corner, begin, PER, model.depth, X, work)
         load_corners(velocity, corner, begin, PER, 0.0, V, work)
         broadcast(work)
         point_geometry(work, dt)
-        assume_strains(points, base, work, law)
-        compare_volumes(points, base, start, block * LANES, work, law, dt)
+        assume_strains(own, work, law)
+        compare_volumes(own, before, work, law, dt)
         for k in range(LANES):
-            ratio = work[VOLUME * LANES + k] / start[block * LANES + k]
-            if ratio < smallest and points[base + ACTIVE * LANES + k] > 0.0:
+            ratio = work[VOLUME * LANES + k] / before[k]
+            if ratio < smallest and own[ACTIVE * LANES + k] > 0.0:
                 smallest, worst = ratio, block * LANES + k
-        step = min(step, advance_material(points, base, work, law, resistance, dt))
-        spread_stresses(points, base, work, law)
-        sum_forces(points, base, work)
-        store_corners(X, work, begin, PER, out)
+        step = min(step, advance_material(own, work, law, resistance, dt))
+        spread_stresses(own, work, law)
+        sum_forces(own, work)
+        take_from_corners(X, work, begin, filled[block], target, forces)
     return step, smallest, worst
 
 
 @njit(**INLINED)
-def erode(points, base):  # type: ignore[no-untyped-def]
+def erode(points):  # type: ignore[no-untyped-def]
     """Let all points of an element fail of which one has."""
     for first in range(0, LANES, POINTS):
         left = 1.0
         for k in range(first, first + POINTS):
-            left = min(left, points[base + ACTIVE * LANES + k])
+            left = min(left, points[ACTIVE * LANES + k])
         if left == 0.0:
             for k in range(first, first + POINTS):
-                points[base + ACTIVE * LANES + k] = 0.0
-                points[base + PRESSURE * LANES + k] = 0.0
-                put_six(points, base + DEVIATOR * LANES + k, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+                points[ACTIVE * LANES + k] = 0.0
+                points[PRESSURE * LANES + k] = 0.0
+                put_six(points, DEVIATOR * LANES + k, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 
 
 @njit(**INLINED)
@@ -194,22 +197,22 @@ def point_geometry(work, dt):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def compare_volumes(points, base, start, begin, work, law, dt):  # type: ignore[no-untyped-def]
+def compare_volumes(points, start, work, law, dt):  # type: ignore[no-untyped-def]
     """Write ρ₀/ρ: that of the element, times what the assumed strains have made of each point."""
     for first in range(0, LANES, POINTS):
         now, before, mean = 0.0, 0.0, 0.0
         for k in range(first, first + POINTS):
             now += work[VOLUME * LANES + k]
-            before += start[begin + k]
+            before += start[k]
             mean += work[VOLUME * LANES + k] * trace_at(work, k)
         mean /= now
         for k in range(first, first + POINTS):
-            live = points[base + ACTIVE * LANES + k] > 0.0
-            at = base + DILATION * LANES + k
+            live = points[ACTIVE * LANES + k] > 0.0
+            at = DILATION * LANES + k
             points[at] += dt * (trace_at(work, k) - mean) if live else 0.0
             ratio = now / before * exponential(points[at])
             ratio = 1.0 if abs(ratio - 1.0) < ROUNDING else ratio
-            own = work[VOLUME * LANES + k] / start[begin + k]
+            own = work[VOLUME * LANES + k] / start[k]
             work[RATIO * LANES + k] = ratio if live else 1.0
             work[SPECIFIC * LANES + k] = (own if live else 1.0) / law.density
             for row in range(GRADIENT * LANES, (GRADIENT + 9) * LANES, LANES):
@@ -224,10 +227,10 @@ def trace_at(work, k):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def sum_forces(points, base, work):  # type: ignore[no-untyped-def]
+def sum_forces(points, work):  # type: ignore[no-untyped-def]
     """Write the forces on corners in the first lanes of X: Σ V σ ∇N over an element's points."""
     for k in range(LANES):
-        live = points[base + ACTIVE * LANES + k] > 0.0
+        live = points[ACTIVE * LANES + k] > 0.0
         share = 0.125 if live else 0.0
         xx, yy, zz, xy, yz, zx = six(work, STRESS * LANES + k)
         a, b = three(work, COFACTOR, k), three(work, COFACTOR + 3, k)

@@ -32,11 +32,12 @@ from quintet.components.fe_plate.kernels.blocks import (
     load_corners,
     put_three,
     six,
-    store_corners,
+    take_from_corners,
     three,
 )
+from quintet.components.fe_plate.kernels.flow import HUGE
 from quintet.components.fe_plate.kernels.geometry import mean_geometry
-from quintet.components.fe_plate.kernels.material import HUGE, advance_material
+from quintet.components.fe_plate.kernels.material import advance_material
 from quintet.components.fe_plate.state import Model, Resistance, State
 from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.numba_options import FAST
@@ -46,7 +47,7 @@ from quintet.components.shared.numba_options import FAST
 def step_elements(
     first: int, last: int, model: Model, state: State, law: Solid, resistance: Resistance, dt: float
 ) -> tuple[float, float, int]:
-    """Advance the stresses of elements and write the forces on their corners.
+    """Advance the stresses of elements and take the forces on their corners from the nodes.
 
     Parameters
     ----------
@@ -64,31 +65,35 @@ def step_elements(
     """
     # Arrays are taken out of their tuples once: each time costs a count of references.
     position, velocity = state.position, state.mean_velocity
-    corner, start, out = model.corner, model.volume, state.corner_force
+    corner, start, filled = model.corner, model.volume, model.filled
+    target, forces = model.target, state.forces
     points, springs = state.points.reshape(-1), state.springs.reshape(-1)
     work = np.zeros(ROWS * LANES)
     stiff = 0.015625 * resistance.hourglass * (law.bulk + 4.0 / 3.0 * law.shear)
     step, smallest, worst = HUGE, HUGE, first * LANES
     for block in range(first, last):
-        begin, base = block * LANES, block * LANES * POINT_ROWS
+        begin = block * LANES
+        # Rows at places that are known when this is compiled: else loops do not become vectors.
+        own = points[begin * POINT_ROWS : (begin + LANES) * POINT_ROWS]
+        hung = springs[begin * SPRING_ROWS : (begin + LANES) * SPRING_ROWS]
         load_corners(position, corner, begin, LANES, model.depth, X, work)
         load_corners(velocity, corner, begin, LANES, 0.0, V, work)
         mean_geometry(work, dt)
-        ratio = compare_volumes(points, base, start, begin, work, law)
+        ratio = compare_volumes(own, start[begin : begin + LANES], work, law)
         if ratio < smallest:
             smallest, worst = ratio, smallest_of(work, begin)
-        step = min(step, advance_material(points, base, work, law, resistance, dt))
-        hold_patterns(points, base, springs, block * LANES * SPRING_ROWS, work, stiff, dt)
-        store_corners(X, work, begin, LANES, out)
+        step = min(step, advance_material(own, work, law, resistance, dt))
+        hold_patterns(own, hung, work, stiff, dt)
+        take_from_corners(X, work, begin, filled[block], target, forces)
     return step, smallest, worst
 
 
 @njit(**INLINED)
-def compare_volumes(points, base, start, begin, work, law):  # type: ignore[no-untyped-def]
+def compare_volumes(points, start, work, law):  # type: ignore[no-untyped-def]
     """Write volumes over those at the start; return the least. Eroded elements are at rest."""
     for k in range(LANES):
-        live = points[base + ACTIVE * LANES + k] > 0.0
-        ratio = work[VOLUME * LANES + k] / start[begin + k]
+        live = points[ACTIVE * LANES + k] > 0.0
+        ratio = work[VOLUME * LANES + k] / start[k]
         ratio = ratio if live else 1.0
         work[RATIO * LANES + k] = ratio
         work[SPECIFIC * LANES + k] = ratio / law.density
@@ -108,13 +113,13 @@ def smallest_of(work, begin):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def hold_patterns(points, base, springs, hung, work, stiff, dt):  # type: ignore[no-untyped-def]
+def hold_patterns(points, springs, work, stiff, dt):  # type: ignore[no-untyped-def]
     """Load and turn the springs of the patterns; write the forces on the corners in place of X.
 
     `stiff` times V Σ B² /V² is the stiffness [N/m] of each spring; Σ B²/V² = 1/(2 l²).
     """
     for k in range(LANES):
-        live = points[base + ACTIVE * LANES + k] > 0.0
+        live = points[ACTIVE * LANES + k] > 0.0
         volume, length = work[VOLUME * LANES + k], work[LENGTH * LANES + k]
         xx, yy, zz, xy, yz, zx = six(work, STRESS * LANES + k)
         half = 0.5 * dt
@@ -127,16 +132,16 @@ def hold_patterns(points, base, springs, hung, work, stiff, dt):  # type: ignore
         p2 = three(work, PATTERN + 3, k)
         p3 = three(work, PATTERN + 6, k)
         p4 = three(work, PATTERN + 9, k)
-        n1, w1 = loaded(three(springs, 0, hung + k), three(work, RATE, k), turn, loads)
-        n2, w2 = loaded(three(springs, 3, hung + k), three(work, RATE + 3, k), turn, loads)
-        n3, w3 = loaded(three(springs, 6, hung + k), three(work, RATE + 6, k), turn, loads)
-        n4, w4 = loaded(three(springs, 9, hung + k), three(work, RATE + 9, k), turn, loads)
+        n1, w1 = loaded(three(springs, 0, k), three(work, RATE, k), turn, loads)
+        n2, w2 = loaded(three(springs, 3, k), three(work, RATE + 3, k), turn, loads)
+        n3, w3 = loaded(three(springs, 6, k), three(work, RATE + 6, k), turn, loads)
+        n4, w4 = loaded(three(springs, 9, k), three(work, RATE + 9, k), turn, loads)
         n1, n2, n3, n4 = kept(n1, live), kept(n2, live), kept(n3, live), kept(n4, live)
-        put_three(springs, 0, hung + k, n1)
-        put_three(springs, 3, hung + k, n2)
-        put_three(springs, 6, hung + k, n3)
-        put_three(springs, 9, hung + k, n4)
-        at = hung + SPRING_ENERGY * LANES + k
+        put_three(springs, 0, k, n1)
+        put_three(springs, 3, k, n2)
+        put_three(springs, 6, k, n3)
+        put_three(springs, 9, k, n4)
+        at = SPRING_ENERGY * LANES + k
         springs[at] += half * (w1 + w2 + w3 + w4) if live else 0.0
         per = -1.0 / volume
         tx = tensor_row(xx, xy, zx, per, (n1[0], n2[0], n3[0], n4[0]), p1, p2, p3, p4)

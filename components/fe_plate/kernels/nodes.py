@@ -4,13 +4,15 @@ import math
 
 from numba import njit
 
-from quintet.components.fe_plate.state import Model, State
+from quintet.components.fe_plate.state import Array, Model, Parted, State
 from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
 def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> float:
     """Advance velocities by half a step and positions by a whole one; return the loads' work [J].
+
+    The elements' forces are then none, for the elements to write them anew.
 
     Parameters
     ----------
@@ -21,7 +23,7 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
     """
     decay, work = math.exp(-0.25 * damping * dt), 0.0
     position, velocity, mean = state.position, state.velocity, state.mean_velocity
-    internal, load, free, impulse = state.internal, state.load, model.free, state.wall_impulse
+    forces, load, free, impulse = state.forces, state.load, model.free, state.wall_impulse
     inverse, walls = model.inverse_mass, model.walls
     h, gravity = 0.5 * dt, model.gravity
     gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
@@ -29,9 +31,10 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
         half = 0.5 * dt * inverse[i]
         fx, fy, fz = load[i, 0], load[i, 1], load[i, 2]
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
-        u = (decay * velocity[i, 0] + half * (internal[i, 0] + fx) + gx) * free[i, 0]
-        v = (decay * velocity[i, 1] + half * (internal[i, 1] + fy) + gy) * free[i, 1]
-        w = (decay * velocity[i, 2] + half * (internal[i, 2] + fz) + gz) * free[i, 2]
+        u = (decay * velocity[i, 0] + half * (forces[i, 0] + fx) + gx) * free[i, 0]
+        v = (decay * velocity[i, 1] + half * (forces[i, 1] + fy) + gy) * free[i, 1]
+        w = (decay * velocity[i, 2] + half * (forces[i, 2] + fz) + gz) * free[i, 2]
+        forces[i, 0], forces[i, 1], forces[i, 2] = 0.0, 0.0, 0.0
         for k in range(walls.shape[0]):
             a, b, c = walls[k, 0], walls[k, 1], walls[k, 2]
             gap = a * x + b * y + c * z - walls[k, 3]
@@ -52,7 +55,7 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
 def kick(
     model: Model, state: State, dt: float, damping: float, ahead: float
 ) -> tuple[float, float]:
-    """Sum the elements' forces on nodes, advance velocities by half a step.
+    """Advance velocities by half a step.
 
     Parameters
     ----------
@@ -68,24 +71,16 @@ def kick(
     float, m/s : greatest speed towards a rigid wall that is about to be met
     """
     closing, decay, squares = 0.0, math.exp(-0.25 * damping * dt), 0.0
-    velocity, mean, internal = state.velocity, state.mean_velocity, state.internal
+    velocity, mean, forces = state.velocity, state.mean_velocity, state.forces
     load, free, inverse = state.load, model.free, model.inverse_mass
-    begin, at = model.begin, model.at
-    flat, position, walls = state.corner_force.reshape(-1, 3), state.position, model.walls
+    position, walls = state.position, model.walls
     h, gravity = 0.5 * dt, model.gravity
     gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
     for i in range(velocity.shape[0]):
-        fx, fy, fz = 0.0, 0.0, 0.0
-        for k in range(begin[i], begin[i + 1]):
-            row = at[k]
-            fx -= flat[row, 0]
-            fy -= flat[row, 1]
-            fz -= flat[row, 2]
-        internal[i, 0], internal[i, 1], internal[i, 2] = fx, fy, fz
         half = 0.5 * dt * inverse[i]
-        u = (mean[i, 0] + half * (fx + load[i, 0]) + gx) * (decay * free[i, 0])
-        v = (mean[i, 1] + half * (fy + load[i, 1]) + gy) * (decay * free[i, 1])
-        w = (mean[i, 2] + half * (fz + load[i, 2]) + gz) * (decay * free[i, 2])
+        u = (mean[i, 0] + half * (forces[i, 0] + load[i, 0]) + gx) * (decay * free[i, 0])
+        v = (mean[i, 1] + half * (forces[i, 1] + load[i, 1]) + gy) * (decay * free[i, 1])
+        w = (mean[i, 2] + half * (forces[i, 2] + load[i, 2]) + gz) * (decay * free[i, 2])
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = u, v, w
         squares += u * u + v * v + w * w
         for k in range(walls.shape[0]):
@@ -95,3 +90,23 @@ def kick(
             if gap < speed * ahead:
                 closing = max(closing, speed)
     return squares, closing
+
+
+@njit(**EXACT)
+def sum_parted(parted: Parted, forces: Array) -> None:
+    """Sum the forces on nodes whose elements several threads have, and clear their rows.
+
+    Parameters
+    ----------
+    parted : Parted
+    forces : (rows, 3), N
+    """
+    node, begin = parted.node, parted.begin
+    for i in range(node.shape[0]):
+        fx, fy, fz = 0.0, 0.0, 0.0
+        for row in range(begin[i], begin[i + 1]):
+            fx += forces[row, 0]
+            fy += forces[row, 1]
+            fz += forces[row, 2]
+            forces[row, 0], forces[row, 1], forces[row, 2] = 0.0, 0.0, 0.0
+        forces[node[i], 0], forces[node[i], 1], forces[node[i], 2] = fx, fy, fz

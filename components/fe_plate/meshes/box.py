@@ -3,11 +3,11 @@
 import numpy as np
 
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
-from quintet.components.fe_plate.meshes.params import Shape
+from quintet.components.fe_plate.meshes.params import Shape, cut_out
 
 
 def box(part: Shape) -> tuple[Array, Whole]:
-    """Nodes (n, 3) m and corners (e, 8) of a box of equal elements."""
+    """Nodes (n, 3) m and corners (e, 8) of a box of equal elements, less what is cut out."""
     assert part.elements is not None and part.lowest is not None and part.highest is not None
     nx, ny, nz = part.elements
     ends = zip(part.lowest, part.highest, part.elements, strict=True)
@@ -16,8 +16,13 @@ def box(part: Shape) -> tuple[Array, Whole]:
     number = np.arange(len(node)).reshape(nx + 1, ny + 1, nz + 1)
     low, high = slice(0, -1), slice(1, None)
     around = ((low, low), (high, low), (high, high), (low, high))
-    corner = [number[x, y, z].ravel() for z in (low, high) for x, y in around]
-    return node, np.stack(corner, axis=1)
+    corner = np.stack([number[x, y, z].ravel() for z in (low, high) for x, y in around], axis=1)
+    if part.cutout is None:
+        return node, corner
+    x, y, z = cut_out(part)
+    left = ~(x[:, None, None] & y[None, :, None] & z[None, None, :])
+    kept, numbers = np.unique(corner[left.ravel()], return_inverse=True)
+    return node[kept], numbers.reshape(-1, 8)
 
 
 def rectangle(part: Shape) -> tuple[Array, Whole]:

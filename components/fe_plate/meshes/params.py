@@ -3,10 +3,14 @@
 import math
 from typing import Literal, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from quintet.components.fe_plate.meshes.files import least_edge, read
 from quintet.components.shared.materials.params import Material, MaterialName, material
 from quintet.interfaces.params import Count, DataFile, Positive, Vector, parameters
 
+Flags = NDArray[np.bool_]
 Direction = Literal["x", "y", "z"]
 
 
@@ -51,6 +55,20 @@ class Cylinder:
 
 
 @parameters
+class Cutout:
+    """A box that is cut out of another.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Its corners; elements whose middle lies in it are left out.
+    """
+
+    lowest: Vector
+    highest: Vector
+
+
+@parameters
 class MeshFile:
     """A mesh of 8-node solids from a file; others of its elements are left out.
 
@@ -90,6 +108,10 @@ class Shape(Protocol):
         """How many elements a box has along x, y and z."""
 
     @property
+    def cutout(self) -> Cutout | None:
+        """What is left out of a box."""
+
+    @property
     def cylinder(self) -> Cylinder | None:
         """In place of the box."""
 
@@ -109,12 +131,30 @@ def require_shape(part: Shape) -> None:
             f"found {given} keys of a box and {others} of the others. Give one."
         )
     if part.lowest is None or part.highest is None:
+        if part.cutout is not None:
+            raise ValueError("part: cutout is of a box; found none. Leave it out.")
         return
     if not all(a < b for a, b in zip(part.lowest, part.highest, strict=True)):
         raise ValueError(
             f"part: highest must be beyond lowest along every axis; found {part.lowest} and "
             f"{part.highest} m."
         )
+    if count_elements(part) == 0:
+        raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
+
+
+def cut_out(part: Shape) -> tuple[Flags, Flags, Flags]:
+    """Which elements of a box have a middle within its cutout, along each of x, y and z."""
+    assert part.elements is not None and part.lowest is not None and part.highest is not None
+    found = []
+    for along, count in enumerate(part.elements):
+        low, high = part.lowest[along], part.highest[along]
+        middle = low + (high - low) * (np.arange(count) + 0.5) / count
+        inside = np.zeros(count, bool)
+        if part.cutout is not None:
+            inside = (part.cutout.lowest[along] <= middle) & (middle <= part.cutout.highest[along])
+        found.append(inside)
+    return found[0], found[1], found[2]
 
 
 def count_elements(part: Shape) -> int:
@@ -123,7 +163,8 @@ def count_elements(part: Shape) -> int:
         return part.cylinder.count
     if part.mesh is not None:
         return part.mesh.count
-    return math.prod(part.elements or ())
+    left_out = [int(one.sum()) for one in cut_out(part)]
+    return math.prod(part.elements or ()) - math.prod(left_out)
 
 
 @parameters
@@ -136,6 +177,8 @@ class Part:
         Corners of a box.
     elements : 1
         How many along x, y and z.
+    cutout
+        What is left out of a box.
     cylinder, mesh
         In place of the box.
     material
@@ -147,6 +190,7 @@ class Part:
     lowest: Vector | None = None
     highest: Vector | None = None
     elements: tuple[Count, Count, Count] | None = None
+    cutout: Cutout | None = None
     cylinder: Cylinder | None = None
     mesh: MeshFile | None = None
     material: MaterialName | Material
@@ -182,6 +226,9 @@ class Part:
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
                 f"found {deep:g} m and {along} elements. Set both, or dimensions = 3."
             )
+
+        if self.cutout is not None:
+            raise ValueError(f"{where}: in two dimensions nothing is cut out. Make more parts.")
 
     def _edges(self) -> tuple[float, ...]:
         if self.cylinder is not None:

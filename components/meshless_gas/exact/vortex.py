@@ -13,7 +13,7 @@ def states(params: MeshlessGasParams, positions: Array, time: float) -> Array:
     entropy; r over the radius a.
     """
     vortex, box, gamma = params.vortex, params.box, params.gas.gamma
-    assert vortex is not None and params.initial is not None
+    assert vortex is not None and params.initial is not None and box is not None
     density, u, v, w, pressure = params.initial.primitive(params.gas)
     x, z = (
         _wrapped(positions[:, d] - vortex.centre[d] - speed * time, box.highest[d] - box.lowest[d])

@@ -193,7 +193,9 @@ def add_fluxes(planar, sloped, gamma, threshold, work):  # type: ignore[no-untyp
         rl, ul, vl, wl, pl = r, u, v, w, p
         lowest_i, lowest_j = work[OWN_LEAST * LANES + lane], work[OTHER_LEAST * LANES + lane]
         if sloped is not None:
-            keep = smoothness(lowest_i, lowest_j, p, pr)
+            closing = max((u - ur) * x + (v - vr) * y + (w - wr) * z, 0.0)
+            ram = min(r, rr) * closing * closing
+            keep = smoothness(lowest_i, lowest_j, p, pr, ram)
             mean_r, mean_p = r + rr, p + pr
             eps_p = threshold * mean_p * mean_p
             a, b = change(work, 0, lane, rr - r, threshold * mean_r * mean_r, planar)

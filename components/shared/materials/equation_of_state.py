@@ -78,13 +78,29 @@ def temperature(mu, energy, law):  # type: ignore[no-untyped-def]
 
     With γρ and c_v constant, η = 1 - ρ₀/ρ; the isentrope's energy by cubic Hermite polynomials.
     """
-    eta = mu / (1.0 + mu)
     table = law.isentrope
-    place = (eta - law.first) / law.step
-    row = min(max(int(place), 0), table.shape[0] - 2)
-    u = min(max(place - row, 0.0), 1.0)
-    e0, e1 = table[row, 0], table[row + 1, 0]
-    d0, d1 = law.step * table[row, 1], law.step * table[row + 1, 1]
+    place, row = place_on_isentrope(mu, law)
+    low, high = (table[row, 0], table[row, 1]), (table[row + 1, 0], table[row + 1, 1])
+    return temperature_between(mu, energy, place - row, low, high, law)
+
+
+@njit(**LANEWISE)
+def place_on_isentrope(mu, law):  # type: ignore[no-untyped-def]
+    """Where in the isentrope's table a density stands, in rows, and the row before it."""
+    place = (mu / (1.0 + mu) - law.first) / law.step
+    return place, min(max(int(place), 0), law.isentrope.shape[0] - 2)
+
+
+@njit(**LANEWISE)
+def temperature_between(mu, energy, beyond, low, high, law):  # type: ignore[no-untyped-def]
+    """Temperature [K] so far beyond a row of the isentrope's table, of its numbers and the next's.
+
+    Numbers are an energy [J/kg] and its slope in η.
+    """
+    eta = mu / (1.0 + mu)
+    u = min(max(beyond, 0.0), 1.0)
+    e0, d0 = low[0], law.step * low[1]
+    e1, d1 = high[0], law.step * high[1]
     jump = e1 - e0
     cold = e0 + u * (d0 + u * (3.0 * jump - 2.0 * d0 - d1 + u * (d0 + d1 - 2.0 * jump)))
     return law.temperature * exponential(law.gamma * eta) + (energy - cold) / law.specific_heat

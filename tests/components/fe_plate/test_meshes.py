@@ -8,7 +8,7 @@ import pytest
 
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.kernels.blocks import STRAIN
-from quintet.components.fe_plate.meshes.params import Cylinder, MeshFile, Part
+from quintet.components.fe_plate.meshes.params import Cutout, Cylinder, MeshFile, Part
 from quintet.components.fe_plate.params import (
     Faces,
     FePlateParams,
@@ -55,6 +55,18 @@ def test_a_cylinder_has_its_volume_and_its_elements(axis, quarter):
     middle = 0.5 * (made.mesh.node.min(axis=0) + made.mesh.node.max(axis=0))
     along = "xyz".index(axis)
     assert middle[along] == pytest.approx((0.1, 0.2, 0.3)[along] + 0.025)
+
+
+def test_a_cutout_leaves_out_elements_and_the_nodes_that_no_other_has():
+    box = {"lowest": (0.0, 0.0, 0.0), "highest": (0.04, 0.03, 0.01), "elements": (4, 3, 1)}
+    cut = Cutout(lowest=(0.01, 0.01, -1.0), highest=(0.03, 0.02, 1.0))
+    made = FePlate(FePlateParams(parts=(Part(**box, cutout=cut, material=ELASTIC),)))
+    assert made.items() == made.params.parts[0].count == 4 * 3 - 2
+    assert made.volume.sum() == pytest.approx(10 * 0.01**3, rel=1e-12)
+    assert len(made.mesh.node) == 5 * 4 * 2 and len(made.faces) == 2 * 10 + 14 + 6
+    wider = Cutout(lowest=(0.0, 0.0, 0.0), highest=(0.04, 0.03, 0.01))
+    with pytest.raises(ValueError, match="it leaves none"):
+        Part(**box, cutout=wider, material=ELASTIC)
 
 
 def test_a_uniform_pressure_on_a_cylinder_pushes_it_nowhere():

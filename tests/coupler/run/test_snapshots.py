@@ -65,6 +65,14 @@ def test_water_and_a_body_go_on_from_a_snapshot_with_the_same_bits(gone_on):
     assert len(vtkhdf_reader.times(again / "water.vtkhdf")) == 4
 
 
+@pytest.mark.full
+def test_a_ball_on_glued_particles_goes_on_from_a_snapshot_with_the_same_bits(gone_on):
+    path = SMALL_DAM.parents[2] / "scenarios/al_ball_7400_glued/scene.toml"
+    part = ("output.snapshots=3e-7", "end=5e-7")
+    first, again, window = gone_on(path, *part)
+    assert 0 < window and same(first, again)
+
+
 @pytest.mark.parametrize("transport", ["memory", *OVER])
 def test_an_interrupted_run_goes_on_with_the_same_bits(tmp_path, capsys, transport):
     path = write_scene(tmp_path, transport, 0.3, pong="pause = 3e-3")

@@ -1,0 +1,152 @@
+"""What a scene says about a gas, its states, and what is at its boundaries."""
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
+
+HOLDING = ("isothermal", "adiabatic")  # walls that hold the gas
+
+
+@parameters
+class Gas:
+    """A perfect gas.
+
+    Parameters
+    ----------
+    gamma : 1
+        Ratio of the specific heats.
+    gas_constant : J/(kg K)
+        p = ρ R T.
+    viscosity : Pa s
+        At the reference temperature.
+    reference_temperature : K
+        Of the viscosity.
+    sutherland : K
+        Sutherland's constant, by which the viscosity rises with the temperature; with 0 it rises as
+        the root of it.
+    prandtl : 1
+        c_p μ/λ.
+    """
+
+    gamma: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.4
+    gas_constant: Positive = 287.05
+    viscosity: Positive = 1.78e-5
+    reference_temperature: Positive = 273.15
+    sutherland: NotNegative = 110.4
+    prandtl: Positive = 0.72
+
+
+@parameters
+class GasState:
+    """A state of the gas.
+
+    Parameters
+    ----------
+    density : kg/m3
+        This or the temperature.
+    temperature : K
+        This or the density.
+    velocity : m/s
+        In two dimensions along x and z.
+    pressure : Pa
+        Of nothing it would have no temperature.
+    """
+
+    density: Positive | None = None
+    temperature: Positive | None = None
+    velocity: Vector = (0.0, 0.0, 0.0)
+    pressure: Positive
+
+    def __post_init__(self) -> None:
+        if (self.density is None) == (self.temperature is None):
+            raise ValueError("a state of the gas needs density or temperature, one of them.")
+
+    def primitive(self, gas: Gas) -> tuple[float, float, float, float, float]:
+        """Density, velocity and pressure."""
+        density = self.density
+        if density is None:
+            assert self.temperature is not None
+            density = self.pressure / (gas.gas_constant * self.temperature)
+        return density, *self.velocity, self.pressure
+
+    def fastest(self, gas: Gas) -> float:
+        """Speed [m/s] of its fastest wave."""
+        density, u, v, w, pressure = self.primitive(gas)
+        return math.hypot(u, v, w) + math.sqrt(gas.gamma * pressure / density)
+
+
+@parameters
+class TotalState:
+    """Gas at rest, from which an inflow comes without losses.
+
+    Parameters
+    ----------
+    pressure : Pa
+        At rest.
+    temperature : K
+        At rest.
+    direction : 1
+        Of the flow; of any length above 0.
+    """
+
+    pressure: Positive
+    temperature: Positive
+    direction: Vector = (1.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not any(self.direction):
+            raise ValueError("total: direction must not be 0. Say where the gas flows.")
+
+
+@parameters
+class Boundary:
+    """What is at a part of the boundary.
+
+    Parameters
+    ----------
+    kind
+        "periodic" and "symmetry" have images of what is within beyond them; a "slip" wall lets the
+        gas pass along it, an "isothermal" or "adiabatic" one holds it; "inflow" has the state that
+        is given, "outflow" that of the gas which leaves.
+    state
+        Of an inflow: all of it, as of what flows faster than sound.
+    total
+        Of an inflow, in place of the state: it then has the pressure of the gas that it meets.
+    pressure : Pa
+        Beyond an outflow, where it is slower than sound; if not given nothing comes from there.
+    temperature : K
+        Of an isothermal wall.
+    velocity : m/s
+        Of an isothermal or adiabatic wall, along itself.
+    """
+
+    kind: Literal["periodic", "symmetry", "slip", "isothermal", "adiabatic", "inflow", "outflow"]
+    state: GasState | None = None
+    total: TotalState | None = None
+    pressure: Positive | None = None
+    temperature: Positive | None = None
+    velocity: Vector | None = None
+
+    def __post_init__(self) -> None:
+        names = ("state", "total", "pressure", "temperature", "velocity")
+        said = [one for one in names if getattr(self, one) is not None]
+        wrong = {
+            "inflow": said not in (["state"], ["total"]),
+            "outflow": bool(set(said) - {"pressure"}),
+            "isothermal": bool(set(said) - {"temperature", "velocity"}) or not self.temperature,
+            "adiabatic": bool(set(said) - {"velocity"}),
+        }
+        if wrong.get(self.kind, bool(said)):
+            need = {
+                "inflow": "state or total",
+                "outflow": "pressure or nothing",
+                "isothermal": "temperature, and velocity or not",
+                "adiabatic": "velocity or nothing",
+            }
+            raise ValueError(
+                f"a boundary of kind {self.kind} takes {need.get(self.kind, 'nothing')}; found "
+                f"{' and '.join(said) or 'nothing'}. Correct it."
+            )

@@ -1,0 +1,62 @@
+"""Clouds round bodies, as a scene describes them."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from quintet.components.meshless_gas.boundaries import GasState
+from quintet.components.meshless_gas.clouds.cap import sphere_cap
+from quintet.components.meshless_gas.clouds.layers import LayeredCloud
+from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
+from quintet.components.meshless_gas.clouds.params import Layers, Plate, Sphere
+from quintet.components.meshless_gas.clouds.plane import plate
+from quintet.components.meshless_gas.params import MeshlessGasParams
+
+
+def layered_cloud(
+    params: MeshlessGasParams, faces: Mapping[str, str], patches: Mapping[str, int]
+) -> LayeredCloud:
+    """Nodes in layers over a sphere or a plate."""
+    if params.plate is not None:
+        return _plate(params.plate, faces, patches)
+    assert params.sphere is not None
+    far = params.boundaries["far"].state
+    assert far is not None
+    make = sphere_cap if params.dimensions == 3 else sphere_meridian
+    one = params.sphere
+    mach = mach_number(far, params)
+    return make(
+        np.array(one.centre), one.radius, mach, _reach(one), faces, patches, one.layers.cross
+    )
+
+
+def mach_number(state: GasState, params: MeshlessGasParams) -> float:
+    """Mach number of a state of the gas."""
+    density, u, v, w, pressure = state.primitive(params.gas)
+    return math.hypot(u, v, w) / math.sqrt(params.gas.gamma * pressure / density)
+
+
+def _reach(sphere: Sphere) -> Reach:
+    return _of(sphere.layers, sphere.rays, min(sphere.sector, math.pi), sphere.margin, sphere.reach)
+
+
+def _plate(one: Plate, faces: Mapping[str, str], patches: Mapping[str, int]) -> LayeredCloud:
+    reach = _of(one.layers, one.rays, 0.0, 1.0, 0.0)
+    return plate(
+        reach, one.length, one.ahead, one.height, one.finest, faces, patches, one.layers.cross
+    )
+
+
+def _of(layers: Layers, rays: int, sector: float, margin: float, farthest: float) -> Reach:
+    return Reach(
+        rays=rays,
+        layers=layers.count,
+        first=layers.first or math.inf,
+        sector=sector,
+        margin=margin,
+        farthest=farthest,
+        jitter=layers.jitter,
+        seed=layers.seed,
+        weight=layers.weight,
+    )

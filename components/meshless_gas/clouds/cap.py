@@ -1,0 +1,157 @@
+"""Nodes over a cap of a sphere in three dimensions: layers over a geodesic grid."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.meshless_gas.clouds.cloud import Whole
+from quintet.components.meshless_gas.clouds.grading import geometric
+from quintet.components.meshless_gas.clouds.layers import (
+    Bounds,
+    LayeredCloud,
+    Surface,
+    kinds_of,
+    layered,
+)
+from quintet.components.meshless_gas.clouds.meridian import Reach, last_patch, outer_radius
+from quintet.interfaces.component import Array
+
+ARC = math.acos(1.0 / math.sqrt(5.0))  # rad, of an icosahedron's edge
+GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
+TURN = (0.31, 0.73, 1.17)  # rad: no node of the grid lies on the axis or in a plane of symmetry
+
+
+def sphere_cap(
+    centre: Array,
+    radius: float,
+    mach: float,
+    reach: Reach,
+    faces: Mapping[str, str],
+    patches: Mapping[str, int],
+    is_cross: bool = False,
+) -> LayeredCloud:
+    """Nodes round the part of a sphere that meets a flow along x.
+
+    Parameters
+    ----------
+    centre : (3,) m
+    radius : float, m
+    mach : float
+        Above 1 the cloud follows the bow shock, else it is a shell.
+    reach : Reach
+        Rays are counted over half a turn: nodes are as far apart as those of a meridian.
+    faces, patches
+        What is at the "wall", at "far" and, where gas leaves, at the "exit"; their numbers.
+    is_cross : bool
+        Fewer neighbours: of other layers only what is straight above and below.
+
+    Returns
+    -------
+    LayeredCloud
+    """
+    points, triangles = geodesic(max(1, round(reach.rays * ARC / math.pi)))
+    angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
+    kept = angle <= reach.sector
+    number = np.where(kept, np.cumsum(kept) - 1, -1)
+    share = _areas(points, triangles)[kept]
+    near, is_edge = _adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
+    points, angle = points[kept], angle[kept]
+    outer = outer_radius(angle, radius, mach, reach)
+    distance = geometric(reach.first, outer - radius, reach.layers)
+    places = centre + points * (radius + distance)[:, :, None]
+    bounds = Bounds(
+        np.full(len(points), patches["wall"], np.int32),
+        last_patch(angle, outer, reach, patches),
+        np.where(is_edge, patches["exit"], 0).astype(np.int32),
+        kinds_of(faces, patches),
+        points,
+        share * (radius + distance) ** 2,
+        reach.weight,
+    )
+    none = np.zeros(0, np.int32)
+    surface = Surface(
+        near, none, np.zeros((0, 3, 3)), np.zeros((0, 3)), is_edge, _inward(points, is_edge)
+    )
+    return layered(places, surface, bounds, is_cross)
+
+
+def geodesic(frequency: int) -> tuple[Array, NDArray[np.int64]]:
+    """Points (m, 3) of the unit sphere, and triangles (f, 3): an icosahedron's, divided."""
+    corners, sides = _icosahedron()
+    share = [
+        (i, j, frequency - i - j) for i in range(frequency + 1) for j in range(frequency + 1 - i)
+    ]
+    number = {(i, j): k for k, (i, j, _) in enumerate(share)}
+    upward = [(number[i, j], number[i + 1, j], number[i, j + 1]) for i, j, k in share if k > 0]
+    downward = [
+        (number[i, j], number[i - 1, j], number[i, j - 1]) for i, j, _ in share if i > 0 and j > 0
+    ]
+    places = np.einsum("sk,fkx->fsx", np.array(share, float) / frequency, corners[sides])
+    found = places.reshape(-1, 3)
+    found /= np.sqrt((found**2).sum(axis=1))[:, None]
+    _, first, same = np.unique(np.round(found, 9), axis=0, return_index=True, return_inverse=True)
+    parts = np.array(upward + downward) + len(share) * np.arange(len(sides))[:, None, None]
+    return found[first] @ _rotation().T, same.ravel()[parts.reshape(-1, 3)]
+
+
+def _icosahedron() -> tuple[Array, NDArray[np.int64]]:
+    flat = [(0.0, s, t * GOLDEN) for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
+    corners = np.array([np.roll(one, k) for one in flat for k in range(3)])
+    corners /= np.sqrt((corners**2).sum(axis=1))[:, None]
+    near = ((corners[:, None] - corners) ** 2).sum(axis=2) < 1.2  # edges are 1.05 long
+    sides = [
+        (a, b, c)
+        for a in range(12)
+        for b in range(a)
+        for c in range(b)
+        if near[a, b] and near[b, c] and near[a, c]
+    ]
+    return corners, np.array(sides)
+
+
+def _rotation() -> Array:
+    matrix = np.eye(3)
+    for axis, turn in enumerate(TURN):
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        one = np.eye(3)
+        one[i, i] = one[j, j] = math.cos(turn)
+        one[i, j], one[j, i] = -math.sin(turn), math.sin(turn)
+        matrix = one @ matrix
+    return matrix
+
+
+def _areas(points: Array, faces: NDArray[np.int64]) -> Array:
+    """Share (m,) of the unit sphere of each point: a third of the triangles round it."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    flat = 0.5 * np.sqrt((normal**2).sum(axis=1))
+    areas = np.zeros(len(points))
+    for k in range(3):
+        np.add.at(areas, faces[:, k], flat / 3.0)
+    return areas * (4.0 * math.pi / areas.sum())
+
+
+def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
+    """Neighbours (m, a) by triangles, padded with -1, and which points lie beside none."""
+    pairs = np.vstack([faces[:, [k, (k + 1) % 3]] for k in range(3)])
+    pairs = np.vstack([pairs, pairs[:, ::-1]])
+    is_edge = np.zeros(count, bool)
+    is_edge[pairs[(pairs[:, 1] < 0) & (pairs[:, 0] >= 0), 0]] = True
+    pairs = np.unique(pairs[(pairs >= 0).all(axis=1)], axis=0)
+    order = np.zeros(count + 1, np.int64)
+    np.cumsum(np.bincount(pairs[:, 0], minlength=count), out=order[1:])
+    column = np.arange(len(pairs)) - order[pairs[:, 0]]
+    near = np.full((count, int(column.max()) + 1), -1, np.int32)
+    near[pairs[:, 0], column] = pairs[:, 1]
+    return near, is_edge
+
+
+def _inward(points: Array, is_edge: NDArray[np.bool_]) -> Whole:
+    """Nearest point that is no edge (m,), of those at an edge; itself elsewhere."""
+    inner = np.flatnonzero(~is_edge)
+    inward = np.arange(len(points), dtype=np.int32)
+    for one in np.flatnonzero(is_edge):
+        inward[one] = inner[((points[inner] - points[one]) ** 2).sum(axis=1).argmin()]
+    return inward

@@ -1,0 +1,100 @@
+"""What is read at places: states of the nearest nodes, and fronts along lines."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.meshless_gas.clouds.cloud import Cloud
+from quintet.components.meshless_gas.clouds.nearest import nearest
+from quintet.components.meshless_gas.diagnostics import mach, temperature
+from quintet.components.meshless_gas.params import Front, Gas
+from quintet.components.shared.threads import Team
+from quintet.interfaces.component import Array, Fields
+
+NEAR = 4  # nodes between which is interpolated
+PER_SPACING = 4.0  # places on a line
+Rows = NDArray[np.int64]
+
+
+class Line(NamedTuple):
+    """Places along a line, and the nodes around each."""
+
+    distances: Array  # (s,) m, from where it begins
+    rows: Rows  # (s, NEAR)
+    weights: Array  # (s, NEAR) 1, by the inverse squares of the distances
+    begin: Array  # (3,) m
+    direction: Array  # (3,) 1
+    column: int  # of the primitive states
+    level: float
+
+
+def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]], team: Team) -> Rows:
+    """Nodes (m,) that are nearest to some places (m, 3) m."""
+    if not places:
+        return np.zeros(0, np.int64)
+    among = np.arange(cloud.nodes)
+    return nearest(cloud.positions, among, np.array(places, np.float64), 1, team)[0][:, 0]
+
+
+def line(cloud: Cloud, front: Front, team: Team) -> Line:
+    """Find the nodes around the places of a line."""
+    begin, end = np.array(front.begin), np.array(front.end)
+    length = float(np.linalg.norm(end - begin))
+    among = np.arange(cloud.nodes)
+    finest = float(cloud.spacing[: cloud.nodes].min())
+    count = max(2, min(20_000, round(PER_SPACING * length / finest)))
+    distances = np.linspace(0.0, length, count)
+    direction = (end - begin) / length
+    targets = begin + distances[:, None] * direction
+    rows, squares = nearest(cloud.positions, among, targets, NEAR, team)
+    weights = 1.0 / (squares + 1e-12 * finest**2)
+    weights /= weights.sum(axis=1, keepdims=True)
+    column = {"density": 0, "pressure": 4}[front.field]
+    return Line(distances, rows, weights, begin, direction, column, front.level)
+
+
+def crossing(one: Line, primitive: Array) -> tuple[float, bool]:
+    """Distance [m] at which the level is first passed, and whether it is."""
+    values = (one.weights * primitive[one.rows, one.column]).sum(axis=1)
+    above = values > one.level
+    turns = np.flatnonzero(above[1:] != above[:-1])
+    if not len(turns):
+        return float(one.distances[-1]), False
+    k = int(turns[0])
+    share = (one.level - values[k]) / (values[k + 1] - values[k])
+    return float(one.distances[k] + share * (one.distances[k + 1] - one.distances[k])), True
+
+
+def fronts(lines: Sequence[Line], primitive: Array) -> Fields:
+    """Fields of the port `fronts`."""
+    found = [crossing(one, primitive) for one in lines]
+    places = np.array([a.begin + d * a.direction for a, (d, _) in zip(lines, found, strict=True)])
+    angles = [angle(places[: k + 1]) for k in range(len(places))]
+    return {
+        "fronts.position": places,
+        "fronts.distance": np.array([distance for distance, _ in found]),
+        "fronts.angle": np.array(angles),
+        "fronts.found": np.array([float(there) for _, there in found]),
+    }
+
+
+def angle(places: Array) -> float:
+    """Angle [rad] to x of the straight line through places (k, 3) m, of least squares in z."""
+    x, z = (places[:, d] - places[:, d].mean() for d in (0, 2))
+    across = float((x * x).sum())
+    return float(np.arctan2((x * z).sum(), across)) if len(places) > 1 else 0.0
+
+
+def probes(rows: Rows, cloud: Cloud, primitive: Array, gas: Gas) -> Fields:
+    """Fields of the port `probes`."""
+    found = primitive[rows]
+    return {
+        "probes.position": cloud.positions[rows],
+        "probes.velocity": found[:, 1:4].copy(),
+        "probes.density": found[:, 0].copy(),
+        "probes.pressure": found[:, 4].copy(),
+        "probes.temperature": temperature(found, gas),
+        "probes.mach": mach(found, gas),
+    }

@@ -1,0 +1,1 @@
+"""Friction and heat conduction; imported only where a scene's gas has viscosity."""

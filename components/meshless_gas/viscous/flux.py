@@ -1,0 +1,171 @@
+"""Viscous stress and heat flux between nodes, added to what the Euler fluxes give.
+
+    dq_i/dt += 2 Σ_j [F_ij - F_i] · c_ij,   F = (0, τ, τ·v + λ∇T)
+
+With ∇φ_ij = g - (g·r - Δφ) r/r², g the mean of both nodes' gradients and r = x_j - x_i, so that a
+pair feels its own difference: without it the flux does not see waves of two spacings.
+"""
+
+import numpy as np
+from numba import njit
+
+from quintet.components.meshless_gas.transport import sutherland
+from quintet.components.shared.numba_options import FAST, INNER
+
+TWO_THIRDS = 2.0 / 3.0
+
+
+@njit(**FAST)
+def write_transport(first, last, primitive, law, transported):  # type: ignore[no-untyped-def]
+    """Temperature [K] and viscosity [Pa s] of all nodes, (n, 2)."""
+    for i in range(first, last):
+        temperature = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
+        transported[i, 0] = temperature
+        transported[i, 1] = sutherland(temperature, law)
+
+
+@njit(**FAST)
+def write_temperature_gradients(  # type: ignore[no-untyped-def]
+    first, last, rows, neighbours, coefficients, transported, gradients
+):
+    """Gradients (n, 3) K/m of temperature by least squares."""
+    for row in range(first, last):
+        i = np.uintp(rows[row])
+        x, y, z, own = 0.0, 0.0, 0.0, transported[i, 0]
+        for k in range(neighbours.shape[1]):
+            rise = transported[np.uintp(neighbours[i, k]), 0] - own
+            x += coefficients[i, k, 0] * rise
+            y += coefficients[i, k, 1] * rise
+            z += coefficients[i, k, 2] * rise
+        gradients[i, 0], gradients[i, 1], gradients[i, 2] = x, y, z
+
+
+@njit(**FAST)
+def write_ghost_slopes(owner, turn, gradients):  # type: ignore[no-untyped-def]
+    """Turn gradients (n, 3) of a scalar to the ghosts of their nodes."""
+    first = gradients.shape[0] - owner.shape[0]
+    for g in range(owner.shape[0]):
+        x, y, z = gradients[owner[g], 0], gradients[owner[g], 1], gradients[owner[g], 2]
+        for a in range(3):
+            along = turn[g, a, 0] * x + turn[g, a, 1] * y + turn[g, a, 2] * z
+            gradients[first + g, a] = along
+
+
+@njit(**INNER, fastmath=True)
+def stress(u, v, w, mu):  # type: ignore[no-untyped-def]
+    """Viscous stress xx yy zz xy xz yz over μ-scaled gradients of three velocities."""
+    third = TWO_THIRDS * (u[0] + v[1] + w[2])
+    return (
+        mu * (2.0 * u[0] - third),
+        mu * (2.0 * v[1] - third),
+        mu * (2.0 * w[2] - third),
+        mu * (u[1] + v[0]),
+        mu * (u[2] + w[0]),
+        mu * (v[2] + w[1]),
+    )
+
+
+@njit(**INNER, fastmath=True)
+def corrected(a, b, rise, r, inverse):  # type: ignore[no-untyped-def]
+    """Gradient between two nodes whose component along r is their difference."""
+    x, y, z = 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])
+    excess = (x * r[0] + y * r[1] + z * r[2] - rise) * inverse
+    return x - excess * r[0], y - excess * r[1], z - excess * r[2]
+
+
+@njit(**FAST)
+def add_viscous(  # type: ignore[no-untyped-def]
+    first, last, rows, positions, primitive, transported, neighbours, coefficients, gradients,
+    temperature_gradients, law, residual,
+):  # fmt: skip
+    """Add rates of momentum and energy by friction and conduction to nodes.
+
+    Parameters
+    ----------
+    first, last : int
+        Of `rows`.
+    rows : (m,)
+        Nodes that are advanced.
+    positions : (n, 3) m
+    primitive : (n, 5) kg/m3, m/s, Pa
+    transported : (n, 2) K, Pa s
+    neighbours : (n, K)
+    coefficients : (n, K, 3) 1/m
+    gradients : (n, 5, 3)
+    temperature_gradients : (n, 3) K/m
+    law : Transport
+    residual : (n, 5)
+        Rates of density, momentum and energy per volume; the last four are added to.
+    """
+    for row in range(first, last):
+        i = np.uintp(rows[row])
+        g, t = gradients[i], temperature_gradients[i]
+        x, y, z = positions[i, 0], positions[i, 1], positions[i, 2]
+        u, v, w = primitive[i, 1], primitive[i, 2], primitive[i, 3]
+        own, mu_i = transported[i, 0], transported[i, 1]
+        fx, fy, fz, fe, sx, sy, sz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for k in range(neighbours.shape[1]):
+            j = np.uintp(neighbours[i, k])
+            if j == i:
+                continue
+            cx, cy, cz = coefficients[i, k, 0], coefficients[i, k, 1], coefficients[i, k, 2]
+            r = (positions[j, 0] - x, positions[j, 1] - y, positions[j, 2] - z)
+            inverse = 1.0 / (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+            a, b, c = primitive[j, 1], primitive[j, 2], primitive[j, 3]
+            h, s = gradients[j], temperature_gradients[j]
+            mu = 0.5 * (mu_i + transported[j, 1])
+            xx, yy, zz, xy, xz, yz = stress(
+                corrected(g[1], h[1], a - u, r, inverse),
+                corrected(g[2], h[2], b - v, r, inverse),
+                corrected(g[3], h[3], c - w, r, inverse),
+                mu,
+            )
+            q = corrected(t, s, transported[j, 0] - own, r, inverse)
+            px = xx * cx + xy * cy + xz * cz
+            py = xy * cx + yy * cy + yz * cz
+            pz = xz * cx + yz * cy + zz * cz
+            fx += px
+            fy += py
+            fz += pz
+            work = px * (u + a) + py * (v + b) + pz * (w + c)
+            fe += 0.5 * work + law.conduction * mu * (q[0] * cx + q[1] * cy + q[2] * cz)
+            sx += cx
+            sy += cy
+            sz += cz
+        xx, yy, zz, xy, xz, yz = stress(g[1], g[2], g[3], mu_i)
+        px = xx * sx + xy * sy + xz * sz
+        py = xy * sx + yy * sy + yz * sz
+        pz = xz * sx + yz * sy + zz * sz
+        heat = law.conduction * mu_i * (t[0] * sx + t[1] * sy + t[2] * sz)
+        residual[i, 1] += 2.0 * (fx - px)
+        residual[i, 2] += 2.0 * (fy - py)
+        residual[i, 3] += 2.0 * (fz - pz)
+        residual[i, 4] += 2.0 * (fe - (px * u + py * v + pz * w + heat))
+
+
+@njit(**FAST)
+def shorten_bounds(  # type: ignore[no-untyped-def]
+    first, last, rows, positions, primitive, transported, neighbours, coefficients, gamma, law,
+    bounds,
+):  # fmt: skip
+    """Shorten the step (n,) s that each node bears by what diffusion adds; return the least.
+
+    1/Δt_i is raised by Σ_j 2 |c_ij|/|r_ij| · γ μ/(Pr ρ).
+    """
+    least, heat = np.inf, gamma / (gamma - 1.0) * law.gas_constant
+    factor = 2.0 * gamma * law.conduction / heat
+    for row in range(first, last):
+        i = np.uintp(rows[row])
+        total = 0.0
+        for k in range(neighbours.shape[1]):
+            j = np.uintp(neighbours[i, k])
+            c, r = 0.0, 0.0
+            for axis in range(3):
+                c += coefficients[i, k, axis] ** 2
+                r += (positions[j, axis] - positions[i, axis]) ** 2
+            if r > 0.0:
+                total += np.sqrt(c / r)
+        rate = total * factor * transported[i, 1] / primitive[i, 0]
+        bounds[i] = 1.0 / (1.0 / bounds[i] + rate)
+        least = min(least, bounds[i])
+    return least

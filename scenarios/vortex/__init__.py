@@ -1,0 +1,1 @@
+"""An isentropic vortex that drifts through a periodic box."""

@@ -1,0 +1,1 @@
+"""Supersonic flow over a wedge."""

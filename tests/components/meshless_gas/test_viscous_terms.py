@@ -1,0 +1,84 @@
+"""Friction and conduction on plain arrays: stresses, slopes at walls, what walls take."""
+
+import numpy as np
+import pytest
+
+from quintet.components.meshless_gas.clouds.box import box
+from quintet.components.meshless_gas.kernels.gradients import write_gradients
+from quintet.components.meshless_gas.stencils import nearest_neighbours, stencils
+from quintet.components.meshless_gas.transport import Transport
+from quintet.components.meshless_gas.viscous.flux import (
+    add_viscous,
+    write_temperature_gradients,
+    write_transport,
+)
+from quintet.components.meshless_gas.viscous.laws import wall_slope
+from quintet.components.shared.threads import Team
+
+# Of a viscosity that hardly changes.
+LAW = Transport(0.02, 1.0, 0.0, 3.5 / 0.72, 1.0)
+
+
+def rates(x: np.ndarray, velocity: np.ndarray, temperature: np.ndarray) -> np.ndarray:
+    """Viscous rates (n, 5) of a lattice of nodes in the plane."""
+    cloud = box((0, 0, 0), (1, 0, 1), 0.1, dict.fromkeys(("x-", "x+", "z-", "z+"), "slip"),
+                dict.fromkeys(("x-", "x+", "z-", "z+"), 1))  # fmt: skip
+    near = nearest_neighbours(cloud, 8, Team(1))
+    coefficients = stencils(cloud, near, True, Team(1)).coefficients
+    x[:] = cloud.positions
+    n = len(cloud.positions)
+    rows = np.arange(n, dtype=np.int32)
+    primitive = np.ones((n, 5))
+    primitive[:, 1:4] = velocity
+    primitive[:, 4] = temperature
+    gradients, lowest = np.zeros((n, 5, 3)), np.zeros(n)
+    transported, slopes, residual = np.zeros((n, 2)), np.zeros((n, 3)), np.zeros((n, 5))
+    write_gradients(0, n, rows, primitive, near, coefficients, True, gradients, lowest)
+    write_transport(0, n, primitive, LAW, transported)
+    write_temperature_gradients(0, n, rows, near, coefficients, transported, slopes)
+    add_viscous(
+        0, n, rows, cloud.positions, primitive, transported, near, coefficients, gradients, slopes,
+        LAW, residual,
+    )  # fmt: skip
+    within = ((x[:, [0, 2]] > 0.15) & (x[:, [0, 2]] < 0.85)).all(axis=1)
+    return np.asarray(residual[within])
+
+
+@pytest.fixture(scope="module")
+def places() -> np.ndarray:
+    """Places of the lattice's nodes."""
+    x = np.zeros((121, 3))
+    rates(x, np.zeros((121, 3)), np.ones(121))
+    return x
+
+
+def test_gas_that_turns_as_a_whole_has_no_friction(places: np.ndarray) -> None:
+    turning = np.cross([0.0, 2.0, 0.0], places)
+    assert rates(np.empty_like(places), turning, np.ones(121)) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_parabola_of_velocity_is_slowed_by_twice_its_viscosity(places: np.ndarray) -> None:
+    z = places[:, 2]
+    flow = np.stack([z * z, 0.0 * z, 0.0 * z], axis=1)
+    found = rates(np.empty_like(places), flow, np.ones(121))
+    assert found[:, 1] == pytest.approx(2.0 * LAW.viscosity, rel=1e-9)
+    assert found[:, [0, 2, 3]] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_heat_flows_down_a_slope_and_gathers_in_a_hollow(places: np.ndarray) -> None:
+    z = places[:, 2]
+    still = np.zeros_like(places)
+    level = rates(np.empty_like(places), still, 1.0 + 1e-6 * z)
+    assert level[:, 4] == pytest.approx(0.0, abs=1e-10)
+    hollow = rates(np.empty_like(places), still, 1.0 + 1e-6 * z * z)
+    assert hollow[:, 4] == pytest.approx(2e-6 * LAW.conduction * LAW.viscosity, rel=1e-4)
+
+
+def test_slope_at_a_wall_is_that_of_a_parabola() -> None:
+    def curve(y: float) -> float:
+        return 2.0 + 3.0 * y - 0.5 * y * y
+
+    assert wall_slope.py_func(curve(0.0), curve(0.1), curve(0.25), 0.1, 0.25) == pytest.approx(3.0)
+    assert wall_slope.py_func(2.0, 2.3, 2.3, 0.1, 0.1) == pytest.approx(
+        3.0
+    )  # one node above it alone

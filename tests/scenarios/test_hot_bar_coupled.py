@@ -1,0 +1,74 @@
+"""A bar of elements and mass points; and that all bars go on with the same bits."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from quintet.coupler.cli import main
+from quintet.coupler.report.diff import compare
+from quintet.coupler.run import snapshots
+from quintet.coupler.run.simulate import make_folder, simulate
+from quintet.coupler.scene.read import load
+
+SHORT = {  # of each scene: settings with which it takes a second
+    "hot_bar": {"end": 1.0, "window": 0.1, "components.bar.steps_at_once": 200},
+    "hot_bar_baths": {"end": 2.0, "window": 0.2, "components.bar.steps_at_once": 200},
+    "hot_bar_coupled": {"end": 0.8, "window": 0.1},
+}
+
+
+def settings(scene: str) -> list[str]:
+    """Settings of a short run without pictures, with snapshots."""
+    plain = {"output.interval": 0, "output.pictures": "[]", **SHORT[scene]}
+    plain["output.snapshots"] = 0.4 * SHORT[scene]["end"]
+    return [f"{key}={value}" for key, value in plain.items()]
+
+
+def run(folder: Path, scene: str, *arguments: str) -> Path:
+    given = [part for one in settings(scene) for part in ("--set", one)]
+    with pytest.raises(SystemExit) as ended:
+        main(["run", scene, *given, *arguments, "--out", str(folder)])
+    assert ended.value.code in (0, 1)  # too short for what the scene expects
+    return folder
+
+
+def test_a_bar_of_elements_and_points_has_the_temperature_between_them(tmp_path: Path) -> None:
+    """Of short exchanges, so that noise is wide; every joule that leaves one reaches the other."""
+    with pytest.raises(SystemExit) as ended:
+        main([
+            "run", "hot_bar_coupled", "--preset", "quick", "--transport", "memory",
+            "--out", str(tmp_path / "run"),
+        ])  # fmt: skip
+    assert ended.value.code == 0
+    found = json.loads((tmp_path / "run" / "results.json").read_text())
+    by_name = {one["name"]: one for one in found["expect"]}
+    assert by_name["temperature between"]["met"] and by_name["heat flow"]["met"]
+    assert found["ledger"]["links"][0]["heat_residual"] <= 1e-12
+
+
+@pytest.mark.parametrize("scene", SHORT)
+def test_from_a_snapshot_a_bar_goes_on_with_the_same_bits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scene: str
+) -> None:
+    monkeypatch.setattr(snapshots, "remove", lambda paths: None)
+    first, again = tmp_path / "first", tmp_path / "again"
+    made = load(scene, settings=settings(scene), transport="memory")
+    make_folder(made, first)
+    assert simulate(made, first) in (0, 1)
+    shutil.copytree(first, again)
+    kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
+    simulate(load(scene, settings=settings(scene), transport="memory"), again, kept[0])
+    assert compare(first, again) is None
+    assert (first / "ledger.csv").read_bytes() == (again / "ledger.csv").read_bytes()
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("transport", ["zenoh", "mpi"])
+@pytest.mark.parametrize("scene", ["hot_bar", "hot_bar_coupled"])
+def test_a_bar_has_the_same_bits_over_every_transport(
+    tmp_path: Path, scene: str, transport: str
+) -> None:
+    memory = run(tmp_path / "memory", scene, "--transport", "memory")
+    assert compare(memory, run(tmp_path / transport, scene, "--transport", transport)) is None
