@@ -48,14 +48,14 @@ def _moved(folder: Path) -> float:
 
 
 def test_water_on_a_plate_bends_it_and_the_link_conserves_momentum(run_scene: Run) -> None:
-    short = _options(("end=0.03",))
+    short = _options(("end=0.02",))
     found = run_scene("water_on_plate", "--preset", "quick", "--transport", "memory", *short)
     (link,) = found["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
     assert link["angular_residual"] <= 1e-12
     assert link["energy_residual"] < 1e-3
-    # It bears nearly all of the weight of the water, over 0.03 s; the walls some at its ends.
-    assert link["impulse"][2] == pytest.approx(-19620.0 * 0.03, rel=0.1)
+    # It bears nearly all of the weight of the water, over 0.02 s; the walls some at its ends.
+    assert link["impulse"][2] == pytest.approx(-19620.0 * 0.02, rel=0.1)
 
 
 def test_the_plate_under_the_water_bends_by_its_reference() -> None:
@@ -106,7 +106,7 @@ def test_a_plate_thinner_than_the_water_can_see_is_refused(
     assert "a body must be at least 0.0025 m thick between its faces" in said
 
 
-BITS = ("end=1.2e-3", "window=2e-4", "output.pictures=[]", "output.snapshots=4e-4")
+BITS = ("end=1.2e-3", "window=2e-4", "output.snapshots=4e-4", "output.pictures=[]", "expect=[]")
 
 
 @pytest.fixture(scope="module")
@@ -135,7 +135,7 @@ def test_every_transport_gives_the_same_bits(
     out = ["--out", str(tmp_path / transport), "--transport", transport]
     with pytest.raises(SystemExit) as ended:
         main(["run", "elastic_gate", *out, *chosen])
-    assert ended.value.code in (0, 1)
+    assert ended.value.code == 0
     assert compare(in_memory, tmp_path / transport) is None
 
 
