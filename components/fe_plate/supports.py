@@ -59,7 +59,7 @@ def _corners(mesh: Mesh) -> Array:
     if len(side) and side[0, 2] < 0:
         first, last = mesh.node[side[:, 0]], mesh.node[side[:, 1]]
         along = np.array([0.0, 1.0, 0.0])
-        return np.stack([first, last, last + along, first + along], axis=1)
+        return np.stack([last, first, first + along, last + along], axis=1)
     return np.asarray(mesh.node[side])
 
 
