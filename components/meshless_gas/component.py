@@ -172,6 +172,7 @@ class MeshlessGas(Component):
             if self.particles is not None:
                 self.particles.add(work.primitive, work.residual, dt, (old, new, share))
             state.entered += share * dt * work.flows
+            state.work += share * dt * self._outer_power()
             wrong = self.team.run(
                 advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
                 old, new, self.gamma, state.conservative, work.primitive,
@@ -187,6 +188,13 @@ class MeshlessGas(Component):
         self._look_ahead()
         if self.settling is not None and self.settling.is_due():
             self._settle()
+
+    def _outer_power(self) -> float:
+        """Energy [W] that comes in now, but for what bodies do that a partner moves."""
+        power = float(self.fluxes.flows[4])
+        if self.moving is not None:
+            power -= float(self.moving.loads[self.moving.driven, 6].sum())
+        return power
 
     def _settle(self) -> None:
         """Look whether the flow is steady."""
@@ -235,15 +243,20 @@ class MeshlessGas(Component):
         if self.moving is not None:
             self.moving.load(work.primitive, work.flows)
 
+    def _write_gradients(self) -> None:
+        """Gradients of states that are filled."""
+        own, work, cloud = self.domain, self.fluxes, self.domain.cloud
+        self.team.run(
+            write_gradients, len(own.every), own.every, work.primitive, *own.stencils,
+            self.planar, work.gradients, work.lowest,
+        )  # fmt: skip
+        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
+
     def _write_rates(self) -> None:
         """Rates of change of density, momentum and energy, of states that are filled."""
         own, work, cloud = self.domain, self.fluxes, self.domain.cloud
         neighbours, coefficients = own.stencils
-        self.team.run(
-            write_gradients, len(own.every), own.every, work.primitive, neighbours, coefficients,
-            self.planar, work.gradients, work.lowest,
-        )  # fmt: skip
-        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
+        self._write_gradients()
         blocks = -(-len(own.inner) // LANES)
         self.team.run(
             write_residuals, blocks, own.inner, cloud.positions, work.primitive, work.gradients,
@@ -320,6 +333,7 @@ class MeshlessGas(Component):
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""
+        self._write_gradients()
         return view(self.state, self.domain, self.fluxes, self.params)
 
     def walls(self) -> Fields:
