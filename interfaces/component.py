@@ -101,6 +101,7 @@ class Totals:
     kinetic: float = 0.0  # J
     potential: float = 0.0  # J, gravity
     internal: float = 0.0  # J, elastic and thermal
+    work: float = 0.0  # J, done on it so far by what no link brings: loads of the scene, walls
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +222,11 @@ class Component(ABC):
         return {}
 
     def walls(self) -> Fields:
-        """What stands still around it, for pictures: ``points`` and ``cells`` as in a view."""
+        """What stands still around it, for pictures: ``points`` and ``cells`` as in a view.
+
+        Optional ``support`` (cells,) tells which are walls, clamped faces of bodies and planes of
+        symmetry, by the numbers of `interfaces.faces`; without it all are walls.
+        """
         return {}
 
     def notes(self) -> tuple[str, ...]:

@@ -19,6 +19,9 @@ BOX_FACES = {
 }
 FACES = np.array(list(BOX_FACES.values()))
 
+# What stands still, of the walls of a component.
+WALL, CLAMPED, SYMMETRY = 0, 1, 2
+
 
 def stacked(cells: Iterable[Array]) -> Array:
     """Polygons (m, k) of several arrays (m_i, k_i) in one, -1 after the last corner of each."""

@@ -93,7 +93,14 @@ HEAT = Port("heat", fields=(HEAT_FLOW,))
 # told, loaded and heated as all of them together; its diameter is that of one.
 SPHERES = Port(
     "spheres",
-    fields=(POSITION, VELOCITY, TEMPERATURE, Field("diameter", (), "m")),
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("acceleration", (3,), "m/s2"),  # by all but the load, as of gravity
+        TEMPERATURE,
+        Field("diameter", (), "m"),
+        Field("launched", (), "1", kind="flag"),  # 0: not there yet
+    ),
     static=(
         Field("mass", (), "kg"),
         Field("heat_capacity", (), "J/K"),

@@ -17,12 +17,18 @@ from quintet.components.fe_plate.kernels.blocks import ENERGY
 from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.kernels.flow import HUGE
-from quintet.components.fe_plate.kernels.nodes import kick, kick_and_drift, sum_parted
+from quintet.components.fe_plate.kernels.nodes import (
+    kick,
+    kick_and_drift,
+    kinetic_energy,
+    sum_parted,
+)
 from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.plan import plan
 from quintet.components.fe_plate.ports import SHOWS, ports
 from quintet.components.fe_plate.state import Array, Resistance, Whole
+from quintet.components.fe_plate.supports import supports
 from quintet.components.fe_plate.view import view
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -51,6 +57,7 @@ class Accumulated:
 
     time: float = 0.0  # s
     work: float = 0.0  # J, of the loads
+    outside: float = 0.0  # J, of it that of pressures; less what mass damping took
 
 
 class FePlate(Component):
@@ -168,10 +175,19 @@ class FePlate(Component):
         self._write_loads()
         if self.glued:
             self._hasten(dt)
-        done = kick_and_drift(self.model, self.state, dt, self.params.mass_damping)
-        self.accumulated.time += dt
-        self.accumulated.work += done
+        total, damping = self.accumulated, self.params.mass_damping
+        kept = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
+        if damping:
+            total.outside -= (1.0 - kept) * kinetic_energy(self.model, self.state)
+        done = kick_and_drift(self.model, self.state, dt, damping)
+        total.time += dt
+        total.work += done
+        if self.params.pressures:
+            mean = self.state.mean_velocity[self.surface]
+            total.outside += done - dt * float((mean * self.loads).sum())
         self.bound = self._write_forces(dt)
+        if damping:
+            total.outside -= (1.0 / kept - 1.0) * kinetic_energy(self.model, self.state)
         if self.glued:
             self.state.velocity[self.surface] -= self.early
 
@@ -265,7 +281,7 @@ class FePlate(Component):
         """Copy out all state."""
         kept = {name: array.copy() for name, array in self._arrays().items()}
         total = self.accumulated
-        kept["accumulated"] = np.array([total.time, total.work, self.bound])
+        kept["accumulated"] = np.array([total.time, total.work, total.outside, self.bound])
         own = {"loads": self.loads, "hung": self.hung, "early": self.early}
         return kept | {name: array.copy() for name, array in own.items()}
 
@@ -277,13 +293,14 @@ class FePlate(Component):
         self.loads[:] = state["loads"]
         self.hung, self.early = np.array(state["hung"]), np.array(state["early"])
         self.model.inverse_mass[self.surface] = 1.0 / (self.mass[self.surface] + self.hung)
-        time, work, self.bound = state["accumulated"].tolist()
-        self.accumulated = Accumulated(time, work)
+        time, work, outside, self.bound = state["accumulated"].tolist()
+        self.accumulated = Accumulated(time, work, outside)
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, with what hangs on the nodes.
 
-        Internal is strain, plastic work and stabilisation.
+        Internal is strain, plastic work and stabilisation; work is that of pressures, rigid walls
+        and mass damping.
         """
         s, whole = self.state, self.mass.copy()
         whole[self.surface] += self.hung
@@ -297,11 +314,16 @@ class FePlate(Component):
             kinetic=0.5 * float((whole[:, None] * moving * moving).sum()),
             potential=-float(whole @ (s.position @ self.model.gravity)),
             internal=float(energy),
+            work=self.accumulated.outside + float(s.wall_work.sum()),
         )
 
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""
         return view(self.mesh, self.places, self.state)
+
+    def walls(self) -> Fields:
+        """Return rigid walls, clamped faces and planes of symmetry."""
+        return supports(self.params, self.mesh)
 
     def items(self) -> int:
         """Count the elements."""

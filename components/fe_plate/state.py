@@ -63,6 +63,7 @@ class State(NamedTuple):
     points: Array  # (b, POINT_ROWS, LANES), stresses and all that belongs to the material
     springs: Array  # (b or 0, SPRING_ROWS, LANES), of the hourglass patterns
     wall_impulse: Array  # (w,) N s, on each rigid wall so far
+    wall_work: Array  # (w,) J, of each rigid wall on the nodes so far
 
     @property
     def internal(self) -> Array:
@@ -84,6 +85,7 @@ def state_at_rest(nodes: Array, blocks: int, springs: int, rows: int, walls: int
         points=points,
         springs=np.zeros((springs, SPRING_ROWS, LANES)),
         wall_impulse=np.zeros(walls),
+        wall_work=np.zeros(walls),
     )
 
 

@@ -1,6 +1,7 @@
 """A gas on a cloud of nodes, stepped by SSP-RK3."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -47,6 +48,9 @@ from quintet.interfaces.component import (
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.manifest import Plan, Ports
 
+if TYPE_CHECKING:
+    from quintet.components.meshless_gas.moving.clouds import MovingClouds
+
 FEWEST = 32  # blocks of nodes that are worth handing to another thread
 
 
@@ -73,12 +77,22 @@ class MeshlessGas(Component):
     def __init__(self, params: MeshlessGasParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.gamma, self.team = params.gas.gamma, Team(resources.threads, FEWEST)
-        self.domain = domain(params, self.team)
+        self.moving: MovingClouds | None = None
+        if params.moving is not None:
+            # Scenes without bodies that carry clouds import none of this.
+            from quintet.components.meshless_gas.moving.build import moving_clouds, soft_start
+            from quintet.components.meshless_gas.moving.outputs import outputs
+
+            self.moving, self.moving_outputs = moving_clouds(params, self.team), outputs
+        self.domain = domain(params, self.team) if self.moving is None else self.moving.domain
         cloud = self.domain.cloud
         self.state = initial_state(params, cloud)
+        if self.moving is not None:
+            soft_start(self.moving, self.state, self.gamma)
         self.fluxes = Fluxes.empty(cloud.nodes, len(cloud.owner))
         self.bound = 0.0  # s, step that all nodes bear at a Courant number of 1
-        self.frame: Array | None = None  # (n, 3) m/s, velocities of nodes
+        # (n, 3) m/s, velocities of nodes
+        self.frame: Array | None = None if self.moving is None else self.moving.frame
         # What is None is not compiled.
         self.planar = True if params.planar else None
         self.sloped = True if params.order == 2 else None
@@ -93,7 +107,23 @@ class MeshlessGas(Component):
         self.settling = Settling(params.steady) if params.steady is not None else None
         self.probed = nearest_nodes(cloud, params.probes, self.team)
         self.lines = [line(cloud, one, self.team) for one in params.fronts]
+        self.particles = None
+        if params.particles is not None:
+            # Compiled only where there are particles.
+            from quintet.components.meshless_gas.point_particles.partner import Partner
+
+            self.particles = Partner(params, self.domain)
         self._take_over()
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Learn how heavy particles are."""
+        if self.particles is not None:
+            self.particles.bind(static)
+
+    def prime(self, fields: Fields) -> None:
+        """Learn where particles are at the start."""
+        if self.particles is not None:
+            self.particles.prime(fields, self.fluxes.primitive)
 
     def prepare(self, fields: Fields) -> None:
         """Compile all kernels: try a step, and come back."""
@@ -104,24 +134,45 @@ class MeshlessGas(Component):
         self.load(kept)
 
     def stable_dt(self) -> float:
-        """Return the share `courant` of what the slowest node bears."""
+        """Return the share `courant` of what the slowest node bears, or what particles allow."""
         if self.settling is not None and self.settling.is_settled:
             return math.inf
-        return self.params.courant * self.bound
+        flow = self.params.courant * self.bound
+        if self.particles is None:
+            return flow
+        return min(flow, self.particles.stable_dt(self.fluxes.primitive))
 
     def take(self, fields: Fields) -> None:
-        """Take nothing: the gas is alone."""
+        """Take the motion of bodies, if a partner moves some, and of particles."""
+        if self.moving is not None:
+            self.moving.take(fields)
+        if self.particles is not None:
+            self.particles.take(fields)
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; of local steps that of the node that bears least."""
-        state, work, own = self.state, self.fluxes, self.domain
+        state, work = self.state, self.fluxes
         if self.settling is not None and self.settling.is_settled:
             state.time += dt
             return
+        if self.moving is not None:
+            self.moving.begin(dt, work.primitive, state.conservative)
+            self.domain = self.moving.domain
+            self._fill()
+        own = self.domain
         work.start[:] = state.conservative
-        for old, new, share in STAGES:
+        if self.particles is not None:
+            self.particles.place()
+        for stage, (old, new, share) in enumerate(STAGES):
+            if self.moving is not None:
+                self.moving.place(stage, dt)
             self._write_rates()
+            if self.moving is not None:
+                self.moving.add_rates(share, work.primitive, self.gamma, work.residual)
+            if self.particles is not None:
+                self.particles.add(work.primitive, work.residual, dt, (old, new, share))
             state.entered += share * dt * work.flows
+            state.work += share * dt * self._outer_power()
             wrong = self.team.run(
                 advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
                 old, new, self.gamma, state.conservative, work.primitive,
@@ -129,10 +180,21 @@ class MeshlessGas(Component):
             if max(wrong) >= 0:
                 raise StepError(self._failure(max(wrong), dt))
             self._fill()
+        if self.moving is not None:
+            self.moving.end(dt)
+        if self.particles is not None:
+            state.entered -= dt * self.particles.given()
         state.time += dt
         self._look_ahead()
         if self.settling is not None and self.settling.is_due():
             self._settle()
+
+    def _outer_power(self) -> float:
+        """Energy [W] that comes in now, but for what bodies do that a partner moves."""
+        power = float(self.fluxes.flows[4])
+        if self.moving is not None:
+            power -= float(self.moving.loads[self.moving.driven, 6].sum())
+        return power
 
     def _settle(self) -> None:
         """Look whether the flow is steady."""
@@ -173,20 +235,29 @@ class MeshlessGas(Component):
         )  # fmt: skip
         if self.viscous is not None:
             self.viscous.hold(work.primitive)
+        if self.moving is not None:
+            self.moving.hold_walls(work.primitive, self.gamma)
         write_ghost_states(cloud.owner, cloud.turn, work.primitive)
         boundary_flows(own.bounding, cloud.areas, work.primitive, self.gamma, work.flows)
         if self.viscous is not None:
             self.viscous.add_flows(work.primitive, work.flows)
+        if self.moving is not None:
+            self.moving.load(work.primitive, work.flows)
+
+    def _write_gradients(self) -> None:
+        """Gradients of states that are filled."""
+        own, work, cloud = self.domain, self.fluxes, self.domain.cloud
+        self.team.run(
+            write_gradients, len(own.every), own.every, work.primitive, *own.stencils,
+            self.planar, work.gradients, work.lowest,
+        )  # fmt: skip
+        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
 
     def _write_rates(self) -> None:
         """Rates of change of density, momentum and energy, of states that are filled."""
         own, work, cloud = self.domain, self.fluxes, self.domain.cloud
         neighbours, coefficients = own.stencils
-        self.team.run(
-            write_gradients, len(own.every), own.every, work.primitive, neighbours, coefficients,
-            self.planar, work.gradients, work.lowest,
-        )  # fmt: skip
-        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
+        self._write_gradients()
         blocks = -(-len(own.inner) // LANES)
         self.team.run(
             write_residuals, blocks, own.inner, cloud.positions, work.primitive, work.gradients,
@@ -228,6 +299,10 @@ class MeshlessGas(Component):
             given.update(probes(self.probed, cloud, self.state.primitive, gas))
         if "fronts" in ports_wanted:
             given.update(fronts(self.lines, self.state.primitive))
+        if self.particles is not None:
+            given.update(self.particles.loads())
+        if self.moving is not None:
+            given.update(self.moving_outputs(self.moving, self.state.primitive, self.params))
         if self.surface is not None and ports_wanted & {"wall", "body"}:
             self._feel()
             settled = float(self.settling is not None and self.settling.is_settled)
@@ -237,13 +312,20 @@ class MeshlessGas(Component):
 
     def save(self) -> Fields:
         """Copy out all state; boundary nodes and ghosts follow from it."""
-        return self.state.save() | (self.settling.save() if self.settling is not None else {})
+        kept = self.state.save() | (self.settling.save() if self.settling is not None else {})
+        kept |= self.particles.save() if self.particles is not None else {}
+        return kept | (self.moving.save() if self.moving is not None else {})
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
+        if self.moving is not None:
+            self.moving.restore(state)
+            self.domain = self.moving.domain
         self.state.load(state)
         if self.settling is not None:
             self.settling.load(state)
+        if self.particles is not None:
+            self.particles.load(state)
         self._take_over()
 
     def totals(self) -> Totals:
@@ -252,6 +334,7 @@ class MeshlessGas(Component):
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""
+        self._write_gradients()
         return view(self.state, self.domain, self.fluxes, self.params)
 
     def walls(self) -> Fields:

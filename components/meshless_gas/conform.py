@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from quintet.interfaces.manifest import ConformCase
 
 BOX = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 1.0, 1.0], "spacing": 0.1, "jitter": 0.3}
@@ -40,6 +42,7 @@ def cases() -> tuple[ConformCase, ...]:
     }
     return (
         ConformCase("gas at rest", rest, dt=STEP),
+        _dusty(),
         ConformCase(
             "stream over a wall",
             stream,
@@ -48,4 +51,38 @@ def cases() -> tuple[ConformCase, ...]:
             smooth=False,  # it is limited, and the wall stops what strikes it
         ),
         ConformCase("shock tube", tube, dt=STEP, still=False, smooth=False),
+    )
+
+
+def _dusty() -> ConformCase:
+    """Particles that nodes do not resolve, in a gas at rest."""
+    return ConformCase(
+        "particles in a gas",
+        {
+            "box": {**BOX, "jitter": 0.0},
+            "neighbours": 8,
+            "initial": {"temperature": 300.0, "pressure": 1e5},
+            "particles": {"heat": "fox"},
+        },
+        static={
+            "particles.mass": np.full(2, 0.02),
+            "particles.heat_capacity": np.full(2, 20.0),
+            "particles.number": np.full(2, 1e7),
+        },
+        rest={
+            "particles.position": np.array([[0.52, 0.0, 0.33], [0.61, 0.0, 0.77]]),
+            "particles.velocity": np.zeros((2, 3)),
+            "particles.acceleration": np.zeros((2, 3)),
+            "particles.temperature": np.full(2, 300.0),
+            "particles.diameter": np.full(2, 1e-5),
+            "particles.launched": np.ones(2),
+        },
+        scale={
+            "particles.position": 0.02,
+            "particles.velocity": 10.0,
+            "particles.temperature": 20.0,
+        },
+        dt=5e-5,
+        still=False,  # temperatures are those of the gas to rounding
+        smooth=False,  # its change is that of the last stage
     )

@@ -98,6 +98,7 @@ def totals(state: State, cloud: Cloud) -> Totals:
         angular_momentum=np.cross(positions, momenta).sum(axis=0),
         kinetic=kinetic,
         internal=float(now[4]) - kinetic,
+        work=state.work,
     )
 
 

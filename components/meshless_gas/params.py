@@ -7,6 +7,8 @@ from pydantic import Field
 
 from quintet.components.meshless_gas.boundaries import HOLDING, Boundary, Gas, GasState
 from quintet.components.meshless_gas.clouds.params import Box, Plate, Sphere
+from quintet.components.meshless_gas.moving.params import Moving
+from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -169,10 +171,14 @@ class MeshlessGasParams:
         of the node of the shortest step.
     steady
         When the flow has settled; the force on the walls is then what is given.
+    moving
+        Bodies that carry clouds of nodes of their own; none if not said.
     probes : m
         Places; of the node that is nearest to each the state is given.
     fronts
         Lines on which shocks are looked for.
+    particles
+        How spheres of a partner are felt that are smaller than the spacing.
     """
 
     gas: Gas = Gas()
@@ -193,8 +199,10 @@ class MeshlessGasParams:
     courant: Positive = 0.7
     local_steps: bool = False
     steady: Steady | None = None
+    moving: Moving | None = None
     probes: tuple[Vector, ...] = ()
     fronts: tuple[Front, ...] = ()
+    particles: PointParticles | None = None
 
     def __post_init__(self) -> None:
         for sentence in (*self._wrong_clouds(), *self._wrong_states(), *self._wrong_walls()):
@@ -210,6 +218,11 @@ class MeshlessGasParams:
             found.append(
                 f"a gas needs a box, a sphere or a plate of nodes, one of them; found "
                 f"{' and '.join(said) or 'none'}. Correct it."
+            )
+        if self.particles is not None and (self.axisymmetric or self.moving is not None):
+            found.append(
+                "particles that nodes do not resolve go with clouds that stand still, of 2 or 3 "
+                "dimensions; found axisymmetric or moving. Leave out particles."
             )
         if self.axisymmetric and (self.dimensions == 3 or self.sphere is None):
             found.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")

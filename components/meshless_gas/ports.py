@@ -1,9 +1,11 @@
 """What a gas takes and gives: balances; its error where the solution is known; probes."""
 
+from dataclasses import replace
+
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import TEMPERATURE, VELOCITY
+from quintet.interfaces.ports import HEAT, LOAD, MOTION, SPHERES, TEMPERATURE, VELOCITY
 
 POSITION = Field("position", (3,), "m")
 DENSITY = Field("density", (), "kg/m3")
@@ -25,7 +27,8 @@ BALANCE = Port(
         Field("mass", (), "kg"),
         Field("momentum", (3,), "N s"),
         Field("energy", (), "J"),
-        # What came in through the boundary since the start, pressure's part included.
+        # What came in through the boundary since the start, pressure's part included, and from
+        # particles.
         Field("mass_entered", (), "kg"),
         Field("momentum_entered", (3,), "N s"),
         Field("energy_entered", (), "J"),
@@ -92,10 +95,49 @@ FRONTS = Port(
     ),
 )
 
+# Of bodies that carry clouds, all of them; forces are means over the step.
+BODIES = Port(
+    "bodies",
+    fields=(
+        POSITION,
+        VELOCITY,
+        Field("force", (3,), "N"),
+        # Over ½ρU² and the area that faces the flow, of the state at the start and the body's
+        # velocity there.
+        Field("coefficient", (3,), "1"),
+        Field("highest_pressure", (), "Pa"),  # on the wall
+        Field("uncovered", (), "1"),  # nodes of all clouds that came back since the start
+    ),
+)
+# Nodes of the walls of those bodies, one body after another, each from upstream round to z.
+SURFACE = Port(
+    "surface",
+    fields=(
+        POSITION,
+        Field("body", (), "1"),
+        Field("angle", (), "rad"),  # at the centre, from upstream
+        PRESSURE,
+    ),
+)
+
+
+# Spheres that nodes do not resolve, as the partner has them, and what the gas does to them; a point
+# is not turned, its torque is 0.
+PARTICLES = replace(SPHERES, name="particles")
+PARTICLE_LOAD = replace(LOAD, name="particle_load")
+PARTICLE_HEAT = replace(HEAT, name="particle_heat")
+
 
 def ports(params: MeshlessGasParams) -> Ports:
     """Ports taken and given."""
     known = params.riemann is not None or params.vortex is not None
     read = (*((PROBES,) if params.probes else ()), *((FRONTS,) if params.fronts else ()))
     felt = (WALL, body(params)) if has_walls(params) else ()
-    return (), (BALANCE, *((ERROR,) if known else ()), *read, *felt)
+    given = (BALANCE, *((ERROR,) if known else ()), *read, *felt)
+    if params.particles is not None:
+        return (PARTICLES,), (*given, PARTICLE_LOAD, PARTICLE_HEAT)
+    if params.moving is None:
+        return (), given
+    driven = any(one.is_driven for one in params.moving.bodies)
+    bodies = (BODIES, SURFACE, *((LOAD, HEAT) if driven else ()))
+    return (MOTION,) if driven else (), (*given, *bodies)

@@ -18,6 +18,7 @@ class State:
     entered: Array  # (5,) kg, N s, J, through the boundary since the start
     begun: Array  # (5,) kg, N s, J, at the start
     time: float = 0.0  # s
+    work: float = 0.0  # J, energy that came in since the start but for what partners brought
 
     def save(self) -> dict[str, NDArray[Any]]:
         """Copy out everything."""
@@ -27,7 +28,7 @@ class State:
         """Come back to a saved state, in the same arrays."""
         for name in ("conservative", "primitive", "entered", "begun"):
             getattr(self, name)[:] = saved[name]
-        self.time = float(saved["time"])
+        self.time, self.work = float(saved["time"]), float(saved["work"])
 
 
 @dataclass(slots=True)

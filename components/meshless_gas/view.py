@@ -35,17 +35,17 @@ def schlieren(gradient: Array) -> Array:
 
 
 def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams) -> Fields:
-    """Nodes, with the gradients of the last stage."""
-    nodes = domain.cloud.nodes
-    gradient = fluxes.gradients[:nodes, 0]
+    """Nodes that are not left out, with the gradients of the last stage."""
+    rows = domain.every
+    gradient, primitive = fluxes.gradients[rows, 0], state.primitive[rows]
     return {
-        "points": domain.cloud.positions[:nodes].copy(),
-        "spacing": domain.cloud.spacing[:nodes].copy(),
-        "density": state.primitive[:, 0].copy(),
-        "pressure": state.primitive[:, 4].copy(),
-        "velocity": state.primitive[:, 1:4].copy(),
-        "temperature": temperature(state.primitive, params.gas),
-        "mach": mach(state.primitive, params.gas),
+        "points": domain.cloud.positions[rows],
+        "spacing": domain.cloud.spacing[rows],
+        "density": primitive[:, 0].copy(),
+        "pressure": primitive[:, 4].copy(),
+        "velocity": primitive[:, 1:4].copy(),
+        "temperature": temperature(primitive, params.gas),
+        "mach": mach(primitive, params.gas),
         "schlieren": schlieren(np.sqrt((gradient * gradient).sum(axis=1))),
     }
 

@@ -30,6 +30,8 @@ from quintet.interfaces.errors import StepError
 ODD_OF_SIX = (np.array([3, 5]), np.array([3, 4]), np.array([4, 5]))
 ODD_OF_NINE = (np.array([1, 2, 3, 6]), np.array([1, 3, 5, 7]), np.array([2, 5, 6, 7]))
 
+ODD_OF_TWICE_SIX = tuple(np.concatenate([odd, odd + 8]) for odd in ODD_OF_SIX)
+
 
 class Plane(NamedTuple):
     """A plane of symmetry across an axis."""
@@ -85,9 +87,10 @@ class SymmetryImages:
     def write_tensors(self, array: Array, rows: int) -> None:
         """Write the images of the first rows, M T M with M = I - 2 n nᵀ; other columns copied.
 
-        The tensor is in columns 0 to 5 of eight, xx yy zz xy yz zx, or 0 to 8 of twelve, by rows.
+        The tensor is in columns 0 to 5 of eight, xx yy zz xy yz zx, or 0 to 8 of twelve, by rows;
+        of sixteen columns 8 to 13 are another of six.
         """
-        odd = ODD_OF_SIX if array.shape[1] == 8 else ODD_OF_NINE
+        odd = {8: ODD_OF_SIX, 12: ODD_OF_NINE, 16: ODD_OF_TWICE_SIX}[array.shape[1]]
         for plane, origin, images in self._images(rows):
             array[images] = array[origin]
             array[images, odd[plane.axis]] *= -1.0

@@ -4,7 +4,7 @@ import numpy as np
 
 from quintet.components.shared.materials.params import Material, material
 from quintet.components.shared.materials.solid import Solid, solid
-from quintet.components.shared.smoothing.smoothing import smoothing
+from quintet.components.shared.smoothing.smoothing import kernel, smoothing
 from quintet.components.sph_solid.filling import filling
 from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.params import SphSolidParams
@@ -28,13 +28,16 @@ def materials(params: SphSolidParams) -> tuple[list[Solid], list[int]]:
 def pair_law(params: SphSolidParams) -> PairLaw:
     """Numbers of pairs."""
     is_plane = params.dimensions == 2 and not params.axisymmetric
+    smooth = smoothing("cubic", 2 if is_plane else 3, params.length)
     return PairLaw(
-        smoothing=smoothing("cubic", 2 if is_plane else 3, params.length),
+        smoothing=smooth,
         softening=0.01 * params.length**2,
         linear=params.viscosity_linear,
         quadratic=params.viscosity_quadratic,
         plane=1.0 if is_plane else 0.0,
         corrected=True if params.kernel_correction else None,
+        artificial=params.artificial_stress or None,
+        per_spacing=1.0 / kernel(params.spacing**2, smooth),
     )
 
 

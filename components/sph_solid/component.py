@@ -7,7 +7,12 @@ import numpy as np
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.build import initial_state, materials, nearest, pair_law
 from quintet.components.sph_solid.diagnostics import bodies, failure, gauges, levels, totals, view
-from quintet.components.sph_solid.kernels.material import Points, advance, write_stresses
+from quintet.components.sph_solid.kernels.material import (
+    Points,
+    advance,
+    write_artificial,
+    write_stresses,
+)
 from quintet.components.sph_solid.kernels.motion import (
     drift_half,
     kick_and_drift_half,
@@ -215,6 +220,8 @@ class SphSolid(Component):
             write_stresses, count, self.density, self.state.material, self.points, rows.correction,
             rows.stress,
         )  # fmt: skip
+        if self.law.artificial is not None:
+            self.team.run(write_artificial, count, self.law.artificial, rows.stress)
 
     def _write_accelerations(self) -> None:
         """Accelerations, forces on glued particles, the next step's bound, as the rows stand."""

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from numba import njit
 
 from quintet.components.shared.smoothing.cubic_spline import ONE
-from quintet.components.shared.smoothing.smoothing import Smoothing
+from quintet.components.shared.smoothing.smoothing import Smoothing, kernel
 
 SINGULAR = 0.15  # determinant of Σ V_j (x_j - x_i) ⊗ ∇W_ij, below which none is corrected
 On = bool | None
@@ -33,6 +33,8 @@ class PairLaw(NamedTuple):
     quadratic: float  # β
     plane: float  # 1 in two dimensions, 0 in three
     corrected: On  # None if gradients are not corrected
+    artificial: float | None  # ε of the artificial stress; None without
+    per_spacing: float  # m3, one over W at the spacing of the start; m2 in two dimensions
 
 
 @njit(inline="always")
@@ -68,6 +70,19 @@ def viscous_pressure(mu, sound_sum, per_density, densities, law):  # type: ignor
     """
     drag = law.linear * sound_sum + 2.0 * law.quadratic * mu
     return mu * drag * densities * per_density
+
+
+@njit(inline="always")
+def nearness(r2, law):  # type: ignore[no-untyped-def]
+    """Share f⁴, f = W(r)/W(Δ), of the artificial stress that two particles feel at a distance r.
+
+    References
+    ----------
+    Monaghan, J. Comput. Phys. 159 (2000) 290, section 2; Gray, Monaghan & Swift, Comput. Methods
+    Appl. Mech. Eng. 190 (2001) 6641, eq. (31).
+    """
+    f = kernel(r2, law.smoothing) * law.per_spacing
+    return f * f * f * f
 
 
 @njit(inline="always")

@@ -38,6 +38,8 @@ class SolidLists:
         self.support = SUPPORT * params.length
         self.team = team
         self.corrected = params.kernel_correction
+        # Of rows of stress: a tensor of six or nine numbers, two densities, an artificial tensor.
+        self.width = 16 if params.artificial_stress > 0.0 else 12 if self.corrected else 8
         planes = [
             Plane(one.axis + ("-" if one.side == "+" else "+"), "xyz".index(one.axis),
                   one.position, 1.0 if one.side == "+" else -1.0)
@@ -134,4 +136,4 @@ class SolidLists:
             self.near = neighbours_and_images(
                 points, all_alike, count, count, state.reach, self.team, None, buffer
             )
-        return Rows.empty(count, len(points) - count, self.corrected)
+        return Rows.empty(count, len(points) - count, self.corrected, self.width)

@@ -197,6 +197,9 @@ class SphSolidParams:
     kernel_correction
         Whether gradients are corrected to be exact for linear fields; not at failed particles nor
         their neighbours.
+    artificial_stress : 1
+        ε of the pressure, as a share of tension, by which near particles repel each other where
+        the material is stretched, so that they form no clumps; 0.3 is usual, 0 has none.
     """
 
     spacing: Positive
@@ -213,6 +216,7 @@ class SphSolidParams:
     viscosity_linear: NotNegative = 1.0
     viscosity_quadratic: NotNegative = 2.0
     kernel_correction: bool = False
+    artificial_stress: NotNegative = 0.0
 
     def __post_init__(self) -> None:
         axes = [one.axis for one in self.symmetry]
@@ -245,6 +249,11 @@ class SphSolidParams:
                 ),
                 "bodies: in two dimensions they must be boxes or cylinders along y; axisymmetric "
                 "ones boxes or spheres.",
+            ),
+            (
+                self.artificial_stress > 0.0 and (self.kernel_correction or self.axisymmetric),
+                "artificial_stress is of plain gradients of particles: leave it out, or leave out "
+                "kernel_correction and axisymmetric.",
             ),
             (
                 self.axisymmetric and (self.dimensions != 2 or "x" in axes or self.glued),

@@ -78,18 +78,18 @@ class Rows:
 
     place: Array  # (n + images, 4) m, m, m, m3: x, y, z and volume at the start
     motion: Array  # (n + images, 4) m/s: u, v, w, and whether it has failed, or speed of sound
-    stress: Array  # (n + images, 8 or 12) Pa, kg/m3: σ/η² and ρ, ρ₀; see `kernels`
+    stress: Array  # (n + images, 8, 12 or 16) Pa, kg/m3: σ/η² and ρ, ρ₀; see `kernels`
     gradient: Array  # (n, 9) 1/s, of velocity
     correction: Array  # (n, 6) 1; (0, 6) without
 
     @classmethod
-    def empty(cls, particles: int, images: int, corrected: bool) -> "Rows":
-        """Make room."""
+    def empty(cls, particles: int, images: int, corrected: bool, width: int) -> "Rows":
+        """Make room, with rows of stress of a width."""
         count = particles + images
         return cls(
             place=np.zeros((count, 4)),
             motion=np.zeros((count, 4)),
-            stress=np.zeros((count, 12 if corrected else 8)),
+            stress=np.zeros((count, width)),
             gradient=np.zeros((particles, 9)),
             correction=np.zeros((particles if corrected else 0, 6)),
         )

@@ -21,6 +21,7 @@ TOTALS = {
     "kinetic": 0,
     "potential": 0,
     "internal": 0,
+    "work": 0,
 }
 
 

@@ -1,4 +1,7 @@
-"""The energy of a whole run: whether it rises, told against all that was turned over."""
+"""The energy of a whole run: whether it rises, told against all that was turned over.
+
+What is done on components from outside of the run is no rise, and what they lose there no fall.
+"""
 
 from collections.abc import Mapping
 from typing import Any
@@ -24,6 +27,7 @@ class EnergyBalance:
                 total += energy
                 least, most = self._range.get(f"{name}.{kind}", (energy, energy))
                 self._range[f"{name}.{kind}"] = [min(least, energy), max(most, energy)]
+            total -= float(one["work"])
         start, largest = self._sums or (total, total)
         self._sums = [start, max(largest, total)]
 
@@ -35,7 +39,7 @@ class EnergyBalance:
         )
 
     def drift(self) -> float | None:
-        """Largest rise of the sum above its start over the largest energy turned over.
+        """Largest rise of the sum, less works, above its start over the largest energy turned over.
 
         That is the largest change of one kind of energy of one component. None where nothing was
         turned over but rounding: there is nothing to tell a rise against.

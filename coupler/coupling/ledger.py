@@ -32,10 +32,11 @@ RESIDUALS = {
     "m/s": "kinematic_residual",
 }
 OTHER = "other_residual"
+WORK = "work"  # of totals: what is done from outside of the run
 
 COLUMNS = (
     "time name momentum_residual angular_residual impulse_x impulse_y impulse_z work_given "
-    "work_taken heat mass momentum_x momentum_y momentum_z kinetic potential internal"
+    "work_taken heat mass momentum_x momentum_y momentum_z kinetic potential internal work"
 ).split()
 
 
@@ -215,7 +216,7 @@ class Ledger:
             work = [account.work_given, account.work_taken, account.heat]
             self._table.write([time, account.link, *residuals, *account.impulse, *work])
         for name, one in totals.items():
-            totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in KINDS)]
+            totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in (*KINDS, WORK))]
             self._table.write([time, name, *[""] * 8, *totals_row])
         self._table.flush()
 

@@ -109,14 +109,9 @@ class StabilityWatch:
         negligible = max(
             MOVING * energy.largest("kinetic", "internal"), NEGLIGIBLE * energy.largest(*KINDS)
         )
-        # Links of equal steps are one explicit integration: each side counts the same work, one a
-        # step after the other, and what a steep wave changes in that step is none that is made.
-        alike = {one.name for one in coupling.exchange.links if one.demands().equal_steps}
         for name, account in ledger.accounts.items():
             made = self._made[name]
             made.add(account)
-            if name in alike:
-                continue
             if name not in self.found and made.is_unstable(coupling.windows.done, negligible):
                 self.asks = self.asks or not known
                 if not known:

@@ -21,7 +21,7 @@ from quintet.coupler.report.view_drawing import (
     draw_walls,
     is_mark,
 )
-from quintet.coupler.report.view_steps import Shown, moments, read, view_files, walls
+from quintet.coupler.report.view_steps import Shown, Still, moments, read, view_files, walls
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
@@ -155,7 +155,7 @@ def _within(shown: Shown, region: Region | None) -> Shown:
 
 
 def _limits(
-    views: Sequence[Sequence[Shown]], still: Sequence[Array], region: Region | None
+    views: Sequence[Sequence[Shown]], still: Sequence[Still], region: Region | None
 ) -> tuple[Array, Array]:
     """Lowest and highest corner (2,) m, x and z, of all panels: what moves, and walls around it."""
     if region is not None:
@@ -168,7 +168,7 @@ def _limits(
     if any(is_mark(one) for one in views[0]):
         low, high = low - 0.5 * MARK * size, high + 0.5 * MARK * size
     if still:
-        corners = np.concatenate(still)[:, [0, 2]]
+        corners = np.concatenate([one.corners for one in still])[:, [0, 2]]
         low = np.minimum(low, np.maximum(corners.min(axis=0), low - BEYOND * size))
         high = np.maximum(high, np.minimum(corners.max(axis=0), high + BEYOND * size))
     margin = np.minimum(MARGIN * size, WITHIN * (high - low))

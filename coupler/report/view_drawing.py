@@ -9,14 +9,22 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler.report.field_drawing import draw_field, is_field
-from quintet.coupler.report.view_steps import Quantity, Shown, spacing
+from quintet.coupler.report.view_steps import Quantity, Shown, Still, spacing
 from quintet.interfaces.component import Array
+from quintet.interfaces.faces import CLAMPED, SYMMETRY
+from quintet.interfaces.faces import WALL as WALL_FACE
 
 LIGHT = np.array([-0.4, -0.8, 0.6])  # towards the light; the eye looks along +y
 PLAIN = ("#ccaa7a", "#8fb0c9", "#b5c98f", "#c99a8f")  # of what no field colours, by component
 MAPS = ("viridis", "plasma", "cividis", "inferno")  # of quantities
 PHOTOGRAPHS = ("schlieren", "shadowgraph")  # quantities in grey, as on photographs of flows
 WALL, BACK = "#444444", "#9aa5ad"  # walls seen from their edge, and from their face
+LINES: dict[int, dict[str, Any]] = {  # what stands still, seen from its edge
+    WALL_FACE: {"linewidths": 2.0},
+    CLAMPED: {"linewidths": 2.0},
+    SYMMETRY: {"linewidths": 1.0, "linestyles": "dashdot"},
+}
+STROKE = 0.015  # of the picture: strokes behind what is clamped
 BEHIND = 0.12  # opacity of the shade of walls
 CLIPPED = 0.5  # % of all values that may be beyond either end of the colours
 ENOUGH = 1000  # values, of which a few may be clipped
@@ -80,17 +88,49 @@ def bar_label(scale: Any, views: Sequence[Sequence[Shown]], one: Quantity) -> st
     return f"{one.label}; {100.0 * beyond:.2g} % of values are beyond" if beyond else one.label
 
 
-def draw_walls(panel: Any, still: Sequence[Array]) -> None:
-    """Draw faces that stand still: those seen from their edge as lines, others as a shade."""
+def draw_walls(panel: Any, still: Sequence[Still]) -> None:
+    """Draw faces that stand still: those seen from their edge as lines, others as a shade.
+
+    Clamped faces have strokes behind them; planes of symmetry are seen from their edge alone.
+    """
     # A run without pictures does not load matplotlib.
     from matplotlib.collections import LineCollection, PolyCollection
 
-    flat = [face[:, [0, 2]] for face in still]
-    edge_on = [_is_flat(f) for f in flat]
-    lines = [_ends(f) for f, on in zip(flat, edge_on, strict=True) if on]
-    faces = [f for f, on in zip(flat, edge_on, strict=True) if not on]
-    panel.add_collection(PolyCollection(faces, facecolors=BACK, alpha=BEHIND, zorder=0), False)
-    panel.add_collection(LineCollection(lines, colors=WALL, linewidths=2.0, zorder=4), False)
+    stroke = STROKE * float(np.ptp(panel.get_xlim()))
+    lines: dict[int, list[Array]] = {WALL_FACE: [], CLAMPED: [], SYMMETRY: []}
+    shaded, strokes = [], []
+    for face, support in still:
+        flat = face[:, [0, 2]]
+        if not _is_flat(flat):
+            shaded += [flat] if support != SYMMETRY else []
+            continue
+        lines[support].append(_ends(flat))
+        if support == CLAMPED:
+            strokes += _strokes(lines[support][-1], _outwards(face), stroke)
+    panel.add_collection(PolyCollection(shaded, facecolors=BACK, alpha=BEHIND, zorder=0), False)
+    for support, one in lines.items():
+        if not one and support != WALL_FACE:
+            continue
+        drawn = LineCollection(one, colors=WALL, zorder=4, **LINES[support])
+        panel.add_collection(drawn, False)
+    if strokes:
+        panel.add_collection(LineCollection(strokes, colors=WALL, linewidths=0.8, zorder=4), False)
+
+
+def _outwards(face: Array) -> Array:
+    """Unit normal (2,) in x and z of a face (k, 3) m, to where it is seen from."""
+    normal = np.cross(face[1] - face[0], face[2] - face[1])[[0, 2]]
+    return np.asarray(normal / np.linalg.norm(normal))
+
+
+def _strokes(line: Array, outwards: Array, length: float) -> list[Array]:
+    """Strokes [m] behind a line (2, 2) m, aslant, as far apart as they are long."""
+    along = line[1] - line[0]
+    span = float(np.linalg.norm(along))
+    along = along / span
+    starts = line[0] + np.linspace(0.0, span, 1 + max(1, round(span / length)))[:, None] * along
+    aslant = length * (outwards - along) / np.sqrt(2.0)
+    return [np.array([start, start + aslant]) for start in starts]
 
 
 def _is_flat(corners: Array) -> bool:
@@ -186,7 +226,7 @@ def _brightness(normal: Array) -> float:
 FRONT = _brightness(np.array([0.0, -1.0, 0.0]))  # of faces towards the eye
 
 
-def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Array]) -> None:
+def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Still]) -> None:
     """Say below the panels which component is what; points with names beside them need no more."""
     # A run without pictures does not load matplotlib.
     from matplotlib.colors import to_rgb
@@ -214,13 +254,20 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Array]) -> No
                 Line2D([], [], marker="o", linestyle="", markerfacecolor=colour,
                        markeredgecolor="black", label=text + by)
             )  # fmt: skip
-    if still:
-        shaded = any(not _is_flat(face[:, [0, 2]]) for face in still)
+    known = {one.support for one in still}
+    if WALL_FACE in known:
+        shaded = any(not _is_flat(one.corners[:, [0, 2]]) for one in still)
         if shaded:
             back = (*to_rgb(BACK), BEHIND)
             handles.append(Patch(facecolor=back, edgecolor=WALL, linewidth=2.0, label="walls"))
         else:
             handles.append(Line2D([], [], color=WALL, linewidth=2.0, label="walls"))
+    if CLAMPED in known:
+        handles.append(Patch(facecolor="none", edgecolor=WALL, hatch="////", label="clamped"))
+    edge_on = [one for one in still if _is_flat(one.corners[:, [0, 2]])]
+    if any(one.support == SYMMETRY for one in edge_on):
+        label = "held across it (symmetry)"
+        handles.append(Line2D([], [], color=WALL, linewidth=1.0, linestyle="dashdot", label=label))
     if not handles:
         return
     figure.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)

@@ -3,12 +3,14 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.run_files import VIEWS, WALLS
 from quintet.interfaces.component import Array
+from quintet.interfaces.faces import WALL
 
 SAMPLE = 24  # points from whose nearest neighbours the spacing is estimated; fewer have none
 DISPLACEMENT = "displacement"  # from where points were at the start
@@ -49,13 +51,22 @@ def view_files(run: Path) -> list[Path]:
     return [path for path in files if len(vtkhdf_reader.times(path))]
 
 
-def walls(run: Path) -> list[Array]:
-    """Corners (k, 3) m of all faces that stand still in a run."""
+class Still(NamedTuple):
+    """A face that stands still: a wall, a clamped face of a body, or a plane of symmetry."""
+
+    corners: Array  # (k, 3) m
+    support: int = WALL  # one of those of `interfaces.faces`
+
+
+def walls(run: Path) -> list[Still]:
+    """All faces that stand still in a run."""
     found = []
     for path in sorted(Path(run).glob(f"*{WALLS}")):
         if len(vtkhdf_reader.times(path)):
             view = vtkhdf_reader.read_step(path, 0)[1]
-            found += corners_of(view)
+            faces = corners_of(view)
+            kinds = view.get("support", np.full(len(faces), WALL)).astype(int).tolist()
+            found += [Still(*one) for one in zip(faces, kinds, strict=True)]
     return found
 
 

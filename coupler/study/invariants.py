@@ -71,11 +71,12 @@ def _breaches(limit: LimitTable, found: dict[str, Any], folder: Path) -> Iterato
 
 
 def energies(rows: list[dict[str, str]]) -> dict[float, float]:
-    """Total energy of all components [J] at every time [s]."""
+    """Total energy of all components, less works from outside [J], at every time [s]."""
     total: dict[float, float] = {}
     for row in rows:
         if row["kinetic"]:
             parts = [float(row[kind]) for kind in ("kinetic", "potential", "internal")]
+            parts.append(-float(row["work"]))
             total[float(row["time"])] = total.get(float(row["time"]), 0.0) + sum(parts)
     return total
 

@@ -204,6 +204,7 @@ class Server:
             "kinetic": float(totals.kinetic),
             "potential": float(totals.potential),
             "internal": float(totals.internal),
+            "work": float(totals.work),
         }
 
     def state(self) -> dict[str, Any]:

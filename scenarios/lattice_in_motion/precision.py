@@ -51,8 +51,8 @@ def main(study: str) -> None:
         right.loglog(spent, [one[3] for one in mine], "o-", label=integrator)
         for one in mine:
             left.annotate(f"{one[1]:.2g}", (one[4], one[2]), fontsize=7)
-    left.set(ylabel="error of places, root mean square over a (labels: step x frequency)")
-    right.set(ylabel="energy that is missing, over what is there")
+    left.set(ylabel="error of places / a (labels: step x frequency)")
+    right.set(ylabel="energy that is missing")
     for panel in (left, right):
         panel.set_xlabel("processor time [s]")
         panel.legend()

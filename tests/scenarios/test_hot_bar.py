@@ -44,3 +44,8 @@ def test_a_bar_of_elements_has_the_temperatures_of_its_mesh(tmp_path):
     found = run(tmp_path, "hot_bar_elements", "--preset", "quick")
     assert value(found, "mean") == pytest.approx(168.16, rel=2e-3)
     assert value(found, "heat") > 0.0
+
+
+def test_a_slab_that_is_heated_through_one_face_follows_its_series(tmp_path):
+    found = run(tmp_path, "heated_slab")
+    assert all(one["met"] for one in found["expect"])

@@ -87,14 +87,30 @@ class FeHeat(Component):
 
     def _advance(self, dt: float, load: Array) -> Array:
         """Step the temperatures [K]; return the mean net heat (n,) W that came to each node."""
-        before, model = self.state.temperature, self.model
+        temperature, model = self.state.temperature, self.model
+        before = temperature.copy()
         shift = model.capacity / (STAGE * dt)
         first = self._net_flow(self._solved(shift, load + shift * before, before.copy()), load)
         carried = load + shift * before + (1.0 - STAGE) / STAGE * first
-        second = self._net_flow(self._solved(shift, carried, before.copy()), load)
-        gained = (1.0 - STAGE) * first + STAGE * second
-        before += model.free * dt * gained / model.capacity
-        return np.asarray(gained)
+        second = self._net_flow(self._solved(shift, carried, temperature), load)
+        mean = (1.0 - STAGE) * first + STAGE * second
+        stored = model.capacity * (temperature - before) / dt
+        return self._balanced(dt, load, np.where(model.free > 0.0, stored, mean))
+
+    def _balanced(self, dt: float, load: Array, gained: Array) -> Array:
+        """Close the balance of each part, which lacks what the tolerance of the solution leaves.
+
+        What holds a part gives the rest; a part that nothing holds is warmed evenly by it.
+        """
+        model, parts = self.model, len(self.params.parts)
+        held = model.free == 0.0
+        missing = np.bincount(model.part, load - gained, parts)  # W
+        holders = np.bincount(model.part, held, parts)
+        gained += np.where(held, missing[model.part] / np.maximum(holders, 1.0)[model.part], 0.0)
+        capacity = np.bincount(model.part, model.capacity, parts)  # J/K
+        warmed = np.where(holders > 0.0, 0.0, missing * dt / capacity)  # K
+        self.state.temperature[:] += warmed[model.part]
+        return gained
 
     def _net_flow(self, temperature: Array, load: Array) -> Array:
         """Heat (n,) W that comes to each node: load, and what others conduct to it."""

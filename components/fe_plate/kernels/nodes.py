@@ -23,7 +23,8 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
     """
     decay, work = math.exp(-0.25 * damping * dt), 0.0
     position, velocity, mean = state.position, state.velocity, state.mean_velocity
-    forces, load, free, impulse = state.forces, state.load, model.free, state.wall_impulse
+    forces, load, free = state.forces, state.load, model.free
+    impulse, taken = state.wall_impulse, state.wall_work
     inverse, walls = model.inverse_mass, model.walls
     h, gravity = 0.5 * dt, model.gravity
     gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
@@ -35,16 +36,21 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
         v = (decay * velocity[i, 1] + half * (forces[i, 1] + fy) + gy) * free[i, 1]
         w = (decay * velocity[i, 2] + half * (forces[i, 2] + fz) + gz) * free[i, 2]
         forces[i, 0], forces[i, 1], forces[i, 2] = 0.0, 0.0, 0.0
+        mx, my, mz = decay * velocity[i, 0], decay * velocity[i, 1], decay * velocity[i, 2]
         for k in range(walls.shape[0]):
             a, b, c = walls[k, 0], walls[k, 1], walls[k, 2]
             gap = a * x + b * y + c * z - walls[k, 3]
             speed = a * u + b * v + c * w
             if gap + dt * speed < 0.0:
                 more = -gap / dt - speed
-                u += more * a * free[i, 0]
-                v += more * b * free[i, 1]
-                w += more * c * free[i, 2]
+                du, dv, dw = more * a * free[i, 0], more * b * free[i, 1], more * c * free[i, 2]
                 impulse[k] += more / inverse[i]
+                # Its impulse acts on the mean of the velocities, but for the kick: what pushed the
+                # node into the wall in vain has done no work.
+                along = du * (mx + 0.5 * du) + dv * (my + 0.5 * dv) + dw * (mz + 0.5 * dw)
+                taken[k] += along / inverse[i]
+                mx, my, mz = mx + du, my + dv, mz + dw
+                u, v, w = u + du, v + dv, w + dw
         mean[i, 0], mean[i, 1], mean[i, 2] = u, v, w
         position[i, 0], position[i, 1], position[i, 2] = x + dt * u, y + dt * v, z + dt * w
         work += dt * (u * fx + v * fy + w * fz)
@@ -110,3 +116,13 @@ def sum_parted(parted: Parted, forces: Array) -> None:
             fz += forces[row, 2]
             forces[row, 0], forces[row, 1], forces[row, 2] = 0.0, 0.0, 0.0
         forces[node[i], 0], forces[node[i], 1], forces[node[i], 2] = fx, fy, fz
+
+
+@njit(**EXACT)
+def kinetic_energy(model: Model, state: State) -> float:
+    """Kinetic energy [J] of all nodes, with what hangs on them."""
+    inverse, velocity, twice = model.inverse_mass, state.velocity, 0.0
+    for i in range(velocity.shape[0]):
+        u, v, w = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+        twice += (u * u + v * v + w * w) / inverse[i]
+    return 0.5 * twice

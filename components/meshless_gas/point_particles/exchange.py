@@ -1,7 +1,6 @@
 """Forces and heat between the gas and particles that its nodes do not resolve."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,23 +14,12 @@ from quintet.components.meshless_gas.point_particles.kernels import (
 )
 from quintet.components.meshless_gas.point_particles.laws import DRAG, HEAT
 from quintet.components.meshless_gas.point_particles.params import PointParticles
+from quintet.components.meshless_gas.point_particles.particles import Laws, Loads, Particles
 from quintet.components.meshless_gas.transport import Transport
 from quintet.interfaces.component import Array
 
 NODES = {2: 16, 3: 32}  # by dimensions
 SHARE = 0.5  # of the time in which particle and gas relax towards each other, that is a step
-
-
-class Particles(NamedTuple):
-    """Spheres as the partner tells them; each is told as all those that it stands for."""
-
-    position: Array  # (p, 3) m
-    velocity: Array  # (p, 3) m/s
-    temperature: Array  # (p,) K
-    diameter: Array  # (p,) m, of one
-    mass: Array  # (p,) kg
-    heat_capacity: Array  # (p,) J/K
-    number: Array  # (p,) 1
 
 
 class Exchange:
@@ -56,7 +44,7 @@ class Exchange:
         gamma: float,
         prandtl: float,
     ) -> None:
-        self.laws = DRAG[given.drag], HEAT[given.heat], transport, gamma, prandtl
+        self.laws = Laws(DRAG[given.drag], HEAT[given.heat], transport, gamma, prandtl)
         self.capacity = transport.gas_constant / (gamma - 1.0)  # J/(kg K)
         self.count = given.nodes or NODES[2 if planar else 3]
         self.reaction, self.planar, self.images = given.reaction, planar, cloud
@@ -75,39 +63,41 @@ class Exchange:
 
     def resize(self, count: int) -> None:
         """Make room for so many particles."""
+        self.particles, self.loads = Particles.empty(count), Loads.empty(count)
         self.near = np.zeros((count, self.count), np.int64)
         self.weights, self.squares = (np.zeros((count, self.count)) for _ in range(2))
-        self.force, self.heat = np.zeros((count, 3)), np.zeros(count)  # N, W: means over a step
-        self.rates = np.zeros((count, 2))  # kg/s, W/K
 
     def place(self, particles: Particles) -> None:
         """Begin a step: find the nodes around each particle, and their weights."""
-        if len(particles.mass) != len(self.heat):
+        if len(particles.mass) != len(self.near):
             self.resize(len(particles.mass))
         self.particles = particles
-        target = particles.position
+        target, positions = particles.position, self.images.positions
         if self.planar:
             target = target * np.array([1.0, 0.0, 1.0])
-        positions = self.images.positions
         search(0, len(target), positions, *self.tree, target, self.near, self.squares)
         write_weights(self.squares, self.near, self.volumes, self.spacing, self.weights)
-        self.force[:], self.heat[:] = 0.0, 0.0
+        self.loads.begin(particles)
 
-    def add(self, primitive: Array, residual: Array, share: float) -> None:
-        """Add the loads of a stage, of some weight in the step; take them from the residual."""
-        one, cloud = self.particles, self.images
+    def add(
+        self, primitive: Array, residual: Array | None, dt: float, stage: tuple[float, float, float]
+    ) -> None:
+        """Add the loads of a stage of a step [s]; take them from the residual.
+
+        The velocities and temperatures of the particles are foreseen by the stages of the gas.
+        """
         exchange(
-            *self.laws, share, one.velocity, one.temperature, one.diameter, one.number, self.near,
-            self.weights, primitive, self.volumes, cloud.owner, cloud.turn, self.force, self.heat,
-            self.rates, residual if self.reaction else None,
+            self.laws, dt, *stage, self.particles, self.near, self.weights, primitive,
+            self.volumes, self.images.owner, self.images.turn, self.loads,
+            residual if self.reaction else None,
         )  # fmt: skip
 
     def stable_dt(self, primitive: Array) -> float:
         """Step [s] that the stiffness of drag and heat allows, by the loads of the last stage."""
-        if not len(self.heat):
+        if not len(self.near):
             return math.inf
         rate = fastest(
-            self.rates, self.particles.mass, self.particles.heat_capacity, self.near,
-            self.weights, primitive, self.volumes, self.images.owner, self.summed, self.capacity,
+            self.loads.rates, self.particles, self.near, self.weights, primitive, self.volumes,
+            self.images.owner, self.summed, self.capacity,
         )  # fmt: skip
         return SHARE / rate if rate > 0.0 else math.inf

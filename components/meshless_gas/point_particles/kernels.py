@@ -7,8 +7,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.point_particles.laws import drag_factor, nusselt
-from quintet.components.meshless_gas.transport import Transport, sutherland
-from quintet.components.shared.numba_options import EXACT
+from quintet.components.meshless_gas.point_particles.particles import Laws, Loads, Particles
+from quintet.components.meshless_gas.transport import sutherland
+from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.components.shared.search.cells import Whole
 from quintet.interfaces.component import Array
 
@@ -53,40 +54,36 @@ def write_weights(
 
 @njit(**EXACT)
 def exchange(
-    drag: int, heating: int, transport: Transport, gamma: float, prandtl: float, share: float,
-    velocity: Array, temperature: Array, diameter: Array, number: Array, near: Whole,
-    weights: Array, primitive: Array, volumes: Array, owner: NDArray[Any], turn: Array,
-    force: Array, heat: Array, rates: Array, residual: Array | None,
+    laws: Laws, dt: float, old: float, new: float, share: float, particles: Particles,
+    near: Whole, weights: Array, primitive: Array, volumes: Array, owner: NDArray[Any],
+    turn: Array, loads: Loads, residual: Array | None,
 ) -> None:  # fmt: skip
     """Add up loads on particles, and take them from the nodes around them.
 
     Parameters
     ----------
-    drag, heating : int
-        Laws: of `DRAG` and `HEAT`.
-    transport : Transport
-    gamma, prandtl : float, 1
-    share : float, 1
-        Weight of this stage in the whole step.
-    velocity, temperature, diameter, number : (p, 3) and (p,) float array, m/s, K, m, 1
-        Of particles, and how many each stands for.
+    laws : Laws
+    dt : float, s
+        Of the whole step.
+    old, new, share : float, 1
+        Of this stage: what it takes of the step's start and of the stage before, and its weight in
+        the whole step.
+    particles : Particles
+        At the step's start.
     near, weights : (p, k) int and float array
     primitive : (n, 5) float array, kg/m3, m/s, Pa
         Of nodes, ghosts among them.
     volumes : (n,) float array, m3
     owner, turn : (g,) int array and (g, 3, 3) float array
         Nodes that the last g rows are images of, and how these are turned.
-    force, heat : (p, 3) and (p,) float array, N and W
-        Added to: of all that a particle stands for.
-    rates : (p, 2) float array, kg/s and W/K
-        Written: force over velocity, heat over difference of temperature.
+    loads : Loads
+        Added to; velocities and temperatures of this stage are changed to those of the next.
     residual : (n, 5) float array or None, kg/(m3 s), N/m3, W/m3
         Taken from, divided by volumes; None where the gas does not feel the particles.
     """
-    real = primitive.shape[0] - owner.shape[0]
     for i in range(near.shape[0]):
         density = u = v = w = pressure = inside = 0.0
-        for k in range(near.shape[1]):
+        for k in range(near.shape[1] if particles.launched[i] > 0.0 else 0):
             j, part = near[i, k], weights[i, k]
             inside += part
             density += part * primitive[j, 0]
@@ -94,57 +91,96 @@ def exchange(
             v += part * primitive[j, 2]
             w += part * primitive[j, 3]
             pressure += part * primitive[j, 4]
-        rates[i, 0] = rates[i, 1] = 0.0
-        if inside == 0.0:
-            continue
-        d, warm = diameter[i], pressure / (density * transport.gas_constant)
-        viscosity = sutherland(warm, transport)
-        x, y, z = u - velocity[i, 0], v - velocity[i, 1], w - velocity[i, 2]
-        speed = math.sqrt(x * x + y * y + z * z)
-        sound = math.sqrt(gamma * pressure / density)
-        reynolds, mach = density * speed * d / viscosity, speed / sound
-        rarefied = viscosity / (density * sound * d)  # M/Re
-        factor = drag_factor(drag, reynolds, mach, rarefied, temperature[i] / warm, gamma)
-        drags = 3.0 * math.pi * viscosity * d * factor * number[i]
-        warms = nusselt(heating, reynolds, mach, rarefied, prandtl)
-        warms *= math.pi * viscosity * transport.conduction * d * number[i]
-        rates[i, 0], rates[i, 1] = drags, warms
-        fx, fy, fz = drags * x, drags * y, drags * z
-        gained = warms * (warm - temperature[i])
-        force[i, 0] += share * fx
-        force[i, 1] += share * fy
-        force[i, 2] += share * fz
-        heat[i] += share * gained
-        if residual is None:
-            continue
-        power = fx * velocity[i, 0] + fy * velocity[i, 1] + fz * velocity[i, 2] + gained
-        for k in range(near.shape[1]):
-            j = near[i, k]
-            ax, ay, az = fx, fy, fz
-            if j >= real:  # a ghost: its owner is pushed as the ghost is, turned back
-                t = turn[j - real]
-                ax = t[0, 0] * fx + t[1, 0] * fy + t[2, 0] * fz
-                ay = t[0, 1] * fx + t[1, 1] * fy + t[2, 1] * fz
-                az = t[0, 2] * fx + t[1, 2] * fy + t[2, 2] * fz
-                j = owner[j - real]
-            part = weights[i, k] / volumes[j]
-            residual[j, 1] -= part * ax
-            residual[j, 2] -= part * ay
-            residual[j, 3] -= part * az
-            residual[j, 4] -= part * power
+        fx = fy = fz = heat = drag = warms = 0.0
+        vx, vy, vz = loads.velocity[i, 0], loads.velocity[i, 1], loads.velocity[i, 2]
+        if inside > 0.0:
+            warm = pressure / (density * laws.transport.gas_constant)
+            own = loads.temperature[i]
+            slip = math.sqrt((u - vx) ** 2 + (v - vy) ** 2 + (w - vz) ** 2)
+            drag, warms = stiffness(laws, density, pressure, warm, slip, particles.diameter[i], own)
+            drag, warms = drag * particles.number[i], warms * particles.number[i]
+            fx, fy, fz = drag * (u - vx), drag * (v - vy), drag * (w - vz)
+            heat = warms * (warm - own)
+        power = fx * vx + fy * vy + fz * vz + heat
+        loads.rates[i, 0], loads.rates[i, 1] = drag, warms
+        loads.heat[i] += share * heat
+        loads.power[i] += share * power
+        rise = dt / particles.heat_capacity[i] * heat
+        loads.temperature[i] = old * particles.temperature[i] + new * (loads.temperature[i] + rise)
+        for d in range(3):
+            push = fx if d == 0 else fy if d == 1 else fz
+            loads.force[i, d] += share * push
+            kick = dt * (push / particles.mass[i] + particles.acceleration[i, d])
+            first, now = particles.velocity[i, d], loads.velocity[i, d]
+            loads.velocity[i, d] = old * first + new * (now + kick)
+        if residual is not None and inside > 0.0:
+            react(fx, fy, fz, power, near[i], weights[i], volumes, owner, turn, residual)
+
+
+@njit(**INNER)
+def stiffness(
+    laws: Laws, density: float, pressure: float, warm: float, slip: float, diameter: float,
+    own: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Force over velocity [kg/s], and heat over difference of temperature [W/K], of one sphere.
+
+    Parameters
+    ----------
+    laws : Laws
+    density, pressure, warm : float, kg/m3, Pa, K
+        Of the gas.
+    slip : float, m/s
+        Of the sphere through it.
+    diameter, own : float, m and K
+        Of the sphere, and its temperature.
+    """
+    viscosity = sutherland(warm, laws.transport)
+    sound = math.sqrt(laws.gamma * pressure / density)
+    reynolds, mach = density * slip * diameter / viscosity, slip / sound
+    rarefied = viscosity / (density * sound * diameter)  # M/Re
+    factor = drag_factor(laws.drag, reynolds, mach, rarefied, own / warm, laws.gamma)
+    number = nusselt(laws.heat, reynolds, mach, rarefied, laws.prandtl)
+    conductivity = viscosity * laws.transport.conduction
+    return (
+        3.0 * math.pi * viscosity * diameter * factor,
+        math.pi * conductivity * diameter * number,
+    )
+
+
+@njit(**INNER)
+def react(
+    fx: float, fy: float, fz: float, power: float, near: Whole, weights: Array, volumes: Array,
+    owner: NDArray[Any], turn: Array, residual: Array,
+) -> None:  # fmt: skip
+    """Take a force [N] and a power [W] from nodes (k,) by their weights (k,)."""
+    real = volumes.shape[0] - owner.shape[0]
+    for k in range(near.shape[0]):
+        j = near[k]
+        ax, ay, az = fx, fy, fz
+        if j >= real:  # an image: its owner is pushed as the image is, turned back
+            t = turn[j - real]
+            ax = t[0, 0] * fx + t[1, 0] * fy + t[2, 0] * fz
+            ay = t[0, 1] * fx + t[1, 1] * fy + t[2, 1] * fz
+            az = t[0, 2] * fx + t[1, 2] * fy + t[2, 2] * fz
+            j = owner[j - real]
+        part = weights[k] / volumes[j]
+        residual[j, 1] -= part * ax
+        residual[j, 2] -= part * ay
+        residual[j, 3] -= part * az
+        residual[j, 4] -= part * power
 
 
 @njit(**EXACT)
 def fastest(
-    rates: Array, mass: Array, heat_capacity: Array, near: Whole, weights: Array,
-    primitive: Array, volumes: Array, owner: NDArray[Any], summed: Array, capacity: float,
+    rates: Array, particles: Particles, near: Whole, weights: Array, primitive: Array,
+    volumes: Array, owner: NDArray[Any], summed: Array, capacity: float,
 ) -> float:  # fmt: skip
     """Fastest relaxation [1/s] of particles and nodes towards each other.
 
     Parameters
     ----------
     rates : (p, 2) float array, kg/s and W/K
-    mass, heat_capacity : (p,) float array, kg and J/K
+    particles : Particles
     near, weights, primitive, volumes, owner
         As `exchange` has them.
     summed : (n, 2) float array
@@ -160,7 +196,8 @@ def fastest(
     real = primitive.shape[0] - owner.shape[0]
     particle = node = 0.0
     for i in range(near.shape[0]):
-        particle = max(particle, rates[i, 0] / mass[i], rates[i, 1] / heat_capacity[i])
+        particle = max(particle, rates[i, 0] / particles.mass[i])
+        particle = max(particle, rates[i, 1] / particles.heat_capacity[i])
         for k in range(near.shape[1]):
             j = near[i, k]
             j = owner[j - real] if j >= real else j

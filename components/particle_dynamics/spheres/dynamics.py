@@ -125,10 +125,18 @@ class SphereDynamics(Component):
             "motion.angular_velocity": self.spin,
             "spheres.position": self.position,
             "spheres.velocity": self.velocity,
+            "spheres.acceleration": self._own_acceleration(),
             "spheres.temperature": self.temperature,
             "spheres.diameter": 2.0 * self.spheres.radius,
+            "spheres.launched": self.flies.astype(float),
         }
         return {key: given[key].copy() for key in wanted}
+
+    def _own_acceleration(self) -> Array:
+        """Accelerations (n, 3) m/s2 by gravity and tethers, of those that fly."""
+        stiff = (self.spheres.tether / self.spheres.mass)[:, None]
+        found = self.gravity - stiff * (self.position - self.spheres.start)
+        return np.asarray(found * self.flies[:, None])
 
     def save(self) -> Fields:
         """Copy out all state."""

@@ -47,7 +47,8 @@ class Sphere:
     angular_velocity : rad/s
         With which it is launched.
     launch : s
-        When it is launched; before it rests where it is, whatever acts on it.
+        When it is launched; before it rests where it is, whatever acts on it, and is not there for
+        a gas that is coarser than it.
     temperature : K
         At the start, the same throughout.
     specific_heat : J/(kg K)

@@ -13,6 +13,7 @@ from quintet.components.shared.materials.equation_of_state import (
 from quintet.components.shared.materials.fracture import damage_growth, is_torn
 from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.materials.strength import returned, turned_and_strained
+from quintet.components.shared.materials.tension import positive_part
 from quintet.components.shared.numba_options import EXACT, FAST, INNER
 from quintet.components.sph_solid.laws import times
 from quintet.components.sph_solid.state import Array, Whole
@@ -152,7 +153,7 @@ def write_stresses(
         At the start.
     material : (n,) int array
     points, correction
-    stress : (n + images, 8 or 12) float array
+    stress : (n + images, 8, 12 or 16) float array
         Written: six of τ, or nine, then ρ and ρ₀.
     """
     nine = stress.shape[1] == 12
@@ -176,3 +177,25 @@ def write_stresses(
         for d in range(9):
             stress[i, d] = tau[d]
         stress[i, 9], stress[i, 10], stress[i, 11] = start * eta, start, 0.0
+
+
+@njit(**EXACT)
+def write_artificial(first: int, last: int, share: float, stress: Array) -> None:
+    """Write the artificial stresses R = -ε σ⁺/η², of the tensions in principal axes.
+
+    Parameters
+    ----------
+    first, last : int
+    share : float
+        ε.
+    stress : (n + images, 16) float array
+        With τ = σ/η²; columns 8 to 13 are written.
+
+    References
+    ----------
+    Gray, Monaghan & Swift, Comput. Methods Appl. Mech. Eng. 190 (2001) 6641, eqs (25) to (30).
+    """
+    for i in range(first, last):
+        positive_part(stress[i, :6], stress[i, 8:14])
+        for d in range(8, 14):
+            stress[i, d] *= -share

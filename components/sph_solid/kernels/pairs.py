@@ -86,8 +86,8 @@ def accelerations(
         Particles to write.
     place, motion : (n + images, 4) float arrays
         As in `Rows`, with speeds of sound.
-    stress : (n + images, 8 or 12) float array
-        τ, six of a symmetric matrix or nine of a corrected one, and ρ, ρ₀.
+    stress : (n + images, 8, 12 or 16) float array
+        τ, six of a symmetric matrix or nine of a corrected one, and ρ, ρ₀; then artificial ones.
     lists, law
     forces : Forces
         Written.
@@ -105,7 +105,9 @@ def accelerations(
     acceleration, heating = forces
     rows = longest_list(first, last, begin, end)
     near, moves = empty_rows(rows, 4, place.dtype), empty_rows(rows, 4, place.dtype)
-    tension = empty_rows(rows, 8 if law.corrected is None else 12, place.dtype)
+    # Numbers that the compiler knows.
+    width = 16 if law.artificial is not None else 8 if law.corrected is None else 12
+    tension = empty_rows(rows, width, place.dtype)
     slowest, greatest = math.inf, 0.0
     for i in range(first, last):
         x, y, z = place[i, 0], place[i, 1], place[i, 2]
@@ -113,7 +115,7 @@ def accelerations(
         outside = out_of_reach(x, law.smoothing.length), y, z, 0.0
         count = pack_rows(begin[i], end[i], neighbour, place, outside, near)
         pack_rows(begin[i], end[i], neighbour, motion, (u, v, w, sound), moves)
-        own, density, start, filling = own_stress(stress, i, law.corrected)
+        own, density, start, filling = own_stress(stress, i, law.corrected, law.artificial)
         pack_rows(begin[i], end[i], neighbour, stress, filling, tension)
         fx, fy, fz, heat, fastest = sum_forces(
             count,
@@ -132,6 +134,7 @@ def accelerations(
             tension,
             law,
             law.corrected,
+            law.artificial,
         )
         mu = number_of(fastest)
         per = 1.0 / start

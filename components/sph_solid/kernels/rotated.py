@@ -211,11 +211,11 @@ def ring_accelerations(
         x, z, u, w, sound = place[i, 0], place[i, 2], motion[i, 0], motion[i, 2], motion[i, 3]
         outside = out_of_reach(x, law.smoothing.length)
         count = pack_turned(i, doubles, place, motion, outside, near, moves)
-        own, density, start, filling = own_stress(stress, i, law.corrected)
+        own, density, start, filling = own_stress(stress, i, law.corrected, law.artificial)
         pack_stress(i, doubles, stress, filling, count, tension)
         fx, _, fz, heat, fastest = sum_forces(
             count, x, 0.0, z, u, 0.0, w, sound, density, start, own, near, moves, tension, law,
-            law.corrected,
+            law.corrected, law.artificial,
         )  # fmt: skip
         mu, per = number_of(fastest), 1.0 / start
         fx, fz = fx * per, fz * per

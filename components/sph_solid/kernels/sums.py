@@ -13,6 +13,7 @@ from quintet.components.sph_solid.laws import (
     SINGULAR,
     inverse,
     inverses,
+    nearness,
     times,
     viscous_pressure,
 )
@@ -117,50 +118,107 @@ def sum_nine(  # type: ignore[no-untyped-def]
     return fx, fy, fz, heat, fastest
 
 
-def own_stress(stress, i, corrected):  # type: ignore[no-untyped-def]
+@njit(inline="always")
+def sum_repelled(  # type: ignore[no-untyped-def]
+    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
+):
+    """The same of symmetric tensors, with artificial ones that act between the nearest."""
+    fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, np.int64(0)
+    t0, t1, t2, t3, t4, t5, r0, r1, r2, r3, r4, r5 = own
+    for k in range(count):
+        dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
+        du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
+        square = dx * dx + dy * dy + dz * dz
+        dot = dx * du + dy * dv + dz * dw
+        per_r, per_r2, per_density = inverses(square, density + tension[k, 6], law)
+        weight = gradient(square, per_r, law.smoothing) * near[k, 3]
+        mu = law.smoothing.length * max(-dot, ZERO) * per_r2
+        q = viscous_pressure(mu, sound + moves[k, 3], per_density, start * tension[k, 7], law)
+        fastest = max(fastest, bits_of(mu))
+        f = nearness(square, law)
+        xx, yy, zz = f * (r0 + tension[k, 8]), f * (r1 + tension[k, 9]), f * (r2 + tension[k, 10])
+        xy, yz, zx = f * (r3 + tension[k, 11]), f * (r4 + tension[k, 12]), f * (r5 + tension[k, 13])
+        ax = xx * dx + xy * dy + zx * dz
+        ay = xy * dx + yy * dy + yz * dz
+        az = zx * dx + yz * dy + zz * dz
+        heat += weight * (q * dot - (ax * du + ay * dv + az * dw))
+        xx, yy, zz = t0 + tension[k, 0] - q, t1 + tension[k, 1] - q, t2 + tension[k, 2] - q
+        xy, yz, zx = t3 + tension[k, 3], t4 + tension[k, 4], t5 + tension[k, 5]
+        fx += weight * (xx * dx + xy * dy + zx * dz + ax)
+        fy += weight * (xy * dx + yy * dy + yz * dz + ay)
+        fz += weight * (zx * dx + yz * dy + zz * dz + az)
+    return fx, fy, fz, heat, fastest
+
+
+def own_stress(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
     """Row of stress of a particle: its tensor, ρ, ρ₀, and all of it, to fill up neighbours with."""
 
 
 @overload(own_stress, inline="always")
-def _own_stress(stress, i, corrected):  # type: ignore[no-untyped-def]
-    def six(stress, i, corrected):  # type: ignore[no-untyped-def]
+def _own_stress(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
+    def six(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
         t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
         t4, t5, density, start = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
         row = t0, t1, t2, t3, t4, t5, density, start
         return (t0, t1, t2, t3, t4, t5), density, start, row
 
-    def nine(stress, i, corrected):  # type: ignore[no-untyped-def]
+    def nine(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
         t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
         t4, t5, t6, t7 = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
         t8, density, start = stress[i, 8], stress[i, 9], stress[i, 10]
         row = t0, t1, t2, t3, t4, t5, t6, t7, t8, density, start, 0.0
         return (t0, t1, t2, t3, t4, t5, t6, t7, t8), density, start, row
 
+    def twelve(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
+        t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
+        t4, t5, density, start = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
+        r0, r1, r2, r3 = stress[i, 8], stress[i, 9], stress[i, 10], stress[i, 11]
+        r4, r5 = stress[i, 12], stress[i, 13]
+        own = t0, t1, t2, t3, t4, t5, r0, r1, r2, r3, r4, r5
+        row = t0, t1, t2, t3, t4, t5, density, start, r0, r1, r2, r3, r4, r5, 0.0, 0.0
+        return own, density, start, row
+
+    if not isinstance(artificial, types.NoneType):
+        return twelve
     return six if isinstance(corrected, types.NoneType) else nine
 
 
 def sum_forces(  # type: ignore[no-untyped-def]
-    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected
-):
-    """The sums of symmetric tensors, or of corrected ones."""
+    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
+    artificial,
+):  # fmt: skip
+    """The sums of symmetric tensors, or of corrected ones, or with artificial ones."""
 
 
 @overload(sum_forces, inline="always")
 def _sum_forces(  # type: ignore[no-untyped-def]
-    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected
-):
+    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
+    artificial,
+):  # fmt: skip
     def six(  # type: ignore[no-untyped-def]
-        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected
-    ):
+        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
+        artificial,
+    ):  # fmt: skip
         return sum_six(
             count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
         )
 
     def nine(  # type: ignore[no-untyped-def]
-        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected
-    ):
+        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
+        artificial,
+    ):  # fmt: skip
         return sum_nine(
             count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
         )
 
+    def twelve(  # type: ignore[no-untyped-def]
+        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
+        artificial,
+    ):  # fmt: skip
+        return sum_repelled(
+            count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
+        )
+
+    if not isinstance(artificial, types.NoneType):
+        return twelve
     return six if isinstance(corrected, types.NoneType) else nine

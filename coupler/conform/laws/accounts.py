@@ -22,6 +22,7 @@ def it_counts_what_it_advances_and_what_it_holds(trial: Trial) -> None:
         "kinetic": totals.kinetic,
         "potential": totals.potential,
         "internal": totals.internal,
+        "work": totals.work,
         "momentum": totals.momentum,
         "angular_momentum": totals.angular_momentum,
     }

@@ -104,6 +104,28 @@ def test_a_force_gives_its_impulse_and_its_work(integration):
     assert found.kinetic + found.internal == pytest.approx(work, rel=2e-3)
 
 
+def test_the_works_of_a_pressure_and_of_damping_are_counted():
+    """What was done on it, less what damping took, is all the energy that it has."""
+    size = (0.03, 0.02, 0.02)
+    made = block(
+        size,
+        (6, 4, 4),
+        fixed=(Fixed(lowest=(0.0, 0.0, 0.0), highest=(0.0, 0.02, 0.02)),),
+        pressures=(Pressure(faces=Faces(lowest=(0.03, 0.0, 0.0), highest=size), pressure=1e7),),
+        mass_damping=2e4,
+        **CALM,
+    )
+    largest = 0.0
+    for _ in range(500):
+        made.step(made.stable_dt())
+        found = made.totals()
+        energy = found.kinetic + found.internal
+        largest = max(largest, energy)
+        damped = made.accumulated.work - found.work
+    assert energy == pytest.approx(found.work, abs=0.01 * largest)
+    assert damped > 0.2 * largest
+
+
 @INTEGRATIONS
 def test_energy_is_kept_at_second_order(integration):
     drifts = []

@@ -148,16 +148,31 @@ def test_a_flux_heats_as_its_series_says():
     assert made.totals().internal == pytest.approx(flux * 0.01 * seconds, rel=1e-12)
 
 
-def test_heat_is_conserved_whatever_the_tolerance():
+@pytest.mark.parametrize("is_held", [True, False])
+def test_heat_is_conserved_whatever_the_tolerance(is_held):
     """What partners and holders give is what the body gains, to rounding."""
     size = (0.3, 0.2, 0.2)
-    made = block(size, (3, 2, 2), 3.0, tolerance=1e-3, held=(face(0.0, size, 7.0),))
+    held = (face(0.0, size, 7.0),) if is_held else ()
+    made = block(size, (3, 2, 2), 3.0, tolerance=1e-3, held=held)
     heat = np.random.default_rng(1).normal(size=len(made.surface))
     before, dt = made.totals().internal, 0.02
     made.take({"node_heat.heat_flow": heat})
     made.step(dt)
-    given = heat.sum() + made.give({"held.heat_flow"})["held.heat_flow"].sum()
+    given = heat.sum()
+    if is_held:
+        given += made.give({"held.heat_flow"})["held.heat_flow"].sum()
     assert made.totals().internal - before == pytest.approx(dt * given, rel=1e-10)
+
+
+@pytest.mark.parametrize(("size", "step"), [((1.0, 1.0, 1e-3), 1e9), ((1.0, 1e-3, 1e-3), 1e-9)])
+def test_no_step_is_too_long_or_too_short_for_flat_elements(size, step):
+    """Temperatures stay between those that are held."""
+    ends = (face(0.0, size, 400.0), face(1.0, size, 300.0))
+    made = block(size, (10, 10, 3), 300.0, held=ends)
+    for _ in range(3):
+        made.step(step)
+    assert made.state.temperature.min() > 300.0 - 1e-6
+    assert made.state.temperature.max() < 400.0 + 1e-6
 
 
 def test_conduction_and_mechanics_import_nothing_of_each_other():

@@ -48,6 +48,7 @@ def test_a_block_that_strikes_a_wall_stays_finite_and_gains_no_energy(material, 
     # What is lost stays at the wall: half a layer of elements stops at once, and so do nodes that
     # erosion has set free.
     assert 0.5 * start < end < 1.001 * start
+    assert end - made.totals().work == pytest.approx(start, rel=0.01)
     assert np.isfinite(made.state.points).all() and np.isfinite(made.state.position).all()
     assert made.places.active(made.state).mean() < 1.0
 
@@ -76,6 +77,7 @@ def test_a_plate_of_one_element_strikes_a_wall():
     start = made.totals().kinetic
     end = advance(made, 400)
     assert 0.45 * start < end < 1.001 * start  # half of its mass stops at once
+    assert end - made.totals().work == pytest.approx(start, rel=0.01)
     assert made.state.wall_impulse[0] > 0.9 * made.totals().mass * 1000.0
 
 

@@ -1,5 +1,6 @@
 """Meshes of structures, and what is measured in them."""
 
+import dataclasses
 import math
 
 import meshio
@@ -16,6 +17,7 @@ from quintet.components.fe_plate.params import (
     Gauges,
     NodeSet,
     Pressure,
+    RigidWall,
 )
 from quintet.components.shared.materials.params import (
     JohnsonCook,
@@ -23,6 +25,7 @@ from quintet.components.shared.materials.params import (
     Material,
 )
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.faces import CLAMPED, SYMMETRY, WALL
 
 ELASTIC = Material(density=2700.0, youngs_modulus=7e10, poissons_ratio=0.3)
 
@@ -157,6 +160,26 @@ def test_files_without_solids_are_refused(tmp_path):
     part = Part(mesh=MeshFile(file=str(tmp_path / "none.vtk")), material=ELASTIC)
     with pytest.raises(SceneError, match="must be a mesh that meshio reads"):
         FePlate(FePlateParams(parts=(part,)))
+
+
+def test_what_holds_a_structure_is_shown():
+    """A rigid wall before its foot, a clamped end seen from outside, and a plane of symmetry."""
+    part = Part(
+        lowest=(0.0, 0.0, 0.0), highest=(1.0, 2.0, 3.0), elements=(2, 2, 2), material=ELASTIC
+    )
+    foot = Fixed(lowest=(0.0, 0.0, 0.0), highest=(1.0, 2.0, 0.0))
+    axis = Fixed(lowest=(0.0, 0.0, 0.0), highest=(1.0, 0.0, 9.0), directions=("y",))
+    wall = RigidWall(point=(0.0, 0.0, -1.0), normal=(0.0, 0.0, 3.0))
+    free = FePlateParams(parts=(part,))
+    held = dataclasses.replace(free, fixed=(foot, axis), rigid_walls=(wall,))
+    found = FePlate(held).walls()
+    np.testing.assert_array_equal(found["support"], [WALL, CLAMPED, SYMMETRY])
+    corners = found["points"][found["cells"].astype(int)]
+    assert (corners[0][:, 2] == -1.0).all() and (corners[1][:, 2] == 0.0).all()
+    assert (corners[2][:, 1] == 0.0).all()
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    assert normals[0, 2] > 0.0 > normals[1, 2] and normals[2, 1] < 0.0
+    assert FePlate(free).walls() == {}
 
 
 def test_nodes_are_chosen_by_the_name_of_their_set():

@@ -77,6 +77,14 @@ def test_two_threads_give_the_bits_of_one():
     assert np.array_equal(one.state.conservative, two.state.conservative)
 
 
+def test_a_picture_after_load_is_that_before_save():
+    made, other = run(tube(50, *SOD), 0.1), tube(50, *SOD)
+    other.load(made.save())
+    before, after = made.view(), other.view()
+    assert before["schlieren"].min() < 1e-3
+    assert all(np.array_equal(before[key], after[key]) for key in before)
+
+
 @pytest.mark.full  # a kernel of its own
 def test_first_order_is_monotone():
     density = run(tube(50, *SOD, order=1), 0.2).state.primitive[:, 0]

@@ -109,6 +109,7 @@ def test_work_that_only_one_side_counts_is_no_residual():
 def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
     ledger = Ledger(_exchange(), tmp_path / "ledger.csv")
     one = {"mass": 1.0, "momentum": [0.0] * 3, "kinetic": 2.0, "potential": 0.0, "internal": 1.0}
+    one["work"] = 0.0
     for time, kinetic in ((0.0, 2.0), (0.5, 1.0), (1.0, 2.5)):
         ledger.note(time, {"a": {**one, "kinetic": kinetic}, "b": one})
     ledger.close()
@@ -119,8 +120,15 @@ def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
     assert ledger.summary()["energy_drift"] == pytest.approx(0.5 / 1.5)
 
 
-def _totals(kinetic, potential):
-    return {"a": {"kinetic": kinetic, "potential": potential, "internal": 0.0}}
+def _totals(kinetic, potential, work=0.0):
+    return {"a": {"kinetic": kinetic, "potential": potential, "internal": 0.0, "work": work}}
+
+
+def test_what_is_done_from_outside_is_no_rise_of_energy():
+    balance = EnergyBalance()
+    for kinetic, work in ((0.0, 0.0), (2.0, 2.0), (4.0, 3.9), (1.0, 0.9)):
+        balance.note(_totals(kinetic, 0.0, work))
+    assert balance.drift() == pytest.approx(0.1 / 4.0)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from quintet.coupler.report import side_views as drawing
 from quintet.coupler.report.side_views import side_views
 from quintet.coupler.report.view_steps import Quantity, moments, read, view_files
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.faces import CORNERS, FACES, box, polygons
+from quintet.interfaces.faces import CLAMPED, CORNERS, FACES, SYMMETRY, box, polygons
 
 UNITS = {"velocity": "m/s", "pressure": "Pa", "stress": "Pa"}
 RED, GREEN, BLUE = range(3)
@@ -166,6 +166,22 @@ def test_walls_are_drawn_and_do_not_shrink_what_moves(tmp_path, figure):
     assert lines == [2]  # the wall behind is seen from its face
     assert np.ptp(panel.get_xlim()) < 1.5
     assert "walls" in [text.get_text() for text in drawn.legends[0].get_texts()]
+
+
+def test_clamped_faces_have_strokes_behind_them_and_planes_of_symmetry_are_dashed(tmp_path, figure):
+    _box(tmp_path / "plate.vtkhdf")
+    end, axis = box((1.5, 0.0, 0.0), (1.6, 0.1, 0.1), ("x-", "z-"))
+    file = VtkHdf(tmp_path / "plate.walls.vtkhdf")
+    file.append(0.0, {**polygons([end, axis]), "support": np.array([CLAMPED, SYMMETRY], float)})
+    file.close()
+    drawn = figure([0.0])
+    (panel,) = _panels(drawn)
+    lines = [one for one in panel.collections if hasattr(one, "get_segments")]
+    strokes = np.concatenate(lines[-1].get_segments())
+    outwards = 1.0 if end[:, 0].max() > 1.55 else -1.0
+    assert ((strokes[:, 0] - end[0, 0]) * outwards >= -1e-12).all()
+    told = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert {"clamped", "held across it (symmetry)"} <= set(told) and "walls" not in told
 
 
 def test_a_long_tank_is_no_strip(tmp_path, figure):

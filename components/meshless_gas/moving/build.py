@@ -1,0 +1,65 @@
+"""Bodies in a gas as its parameters describe them."""
+
+import numpy as np
+
+from quintet.components.meshless_gas.build import domain
+from quintet.components.meshless_gas.kernels.motion import write_conservative
+from quintet.components.meshless_gas.moving.clouds import MovingClouds
+from quintet.components.meshless_gas.moving.layout import layout, with_bodies
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.state import State
+from quintet.components.meshless_gas.stencils import Stencils, write_coefficients
+from quintet.components.shared.threads import Team
+from quintet.interfaces.errors import SceneError
+
+BLOCK = 8  # neighbours of a node in rings
+
+
+def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
+    """Put the clouds of bodies into their background."""
+    keys = params.moving
+    assert keys is not None
+    if not params.planar or params.neighbours < BLOCK:
+        raise SceneError(
+            f"bodies that carry clouds need two dimensions and {BLOCK} neighbours at least; found "
+            f"{params.dimensions} and {params.neighbours}. Correct dimensions and neighbours."
+        )
+    assert params.box is not None
+    if keys.axisymmetric and (params.kind_of("z-") != "symmetry" or params.box.lowest[2] != 0.0):
+        raise SceneError(
+            "an axisymmetric flow needs a box that begins at z = 0 with symmetry there; found "
+            f"{params.kind_of('z-')} at {params.box.lowest[2]:g} m. Correct the box, or "
+            'boundaries."z-".'
+        )
+    ground = domain(params, team)
+    nodes = ground.cloud.nodes
+    cloud, rings = with_bodies(ground.cloud, keys, 0)
+    whole, many = len(cloud.positions), ground.stencils.neighbours.shape[1]
+    neighbours = np.repeat(np.arange(whole, dtype=np.int32)[:, None], many, axis=1)
+    coefficients = np.zeros((whole, many, 3))
+    found = ground.stencils.neighbours[:nodes]
+    neighbours[:nodes] = np.where(found < nodes, found, found + cloud.nodes - nodes)
+    coefficients[:nodes] = ground.stencils.coefficients[:nodes]
+    box = np.array([params.box.lowest, params.box.highest])
+    own = layout(cloud, nodes, rings, keys, neighbours, box, params.gas.gamma)
+    rows = np.arange(nodes, cloud.nodes)
+    made = Stencils(neighbours, coefficients)
+    team.run(
+        write_coefficients, len(rows), rows, cloud.positions, neighbours, cloud.weight, True,
+        coefficients, np.ones(whole),
+    )  # fmt: skip
+    joint = ground._replace(cloud=cloud, stencils=made)
+    return MovingClouds(keys, joint, own, params.neighbours, team)
+
+
+def soft_start(moving: MovingClouds, state: State, gamma: float) -> None:
+    """Let gas near a body begin with the body's velocity, which fades over one radius."""
+    positions = moving.domain.cloud.positions[: len(state.primitive)]
+    for radius, centre, velocity in zip(
+        moving.radii, moving.pose.centre, moving.pose.velocity, strict=True
+    ):
+        away = np.sqrt(((positions - centre) ** 2)[:, ::2].sum(axis=1)) / radius - 1.0
+        share = 1.0 - np.clip(away, 0.0, 1.0)[:, None]
+        state.primitive[:, 1:4] += share * (velocity - state.primitive[:, 1:4])
+    write_conservative(state.primitive, gamma, state.conservative)
+    state.begun[:] = moving.domain.cloud.volumes[: len(positions)] @ state.conservative

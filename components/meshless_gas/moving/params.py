@@ -1,0 +1,101 @@
+"""What a scene says about bodies that carry clouds of nodes."""
+
+import math
+from typing import Annotated
+
+from pydantic import Field
+
+from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
+
+ROUND = 8  # fewest nodes round a body
+
+
+@parameters
+class Body:
+    """A cylinder across the plane of x and z, or a sphere where x is an axis of symmetry.
+
+    Parameters
+    ----------
+    position : m
+        Of its centre at the start.
+    radius : m
+        Of the body.
+    velocity : m/s
+        Of one that is not driven; of one that is, at the start.
+    is_driven
+        Whether a partner moves it: it is then a row of the ports `motion`, `load` and `heat`.
+    rays : 1
+        Nodes round the whole circle; of an axisymmetric flow half of them are computed.
+    thickness : m
+        Of its cloud. The bow shock should lie within it or far beyond it, not at its rim.
+    spacing : m
+        Between layers, at most; that of the nodes around the cloud.
+    first : m
+        Height of the first layer; if not said, 0.8 of the distance between nodes of the wall.
+    growth : 1
+        Of one layer over the one below it.
+    weight : 1
+        Of the least squares: 0 for a truncated Gaussian over the distance, else the power p of
+        1/dᵖ.
+    """
+
+    position: Vector
+    radius: Positive
+    velocity: Vector = (0.0, 0.0, 0.0)
+    is_driven: bool = False
+    rays: Annotated[int, Field(ge=ROUND)]
+    thickness: Positive
+    spacing: Positive
+    first: Positive | None = None
+    growth: Annotated[float, Field(ge=1, le=2, allow_inf_nan=False)] = 1.08
+    weight: NotNegative = 0.0
+
+    @property
+    def heights(self) -> list[float]:
+        """Heights [m] of its layers above the wall."""
+        step = self.first or 0.8 * math.tau * self.radius / self.rays
+        heights = [0.0]
+        while heights[-1] < self.thickness:
+            heights.append(heights[-1] + step)
+            step = min(step * self.growth, max(self.spacing, step))
+        return heights
+
+
+@parameters
+class Moving:
+    """Bodies that carry clouds of nodes, and how clouds are joined at their seams.
+
+    Nodes of other clouds are left out where a body's cloud covers them.
+
+    Parameters
+    ----------
+    bodies
+        One or more.
+    axisymmetric
+        Whether x is an axis of symmetry and z the radius; bodies are then spheres on it.
+    threshold : 1
+        Way of a body, over its spacing, after which holes are cut and neighbours found anew.
+    hysteresis : 1
+        By how many spacings more than it was left out by a node must be uncovered to come back.
+    seam_distance : 1
+        Nodes that are nearer than this to one of a body's cloud are left out, in spacings.
+    overlap : 1
+        By how many spacings clouds overlap.
+    """
+
+    bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
+    axisymmetric: bool = False
+    threshold: Positive = 0.25
+    hysteresis: NotNegative = 0.3
+    seam_distance: NotNegative = 0.5
+    overlap: Positive = 0.9
+
+    def __post_init__(self) -> None:
+        if self.axisymmetric:
+            for one in self.bodies:
+                if any(one.position[1:]) or any(one.velocity[1:]):
+                    raise ValueError(
+                        "bodies of an axisymmetric flow lie and move on the axis; found position "
+                        f"{list(one.position)} m, velocity {list(one.velocity)} m/s. Leave y and "
+                        "z at 0."
+                    )

@@ -1,0 +1,62 @@
+"""What is refused of bodies that carry clouds, and why."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.meshless_gas.moving.layout import Layout
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError, StepError
+
+
+def refuse_places(
+    layout: Layout, radii: Array, thickness: Array, spacing: Array, centre: Array
+) -> None:
+    """Refuse bodies that touch, or whose cloud would leave the box.
+
+    Parameters
+    ----------
+    layout : Layout
+    radii, thickness, spacing : (b,) m
+        Of bodies and their clouds.
+    centre : (b, 3) m
+    """
+    reach = radii + thickness + 2.0 * spacing
+    for b, place in enumerate(centre):
+        for d, side in layout.open_sides:
+            beyond = side * (place[d] - layout.box[int(side > 0), d]) + reach[b]
+            if beyond > 0.0:
+                raise StepError(
+                    f"body {b} with its cloud of {radii[b] + thickness[b]:.4g} m must stay within "
+                    f"the box; it is at {np.round(place, 6).tolist()} m, {beyond:.3g} m too near "
+                    f"to its face across {'xyz'[d]}. End the run before, or make the box longer."
+                )
+        for c in range(b):
+            gap = float(np.sqrt(((place - centre[c]) ** 2).sum())) - radii[b] - radii[c]
+            least = 2.0 * (layout.second[b] + layout.second[c])
+            if gap < least:
+                raise StepError(
+                    f"bodies {c} and {b} must leave room for two layers of nodes on each, "
+                    f"{least:.3g} m; found {gap:.3g} m between them. Finer first layers let them "
+                    "come nearer; contact itself cannot be computed."
+                )
+
+
+def refuse_jump(moved: Array, centre: Array, spacing: Array, bodies: NDArray[np.int64]) -> None:
+    """Refuse motion that does not go on from where bodies are, by more than a spacing."""
+    wrong = np.flatnonzero(np.abs(moved - centre).max(axis=1) > spacing)
+    if len(wrong):
+        k = wrong[0]
+        raise SceneError(
+            f"bodies must begin and go on where the gas has them; body {bodies[k]} is at "
+            f"{centre[k].tolist()} m, and its partner says {moved[k].tolist()} m. Give both the "
+            "same position, or shorten the window."
+        )
+
+
+def too_few(count: int, place: Array) -> str:
+    """Say that a node has too few neighbours."""
+    return (
+        f"nodes need {count} neighbours in sight that span the plane; that at "
+        f"{np.array2string(place, precision=4)} m has not. Make spacings on both sides of the "
+        "seam alike, or clouds thicker."
+    )

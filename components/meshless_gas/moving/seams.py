@@ -1,0 +1,121 @@
+"""Neighbours across the seams of clouds, and states of nodes that are uncovered."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from quintet.components.shared.numba_options import EXACT, INNER
+
+SAG = 0.3  # of the shorter spacing: how far an arm may dip into a wall that is curved
+
+
+@njit(**INNER)
+def is_seen(positions: Any, i: int, j: int, centres: Any, radii: Any, sag: float) -> bool:
+    """Whether no body lies between two nodes."""
+    x, z = positions[j, 0] - positions[i, 0], positions[j, 2] - positions[i, 2]
+    square = x * x + z * z
+    for b in range(radii.shape[0]):
+        a, c = centres[b, 0] - positions[i, 0], centres[b, 2] - positions[i, 2]
+        share = min(max((a * x + c * z) / square, 0.0), 1.0) if square > 0.0 else 0.0
+        u, w = a - share * x, c - share * z
+        if math.sqrt(u * u + w * w) < radii[b] - sag:
+            return False
+    return True
+
+
+@njit(**EXACT)
+def choose(
+    rows: Any,
+    found: Any,
+    positions: Any,
+    spacing: Any,
+    centres: Any,
+    radii: Any,
+    kept: int,
+    neighbours: Any,
+) -> int:
+    """Write the nearest nodes in sight as neighbours; return the row of a node with too few, or -1.
+
+    Parameters
+    ----------
+    rows : (m,)
+        Nodes.
+    found : (m, c)
+        What is near to each, the nearest first.
+    positions : (n, 3) m
+    spacing : (n,) m
+    centres : (b, 3) m
+    radii : (b,) m
+    kept : int
+        How many neighbours a node has.
+    neighbours : (n, K)
+        Written; padded with the node itself.
+    """
+    lacks = -1
+    for row in range(rows.shape[0]):
+        i, have = rows[row], 0
+        for k in range(found.shape[1]):
+            j = found[row, k]
+            sag = SAG * min(spacing[i], spacing[j])
+            if j != i and is_seen(positions, i, j, centres, radii, sag):
+                neighbours[i, have] = j
+                have += 1
+                if have == kept:
+                    break
+        if have < kept:
+            lacks = i
+        for k in range(have, neighbours.shape[1]):
+            neighbours[i, k] = i
+    return lacks
+
+
+@njit(**EXACT)
+def write_uncovered(
+    rows: Any, found: Any, positions: Any, spacing: Any, centres: Any, radii: Any, primitive: Any
+) -> None:
+    """Write the states of nodes that come back: a plane by least squares, within those around.
+
+    Weights are 1/d². The second order matters: a mean over the nearest is of first.
+
+    Parameters
+    ----------
+    rows : (m,)
+        Nodes.
+    found : (m, c)
+        Nodes near each whose states are known.
+    positions : (n, 3) m
+    spacing : (n,) m
+    centres : (b, 3) m
+    radii : (b,) m
+    primitive : (n, 5)
+    """
+    low, high, sums = np.empty(5), np.empty(5), np.empty((3, 5))
+    for row in range(rows.shape[0]):
+        i = rows[row]
+        low[:], high[:], sums[:] = math.inf, -math.inf, 0.0
+        s = sx = sz = xx = xz = zz = 0.0
+        for k in range(found.shape[1]):
+            j = found[row, k]
+            sag = SAG * min(spacing[i], spacing[j])
+            if not is_seen(positions, i, j, centres, radii, sag):
+                continue
+            x = (positions[j, 0] - positions[i, 0]) / spacing[i]
+            z = (positions[j, 2] - positions[i, 2]) / spacing[i]
+            w = 1.0 / (x * x + z * z + 1e-9)
+            s, sx, sz = s + w, sx + w * x, sz + w * z
+            xx, xz, zz = xx + w * x * x, xz + w * x * z, zz + w * z * z
+            for q in range(5):
+                low[q], high[q] = min(low[q], primitive[j, q]), max(high[q], primitive[j, q])
+                sums[0, q] += w * primitive[j, q]
+                sums[1, q] += w * x * primitive[j, q]
+                sums[2, q] += w * z * primitive[j, q]
+        # The plane's value here: first row of the inverse of its normal equations.
+        a, b, c = xx * zz - xz * xz, sz * xz - sx * zz, sx * xz - sz * xx
+        determinant = s * a + sx * b + sz * c
+        for q in range(5):
+            value = sums[0, q] / s
+            if determinant > 1e-6 * s * xx * zz:
+                value = (a * sums[0, q] + b * sums[1, q] + c * sums[2, q]) / determinant
+            primitive[i, q] = min(max(value, low[q]), high[q])

@@ -1,0 +1,1 @@
+"""Dust in a stream: scene, and the exact relaxation of both."""

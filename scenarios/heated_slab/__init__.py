@@ -1,0 +1,1 @@
+"""A slab that is heated through one face: scene, exact temperature of the face."""

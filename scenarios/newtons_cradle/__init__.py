@@ -1,0 +1,1 @@
+"""Spheres on springs that strike in a row."""

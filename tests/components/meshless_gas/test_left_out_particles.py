@@ -1,0 +1,24 @@
+"""A gas without particles neither imports nor compiles what exchanges with them."""
+
+import subprocess
+import sys
+
+PROGRAM = """
+import sys
+from quintet.components.meshless_gas.component import MeshlessGas, MeshlessGasParams
+from quintet.components.meshless_gas.clouds.params import Box
+from quintet.components.meshless_gas.params import GasState
+from quintet.components.meshless_gas.point_particles.params import PointParticles
+box = Box(lowest=(0.0, 0.0, 0.0), highest=(1.0, 0.0, 1.0), spacing=0.2)
+air = GasState(temperature=300.0, pressure=1e5)
+loaded = "quintet.components.meshless_gas.point_particles.kernels"
+MeshlessGas(MeshlessGasParams(box=box, initial=air))
+assert loaded not in sys.modules
+MeshlessGas(MeshlessGasParams(box=box, initial=air, particles=PointParticles()))
+assert loaded in sys.modules
+"""
+
+
+def test_without_particles_their_kernels_are_not_imported():
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

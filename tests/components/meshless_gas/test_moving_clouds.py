@@ -1,0 +1,203 @@
+"""Clouds of nodes that go with bodies: seams, holes, walls, and what is refused."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.interfaces.errors import SceneError, StepError
+from quintet.interfaces.params import read
+
+MACH = 2.5
+RADIUS = 0.5  # m
+PRESSURE = 1.0 / 1.4  # Pa: the speed of sound is 1 m/s
+WAY = 5.0  # radii
+
+
+def scene(share=0.0, way=WAY, gas=None, bodies=None, **keys):
+    """A cylinder that has a share of the relative velocity, the gas the rest."""
+    wind = [MACH * (1.0 - share), 0.0, 0.0] if gas is None else gas
+    free = {"density": 1.0, "pressure": PRESSURE, "velocity": wind}
+    begin = share * way * RADIUS
+    body = {
+        "position": [begin, 0.0, 0.0],
+        "radius": RADIUS,
+        "velocity": [-share * MACH, 0.0, 0.0],
+        "rays": 48,
+        "thickness": 0.7,
+        "spacing": 0.125,
+    }
+    inflow = {"kind": "inflow", "state": free}
+    return {
+        "gas": {"gamma": 1.4, "gas_constant": PRESSURE},
+        "neighbours": 8,
+        "courant": 0.5,
+        "box": {
+            "lowest": [-1.7, 0.0, -1.7],
+            "highest": [begin + 2.0, 0.0, 1.7],
+            "spacing": 0.125,
+        },
+        "boundaries": {
+            "x-": inflow,
+            "x+": {"kind": "outflow"} if wind[0] else inflow,
+            "z-": inflow,
+            "z+": inflow,
+        },
+        "initial": free,
+        "moving": {"bodies": bodies or [body]} | keys,
+    }
+
+
+def made(settings):
+    params, mistakes = read(MeshlessGasParams, settings, "gas")
+    assert not mistakes, mistakes
+    return MeshlessGas(params)
+
+
+def flown(gas, end):
+    """Coefficients of drag, and pressures of the wall, over the second half of a flight."""
+    drags, pressures = [], []
+    while gas.state.time < end - 1e-12:
+        gas.step(min(gas.stable_dt(), end - gas.state.time))
+        if gas.state.time > 0.5 * end:
+            found = gas.give(frozenset(["bodies.coefficient", "surface.pressure"]))
+            drags.append(found["bodies.coefficient"][0, 0])
+            pressures.append(found["surface.pressure"])
+    return np.mean(drags), np.mean(pressures, axis=0)
+
+
+@pytest.fixture(scope="module")
+def fixed():
+    return flown(made(scene()), WAY * RADIUS / MACH)
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_a_body_that_moves_feels_what_one_in_a_stream_feels(fixed, share):
+    drag, pressure = flown(made(scene(share)), WAY * RADIUS / MACH)
+    assert abs(drag / fixed[0] - 1.0) < 0.005
+    assert np.abs(pressure - fixed[1]).max() < 0.01 * fixed[1].max()
+
+
+def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
+    gas = made(scene(share=1.0, gas=[-MACH, 0.0, 0.0]))
+    for _ in range(12):
+        gas.step(gas.stable_dt())
+    inner = gas.domain.inner
+    assert gas.moving.uncovered > 20
+    assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
+    assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
+
+
+def test_uncovered_nodes_get_linear_fields_exactly():
+    rng = np.random.default_rng(1)
+    positions = rng.uniform(-1.0, 1.0, (9, 3))
+    positions[0] = 0.0
+    positions[1, ::2], positions[2, ::2] = [0.9, -0.8], [-0.9, 0.8]  # the node lies among them
+    field = 3.0 + positions[:, ::2] @ rng.uniform(-0.5, 0.5, (2, 5))
+    exact = field[0].copy()
+    field[0] = -1.0
+    far = np.array([[9.0, 0.0, 9.0]]), np.array([0.1])
+    write_uncovered(np.array([0]), np.arange(1, 9)[None], positions, np.ones(9), *far, field)
+    assert np.allclose(field[0], exact, rtol=1e-9)
+
+
+def test_nodes_behind_a_body_are_no_neighbours():
+    positions = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 2.5]])
+    body = np.zeros((1, 3)), np.array([0.5])
+    near, found = np.zeros((3, 1), np.int32), np.array([[1, 2]])
+    lacks = choose(np.array([0]), found, positions, np.full(3, 0.1), *body, 1, near)
+    assert lacks == -1
+    assert near[0, 0] == 2
+
+
+def test_hysteresis_keeps_nodes_from_coming_and_going():
+    counts = []
+    for hysteresis in (0.0, 0.3):
+        gas = made(scene(share=1.0, hysteresis=hysteresis))
+        for _ in range(60):
+            gas.step(gas.stable_dt())
+        counts.append(gas.moving.uncovered)
+    assert counts[1] < 0.8 * counts[0]
+
+
+def test_what_bodies_get_the_gas_loses():
+    gas = made(scene(share=1.0, gas=[0.0, 0.0, 0.0]))
+    gas.step(gas.stable_dt())
+    before, dt = gas.state.entered.copy(), gas.stable_dt()
+    gas.step(dt)
+    force = gas.give(frozenset(["bodies.force"]))["bodies.force"][0]
+    got = (gas.state.entered - before)[1:4] / dt
+    assert np.abs(got + force).max() < 1e-12 * np.abs(force).max()
+
+
+def test_a_saved_state_goes_on_with_the_same_bits():
+    gas = made(scene(share=1.0))
+    for _ in range(7):
+        gas.step(gas.stable_dt())
+    kept, runs = gas.save(), []
+    for _ in range(2):
+        gas.load(kept)
+        for _ in range(9):
+            gas.step(gas.stable_dt())
+        runs.append(gas.save())
+    other = made(scene(share=1.0))
+    other.load(kept)
+    for _ in range(9):
+        other.step(other.stable_dt())
+    runs.append(other.save())
+    for name, array in runs[0].items():
+        assert np.array_equal(array, runs[1][name], equal_nan=True), name
+        assert np.array_equal(array, runs[2][name], equal_nan=True), name
+
+
+def test_a_body_that_leaves_the_box_is_refused():
+    gas = made(scene(share=1.0, way=1.0))
+    with pytest.raises(StepError, match="must stay within the box"):
+        for _ in range(400):
+            gas.step(gas.stable_dt())
+
+
+def two(gap):
+    return [
+        {
+            "position": [x, 0.0, 0.0],
+            "radius": 0.25,
+            "rays": 32,
+            "thickness": 0.35,
+            "first": 0.02,
+            "spacing": 0.125,
+            "velocity": [speed, 0.0, 0.0],
+        }
+        for x, speed in ((0.0, 0.0), (0.5 + gap, -1.0))
+    ]
+
+
+def test_bodies_that_touch_are_refused():
+    with pytest.raises(StepError, match="must leave room for two layers"):
+        made(scene(bodies=two(0.0), gas=[0.0, 0.0, 0.0]))
+
+
+def test_bodies_that_come_near_each_other_run_until_they_nearly_touch():
+    gas = made(scene(bodies=two(0.5), gas=[0.0, 0.0, 0.0]))
+    with pytest.raises(StepError, match="must leave room for two layers"):
+        for _ in range(400):
+            gas.step(gas.stable_dt())
+    assert gas.moving.pose.centre[1, 0] - 0.5 < 0.2
+    assert gas.state.primitive[gas.domain.inner, 4].max() > 1.2 * PRESSURE  # gas between them
+
+
+def test_clouds_with_too_few_neighbours_are_refused():
+    with pytest.raises(SceneError, match="8 neighbours"):
+        made(scene() | {"neighbours": 6})
+
+
+def test_scenes_without_bodies_import_no_seams():
+    code = (
+        "import sys; import quintet.components.meshless_gas.component; "
+        "sys.exit('quintet.components.meshless_gas.moving.clouds' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,89 @@
+"""What stretched bodies of particles do: they form clumps, unless an artificial stress repels."""
+
+import numpy as np
+import pytest
+
+from quintet.components.shared.materials.params import Material
+from quintet.components.sph_solid.component import SphSolid
+from quintet.components.sph_solid.kernels.material import write_artificial
+from quintet.components.sph_solid.params import Body, SphSolidParams, SymmetryPlane
+
+DX = 1e-3  # m
+SIDE = 16  # particles along x and z
+STRETCHED = 0.95  # density over that at rest
+RUBBER = Material(density=1000.0, youngs_modulus=1e7, poissons_ratio=0.4)
+
+
+def stretched(**given):
+    """A square in plane strain between planes of symmetry, in even tension, a little disturbed."""
+    edge = SIDE * DX
+    planes = [
+        SymmetryPlane(axis=axis, position=at, side=side)
+        for axis in ("x", "z")
+        for at, side in ((0.0, "+"), (edge, "-"))
+    ]
+    body = Body(lowest=(0.0, 0.0, 0.0), highest=(edge, 1.0, edge), material=RUBBER)
+    made = SphSolid(
+        SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), symmetry=tuple(planes), **given)
+    )
+    state, bulk = made.state, RUBBER.bulk
+    state.volume *= STRETCHED
+    state.density_ratio[:], state.pressure[:] = STRETCHED, (STRETCHED - 1.0) * bulk
+    shift = 0.01 * DX * np.random.default_rng(1).uniform(-1.0, 1.0, (state.particles, 3))
+    state.position += shift * (1.0, 0.0, 1.0)
+    made._begin()
+    return made
+
+
+def nearest_pair(made):
+    """Least distance of two particles, over the spacing."""
+    place = made.state.position
+    apart = np.linalg.norm(place[:, None] - place[None, :], axis=2)
+    np.fill_diagonal(apart, np.inf)
+    return apart.min() / DX
+
+
+def run(made, steps=600):
+    for _ in range(steps):
+        made.step(made.stable_dt())
+    return made
+
+
+def test_stretched_particles_form_clumps_and_an_artificial_stress_holds_them_apart():
+    assert nearest_pair(stretched()) > 0.97
+    assert nearest_pair(run(stretched())) < 0.6
+    assert nearest_pair(run(stretched(artificial_stress=0.3))) > 0.85
+
+
+def test_work_of_the_artificial_stress_is_energy_and_its_forces_balance():
+    body = Body(lowest=(0.0, 0.0, 0.0), highest=(8 * DX, 1.0, 8 * DX), material=RUBBER)
+    given = {"spacing": DX, "dimensions": 2, "bodies": (body,), "courant": 0.2}
+    made = SphSolid(SphSolidParams(**given, artificial_stress=0.3))
+    state = made.state
+    state.velocity[:, 0] = 20.0 * (state.position[:, 0] / (4 * DX) - 1.0)  # pulled apart
+    before = made.totals()
+    run(made, 300)
+    after = made.totals()
+    whole = before.kinetic + before.internal
+    assert after.kinetic + after.internal == pytest.approx(whole, rel=1e-3)
+    moving = np.abs(state.velocity).max() * after.mass
+    assert np.abs(after.momentum - before.momentum).max() < 1e-12 * moving
+
+
+def test_the_artificial_stress_is_of_the_tensions_along_principal_axes():
+    for six in np.random.default_rng(2).normal(size=(20, 6)):
+        xx, yy, zz, xy, yz, zx = six
+        matrix = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+        value, vector = np.linalg.eigh(matrix)
+        exact = vector @ np.diag(np.maximum(value, 0.0)) @ vector.T
+        rows = np.zeros((1, 16))
+        rows[0, :6] = six
+        write_artificial(0, 1, 1.0, rows)
+        assert -rows[0, 8:14] == pytest.approx(exact[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]])
+
+
+def test_an_artificial_stress_of_corrected_gradients_or_of_rings_is_refused():
+    body = Body(lowest=(0.0, 0.0, 0.0), highest=(DX, 1.0, DX), material=RUBBER)
+    for other in ({"kernel_correction": True}, {"axisymmetric": True}):
+        with pytest.raises(ValueError, match="artificial_stress is of plain gradients"):
+            SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), artificial_stress=0.3, **other)
