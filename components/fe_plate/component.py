@@ -10,6 +10,8 @@ from quintet.components.fe_plate.gauges import (
     at_nodes,
     in_elements,
     measured,
+    of_element_sets,
+    of_node_sets,
     of_parts,
     wanted_of,
 )
@@ -269,6 +271,11 @@ class FePlate(Component):
             found |= at_nodes(self.state, self.measured.node)
         if wanted_of("element_gauge", wanted):
             found |= in_elements(self.places, self.state, self.measured.element)
+        if wanted_of("node_set_gauge", wanted):
+            found |= of_node_sets(self.state, self.measured.node_sets)
+        if wanted_of("element_set_gauge", wanted):
+            sets = self.measured.element_sets
+            found |= of_element_sets(self.mesh, self.places, self.state, self.element_mass, sets)
         if wanted_of("part_gauge", wanted):
             found |= of_parts(self.mesh, self.places, self.state, self.element_mass)
         return found

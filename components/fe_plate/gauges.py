@@ -1,6 +1,6 @@
 """What is measured in a structure: at nodes, in elements, of whole parts."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,11 +11,12 @@ from quintet.components.fe_plate.kernels.blocks import (
     STRAIN,
     TEMPERATURE,
 )
-from quintet.components.fe_plate.meshes.mesh import Mesh
-from quintet.components.fe_plate.params import Gauges
+from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, elements_of
+from quintet.components.fe_plate.params import Faces, Gauges
 from quintet.components.fe_plate.state import Array, Places, State, Whole
 from quintet.components.fe_plate.view import von_mises
 from quintet.interfaces.component import Keys
+from quintet.interfaces.errors import SceneError
 
 
 class Measured(NamedTuple):
@@ -23,12 +24,29 @@ class Measured(NamedTuple):
 
     node: Whole  # (k,)
     element: Whole  # (k,)
+    node_sets: list[Whole]  # nodes of each
+    element_sets: list[Whole]  # elements of each
 
 
 def measured(mesh: Mesh, gauges: Gauges) -> Measured:
-    """Nodes nearest to some points at the start, and elements whose middles are."""
+    """Nodes nearest to some points at the start, elements whose middles are, and whole sets."""
     middle = mesh.node[mesh.corner].mean(axis=1)
-    return Measured(nearest(mesh.node, gauges.node_gauges), nearest(middle, gauges.element_gauges))
+    nodes = []
+    for number, name in enumerate(gauges.node_set_gauges):
+        found = chosen(mesh, Faces(node_set=name), f"gauges.node_set_gauges.{number}")
+        nodes.append(np.flatnonzero(found))
+    elements = []
+    for number, one in enumerate(gauges.element_set_gauges):
+        where = f"gauges.element_set_gauges.{number}"
+        elements.append(elements_of(mesh, one, where))
+        if not len(elements[-1]):
+            raise SceneError(f"{where}: it must hold an element; it holds none. Correct the box.")
+    return Measured(
+        nearest(mesh.node, gauges.node_gauges),
+        nearest(middle, gauges.element_gauges),
+        nodes,
+        elements,
+    )
 
 
 def nearest(points: Array, wanted: tuple[tuple[float, float, float], ...]) -> Whole:
@@ -56,6 +74,30 @@ def in_elements(places: Places, state: State, element: Whole) -> dict[str, Array
         "element_gauge.damage": mine.of(state, DAMAGE),
         "element_gauge.active": mine.active(state),
     }
+
+
+def of_node_sets(state: State, sets: list[Whole]) -> dict[str, Array]:
+    """Mean motion of the nodes of each set."""
+    return {
+        "node_set_gauge.position": np.stack([state.position[one].mean(axis=0) for one in sets]),
+        "node_set_gauge.velocity": np.stack([state.velocity[one].mean(axis=0) for one in sets]),
+    }
+
+
+def of_element_sets(
+    mesh: Mesh, places: Places, state: State, mass: Array, sets: list[Whole]
+) -> dict[str, Array]:
+    """Mean velocity, energies, mean stress, greatest strain and damage of each set of elements."""
+    found: dict[str, list[Any]] = {}
+    for one in sets:
+        mine = Places(places.point[one], places.share[one])
+        own = mesh._replace(corner=mesh.corner[one], part=np.zeros(len(one), np.int64))
+        for key, value in of_parts(own, mine, state, mass[one]).items():
+            found.setdefault(key.partition(".")[2], []).append(value[0])
+        found.setdefault("von_mises", []).append(von_mises(mine, state).mean())
+        found.setdefault("plastic_strain", []).append(mine.of(state, STRAIN).max())
+        found.setdefault("damage", []).append(mine.of(state, DAMAGE).max())
+    return {f"element_set_gauge.{name}": np.array(values) for name, values in found.items()}
 
 
 def of_parts(mesh: Mesh, places: Places, state: State, mass: Array) -> dict[str, Array]:

@@ -85,6 +85,32 @@ class Faces:
 
 
 @parameters
+class Elements:
+    """Elements, by a box, a set of nodes or a set of elements.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Elements all of whose corners lie in this box at the start.
+    node_set
+        In place of the box: elements all of whose corners belong to this set.
+    element_set
+        In place of both: a set of elements of a mesh's file.
+    """
+
+    lowest: Vector | None = None
+    highest: Vector | None = None
+    node_set: str = ""
+    element_set: str = ""
+
+    def __post_init__(self) -> None:
+        if self.node_set and self.element_set:
+            raise ValueError("elements: a node_set or an element_set, not both; found both.")
+        name = self.node_set or self.element_set
+        _box_or_set("elements", (self.lowest, self.highest), name)
+
+
+@parameters
 class Pressure:
     """A pressure on outer faces, along their normals as they move.
 
@@ -154,11 +180,18 @@ class Gauges:
         the element whose middle is nearest to each.
     part_gauge
         Whether the mean velocity [m/s] and the energies [J] of each part are given.
+    node_set_gauges
+        Names of sets: mean position [m] and velocity [m/s] of the nodes of each.
+    element_set_gauges
+        Elements: mean velocity [m/s], energies [J], mean equivalent stress [Pa], greatest plastic
+        strain and damage of each set.
     """
 
     node_gauges: tuple[Vector, ...] = ()
     element_gauges: tuple[Vector, ...] = ()
     part_gauge: bool = False
+    node_set_gauges: tuple[str, ...] = ()
+    element_set_gauges: tuple[Elements, ...] = ()
 
 
 @parameters
@@ -199,9 +232,10 @@ class FePlateParams:
     viscosity_linear, viscosity_quadratic : 1
         C₁ and C₀ of the bulk viscosity ρ l (C₀² l D² - C₁ c D), in compression.
     mass_damping : 1/s
-        α: motion decays as exp(-α t/2).
+        α: free motion decays as exp(-α t/2), the amplitude of a vibration as exp(-α t/4).
     stiffness_damping : s
-        β of the stress β (2G dev D + K tr D).
+        β of the stress β (2G dev D + K tr D): the amplitude of a vibration decays as
+        exp(-β ω² t/2).
     """
 
     parts: tuple[Part, ...]

@@ -35,6 +35,10 @@ PART_GAUGE = Port(
         Field("eroded", (), "J"),  # of it that of eroded elements
     ),
 )
+NODE_SET_GAUGE = Port("node_set_gauge", (POSITION, VELOCITY))
+ELEMENT_SET_GAUGE = Port(
+    "element_set_gauge", (*PART_GAUGE.fields, VON_MISES, PLASTIC_STRAIN, DAMAGE)
+)
 # Of the view, at the corners of outer faces: means of the elements that meet there.
 SHOWS = (VON_MISES, VELOCITY, PRESSURE, PLASTIC_STRAIN, TEMPERATURE, DAMAGE, DISPLACEMENT)
 
@@ -46,6 +50,8 @@ def ports(params: FePlateParams) -> Ports:
         (NODE_GAUGE, bool(gauges.node_gauges)),
         (ELEMENT_GAUGE, bool(gauges.element_gauges)),
         (PART_GAUGE, gauges.part_gauge),
+        (NODE_SET_GAUGE, bool(gauges.node_set_gauges)),
+        (ELEMENT_SET_GAUGE, bool(gauges.element_set_gauges)),
     )
     measured = tuple(port for port, on in switched if on)
     planar = params.dimensions == 2

@@ -4,13 +4,16 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from quintet.coupler.cli import main
+from quintet.coupler.files.recording import Recording
 from quintet.coupler.report.diff import compare
 from quintet.coupler.run import snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
+from quintet.scenarios.hot_bar_coupled.exchanges import reached, standard_error
 
 SHORT = {  # of each scene: settings with which it takes a second
     "hot_bar": {"end": 1.0, "window": 0.1, "components.bar.steps_at_once": 200},
@@ -47,6 +50,18 @@ def test_a_bar_of_elements_and_points_has_the_temperature_between_them(tmp_path:
     by_name = {one["name"]: one for one in found["expect"]}
     assert by_name["temperature between"]["met"] and by_name["heat flow"]["met"]
     assert found["ledger"]["links"][0]["heat_residual"] <= 1e-12
+    with Recording(tmp_path / "run") as recording:
+        between = recording.field("elements", "node_temperature.temperature")[1:].mean(axis=1)
+    assert reached(between) <= 8  # exchanges
+    assert abs(between[8:].mean() - 390.9) < 5.0 * standard_error(between[8:])
+
+
+def test_what_is_reached_is_told_apart_from_noise() -> None:
+    """Of an error that halves from exchange to exchange, in noise with a deviation of one."""
+    noise = np.random.default_rng(3).normal(size=200)
+    values = 50.0 + 64.0 * 0.5 ** np.arange(24) + noise[:24]
+    assert 4 <= reached(values) <= 7  # the error is 8 and 1 there
+    assert standard_error(noise) == pytest.approx(1.0 / np.sqrt(200), rel=0.2)
 
 
 @pytest.mark.parametrize("scene", SHORT)

@@ -5,7 +5,7 @@ Nothing is imported unless a scene names a file.
 
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,11 +21,12 @@ class FileMesh(NamedTuple):
     node: Array  # (n, 3), in units of the file
     corner: Array  # (e, 8 or 4) whole numbers
     sets: dict[str, Array]  # nodes (k,) of each named set
+    groups: dict[str, Array]  # elements (k,) of each named set
 
 
 @cache
 def read(file: str, kind: str = SOLID) -> FileMesh:
-    """Read the elements of a kind, their nodes, and the sets of nodes that the file names."""
+    """Read the elements of a kind, their nodes, and the sets of both that the file names."""
     try:
         # Scenes without mesh files do not need it, nor have it installed.
         import meshio
@@ -57,7 +58,20 @@ def read(file: str, kind: str = SOLID) -> FileMesh:
         name: np.flatnonzero(np.isin(used, np.asarray(nodes, np.int64)))
         for name, nodes in found.point_sets.items()
     }
-    return FileMesh(points, number.reshape(corner.shape), sets)
+    return FileMesh(points, number.reshape(corner.shape), sets, _groups(found, kind))
+
+
+def _groups(found: Any, kind: str) -> dict[str, Array]:
+    """Elements of a kind of each named set, counted through all blocks of that kind."""
+    groups = {}
+    for name, blocks in found.cell_sets.items():
+        rows, first = [np.zeros(0, np.int64)], 0
+        for block, chosen in zip(found.cells, blocks, strict=True):
+            if block.type == kind:
+                rows.append(first + np.asarray([] if chosen is None else chosen, np.int64))
+                first += len(block.data)
+        groups[name] = np.concatenate(rows)
+    return groups
 
 
 def least_edge(mesh: FileMesh) -> float:

@@ -14,7 +14,7 @@ from quintet.components.fe_plate.meshes.box import box, rectangle
 from quintet.components.fe_plate.meshes.cylinder import cylinder
 from quintet.components.fe_plate.meshes.files import read
 from quintet.components.fe_plate.meshes.params import Shape
-from quintet.components.fe_plate.params import Faces, Fixed, NodeSet
+from quintet.components.fe_plate.params import Elements, Faces, Fixed, NodeSet
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
 
@@ -36,12 +36,14 @@ class Mesh(NamedTuple):
     side: Whole  # (f, 4) nodes of the outer faces, seen from outside; of edges two, and -1 twice
     owner: Whole  # (f,) element of each
     sets: dict[str, Whole]  # nodes of each named set, of files and of the scene
+    groups: dict[str, Whole]  # elements of each named set of files
 
 
 def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
     """Make the mesh of some parts."""
-    nodes, corners, first = [], [], 0
+    nodes, corners, first, count = [], [], 0, 0
     named: dict[str, Whole] = {}
+    groups: dict[str, Whole] = {}
     for part in parts:
         if dimensions == 2:
             node, corner = rectangle(part)
@@ -52,18 +54,20 @@ def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = 
             node, corner = part.mesh.scale * found.node + part.mesh.move, found.corner
             for name, rows in found.sets.items():
                 named[name] = np.append(named.get(name, rows[:0]), first + rows)
+            for name, rows in found.groups.items():
+                groups[name] = np.append(groups.get(name, rows[:0]), count + rows)
         else:
             node, corner = box(part)
         nodes.append(node)
         corners.append(corner + first)
-        first += len(node)
+        first, count = first + len(node), count + len(corner)
     number = np.repeat(np.arange(len(parts)), [len(one) for one in corners])
     corner = np.concatenate(corners)
     outer = outer_sides(corner) if dimensions == 3 else outer_edges(corner)
     node = np.concatenate(nodes)
     for one in sets:
         named[one.name] = np.flatnonzero(inside(node, one))
-    return Mesh(node, corner, number, *outer, named)
+    return Mesh(node, corner, number, *outer, named, groups)
 
 
 def outer_sides(corner: Whole) -> tuple[Whole, Whole]:
@@ -97,6 +101,17 @@ def chosen(mesh: Mesh, by: Faces | Fixed, where: str) -> NDArray[np.bool_]:
     found = np.zeros(len(mesh.node), bool)
     found[mesh.sets[by.node_set]] = True
     return found
+
+
+def elements_of(mesh: Mesh, by: Elements, where: str) -> Whole:
+    """Numbers of the elements all of whose corners lie in a box, or belong to a set."""
+    if not by.element_set:
+        nodes = Faces(lowest=by.lowest, highest=by.highest, node_set=by.node_set)
+        return np.flatnonzero(chosen(mesh, nodes, where)[mesh.corner].all(axis=1))
+    if by.element_set not in mesh.groups:
+        wrong = f"{where}: element_set {by.element_set}"
+        raise SceneError(unknown(wrong, by.element_set, mesh.groups))
+    return mesh.groups[by.element_set]
 
 
 def inside(points: Array, box: Faces | Fixed | NodeSet) -> NDArray[np.bool_]:

@@ -126,7 +126,9 @@ def nodes_above(rows: Whole, domain: Domain) -> Whole:
                                       * cloud.normals[rows]).sum(axis=1)[:, None]  # fmt: skip
         inner = (cloud.kind[near] == INNER) & (up > past * (1.0 + 1e-9))
         score = np.where(inner, up / np.where(length > 0.0, length, 1.0), -1.0)
-        score -= 1e-6 * np.where(inner, length, 0.0) / np.max(length)  # of two in line the nearer
+        score -= (
+            1e-6 * np.where(inner, length, 0.0) / np.max(length, initial=1e-300)
+        )  # of two in line the nearer
         at = near[np.arange(len(rows)), score.argmax(axis=1)].astype(np.int64)
         found[:, step] = at
     return found

@@ -126,6 +126,25 @@ def test_the_works_of_a_pressure_and_of_damping_are_counted():
     assert damped > 0.2 * largest
 
 
+@pytest.mark.parametrize("damping", ["none", "mass_damping", "stiffness_damping"])
+def test_damping_slows_a_vibration_as_it_should(damping):
+    """Of the first mode of a free bar: exp(-α t/4), exp(-β ω² t/2)."""
+    soft = Material(density=RHO, youngs_modulus=E, poissons_ratio=0.0)
+    omega = math.pi / 0.04 * math.sqrt(E / RHO)
+    periods, wanted = 3, 0.5
+    time = periods * 2.0 * math.pi / omega
+    values = {"mass_damping": 4.0 / time, "stiffness_damping": 2.0 / (omega**2 * time)}
+    given = {} if damping == "none" else {damping: -math.log(wanted) * values[damping]}
+    made = block((0.04, 0.01, 0.01), (8, 1, 1), soft, **given, **CALM)
+    mode = np.cos(math.pi * made.mesh.node[:, 0] / 0.04)
+    made.state.velocity[:, 0] = mode
+    steps = math.ceil(time / made.stable_dt())
+    for _ in range(steps):
+        made.step(time / steps)
+    share = made.state.velocity[:, 0] @ mode / (mode @ mode)
+    assert share == pytest.approx(1.0 if damping == "none" else wanted, rel=0.02)
+
+
 @INTEGRATIONS
 def test_energy_is_kept_at_second_order(integration):
     drifts = []

@@ -11,6 +11,7 @@ from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.kernels.blocks import STRAIN
 from quintet.components.fe_plate.meshes.params import Cutout, Cylinder, MeshFile, Part
 from quintet.components.fe_plate.params import (
+    Elements,
     Faces,
     FePlateParams,
     Fixed,
@@ -19,6 +20,7 @@ from quintet.components.fe_plate.params import (
     Pressure,
     RigidWall,
 )
+from quintet.components.fe_plate.view import von_mises
 from quintet.components.shared.materials.params import (
     JohnsonCook,
     JohnsonCookDamage,
@@ -108,6 +110,58 @@ def test_gauges_give_what_nodes_elements_and_parts_have():
     totals, found = made.totals(), made.give(frozenset(keys))
     assert found["part_gauge.kinetic"].sum() == pytest.approx(totals.kinetic, rel=1e-12)
     assert found["part_gauge.internal"].sum() == pytest.approx(totals.internal, abs=1e-9)
+
+
+def test_gauges_of_sets_give_what_their_nodes_and_elements_have():
+    part = Part(
+        lowest=(0.0, 0.0, 0.0),
+        highest=(4.0, 1.0, 1.0),
+        elements=(4, 1, 1),
+        material=ELASTIC,
+        velocity=(0.0, 3.0, 0.0),
+    )
+    end = {"lowest": (3.0, 0.0, 0.0), "highest": (4.0, 1.0, 1.0)}
+    gauges = Gauges(
+        node_set_gauges=("end",),
+        element_set_gauges=(
+            Elements(node_set="end"),
+            Elements(lowest=(0.0,) * 3, highest=(9.0,) * 3),
+        ),
+        part_gauge=True,
+    )
+    params = FePlateParams(parts=(part,), node_sets=(NodeSet(name="end", **end),), gauges=gauges)
+    made = FePlate(params)
+    made.state.velocity[made.mesh.node[:, 0] > 2.5] = (5.0, 0.0, 0.0)
+    for _ in range(5):
+        made.step(made.stable_dt())
+    keys = {f"{port.name}.{field.name}" for port in made.gives for field in port.fields}
+    found = made.give(frozenset(keys))
+    assert keys == set(found)
+    nodes = made.mesh.node[:, 0] > 2.5
+    np.testing.assert_allclose(
+        found["node_set_gauge.velocity"], [made.state.velocity[nodes].mean(axis=0)], rtol=1e-12
+    )
+    assert found["node_set_gauge.position"][0, 0] > 3.5
+    for name in ("velocity", "kinetic", "internal", "eroded"):
+        whole = found[f"element_set_gauge.{name}"]
+        assert whole[1] == pytest.approx(found[f"part_gauge.{name}"][0], rel=1e-12)
+    assert 0.0 < found["element_set_gauge.kinetic"][0] < found["element_set_gauge.kinetic"][1]
+    one = von_mises(made.places, made.state)
+    assert found["element_set_gauge.von_mises"] == pytest.approx([one[3], one.mean()])
+    wrong = dataclasses.replace(gauges, element_set_gauges=(Elements(element_set="rim"),))
+    with pytest.raises(SceneError, match=r"element_set_gauges.0: element_set rim is not known"):
+        FePlate(dataclasses.replace(params, gauges=wrong))
+
+
+def test_sets_of_elements_are_read_from_a_file(tmp_path):
+    node, corner = _hexahedra()
+    cells = [("triangle", corner[:1, :3]), ("hexahedron", corner)]
+    sets = {"right": [np.zeros(0, int), np.array([1])]}
+    meshio.Mesh(node, cells, cell_sets=sets).write(tmp_path / "block.inp")
+    part = Part(mesh=MeshFile(file=str(tmp_path / "block.inp"), scale=1e-3), material=ELASTIC)
+    gauges = Gauges(element_set_gauges=(Elements(element_set="right"),))
+    made = FePlate(FePlateParams(parts=(part,), gauges=gauges))
+    assert [one.tolist() for one in made.measured.element_sets] == [[1]]
 
 
 def _hexahedra():
