@@ -59,7 +59,7 @@ class SphSolid(Component):
         self.state = initial_state(params, self.laws, numbers)
         self.gauged = nearest(self.state.position, params)
         self.lists = SolidLists(params, self.team)
-        self.sums = pair_sums(params.axisymmetric, params.length, self.team)
+        self.sums = pair_sums(params, self.team)
         self.is_carried = False  # whether a mesh bears the glued particles
         self._begin()
 
