@@ -111,8 +111,8 @@ class Front:
         Of the line.
     field
         What the front is a jump of.
-    level : kg/m3 or Pa
-        Of the field: the front is where it is first passed, from the line's begin on.
+    level : of the field
+        The front is where it is first passed, from the line's begin on.
     """
 
     begin: Vector
