@@ -92,7 +92,8 @@ class Steady:
     change : 1
         Largest root mean square of the densities' relative change in a step.
     force : 1
-        Largest change of the force on walls from look to look, over it.
+        Largest change of the force on walls from look to look, over the sum of what acts on their
+        nodes.
     """
 
     steps: Annotated[int, Field(ge=1)] = 200
@@ -110,8 +111,8 @@ class Front:
         Of the line.
     field
         What the front is a jump of.
-    level : kg/m3 or Pa
-        Of the field: the front is where it is first passed, from the line's begin on.
+    level : of the field
+        The front is where it is first passed, from the line's begin on.
     """
 
     begin: Vector
