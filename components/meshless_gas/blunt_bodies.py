@@ -110,6 +110,11 @@ class Stream(NamedTuple):
     prandtl: float
     sutherland: tuple[float, float, float]  # Pa s at K, and Sutherland's temperature K
 
+    @property
+    def density(self) -> float:
+        """Density [kg/m3]."""
+        return self.pressure / (self.gas_constant * self.temperature)
+
 
 def viscosity(temperature: float, sutherland: tuple[float, float, float]) -> float:
     """Dynamic viscosity [Pa s] by Sutherland's law."""

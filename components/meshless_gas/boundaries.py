@@ -72,6 +72,11 @@ class GasState:
             density = self.pressure / (gas.gas_constant * self.temperature)
         return density, *self.velocity, self.pressure
 
+    def mach(self, gas: Gas) -> float:
+        """Mach number."""
+        density, u, v, w, pressure = self.primitive(gas)
+        return math.hypot(u, v, w) / math.sqrt(gas.gamma * pressure / density)
+
     def fastest(self, gas: Gas) -> float:
         """Speed [m/s] of its fastest wave."""
         density, u, v, w, pressure = self.primitive(gas)

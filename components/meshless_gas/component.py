@@ -207,12 +207,13 @@ class MeshlessGas(Component):
     def _settle(self) -> None:
         """Look whether the flow is steady."""
         assert self.settling is not None
-        force = np.zeros(3)
+        force, scale = np.zeros(3), 0.0
         if self.surface is not None:
             self._feel()
             force = self.surface.force(self.fluxes.primitive)
+            scale = self.surface.scale(self.fluxes.primitive)
         change = density_change(self.state, self.domain, self.fluxes)
-        self.settling.look(change, force, self.state.time)
+        self.settling.look(change, force, scale, self.state.time)
 
     def _feel(self) -> None:
         """Take friction and heat flux of walls, as the state is."""

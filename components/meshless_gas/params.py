@@ -92,7 +92,8 @@ class Steady:
     change : 1
         Largest root mean square of the densities' relative change in a step.
     force : 1
-        Largest change of the force on walls from look to look, over it.
+        Largest change of the force on walls from look to look, over the sum of what acts on their
+        nodes.
     """
 
     steps: Annotated[int, Field(ge=1)] = 200

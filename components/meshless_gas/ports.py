@@ -74,6 +74,9 @@ def body(params: MeshlessGasParams) -> Port:
         names.append("drag_coefficient")  # by the cross-section of a sphere, the area of a plate
     if params.sphere is not None:
         names.append("pitot_ratio")  # pressure where the flow meets it, over that of Rayleigh
+        far = params.boundaries["far"].state
+        if far is not None and far.mach(params.gas) > 1.0:
+            names.append("standoff")  # of the bow shock from the wall, over the radius
         if params.boundaries["wall"].temperature is not None:
             names.append("heat_ratio")  # heat flux there, over that of Fay and Riddell
     fields = (Field("force", (3,), "N"), Field("heat", (), "W"))

@@ -25,7 +25,7 @@ class Settling:
         self.memory[STEPS] += 1.0
         return self.memory[STEPS] % self.says.steps == 0.0
 
-    def look(self, change: float, force: Array, time: float) -> None:
+    def look(self, change: float, force: Array, scale: float, time: float) -> None:
         """Compare with the last look.
 
         Parameters
@@ -33,10 +33,13 @@ class Settling:
         change : float, 1
             Root mean square of the densities' relative change in the last step.
         force : (3,) N
+            On all walls together.
+        scale : float, N
+            Sum of the sizes of the forces on their nodes.
         time : float, s
         """
         moved = np.sqrt(((force - self.memory[FORCE:]) ** 2).sum())
-        is_still = moved <= self.says.force * np.sqrt((force**2).sum())
+        is_still = moved <= self.says.force * scale
         self.memory[FORCE:] = force
         if change <= self.says.change and is_still:
             self.memory[SETTLED], self.memory[SINCE] = 1.0, time

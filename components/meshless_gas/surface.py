@@ -3,17 +3,23 @@
 import math
 
 import numpy as np
+from numpy.polynomial.polynomial import polyfit
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell, pitot_pressure
+from quintet.components.meshless_gas.blunt_bodies import (
+    Stream,
+    fay_riddell,
+    normal_shock,
+    pitot_pressure,
+)
 from quintet.components.meshless_gas.boundaries import GasState
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.bodies import mach_number
 from quintet.components.meshless_gas.clouds.cloud import WALLS
 from quintet.components.meshless_gas.clouds.params import Plate
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array, Fields
 
+SHOCK_RAYS = 0.44  # rad, within which the shock is fitted
 NEAR_AXIS = 0.25  # rad from the direction against the flow, over which values at it are fitted
 
 
@@ -34,6 +40,13 @@ class Surface:
         self.sizes = np.sqrt((self.areas**2).sum(axis=1))
         self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
         self.stream = free_stream(params)
+        if params.sphere is not None:
+            self.nodes = cloud.nodes
+            away = cloud.positions[: cloud.nodes] - np.array(params.sphere.centre)
+            distance = np.sqrt((away**2).sum(axis=1)).reshape(-1, len(self.rows))
+            self.heights = distance - params.sphere.radius  # (layers, w) m, above each wall node
+            foot = away[self.rows]
+            self.angle = np.arctan2(np.hypot(foot[:, 1], foot[:, 2]), -foot[:, 0])  # (w,) rad
 
     def take(self, rows: NDArray[np.int32], friction: Array, heat: Array) -> None:
         """Take friction (w, 3) Pa and heat flux (w,) W/m2 of nodes that hold the gas."""
@@ -46,6 +59,12 @@ class Surface:
         """Force (3,) N on all walls together, less that of the stream's pressure."""
         pressure = primitive[self.rows, 4] - (self.stream.pressure if self.stream else 0.0)
         return sums(pressure, self.friction, self.areas, self.sizes, self.params.axisymmetric)
+
+    def scale(self, primitive: Array) -> float:
+        """Sum [N] of the sizes of forces on nodes, with which their sum's change is compared."""
+        pressure = primitive[self.rows, 4] - (self.stream.pressure if self.stream else 0.0)
+        each = self.sizes[:, None] * self.friction - pressure[:, None] * self.areas
+        return float(np.sqrt((each**2).sum(axis=1)).sum())
 
     def wall(self, primitive: Array) -> Fields:
         """Fields of the port `wall`."""
@@ -85,6 +104,8 @@ class Surface:
                 pressure / (stream.pressure * pitot_pressure(stream.mach, stream.gamma)),
             ),
         ]
+        if stream.mach > 1.0:
+            found.append(("standoff", self._standoff(primitive) / one.radius))
         wall = params.boundaries["wall"].temperature
         if wall is not None:
             law = fay_riddell(stream, one.radius, wall)
@@ -94,10 +115,31 @@ class Surface:
     def _at_stagnation(self, values: Array) -> float:
         """Value where the flow meets the sphere: of the parabola that fits best near it."""
         assert self.params.sphere is not None
-        away = self.places - np.array(self.params.sphere.centre)
-        angle = np.arctan2(np.hypot(away[:, 1], away[:, 2]), -away[:, 0])
-        near = np.argsort(angle)[: max(6, int((angle < NEAR_AXIS).sum()))]
-        return float(np.polynomial.polynomial.polyfit(angle[near] ** 2, values[near], 1)[0])
+        near = self._near(NEAR_AXIS)
+        return float(polyfit(self.angle[near] ** 2, values[near], 1)[0])
+
+    def _near(self, angle: float) -> NDArray[np.int64]:
+        """Nodes of the wall within an angle [rad] of the axis, six at least."""
+        return np.argsort(self.angle)[: max(6, int((self.angle < angle).sum()))]
+
+    def _standoff(self, primitive: Array) -> float:
+        """Distance [m] of the shock from the wall, where density is midway, on the axis.
+
+        Of the quartic in the angle that fits best on the rays near it.
+        """
+        assert self.stream is not None
+        count = len(self.rows)
+        density = primitive[: self.nodes, 0].reshape(-1, count)
+        behind, _ = normal_shock(self.stream.mach, self.stream.gamma)
+        middle = 0.5 * (1.0 + behind) * self.stream.density
+        near = self._near(SHOCK_RAYS)
+        inside = density[:, near] > middle
+        last = len(inside) - 2 - np.argmax(inside[-2::-1], axis=0)  # outermost that is compressed
+        low, high = density[last, near], density[last + 1, near]
+        share = np.clip((low - middle) / np.where(low > high, low - high, 1.0), 0.0, 1.0)
+        height = self.heights[last, near]
+        height = height + share * (self.heights[last + 1, near] - height)
+        return float(polyfit(self.angle[near] ** 2, height, 2)[0])
 
 
 def free_stream(params: MeshlessGasParams) -> Stream | None:
@@ -112,7 +154,7 @@ def free_stream(params: MeshlessGasParams) -> Stream | None:
     gas = params.gas
     density, *_, pressure = given.primitive(gas)
     return Stream(
-        mach=mach_number(given, params),
+        mach=given.mach(gas),
         pressure=pressure,
         temperature=pressure / (gas.gas_constant * density),
         gamma=gas.gamma,

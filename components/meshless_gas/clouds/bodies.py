@@ -5,7 +5,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from quintet.components.meshless_gas.boundaries import GasState
 from quintet.components.meshless_gas.clouds.cap import sphere_cap
 from quintet.components.meshless_gas.clouds.layers import LayeredCloud
 from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
@@ -29,16 +28,10 @@ def layered_cloud(
     assert far is not None
     make = sphere_cap if params.dimensions == 3 else sphere_meridian
     one = params.sphere
-    mach = mach_number(far, params)
+    mach = far.mach(params.gas)
     return make(
         np.array(one.centre), one.radius, mach, _reach(one), faces, patches, one.layers.cross
     )
-
-
-def mach_number(state: GasState, params: MeshlessGasParams) -> float:
-    """Mach number of a state of the gas."""
-    density, u, v, w, pressure = state.primitive(params.gas)
-    return math.hypot(u, v, w) / math.sqrt(params.gas.gamma * pressure / density)
 
 
 def _reach(sphere: Sphere) -> Reach:

@@ -57,6 +57,7 @@ def sphere_cap(
     number = np.where(kept, np.cumsum(kept) - 1, -1)
     share = _areas(points, triangles)[kept]
     near, is_edge = _adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
+    inside = number[triangles[kept[triangles].all(axis=1)]]
     points, angle = points[kept], angle[kept]
     outer = outer_radius(angle, radius, mach, reach)
     distance = geometric(reach.first, outer - radius, reach.layers)
@@ -68,6 +69,7 @@ def sphere_cap(
         kinds_of(faces, patches),
         points,
         share * (radius + distance) ** 2,
+        _towards(places[-1], inside),
         reach.weight,
     )
     none = np.zeros(0, np.int32)
@@ -131,6 +133,17 @@ def _areas(points: Array, faces: NDArray[np.int64]) -> Array:
     for k in range(3):
         np.add.at(areas, faces[:, k], flat / 3.0)
     return areas * (4.0 * math.pi / areas.sum())
+
+
+def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
+    """Areas (m, 3) m2 towards the sphere: a third of the triangles round each point."""
+    a, b, c = (places[triangles[:, k]] for k in range(3))
+    area = 0.5 * np.cross(b - a, c - a)
+    area *= -np.sign((area * a).sum(axis=1))[:, None]
+    found = np.zeros(places.shape)
+    for k in range(3):
+        np.add.at(found, triangles[:, k], area / 3.0)
+    return found
 
 
 def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:

@@ -39,6 +39,7 @@ class Bounds(NamedTuple):
     kinds: Kinds  # (p,) what nodes of each boundary are
     normals: Array  # (m, 3) 1, of the first layer, into the gas
     areas: Array  # (layers, m) m2, of each layer; of whole rings where the flow is axisymmetric
+    beyond: Array  # (m, 3) m2, of the last layer, into the gas
     weight: float  # of the least squares
 
 
@@ -183,15 +184,16 @@ def _faces(places: Array, surface: Surface, bounds: Bounds, volumes: Array) -> t
     layers, count = places.shape[:2]
     normals, areas = np.zeros((2, layers, count, 3))
     normals[0] = bounds.normals
-    above = places[-2] - places[-1]
-    normals[-1] = above / np.sqrt((above**2).sum(axis=1))[:, None]
+    normals[-1] = bounds.beyond / np.sqrt((bounds.beyond**2).sum(axis=1))[:, None]
     areas[0] = bounds.normals * bounds.areas[0][:, None]
-    areas[-1] = normals[-1] * bounds.areas[-1][:, None]
+    areas[-1] = bounds.beyond
     edge = np.flatnonzero(surface.is_edge)
     beside = places[:, surface.inward[edge]] - places[:, edge]
+    ray = places[-1, edge] - places[0, edge]
+    ray /= np.sqrt((ray**2).sum(axis=1))[:, None]
+    beside -= (beside * ray).sum(axis=2)[:, :, None] * ray  # faces lie along rays
     gap = np.sqrt((beside**2).sum(axis=2))[:, :, None]
     beside /= gap
     normals[1:, edge] = beside[1:]
-    half = volumes.reshape(layers, count)[:, edge, None] / (0.5 * gap)
-    areas[:, edge] += beside * half
+    areas[:, edge] += beside * volumes.reshape(layers, count)[:, edge, None] / (0.5 * gap)
     return normals.reshape(-1, 3), areas.reshape(-1, 3)

@@ -82,9 +82,19 @@ def sphere_meridian(
         kinds_of(faces, patches),
         outward,
         ring * (radius + distance) ** 2,
+        _frusta(np.append(angle - 0.5 * step, bound[-1]), radius, mach, reach),
         reach.weight,
     )
     return layered(places, surface, bounds, is_cross)
+
+
+def _frusta(angle: Array, radius: float, mach: float, reach: Reach) -> Array:
+    """Areas (m, 3) m2 into the gas of the last layer between m + 1 angles, as whole rings."""
+    outer = outer_radius(angle, radius, mach, reach)
+    x, z = -outer * np.cos(angle), outer * np.sin(angle)
+    along = math.pi * (z[1:] ** 2 - z[:-1] ** 2)
+    across = -math.pi * (z[1:] + z[:-1]) * (x[1:] - x[:-1])
+    return np.stack([along, np.zeros(len(along)), across], axis=1)
 
 
 def last_patch(angle: Array, outer: Array, reach: Reach, patches: Mapping[str, int]) -> Whole:

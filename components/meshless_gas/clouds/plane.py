@@ -90,7 +90,8 @@ def wall_line(
     if len(surface.ghost_source):  # the half cells at the ends meet beyond the period
         share[[0, -1]] += 0.5 * (math.sqrt((surface.ghost_shift[0] ** 2).sum()) - length.sum())
     areas = np.repeat(share[None], len(distance), axis=0)
-    bounds = Bounds(*numbers, kinds, np.tile(up, (len(foot), 1)), areas, weight)
+    normals = np.tile(up, (len(foot), 1))
+    bounds = Bounds(*numbers, kinds, normals, areas, -up * areas[-1][:, None], weight)
     return layered(places, surface, bounds, is_cross)
 
 

@@ -1,0 +1,1 @@
+"""A sphere in a supersonic stream."""

@@ -1,0 +1,1 @@
+"""Friction heats the gas between two walls."""

@@ -1,0 +1,1 @@
+"""A laminar boundary layer on a flat plate."""

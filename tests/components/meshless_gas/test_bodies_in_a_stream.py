@@ -1,0 +1,107 @@
+"""A sphere in a stream: forces on it, a flow that settles, states that come back."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.params import Steady
+from quintet.components.meshless_gas.steady import Settling
+from quintet.components.meshless_gas.surface import sums
+from quintet.interfaces.component import fields_of
+from quintet.interfaces.errors import StepError
+from quintet.interfaces.params import read
+
+STREAM = {"density": 1.0, "pressure": 1.0 / 1.4, "velocity": [3.0, 0.0, 0.0]}
+
+
+def sphere(**keys: object) -> MeshlessGas:
+    """A coarse gas round a sphere at M = 3."""
+    given = {
+        "axisymmetric": True,
+        "gas": {"gas_constant": 1.0 / 1.4},
+        "initial": STREAM,
+        "sphere": {"radius": 1.0, "rays": 8, "layers": {"count": 8}},
+        "boundaries": {
+            "wall": {"kind": "slip"},
+            "far": {"kind": "inflow", "state": STREAM},
+            "exit": {"kind": "outflow"},
+        },
+    }
+    params, mistakes = read(MeshlessGas.Params, given | keys, "gas")
+    assert not mistakes
+    return MeshlessGas(params)
+
+
+def test_a_uniform_pressure_pushes_a_closed_surface_nowhere() -> None:
+    angle = (np.arange(400) + 0.5) * math.pi / 400
+    normal = np.stack([-np.cos(angle), 0.0 * angle, np.sin(angle)], axis=1)
+    sizes = 2.0 * math.pi * np.sin(angle) * math.pi / 400
+    still = np.zeros((400, 3))
+    whole = sums(np.full(400, 5.0), still, normal * sizes[:, None], sizes, True)
+    assert whole == pytest.approx(np.zeros(3), abs=1e-10)
+    half = sums(
+        np.where(angle < 0.5 * math.pi, 5.0, 0.0), still, normal * sizes[:, None], sizes, True
+    )
+    assert half[0] == pytest.approx(5.0 * math.pi, rel=1e-4)  # pressure times the cross-section
+
+
+def test_a_sphere_is_pushed_downstream_and_the_step_is_told() -> None:
+    gas = sphere()
+    for _ in range(60):
+        gas.step(gas.stable_dt())
+    found = gas.give(frozenset(fields_of(gas.gives)))
+    assert 0.7 < found["body.drag_coefficient"][0] < 1.1  # a forebody at M = 3: 0.9
+    assert found["body.force"][0, 0] > 0.0
+    with pytest.raises(StepError):
+        for _ in range(60):
+            gas.step(6.0 * gas.stable_dt())
+
+
+def test_a_settled_flow_stands_still_and_says_so() -> None:
+    gas = sphere(steady={"steps": 5, "change": 1.0, "force": 1.0})
+    while math.isfinite(gas.stable_dt()):
+        gas.step(gas.stable_dt())
+    kept = gas.save()
+    gas.step(1.0)
+    assert (gas.save()["conservative"] == kept["conservative"]).all()
+    assert gas.give(frozenset({"body.settled"}))["body.settled"] == 1.0
+    again = sphere(steady={"steps": 5, "change": 1.0, "force": 1.0})
+    again.load(kept)
+    assert math.isinf(again.stable_dt())
+
+
+def test_a_flow_settles_only_when_densities_and_forces_do() -> None:
+    one = Settling(Steady(steps=1, change=1e-3, force=1e-2))
+    push = np.array([1.0, 0.0, 0.0])
+    one.look(1e-4, push, 1.0, 0.1)  # the force was 0 before
+    assert not one.is_settled
+    one.look(1e-2, push, 1.0, 0.2)
+    assert not one.is_settled
+    one.look(1e-4, 1.001 * push, 1.0, 0.3)
+    assert one.is_settled
+
+
+@pytest.mark.parametrize(
+    ("keys", "sentence"),
+    [
+        ({"box": {"lowest": [0, 0, 0], "highest": [1, 1, 1], "spacing": 0.1}}, "one of them"),
+        ({"axisymmetric": False}, "must be axisymmetric"),
+        ({"boundaries": {"wall": {"kind": "slip"}}}, "boundaries.far must be given"),
+        (
+            {"boundaries": {"wall": {"kind": "isothermal", "temperature": 1.0}}},
+            "Say viscous = true",
+        ),
+    ],
+)
+def test_what_does_not_fit_round_a_sphere_is_refused(
+    keys: dict[str, object], sentence: str
+) -> None:
+    given = {
+        "axisymmetric": True,
+        "initial": STREAM,
+        "sphere": {"radius": 1.0, "rays": 8, "layers": {"count": 8}},
+    }
+    _, mistakes = read(MeshlessGas.Params, given | keys, "gas")
+    assert any(sentence in one for one in mistakes), mistakes
