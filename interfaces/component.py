@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,11 +140,15 @@ class Component(ABC):
     takes: tuple[Port, ...] = ()
     gives: tuple[Port, ...] = ()
     shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
+    manifest: ClassVar[Any] = None  # of a kind that publishes one; classes derived from it have it
 
     @classmethod
     def ports_of(cls, params: Any) -> tuple[tuple[Port, ...], tuple[Port, ...]]:
         """Ports that it takes and gives with these parameters, known before it is made."""
-        return cls.takes, cls.gives
+        if cls.manifest is None:
+            return cls.takes, cls.gives
+        takes, gives = cls.manifest.ports(params)
+        return takes, gives
 
     def describe(self) -> Fields:
         """Static fields of the ports it gives, and what it states at those it takes."""

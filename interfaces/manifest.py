@@ -169,7 +169,9 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
             "none. Write `@parameters class Params` inside it."
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
-    plan, initial = (getattr(cls, name, None) for name in ("plan_of", "initial_of"))
+    of_kind: Manifest | None = cls.manifest  # of the one that it derives from
+    plan = getattr(cls, "plan_of", of_kind.plan if of_kind else None)
+    initial = getattr(cls, "initial_of", of_kind.initial if of_kind else None)
     made = Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
     return replace(made, patience=getattr(cls, "patience", PATIENCE))
 

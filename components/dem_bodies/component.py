@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.components.dem_bodies import build, diagnostics, kernels
+from quintet.components.dem_bodies import MANIFEST, build, diagnostics, kernels
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.contact import search
 from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, no_ball_pairs
@@ -17,10 +17,9 @@ from quintet.components.dem_bodies.integration.step_limit import (
     many_contacts_step,
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.plan import plan
-from quintet.components.dem_bodies.ports import SHOWS, ports
+from quintet.components.dem_bodies.ports import SHOWS
 from quintet.components.dem_bodies.shapes.view import planes_view, view
-from quintet.components.dem_bodies.start import described, initial
+from quintet.components.dem_bodies.start import described
 from quintet.components.dem_bodies.state import BallPairs
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -33,7 +32,6 @@ from quintet.interfaces.component import (
     Totals,
 )
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.manifest import Plan, Ports
 
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 TURN = 0.05  # rad in a step of a free body that is no sphere: its energy is then kept to 1e-4
@@ -69,21 +67,7 @@ class DemBodies(Component):
 
     Params: type[DemBodiesParams] = DemBodiesParams
 
-    @classmethod
-    def ports_of(cls, params: DemBodiesParams) -> Ports:
-        """Motion of the bodies, their loads and contacts."""
-        return ports(params)
-
-    @classmethod
-    def plan_of(cls, params: DemBodiesParams) -> Plan:
-        """What a run will need."""
-        return plan(params)
-
-    @classmethod
-    def initial_of(cls, params: DemBodiesParams) -> Fields:
-        """What it states before it is built."""
-        return initial(params)
-
+    manifest = MANIFEST
     shows = SHOWS
 
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quintet.components.fe_plate import MANIFEST
 from quintet.components.fe_plate.build import initial_state, structure
 from quintet.components.fe_plate.gauges import (
     at_nodes,
@@ -27,8 +28,7 @@ from quintet.components.fe_plate.kernels.nodes import (
 )
 from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.plan import plan
-from quintet.components.fe_plate.ports import SHOWS, ports
+from quintet.components.fe_plate.ports import SHOWS
 from quintet.components.fe_plate.state import Array, Resistance, Whole
 from quintet.components.fe_plate.supports import supports
 from quintet.components.fe_plate.view import view
@@ -42,7 +42,6 @@ from quintet.interfaces.component import (
     Totals,
 )
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.manifest import Plan, Ports
 
 FEWEST = 128  # blocks that are worth handing to another thread
 SHARES = 4  # of each thread: where they meet, forces are summed once more
@@ -76,16 +75,7 @@ class FePlate(Component):
 
     Params: type[FePlateParams] = FePlateParams
 
-    @classmethod
-    def ports_of(cls, params: FePlateParams) -> Ports:
-        """Nodes and faces that are coupled."""
-        return ports(params)
-
-    @classmethod
-    def plan_of(cls, params: FePlateParams) -> Plan:
-        """What a run will need."""
-        return plan(params)
-
+    manifest = MANIFEST
     shows = SHOWS
 
     def __init__(self, params: FePlateParams, resources: Resources = ONE_THREAD) -> None:

@@ -226,7 +226,7 @@ class FePlateParams:
         Reduced: one quadrature point an element, with stabilisation; full: eight, with strains
         assumed so that bending is exact: seven times the work.
     courant : 1
-        Share of the greatest step that is proven stable.
+        Share of the greatest step that is proven stable; that of a mesh may be twice as great.
     hourglass : 1
         Stiffness of the stabilisation of one point, as a share of the element's own.
     viscosity_linear, viscosity_quadratic : 1

@@ -1,9 +1,9 @@
 """Particle dynamics: a lattice that heats itself, or spheres that fly."""
 
+from quintet.components.particle_dynamics import MANIFEST
 from quintet.components.particle_dynamics.lattice_dynamics import LatticeDynamics
 from quintet.components.particle_dynamics.params import ParticleDynamicsParams
-from quintet.components.particle_dynamics.plan import plan
-from quintet.components.particle_dynamics.ports import SHOWS, ports
+from quintet.components.particle_dynamics.ports import SHOWS
 from quintet.components.particle_dynamics.spheres.dynamics import SphereDynamics
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -13,7 +13,6 @@ from quintet.interfaces.component import (
     Resources,
     Totals,
 )
-from quintet.interfaces.manifest import Plan, Ports
 
 
 class ParticleDynamics(Component):
@@ -27,16 +26,7 @@ class ParticleDynamics(Component):
 
     Params: type[ParticleDynamicsParams] = ParticleDynamicsParams
 
-    @classmethod
-    def ports_of(cls, params: ParticleDynamicsParams) -> Ports:
-        """Of a lattice points, energies, baths, a wall of heat; of spheres motion and loads."""
-        return ports(params)
-
-    @classmethod
-    def plan_of(cls, params: ParticleDynamicsParams) -> Plan:
-        """What a run will need."""
-        return plan(params)
-
+    manifest = MANIFEST
     shows = SHOWS
 
     def __init__(self, params: ParticleDynamicsParams, resources: Resources = ONE_THREAD) -> None:

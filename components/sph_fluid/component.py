@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid import build, diagnostics, features
+from quintet.components.sph_fluid import MANIFEST, build, diagnostics, features
 from quintet.components.sph_fluid.boundary.planar import in_plane, require_one_metre
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.integration.method import Moved, StepTask
@@ -15,10 +15,9 @@ from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import SHOWS, ports
+from quintet.components.sph_fluid.ports import SHOWS
 from quintet.components.sph_fluid.setup.geometry import wall_faces
 from quintet.components.sph_fluid.setup.mass import mass_notes
-from quintet.components.sph_fluid.setup.particle_count import plan
 from quintet.components.sph_fluid.setup.start import stated
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import (
@@ -32,7 +31,6 @@ from quintet.interfaces.component import (
 )
 from quintet.interfaces.errors import OrderError, StepError
 from quintet.interfaces.faces import polygons
-from quintet.interfaces.manifest import Plan, Ports
 
 LOADS = frozenset({"surface_load.force"})
 
@@ -46,21 +44,7 @@ class SphFluid(Component):
 
     Params: type[SphFluidParams] = SphFluidParams
 
-    @classmethod
-    def ports_of(cls, params: SphFluidParams) -> Ports:
-        """Surfaces, loads and the gauges that are switched on."""
-        return ports(params)
-
-    @classmethod
-    def plan_of(cls, params: SphFluidParams) -> Plan:
-        """What a run will need."""
-        return plan(params)
-
-    @classmethod
-    def initial_of(cls, params: SphFluidParams) -> Fields:
-        """What it states before it is built."""
-        return stated(params)
-
+    manifest = MANIFEST
     shows = SHOWS
 
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:

@@ -9,7 +9,9 @@ from the energy on the isentrope, Monaghan's artificial viscosity; where the gre
 stress passes its limit a particle has failed for good: it bears neither shear nor tension.
 
 Stretched material of particles forms clumps; if asked for an artificial stress, a share of the
-tensions along principal axes, holds the nearest apart (Monaghan; Gray, Monaghan and Swift).
+tensions along principal axes, holds the nearest apart (Monaghan; Gray, Monaghan and Swift), or
+pairs are those of the start, stresses nominal, and a force holds what no gradient sees
+(Ganzenmüller).
 
 Velocity Verlet; strains follow from places and velocities in the middle of the step, works from the
 forces at its two ends, so that energy is kept at second order in the step and momentum to rounding.
@@ -18,7 +20,8 @@ Bodies touch as their particles come near. Planes of symmetry mirror what is nea
 
 Papers: Libersky, Petschek, Carney, Hipp & Allahdadi, J. Comput. Phys. 109 (1993) 67; Monaghan, Rep.
 Prog. Phys. 68 (2005) 1703; Bonet & Lok, Comput. Methods Appl. Mech. Eng. 180 (1999) 97; Gray,
-Monaghan & Swift, Comput. Methods Appl. Mech. Eng. 190 (2001) 6641 (artificial stress); Dyanov,
+Monaghan & Swift, Comput. Methods Appl. Mech. Eng. 190 (2001) 6641 (artificial stress);
+Ganzenmüller, Comput. Methods Appl. Mech. Eng. 286 (2015) 87 (total Lagrangian); Dyanov,
 Kazantsev & Chelakov (LOGOS), whose impacts of balls on plates it repeats.
 """
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from quintet.components.shared.threads import Team
+from quintet.components.sph_solid import MANIFEST
 from quintet.components.sph_solid.build import initial_state, materials, nearest, pair_law
 from quintet.components.sph_solid.diagnostics import bodies, failure, gauges, levels, totals, view
 from quintet.components.sph_solid.kernels.material import (
@@ -22,8 +23,7 @@ from quintet.components.sph_solid.kernels.pairs import Forces
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.pair_sums import pair_sums
 from quintet.components.sph_solid.params import SphSolidParams
-from quintet.components.sph_solid.plan import plan
-from quintet.components.sph_solid.ports import SHOWS, ports
+from quintet.components.sph_solid.ports import SHOWS
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -35,7 +35,6 @@ from quintet.interfaces.component import (
     fields_of,
 )
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.manifest import Plan, Ports
 
 FEWEST = 500  # particles that are worth handing to another thread
 LOAD = "glued_load.force"
@@ -49,17 +48,8 @@ class SphSolid(Component):
     """
 
     Params: type[SphSolidParams] = SphSolidParams
+    manifest = MANIFEST
     shows = SHOWS
-
-    @classmethod
-    def plan_of(cls, params: SphSolidParams) -> Plan:
-        """What a run will need."""
-        return plan(params)
-
-    @classmethod
-    def ports_of(cls, params: SphSolidParams) -> Ports:
-        """Glue if particles are glued; bodies; gauges if there are any."""
-        return ports(params)
 
     def __init__(self, params: SphSolidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
@@ -69,7 +59,7 @@ class SphSolid(Component):
         self.state = initial_state(params, self.laws, numbers)
         self.gauged = nearest(self.state.position, params)
         self.lists = SolidLists(params, self.team)
-        self.sums = pair_sums(params.axisymmetric, params.length, self.team)
+        self.sums = pair_sums(params, self.team)
         self.is_carried = False  # whether a mesh bears the glued particles
         self._begin()
 

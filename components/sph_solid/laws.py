@@ -78,8 +78,8 @@ def nearness(r2, law):  # type: ignore[no-untyped-def]
 
     References
     ----------
-    Monaghan, J. Comput. Phys. 159 (2000) 290, section 2; Gray, Monaghan & Swift, Comput. Methods
-    Appl. Mech. Eng. 190 (2001) 6641, eq. (31).
+    Monaghan, J. Comput. Phys. 159 (2000) 290; Gray, Monaghan & Swift, Comput. Methods Appl. Mech.
+    Eng. 190 (2001) 6641.
     """
     f = kernel(r2, law.smoothing) * law.per_spacing
     return f * f * f * f

@@ -37,9 +37,10 @@ class SolidLists:
     def __init__(self, params: SphSolidParams, team: Team) -> None:
         self.support = SUPPORT * params.length
         self.team = team
-        self.corrected = params.kernel_correction
+        self.are_for_good = params.total_lagrangian
+        self.corrected = params.kernel_correction or params.total_lagrangian
         # Of rows of stress: a tensor of six or nine numbers, two densities, an artificial tensor.
-        self.width = 16 if params.artificial_stress > 0.0 else 12 if self.corrected else 8
+        self.width = 16 if params.artificial_stress > 0.0 else 12 if params.kernel_correction else 8
         planes = [
             Plane(one.axis + ("-" if one.side == "+" else "+"), "xyz".index(one.axis),
                   one.position, 1.0 if one.side == "+" else -1.0)
@@ -70,7 +71,7 @@ class SolidLists:
 
     def are_outworn(self, state: State, spread: float) -> bool:
         """Whether pairs may act that the lists lack, by how far two have come apart or near [m]."""
-        return not spread <= state.reach - self.support
+        return not (self.are_for_good or spread <= state.reach - self.support)
 
     def still_hold(self, state: State, middle: Array, dt: float) -> bool:
         """Whether lists hold though particles have gone far: a few, which meet no others.

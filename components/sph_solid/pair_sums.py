@@ -6,7 +6,10 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.kernels.pairs import Forces, accelerations, velocity_gradients
 from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.neighbours import SolidLists
+from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Rows, State
+
+PENALTY = 1.0  # α of Ganzenmüller's force against motion that no deformation sees
 
 
 class PairSums(Protocol):
@@ -48,11 +51,16 @@ class ParticleSums:
         return min(slowest for slowest, _ in found)
 
 
-def pair_sums(is_axisymmetric: bool, length: float, team: Team) -> PairSums:
-    """Sums over particles, or over rings."""
-    if is_axisymmetric:
+def pair_sums(params: SphSolidParams, team: Team) -> PairSums:
+    """Sums over particles, over rings, or over the neighbours of the start."""
+    if params.axisymmetric:
         # Rings are left out of scenes that have none.
         from quintet.components.sph_solid.rings import Rings
 
-        return Rings(length, team)
+        return Rings(params.length, team)
+    if params.total_lagrangian:
+        # So are sums over the neighbours of the start.
+        from quintet.components.sph_solid.reference_sums import ReferenceSums
+
+        return ReferenceSums(PENALTY, team)
     return ParticleSums(team)

@@ -200,6 +200,10 @@ class SphSolidParams:
     artificial_stress : 1
         ε of the pressure, as a share of tension, by which near particles repel each other where
         the material is stretched, so that they form no clumps; 0.3 is usual, 0 has none.
+    total_lagrangian
+        Whether pairs are those of the start for good, and gradients those with respect to places
+        there (Ganzenmüller): what is stretched forms no clumps, but bodies do not touch as they
+        come near, and fragments hold together by what they bear in compression.
     """
 
     spacing: Positive
@@ -217,6 +221,7 @@ class SphSolidParams:
     viscosity_quadratic: NotNegative = 2.0
     kernel_correction: bool = False
     artificial_stress: NotNegative = 0.0
+    total_lagrangian: bool = False
 
     def __post_init__(self) -> None:
         axes = [one.axis for one in self.symmetry]
@@ -249,6 +254,12 @@ class SphSolidParams:
                 ),
                 "bodies: in two dimensions they must be boxes or cylinders along y; axisymmetric "
                 "ones boxes or spheres.",
+            ),
+            (
+                self.total_lagrangian
+                and (self.kernel_correction or self.axisymmetric or self.artificial_stress > 0.0),
+                "total_lagrangian has corrected gradients and needs no artificial stress, and is "
+                "not of rings: leave out kernel_correction, artificial_stress and axisymmetric.",
             ),
             (
                 self.artificial_stress > 0.0 and (self.kernel_correction or self.axisymmetric),

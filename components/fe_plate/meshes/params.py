@@ -214,8 +214,13 @@ class Part:
 
     def require_planar(self, where: str) -> None:
         """Refuse a part that is no slab of one element, 1 m deep along y."""
-        deep = self.highest[1] - self.lowest[1] if self.highest and self.lowest else 0.0
-        along = self.elements[1] if self.elements else 0
+        if self.lowest is None or self.highest is None or self.elements is None:
+            kind = "mesh of 8-node solids" if self.cylinder is None else "cylinder"
+            raise ValueError(
+                f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
+                f"found a {kind}, which has three. Make it a box, or set dimensions = 3."
+            )
+        deep, along = self.highest[1] - self.lowest[1], self.elements[1]
         if abs(deep - 1.0) > 1e-9 or along != 1:
             raise ValueError(
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "

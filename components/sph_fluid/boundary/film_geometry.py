@@ -7,6 +7,7 @@ from numba import njit
 
 from quintet.components.shared.numba_options import FAST
 from quintet.components.shared.smoothing.smoothing import kernel
+from quintet.components.sph_fluid.boundary.film_search import Near, near
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.laws import Constants
 from quintet.components.sph_fluid.state import Array, State, Whole
@@ -17,6 +18,7 @@ ASIDE = 0.75  # spacings, how far beside each other two facing particles may be
 BESIDE = 1.2  # spacings, between neighbours in a film: those on its square lattice
 MOST = 8  # of them
 NEARLY = 1e-3  # of a vector's square: less makes no difference between directions
+BEYOND = 1.0 + 1e-9  # times a reach: what is listed for it, rounding included
 RIM = 0.2  # spacings, from a particle of the film to the mean of its neighbours, beyond which
 # it stands at the rim
 
@@ -51,23 +53,30 @@ def find_films(state: State, samples: Samples, spacing: float, constants: Consta
     first = rows[outermost[rows]]
     low, high = position[first].min(axis=0), position[first].max(axis=0)
     margin = 4.0 * spacing
-    near = ((position > low - margin) & (position < high + margin)).all(axis=1)
-    second = np.flatnonzero(outermost & near)
+    around = ((position > low - margin) & (position < high + margin)).all(axis=1)
+    second = np.flatnonzero(outermost & around)
     owner = np.where(state.sample >= 0, samples.body[np.maximum(state.sample, 0)], -1.0)
     partner = np.full(len(first), -1)
+    furthest = BEYOND * spacing * float(np.hypot(WIDEST + OUTERMOST, ASIDE))
     find_partners(
         position[first], normal[first], owner[first],
-        position[second], normal[second], owner[second], spacing, partner,
+        position[second], normal[second], owner[second],
+        near(position[first], position[second], furthest), spacing, partner,
     )  # fmt: skip
     mine, theirs = first[partner >= 0], second[partner[partner >= 0]]
     across = face_normals(normal[mine], normal[theirs])
     below = np.einsum("nd,nd->n", normal[mine], across)
     foot = position[mine] + 0.5 * below[:, None] * across
     own = np.zeros(len(mine))
-    add_own_volume(foot, owner[mine], position[rows], owner[rows], samples.volume, constants, own)
+    felt = near(foot, position[rows], BEYOND * constants.smoothing.support)
+    add_own_volume(
+        foot, owner[mine], position[rows], owner[rows], samples.volume, felt, constants, own
+    )
     count = np.zeros(len(mine), np.int64)
     table = np.zeros((len(mine), MOST), np.int64)
-    list_film(position[mine], across, owner[mine], owner[theirs], BESIDE * spacing, count, table)
+    reach = BESIDE * spacing
+    beside = near(position[mine], position[mine], BEYOND * reach)
+    list_film(position[mine], across, owner[mine], owner[theirs], beside, reach, count, table)
     begin = np.concatenate([[0], np.cumsum(count)])
     pairs = np.stack([owner[mine], owner[theirs]], axis=1)
     _, which, members = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
@@ -129,17 +138,17 @@ def face_normals(off: Array, back: Array) -> Array:
 @njit(**FAST)
 def find_partners(
     position: Array, normal: Array, owner: Array, other_position: Array, other_normal: Array,
-    other_owner: Array, spacing: float, partner: Whole,
+    other_owner: Array, close: Near, spacing: float, partner: Whole,
 ) -> None:  # fmt: skip
     """Write the particle that each faces across a narrow gap; -1: none.
 
-    Points lie half of `normal` below their faces.
+    Points lie half of `normal` below their faces; `close` lists those that may be meant.
     """
     furthest2 = (WIDEST + OUTERMOST) ** 2 * spacing**2 + (ASIDE * spacing) ** 2
     for i in range(position.shape[0]):
         best = (ASIDE * spacing) ** 2
         ax, ay, az = normal[i, 0], normal[i, 1], normal[i, 2]
-        for k in range(other_position.shape[0]):
+        for k in close.point[close.begin[i] : close.begin[i + 1]]:
             dx = position[i, 0] - other_position[k, 0]
             dy = position[i, 1] - other_position[k, 1]
             dz = position[i, 2] - other_position[k, 2]
@@ -158,12 +167,12 @@ def find_partners(
 
 @njit(**FAST)
 def add_own_volume(
-    foot: Array, owner: Array, position: Array, owners: Array, volume: Array,
+    foot: Array, owner: Array, position: Array, owners: Array, volume: Array, felt: Near,
     constants: Constants, own: Array,
 ) -> None:  # fmt: skip
     """Add Σ V W of the samples of the same body around points (m, 3) m."""
     for i in range(foot.shape[0]):
-        for k in range(position.shape[0]):
+        for k in felt.point[felt.begin[i] : felt.begin[i + 1]]:
             if owners[k] == owner[i]:
                 r2 = 0.0
                 for d in range(3):
@@ -173,12 +182,12 @@ def add_own_volume(
 
 @njit(**FAST)
 def list_film(
-    position: Array, across: Array, owner: Array, other: Array, reach: float, count: Whole,
-    table: Whole,
+    position: Array, across: Array, owner: Array, other: Array, beside: Near, reach: float,
+    count: Whole, table: Whole,
 ) -> None:  # fmt: skip
     """Write the neighbours of each particle in its film, the gap between the same two faces."""
     for i in range(position.shape[0]):
-        for j in range(position.shape[0]):
+        for j in beside.point[beside.begin[i] : beside.begin[i + 1]]:
             if i == j or owner[i] != owner[j] or other[i] != other[j]:
                 continue
             r2, along = 0.0, 0.0

@@ -82,21 +82,32 @@ def _rows(box: Box, params: SphFluidParams) -> tuple[Array, Array, Array, Array,
     plane = ~wet & _named(params.boundary.symmetry)
     gap = np.where(plane, 0.0, np.where(wet, params.boundary.wall_offset, 0.5)) * params.spacing
     low, high = np.array(box[0]) + gap[0], np.array(box[1]) - gap[1]
+    fewest = np.where(plane.any(axis=0), 0, 1)  # steps
+    if params.dimensions == 2:
+        low[1] = high[1] = 0.5 * (box[0][1] + box[1][1])
+        fewest[1] = 0
     half = 0.5 * plane  # (2, 3) of a step, from the plane to the first particle
-    steps = np.round((high - low) / params.spacing - half.sum(axis=0))
-    steps = np.maximum(np.where(plane.any(axis=0), 0, 1), steps)
-    step = (high - low) / (steps + half.sum(axis=0))
+    steps = np.maximum(fewest, np.round((high - low) / params.spacing - half.sum(axis=0)))
+    whole = steps + half.sum(axis=0)
+    step = np.divide(high - low, whole, out=np.zeros(3), where=whole > 0.0)
     return steps, low + half[0] * step, high - half[1] * step, step, wet
 
 
 def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
     if params.boundary.walls is None:
-        return np.ones((2, 3), bool)
+        return _in_space(np.ones((2, 3), bool), params)
     tolerance = ROUNDING * params.spacing
     lower = np.array(box[0]) > np.array(params.boundary.walls[0]) + tolerance
     upper = np.array(box[1]) < np.array(params.boundary.walls[1]) - tolerance
-    return np.stack([lower, upper]) | _named(params.boundary.open_faces)
+    return _in_space(np.stack([lower, upper]) | _named(params.boundary.open_faces), params)
+
+
+def _in_space(wet: NDArray[np.bool_], params: SphFluidParams) -> NDArray[np.bool_]:
+    """Wet faces (2, 3), of which those along y are dry in two dimensions."""
+    if params.dimensions == 2:
+        wet[:, 1] = False
+    return wet
 
 
 def _named(faces: Sequence[Face]) -> NDArray[np.bool_]:

@@ -92,7 +92,10 @@ def check_obstacles(params: "SphFluidParams") -> None:
     for number, box in enumerate(params.boundary.obstacles):
         name = f"boundary.obstacles[{number}]"
         _check_corners(name, box, params.spacing)
-        if (width := min(b - a for a, b in zip(*box, strict=True))) < least:
+        low, high = box
+        across = (0, 1, 2) if params.dimensions == 3 else (0, 2)
+        width = min(high[axis] - low[axis] for axis in across)
+        if width < least - ROUNDING * params.spacing:
             raise ValueError(
                 f"{name} must be at least {least:g} m across, twice the wall_offset; found "
                 f"{width:g} m. Refine the spacing, or lower wall_offset."
@@ -120,7 +123,7 @@ def check_sound(params: "SphFluidParams") -> None:
 def check_slab(params: "SphFluidParams") -> None:
     """In two dimensions all is one slab."""
     walls = params.boundary.walls
-    boxes = [*fluid_boxes(params), *([] if walls is None else [walls])]
+    boxes = [*fluid_boxes(params), *([] if walls is None else [walls]), *params.boundary.obstacles]
     sides = {(low[1], high[1]) for low, high in boxes}
     if params.dimensions == 2 and (len(sides) > 1 or params.gravity[1] != 0.0):
         raise ValueError(

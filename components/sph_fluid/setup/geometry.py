@@ -64,7 +64,8 @@ def wall_faces(params: "SphFluidParams") -> list[Array]:
     """Corners (4, 3) m of each closed face of the tank, and of each face of the obstacles."""
     edge = params.boundary
     found = box(*edge.walls, closed_faces(params)) if edge.walls else []
-    return found + [face for one in edge.obstacles for face in box(*one, FACES)]
+    sides = [face for face in FACES if params.dimensions == 3 or face[0] != "y"]
+    return found + [face for one in edge.obstacles for face in box(*one, sides)]
 
 
 def slab_thickness(params: "SphFluidParams") -> float:

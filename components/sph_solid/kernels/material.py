@@ -193,7 +193,7 @@ def write_artificial(first: int, last: int, share: float, stress: Array) -> None
 
     References
     ----------
-    Gray, Monaghan & Swift, Comput. Methods Appl. Mech. Eng. 190 (2001) 6641, eqs (25) to (30).
+    Gray, Monaghan & Swift, Comput. Methods Appl. Mech. Eng. 190 (2001) 6641.
     """
     for i in range(first, last):
         positive_part(stress[i, :6], stress[i, 8:14])

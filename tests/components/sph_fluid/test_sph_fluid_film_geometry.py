@@ -5,6 +5,7 @@ import pytest
 from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.boundary.film_geometry import face_normals
+from quintet.components.sph_fluid.boundary.film_search import near
 from quintet.components.sph_fluid.boundary.lubrication import write_fluid_share
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.coupler.coupling.body_samples import BOX, fill, mirrors
@@ -106,3 +107,13 @@ def test_the_pressure_in_a_narrow_gap_is_that_outside(width: float) -> None:
     inside = 1.0 - 0.5 * (left - right) / outside
     assert inside.mean() == pytest.approx(1.0, abs=0.2)
     assert inside.std() < 0.2
+
+
+@pytest.mark.parametrize("points", [0, 300])
+def test_lists_of_near_points_are_those_of_a_loop_over_all(points):
+    random = np.random.default_rng(7)
+    places, others = random.uniform(0.0, 0.3, (80, 3)), random.uniform(0.0, 0.2, (points, 3))
+    found = near(places, others, 0.1)
+    for place, first, last in zip(places, found.begin, found.begin[1:], strict=False):
+        listed = found.point[first:last].tolist()
+        assert listed == np.flatnonzero(((others - place) ** 2).sum(axis=1) < 0.01).tolist()

@@ -56,6 +56,19 @@ def test_closed_faces_of_the_tank_and_all_of_a_box_are_shown_as_walls():
     assert (box.min(axis=0), box.max(axis=0)) == (pytest.approx(BOX[0]), pytest.approx(BOX[1]))
 
 
+def test_in_two_dimensions_they_have_one_row_along_y():
+    tank, water = ((0.0, 0.0, 0.0), (1.5, 1.0, 0.8)), ((0.0, 0.0, 0.0), (0.5, 1.0, 0.4))
+    slab = {"dimensions": 2, "boundary.walls": tank, "fluid": (water,)}
+    thin = params(**slab, boundary__obstacles=(((0.9, 0.0, 0.0), (1.0, 1.0, 0.4)),))
+    points = obstacle_points(thin)
+    assert len(points) == 2 * 8
+    assert (points[:, 1] == 0.5).all()
+    assert MANIFEST.plan is not None
+    assert MANIFEST.plan(thin).items == len(state(thin).position_density)
+    with pytest.raises(ValueError, match="must reach over the same y"):
+        params(**slab)
+
+
 def test_what_water_cannot_feel_is_left_out():
     big = ((0.7, 0.1, 0.2), (1.4, 0.9, 0.9))
     points = obstacle_points(params(boundary__walls=None, boundary__obstacles=(big,)))

@@ -1,0 +1,128 @@
+"""Bodies whose pairs are those of the start: stretching, turning, waves, resuming."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quintet.components.shared.materials.params import Material
+from quintet.components.sph_solid.component import SphSolid
+from quintet.components.sph_solid.params import Body, SphSolidParams, SymmetryPlane
+
+DX = 1e-3  # m
+LONG, WIDE = 24, 6  # particles
+RUBBER = Material(density=1000.0, youngs_modulus=1e7, poissons_ratio=0.4)
+CALM = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0}
+
+
+def strip(**given):
+    """A strip in plane strain."""
+    body = Body(lowest=(0.0, 0.0, 0.0), highest=(LONG * DX, 1.0, WIDE * DX), material=RUBBER)
+    given = CALM | {"total_lagrangian": True} | given
+    return SphSolid(SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), **given))
+
+
+def run(made, time):
+    while made.state.time < time:
+        made.step(min(made.stable_dt(), time - made.state.time + 1e-15))
+    return made
+
+
+def stretch(made, speed):
+    """Pull both ends apart, at a speed [m/s], and let go."""
+    x = made.state.position[:, 0]
+    made.state.velocity[:, 0] = speed * math.pi * np.sin(math.pi * (x / (LONG * DX) - 0.5)) / 2.0
+    return made
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_gradients_of_linear_motion_are_exact_in_deformed_bodies(dimensions):
+    edge = 5 * DX
+    body = Body(lowest=(0.0, 0.0, 0.0), highest=(edge, edge, edge), material=RUBBER)
+    params = SphSolidParams(
+        spacing=DX, dimensions=dimensions, bodies=(body,), total_lagrangian=True
+    )
+    made, random = SphSolid(params), np.random.default_rng(3)
+    deformed = np.eye(3) + 0.3 * random.uniform(-1.0, 1.0, (3, 3))
+    rate = random.uniform(-1.0, 1.0, (3, 3))
+    if dimensions == 2:
+        deformed[1], deformed[:, 1], rate[1], rate[:, 1] = (0, 1, 0), (0, 1, 0), 0.0, 0.0
+    count = made.state.particles
+    made.rows.place[:count, :3] = made.state.position @ deformed.T
+    made.rows.motion[:count, :3] = made.rows.place[:count, :3] @ rate.T
+    made._write_gradients()
+    assert made.rows.gradient == pytest.approx(np.tile(rate.ravel(), (count, 1)), abs=1e-12)
+
+
+def length(made):
+    """Stretch of the whole strip."""
+    return np.ptp(made.state.position[:, 0]) / ((LONG - 1) * DX) - 1.0
+
+
+def test_a_strip_that_is_stretched_comes_back_unless_its_particles_form_clumps():
+    slow = {"courant": 0.25, "viscosity_linear": 0.2, "viscosity_quadratic": 0.4}
+    plain = stretch(strip(total_lagrangian=False, **slow), 15.0)
+    repelled = stretch(strip(total_lagrangian=False, artificial_stress=0.3, **slow), 15.0)
+    lasting = stretch(strip(**slow), 15.0)
+    for made in (plain, repelled, lasting):
+        assert length(run(made, 1e-4)) > 0.12
+    assert length(run(plain, 4e-4)) > 0.06
+    assert length(run(repelled, 4e-4)) < -0.05
+    assert length(run(lasting, 3.5e-4)) < -0.05
+
+
+def test_energy_and_momentum_of_a_strip_that_is_stretched_by_a_third_are_kept():
+    made = stretch(strip(courant=0.25), 30.0)
+    before, longest = made.totals(), 0.0
+    for n in range(1, 9):
+        longest = max(longest, length(run(made, n * 1e-4)))
+    after = made.totals()
+    assert longest > 0.28
+    whole = before.kinetic + before.internal
+    assert after.kinetic + after.internal == pytest.approx(whole, rel=2e-3)
+    moving = np.abs(made.state.velocity).max() * after.mass
+    assert np.abs(after.momentum).max() < 1e-12 * moving
+
+
+def test_a_rotation_strains_nothing():
+    made = strip()
+    x = made.state.position - made.state.position.mean(axis=0)
+    rate = 200.0  # 1/s, 2.4 m/s at the ends: waves run 146 m/s
+    made.state.velocity[:, 0], made.state.velocity[:, 2] = -rate * x[:, 2], rate * x[:, 0]
+    before = made.totals().kinetic
+    run(made, 0.5 / rate)
+    after = made.totals()
+    assert after.kinetic == pytest.approx(before, rel=2e-3)
+    assert abs(after.internal) < 1e-3 * before
+    now = made.state.position[np.argsort(made.state.identity)]
+    along = now[-1] - now[0] - (x[-1] - x[0])
+    assert np.linalg.norm(along) == pytest.approx(
+        2.0 * math.sin(0.25) * np.linalg.norm(x[-1] - x[0]), rel=0.02
+    )
+
+
+def test_half_a_strip_before_its_plane_moves_as_the_whole():
+    whole = run(stretch(strip(), 3.0), 5e-5)
+    plane = SymmetryPlane(axis="x", position=0.5 * LONG * DX)
+    half = run(stretch(strip(symmetry=(plane,)), 3.0), 5e-5)
+    mine = whole.state.position[np.argsort(whole.state.identity)]
+    mine = mine[mine[:, 0] > 0.5 * LONG * DX]
+    other = half.state.position[np.argsort(half.state.identity)]
+    order = [np.lexsort((one[:, 2].round(9), one[:, 0].round(9))) for one in (mine, other)]
+    assert mine[order[0]] == pytest.approx(other[order[1]], abs=1e-9)
+
+
+def test_a_resumed_run_has_the_same_bits():
+    made = run(stretch(strip(), 20.0), 3e-5)
+    kept = made.save()
+    ahead = run(made, 6e-5).save()
+    again = strip()
+    again.load(kept)
+    found = run(again, 6e-5).save()
+    assert all(np.array_equal(ahead[key], found[key]) for key in ahead)
+
+
+def test_what_does_not_go_with_it_is_refused():
+    for other in ({"kernel_correction": True}, {"artificial_stress": 0.3}):
+        with pytest.raises(ValueError, match="total_lagrangian has corrected gradients"):
+            strip(**other)
