@@ -111,8 +111,8 @@ class Front:
         Of the line.
     field
         What the front is a jump of.
-    level : kg/m3 or Pa
-        Of the field: the front is where it is first passed, from the line's begin on.
+    level : of the field
+        The front is where it is first passed, from the line's begin on.
     """
 
     begin: Vector
@@ -257,7 +257,8 @@ class MeshlessGasParams:
         found += [
             f"boundaries.{name} of a cloud in layers cannot be {one.kind}. Take a wall or a flow."
             for name, one in self.boundaries.items()
-            if one.kind == "periodic" or (one.kind == "symmetry" and name != "wall")
+            if one.kind == "periodic"
+            or (one.kind == "symmetry" and (name != "wall" or self.sphere is None))
         ]
         if not found and self.sphere is not None and self.boundaries["far"].state is None:
             found.append("boundaries.far must be an inflow of a given state round a sphere.")

@@ -19,7 +19,7 @@ from quintet.interfaces.component import Array
 def mirrored(made: LayeredCloud, wall: int) -> LayeredCloud:
     """Mirror the second layer of a cloud in the first where that is of patch `wall`, a slip wall.
 
-    Nodes of the wall from which gas leaves sideways, and those beside them, keep their kind.
+    Nodes of the wall from which gas leaves sideways keep their kind.
     """
     cloud, neighbours = made.cloud, made.neighbours
     count, nodes = len(made.off_wall), cloud.nodes
@@ -44,10 +44,11 @@ def mirrored(made: LayeredCloud, wall: int) -> LayeredCloud:
     for row in rows:
         near = neighbours[row][neighbours[row] != row]
         images = number[near[number[near] >= 0]]
-        is_whole = len(near) + len(images) == neighbours.shape[1]
-        if cloud.kind[row] == SLIP and cloud.patch[row] == wall and is_whole:
+        is_within = cloud.kind[row + count] == INNER  # and not where gas leaves sideways
+        if cloud.kind[row] == SLIP and cloud.patch[row] == wall and is_within:
             kind[row] = SYMMETRY
-            padded[row] = np.concatenate([near, images])
+            padded[row, : len(near)] = near
+            padded[row, len(near) : len(near) + len(images)] = images
     return LayeredCloud(found._replace(kind=kind), padded, made.off_wall)
 
 
