@@ -144,7 +144,7 @@ class Plate:
     ahead : m
         Of the stretch before it.
     height : m
-        Of the last layer above it.
+        Of the cloud above the plate.
     rays : 1
         Nodes along the plate.
     finest : m
