@@ -224,7 +224,7 @@ class FePlateParams:
         1 m, and faces edges.
     integration
         Reduced: one quadrature point an element, with stabilisation; full: eight, with strains
-        assumed so that bending is exact: seven times the work.
+        assumed so that bending is exact: eight times the work.
     courant : 1
         Share of the greatest step that is proven stable; that of a mesh may be twice as great.
     hourglass : 1

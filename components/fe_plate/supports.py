@@ -16,7 +16,7 @@ from quintet.interfaces.faces import CLAMPED, SYMMETRY, WALL, polygons
 AXES = ("x", "y", "z")
 FLAT = 1e-6  # of a normal: what of it may lie along other axes
 REACH = 0.75  # of the structure's diagonal: how far a rigid wall is drawn from its foot
-BEYOND = 0.05  # of the diagonal: how far a plane of symmetry is drawn beyond its face
+BEYOND = 0.15  # of the diagonal: how far a plane of symmetry is drawn beyond its face
 
 
 def supports(params: FePlateParams, mesh: Mesh) -> Fields:
@@ -59,7 +59,7 @@ def _corners(mesh: Mesh) -> Array:
     if len(side) and side[0, 2] < 0:
         first, last = mesh.node[side[:, 0]], mesh.node[side[:, 1]]
         along = np.array([0.0, 1.0, 0.0])
-        return np.stack([first, last, last + along, first + along], axis=1)
+        return np.stack([last, first, first + along, last + along], axis=1)
     return np.asarray(mesh.node[side])
 
 

@@ -17,7 +17,7 @@ GLUED = 2 * 4 * 4  # particles in two layers
 
 
 def cases() -> tuple[ConformCase, ...]:
-    """A block of steel that rests, one that strikes another, one in a plane, and a glued one."""
+    """Blocks of steel: one that rests, one that is struck, quarters, in a plane, rings, glued."""
     (still,) = BLOCK["bodies"]
     moving = still | {
         "lowest": [0.05, 0.0, 0.0],
@@ -41,6 +41,13 @@ def cases() -> tuple[ConformCase, ...]:
             {**BLOCK, "symmetry": [{"axis": "y"}, {"axis": "z"}], "kernel_correction": True},
             dt=STEP,
         ),
+        ConformCase(
+            "quarter, neighbours of the start",
+            {**BLOCK, "symmetry": [{"axis": "y"}, {"axis": "z"}], "total_lagrangian": True},
+            dt=STEP,
+            still=False,  # F at rest is one to rounding, which is 1e-6 Pa of steel
+        ),
+        ConformCase("artificial stress", {**BLOCK, "artificial_stress": 0.3}, dt=STEP),
         ConformCase("plane strain", {**BLOCK, "dimensions": 2}, dt=STEP),
         ConformCase("rings", {**BLOCK, "dimensions": 2, "axisymmetric": True}, dt=STEP),
         ConformCase(

@@ -22,7 +22,7 @@ WALL, BACK = "#444444", "#9aa5ad"  # walls seen from their edge, and from their 
 LINES: dict[int, dict[str, Any]] = {  # what stands still, seen from its edge
     WALL_FACE: {"linewidths": 2.0},
     CLAMPED: {"linewidths": 2.0},
-    SYMMETRY: {"linewidths": 1.0, "linestyles": "dashdot"},
+    SYMMETRY: {"linewidths": 1.5, "linestyles": "dashdot"},
 }
 STROKE = 0.015  # of the picture: strokes behind what is clamped
 BEHIND = 0.12  # opacity of the shade of walls
@@ -267,7 +267,7 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Still]) -> No
     edge_on = [one for one in still if _is_flat(one.corners[:, [0, 2]])]
     if any(one.support == SYMMETRY for one in edge_on):
         label = "held across it (symmetry)"
-        handles.append(Line2D([], [], color=WALL, linewidth=1.0, linestyle="dashdot", label=label))
+        handles.append(Line2D([], [], color=WALL, linewidth=1.5, linestyle="dashdot", label=label))
     if not handles:
         return
     figure.legend(handles=handles, loc="outside lower center", ncols=6, frameon=False, fontsize=9)

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 GAS_CONSTANT, GAMMA, PRANDTL = 287.05, 1.4, 0.72
 SIZE, MATERIAL, CAPACITY = 1e-5, 2000.0, 900.0  # m, kg/m3, J/(kg K)
 STREAM, COLD, HOT, LOADING = 100.0, 300.0, 400.0, 0.5  # m/s, K, K, 1
-LAUNCH, END = 1e-3, 3e-3  # s
+LAUNCH, END = 4.8e-4, 2e-3  # s
 
 
 def viscosity(temperature: float) -> float:

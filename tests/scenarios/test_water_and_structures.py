@@ -29,6 +29,7 @@ STRIP = (
     "components.water.boundary.walls=[[0.0,0.0,0.0],[0.4,0.0125,0.25]]",
     "components.water.boundary.obstacles=[[[0.1,0.0,0.079],[0.105,0.0125,0.2]]]",
     "components.water.boundary.symmetry=['y-','y+']",
+    "study=[]",
 )
 
 

@@ -33,4 +33,5 @@ MANIFEST = Manifest(
     plan=plan,
     bench="quintet.components.fe_plate.heat.bench:cases",
     conform="quintet.components.fe_plate.heat.conform:cases",
+    patience=600.0,  # one steady step of a million elements takes a minute
 )

@@ -88,7 +88,9 @@ class Sphere:
     Parameters
     ----------
     centre : m
+        On the axis of the flow.
     radius : m
+        Of the sphere.
     rays : 1
         Nodes along a meridian of the sector; in space nodes of the sphere are as far apart.
     layers
@@ -142,6 +144,7 @@ class Plate:
     ahead : m
         Of the stretch before it.
     height : m
+        Of the cloud above the plate.
     rays : 1
         Nodes along the plate.
     finest : m

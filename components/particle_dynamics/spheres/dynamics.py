@@ -17,6 +17,7 @@ from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import SPHERE
 
 KEPT = ("position", "velocity", "orientation", "spin", "temperature", "force", "torque", "heat")
+ROUNDING = 1e-9  # of a step, by which the time of a launch may be missed
 CLOSING = 0.25  # of the smallest diameter, by which two may come nearer in a step
 
 
@@ -92,7 +93,7 @@ class SphereDynamics(Component):
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; who is launched on the way flies for the rest."""
         one, end, flew = self.spheres, self.time + dt, self.flies.copy()
-        self._launch(end)
+        self._launch(end + ROUNDING * dt)
         fly(
             dt, end, self.stages, self.gravity, one.launch, flew, one.start, one.mass, one.inertia,
             one.tether, self.force, self.torque, self.position, self.velocity, self.orientation,

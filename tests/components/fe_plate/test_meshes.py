@@ -234,6 +234,11 @@ def test_what_holds_a_structure_is_shown():
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
     assert normals[0, 2] > 0.0 > normals[1, 2] and normals[2, 1] < 0.0
     assert FePlate(free).walls() == {}
+    flat = dataclasses.replace(part, highest=(1.0, 1.0, 3.0), elements=(2, 1, 2))
+    plane = dataclasses.replace(free, parts=(flat,), dimensions=2, fixed=(foot,))
+    (corners,) = FePlate(plane).walls()["points"].reshape(-1, 4, 3)
+    assert (corners[:, 2] == 0.0).all()
+    assert np.cross(corners[1] - corners[0], corners[2] - corners[1])[2] < 0.0
 
 
 def test_nodes_are_chosen_by_the_name_of_their_set():

@@ -1,0 +1,102 @@
+"""Dust in gas over a direct link, and spheres on springs: against what is exact."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from quintet.coupler.files.recording import Recording
+from quintet.coupler.report.diff import compare
+from quintet.coupler.run import snapshots
+from quintet.coupler.run.simulate import make_folder, simulate
+from quintet.coupler.scene.read import load
+
+Run = Callable[..., dict]
+MEMORY = ("--transport", "memory")
+
+
+def closes(found: dict) -> None:
+    """What crosses the link closes to rounding."""
+    for link in found["ledger"]["links"]:
+        assert link["momentum_residual"] <= 1e-12
+        assert link["heat_residual"] <= 1e-12
+
+
+def test_dust_and_a_stream_relax_to_each_other_as_four_equations_have_it(run_scene: Run) -> None:
+    found = run_scene("dust_in_stream", *MEMORY)
+    closes(found)
+    assert max(found["by_name"][name]["value"] for name in ("velocity", "launched")) < 1e-4
+    assert found["by_name"]["temperature"]["met"]
+    with Recording(found["folder"]) as recording:
+        for name in ("momentum", "energy"):
+            drift = recording.field("gas", f"balance.{name}_drift")
+            assert np.abs(drift).max() < 1e-12
+
+
+def test_behind_a_shock_dust_and_gas_relax_as_conservation_laws_have_it(run_scene: Run) -> None:
+    found = run_scene("dusty_shock", "--preset", "quick", *MEMORY)
+    closes(found)
+    assert all(one["met"] for one in found["expect"]), found["expect"]
+    with Recording(found["folder"]) as recording:
+        for name in ("mass", "momentum", "energy"):
+            drift = recording.field("gas", f"balance.{name}_drift")
+            assert np.abs(drift).max() < 1e-9  # nodes in even rows; the inflow is hardly met
+
+
+def test_the_last_of_a_row_of_spheres_swings_as_the_first_did(run_scene: Run) -> None:
+    found = run_scene("newtons_cradle", "--preset", "quick", *MEMORY)
+    assert all(one["met"] for one in found["expect"]), found["expect"]
+    assert abs(found["ledger"]["energy_drift"]) < 1e-6
+
+
+@pytest.mark.full
+def test_a_grain_relaxes_and_falls_as_stokes_has_it(run_scene: Run) -> None:
+    """u (1 - exp(-t/τ)) along the stream and g τ (1 - exp(-t/τ)) down it, over the link."""
+    end, pull, stream = 3e-3, 2e4, 100.0  # s, m/s2, m/s
+    settings = {"end": end, "components.dust.gravity": f"[0.0, 0.0, {-pull}]"}
+    settings["components.gas.particles.reaction"] = "false"
+    given = [part for name, value in settings.items() for part in ("--set", f"{name}={value}")]
+    found = run_scene("dust_in_stream", *MEMORY, *given)
+    with Recording(found["folder"]) as recording:
+        times = recording.times("dust")
+        velocity = recording.field("dust", "spheres.velocity")[:, 0]
+    viscosity = 1.78e-5 * (300.0 / 273.15) ** 1.5 * (273.15 + 110.4) / (300.0 + 110.4)
+    relaxes = 2000.0 * 1e-10 / (18.0 * viscosity)
+    share = 1.0 - np.exp(-times / relaxes)
+    assert np.abs(velocity[:, 0] - stream * share).max() < 1e-4 * stream
+    assert np.abs(velocity[:, 2] + pull * relaxes * share).max() < 1e-4 * pull * relaxes
+    closes(found)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("preset", ["compressible", "henderson"])
+def test_other_correlations_end_in_the_same_equilibrium(run_scene: Run, preset: str) -> None:
+    found = run_scene("dusty_shock", "--preset", preset, *MEMORY)
+    closes(found)
+    assert found["by_name"]["pressure"]["met"]
+
+
+@pytest.mark.full
+@pytest.mark.zenoh
+@pytest.mark.parametrize("scene", ["dusty_shock", "dust_in_stream"])
+def test_two_processes_and_a_resumption_give_the_bits_of_one_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scene: str
+) -> None:
+    monkeypatch.setattr(snapshots, "remove", lambda paths: None)
+    settings = ("end=1e-4", "output.snapshots=3e-5")
+
+    def scene_over(transport: str):
+        return load(scene, settings=settings, transport=transport)
+
+    for transport in ("memory", "zenoh"):
+        made = scene_over(transport)
+        make_folder(made, tmp_path / transport)
+        assert simulate(made, tmp_path / transport) in (0, 1)  # too short for what is expected
+    again = tmp_path / "again"
+    shutil.copytree(tmp_path / "zenoh", again)
+    kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
+    assert simulate(scene_over("zenoh"), again, kept[0]) in (0, 1)
+    assert compare(tmp_path / "memory", tmp_path / "zenoh") is None
+    assert compare(tmp_path / "memory", again) is None
