@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quintet.components.meshless_gas.build import domain, initial_state
+from quintet.components.meshless_gas.clouds.mirrored import hold_along
 from quintet.components.meshless_gas.diagnostics import (
     balance,
     density_change,
@@ -179,6 +180,7 @@ class MeshlessGas(Component):
             )  # fmt: skip
             if max(wrong) >= 0:
                 raise StepError(self._failure(max(wrong), dt))
+            self._hold_along()
             self._fill()
         if self.moving is not None:
             self.moving.end(dt)
@@ -188,6 +190,12 @@ class MeshlessGas(Component):
         self._look_ahead()
         if self.settling is not None and self.settling.is_due():
             self._settle()
+
+    def _hold_along(self) -> None:
+        """Let nodes of walls of symmetry move along them."""
+        own, state = self.domain, self.state
+        if len(own.mirrored):
+            hold_along(own.mirrored, own.cloud.normals, state.conservative, self.fluxes.primitive)
 
     def _follow(self) -> None:
         """Take the nodes that are left after clouds have moved."""

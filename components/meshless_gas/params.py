@@ -257,7 +257,8 @@ class MeshlessGasParams:
         found += [
             f"boundaries.{name} of a cloud in layers cannot be {one.kind}. Take a wall or a flow."
             for name, one in self.boundaries.items()
-            if one.kind in ("periodic", "symmetry")
+            if one.kind == "periodic"
+            or (one.kind == "symmetry" and (name != "wall" or self.sphere is None))
         ]
         if not found and self.sphere is not None and self.boundaries["far"].state is None:
             found.append("boundaries.far must be an inflow of a given state round a sphere.")
