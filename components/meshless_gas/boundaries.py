@@ -113,9 +113,10 @@ class Boundary:
     Parameters
     ----------
     kind
-        "periodic" and "symmetry" have images of what is within beyond them; a "slip" wall lets the
-        gas pass along it, an "isothermal" or "adiabatic" one holds it; "inflow" has the state that
-        is given, "outflow" that of the gas which leaves.
+        "periodic" and "symmetry" have images of what is within beyond them, those of a sphere's
+        wall in its tangent planes; a "slip" wall lets the gas pass along it, an "isothermal" or
+        "adiabatic" one holds it; "inflow" has the state that is given, "outflow" that of the gas
+        which leaves.
     state
         Of an inflow: all of it, as of what flows faster than sound.
     total

@@ -16,6 +16,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
     Cloud,
     Whole,
 )
+from quintet.components.meshless_gas.clouds.mirrored import is_advanced, is_mirrored
 from quintet.components.meshless_gas.exact import states_at
 from quintet.components.meshless_gas.kernels.boundaries import (
     BACK_PRESSURE,
@@ -47,6 +48,7 @@ class Domain(NamedTuple):
     weights: Array  # (b, K) 1, of their neighbours within
     bounding: Rows  # (a,) all boundary nodes
     patches: Array  # (p, PATCH_COLUMNS), what the scene says of each boundary
+    mirrored: Rows  # (s,) nodes of walls that are planes of symmetry
 
 
 def domain(params: MeshlessGasParams, team: Team) -> Domain:
@@ -69,12 +71,13 @@ def domain(params: MeshlessGasParams, team: Team) -> Domain:
     return Domain(
         cloud=cloud,
         stencils=made,
-        inner=_rows(kind == INNER),
+        inner=_rows(is_advanced(kind)),
         every=np.arange(cloud.nodes, dtype=np.int32),
         edges=edges,
         weights=weights,
         bounding=_rows(kind != INNER),
         patches=patches,
+        mirrored=_rows(is_mirrored(kind)),
     )
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quintet.components.meshless_gas.build import domain, initial_state
+from quintet.components.meshless_gas.clouds.mirrored import hold_along
 from quintet.components.meshless_gas.diagnostics import (
     balance,
     density_change,
@@ -157,7 +158,7 @@ class MeshlessGas(Component):
             return
         if self.moving is not None:
             self.moving.begin(dt, work.primitive, state.conservative)
-            self.domain = self.moving.domain
+            self._follow()
             self._fill()
         own = self.domain
         work.start[:] = state.conservative
@@ -168,7 +169,7 @@ class MeshlessGas(Component):
                 self.moving.place(stage, dt)
             self._write_rates()
             if self.moving is not None:
-                self.moving.add_rates(share, work.primitive, self.gamma, work.residual)
+                self.moving.add_rates(share, work, self.viscous, self.gamma)
             if self.particles is not None:
                 self.particles.add(work.primitive, work.residual, dt, (old, new, share))
             state.entered += share * dt * work.flows
@@ -179,6 +180,7 @@ class MeshlessGas(Component):
             )  # fmt: skip
             if max(wrong) >= 0:
                 raise StepError(self._failure(max(wrong), dt))
+            self._hold_along()
             self._fill()
         if self.moving is not None:
             self.moving.end(dt)
@@ -188,6 +190,19 @@ class MeshlessGas(Component):
         self._look_ahead()
         if self.settling is not None and self.settling.is_due():
             self._settle()
+
+    def _hold_along(self) -> None:
+        """Let nodes of walls of symmetry move along them."""
+        own, state = self.domain, self.state
+        if len(own.mirrored):
+            hold_along(own.mirrored, own.cloud.normals, state.conservative, self.fluxes.primitive)
+
+    def _follow(self) -> None:
+        """Take the nodes that are left after clouds have moved."""
+        assert self.moving is not None
+        self.domain = self.moving.domain
+        if self.viscous is not None:
+            self.viscous.domain = self.domain
 
     def _outer_power(self) -> float:
         """Energy [W] that comes in now, but for what bodies do that a partner moves."""
@@ -320,7 +335,7 @@ class MeshlessGas(Component):
         """Come back to a saved state, bit for bit."""
         if self.moving is not None:
             self.moving.restore(state)
-            self.domain = self.moving.domain
+            self._follow()
         self.state.load(state)
         if self.settling is not None:
             self.settling.load(state)

@@ -43,6 +43,7 @@ def cases() -> tuple[ConformCase, ...]:
     return (
         ConformCase("gas at rest", rest, dt=STEP),
         _dusty(),
+        _body(),
         ConformCase(
             "stream over a wall",
             stream,
@@ -84,5 +85,47 @@ def _dusty() -> ConformCase:
         },
         dt=5e-5,
         still=False,  # temperatures are those of the gas to rounding
+        smooth=False,  # its change is that of the last stage
+    )
+
+
+def _body() -> ConformCase:
+    """A body with a cloud of its own, which a partner moves, in a gas at rest."""
+    closed = {"kind": "slip"}
+    body = {
+        "position": [0.0, 0.0, 0.0],
+        "radius": 0.2,
+        "is_driven": True,
+        "rays": 16,
+        "thickness": 0.25,
+        "spacing": 0.1,
+    }
+    return ConformCase(
+        "a body in a gas",
+        {
+            "box": {"lowest": [-1.0, 0.0, -1.0], "highest": [1.0, 0.0, 1.0], "spacing": 0.1},
+            "neighbours": 8,
+            "initial": AIR,
+            "boundaries": {"x-": closed, "x+": closed, "z-": closed, "z+": closed},
+            "moving": {"bodies": [body]},
+        },
+        static={
+            "motion.shape": np.zeros(1),
+            "motion.size": np.full((1, 3), 0.4),
+            "motion.mass": np.ones(1),
+        },
+        rest={
+            "motion.position": np.zeros((1, 3)),
+            "motion.velocity": np.zeros((1, 3)),
+            "motion.orientation": np.array([[1.0, 0.0, 0.0, 0.0]]),
+            "motion.angular_velocity": np.zeros((1, 3)),
+        },
+        scale={
+            "motion.position": 0.01,
+            "motion.velocity": 0.1,
+            "motion.angular_velocity": 0.1,
+        },
+        dt=0.2 * STEP,
+        still=False,  # rings and lattice do not balance each other to rounding
         smooth=False,  # its change is that of the last stage
     )

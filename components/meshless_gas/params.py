@@ -257,7 +257,8 @@ class MeshlessGasParams:
         found += [
             f"boundaries.{name} of a cloud in layers cannot be {one.kind}. Take a wall or a flow."
             for name, one in self.boundaries.items()
-            if one.kind in ("periodic", "symmetry")
+            if one.kind == "periodic"
+            or (one.kind == "symmetry" and (name != "wall" or self.sphere is None))
         ]
         if not found and self.sphere is not None and self.boundaries["far"].state is None:
             found.append("boundaries.far must be an inflow of a given state round a sphere.")
@@ -324,7 +325,8 @@ class MeshlessGasParams:
     @property
     def expected_count(self) -> int:
         """About how many nodes there will be."""
-        return self.cloud.expected_count(self.dimensions)
+        bodies = self.moving.expected_count if self.moving is not None else 0
+        return self.cloud.expected_count(self.dimensions) + bodies
 
     @property
     def expected_step(self) -> float:
@@ -334,7 +336,11 @@ class MeshlessGasParams:
         if self.riemann is not None:
             states += [self.riemann.left, self.riemann.right]
         fastest = max(one.fastest(self.gas) for one in states if one is not None)
-        return 0.5 * self.courant * self.cloud.finest_spacing / fastest
+        finest = self.cloud.finest_spacing
+        if self.moving is not None:
+            finest = min(finest, self.moving.finest_spacing)
+            fastest += max(math.hypot(*one.velocity) for one in self.moving.bodies)
+        return 0.5 * self.courant * finest / fastest
 
 
 def has_walls(params: MeshlessGasParams) -> bool:

@@ -102,6 +102,7 @@ BODIES = Port(
         POSITION,
         VELOCITY,
         Field("force", (3,), "N"),
+        Field("heat", (), "W"),  # into the body
         # Over ½ρU² and the area that faces the flow, of the state at the start and the body's
         # velocity there.
         Field("coefficient", (3,), "1"),
@@ -117,6 +118,8 @@ SURFACE = Port(
         Field("body", (), "1"),
         Field("angle", (), "rad"),  # at the centre, from upstream
         PRESSURE,
+        Field("friction", (3,), "Pa"),
+        Field("heat_flux", (), "W/m2"),  # into the body
     ),
 )
 

@@ -3,15 +3,23 @@
 A reference that shares no line with the solvers: cells of a Lagrangian mesh, velocities between
 them, half a step apart (von Neumann & Richtmyer, J. Appl. Phys. 21 (1950) 232; Wilkins, Methods in
 Computational Physics 3 (1964) 211). Prints for three meshes the velocity that the free surface
-has reached, how far it is pulled back, and where the target fails.
+has reached, how far it is pulled back, and where the target fails; or draws, with `--draw`, free
+surfaces of runs of this scene of aluminium beside it, into `surface.png` in the first one's folder.
 """
 
 import argparse
+import tomllib
+from pathlib import Path
 from typing import NamedTuple
 
+import matplotlib
 import numpy as np
 
+from quintet.coupler.files.recording import Recording
 from quintet.interfaces.component import Array
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
 
 
 class Metal(NamedTuple):
@@ -155,8 +163,36 @@ def pulled_back(found: Found, begin: float, end: float) -> tuple[float, float]:
     return float(found.surface[before].mean()), float(found.surface[found.time > end].min())
 
 
+def draw(folders: list[str], cells: int) -> None:
+    """Draw free surfaces of runs beside finite differences of so many cells in the flyer."""
+    figure, axes = plt.subplots(1, len(folders), figsize=(5 * len(folders), 4), squeeze=False)
+    for axis, folder in zip(axes[0], map(Path, folders), strict=True):
+        flyer, target = tomllib.loads((folder / "scene.toml").read_text())["components"]["plates"][
+            "bodies"
+        ]
+        thick = target["highest"][2]
+        with Recording(folder) as recording:
+            time = recording.times("plates")
+            speed = recording.history("plates", "gauges.velocity", 0)[:, 2]
+        metal = METALS["aluminium"]
+        exact = struck(metal, flyer["velocity"][2], -flyer["lowest"][2], thick, time[-1], cells)
+        axis.plot(1e6 * exact.time, exact.surface, "k-", label=f"finite differences, {cells} cells")
+        axis.plot(1e6 * time, speed, "C1-", label="particles")
+        arrival = 1e6 * float(exact.time[exact.surface > 100.0][0])
+        axis.set(
+            xlim=(arrival - 0.1, 1e6 * time[-1]), ylim=(500.0, 1050.0), xlabel="t [µs]",
+            title=f"aluminium, target {1e3 * thick:.0f} mm",
+        )  # fmt: skip
+        axis.grid(alpha=0.3)
+    axes[0, 0].set_ylabel("velocity of the free surface [m/s]")
+    axes[0, 0].legend(loc="lower right")
+    figure.tight_layout()
+    figure.savefig(Path(folders[0]) / "surface.png", dpi=90)
+    print(Path(folders[0]) / "surface.png")
+
+
 def main() -> None:
-    """Print what three meshes give."""
+    """Print what three meshes give, or draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--material", choices=METALS, default="aluminium")
     parser.add_argument("--fluid", action="store_true", help="without shear strength")
@@ -166,7 +202,11 @@ def main() -> None:
     parser.add_argument("--plateau", type=float, nargs=2, default=(1.15e-6, 1.25e-6), help="s")
     parser.add_argument("--end", type=float, default=2.2e-6, help="s")
     parser.add_argument("--cells", type=int, nargs="+", default=(50, 100, 200), help="in the flyer")
+    parser.add_argument("--draw", nargs="+", metavar="RUN", help="folders of runs to draw")
     given = parser.parse_args()
+    if given.draw:
+        draw(given.draw, max(given.cells))
+        return
     metal = METALS[given.material]
     if given.fluid:
         metal = metal._replace(shear=1.0, a=1e-3, b=0.0)

@@ -8,6 +8,7 @@ import numpy as np
 from quintet.components.meshless_gas.clouds.cap import sphere_cap
 from quintet.components.meshless_gas.clouds.layers import LayeredCloud
 from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
+from quintet.components.meshless_gas.clouds.mirrored import as_slip, mirrored
 from quintet.components.meshless_gas.clouds.params import Layers, Plate, Sphere
 from quintet.components.meshless_gas.clouds.plane import plate
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -17,6 +18,9 @@ def layered_cloud(
     params: MeshlessGasParams, faces: Mapping[str, str], patches: Mapping[str, int]
 ) -> LayeredCloud:
     """Nodes in layers over a sphere or a plate."""
+    if faces["wall"] == "symmetry":
+        slipping = layered_cloud(params, as_slip(faces), patches)
+        return mirrored(slipping, patches["wall"])
     if params.plate is not None:
         return _plate(params.plate, faces, patches)
     assert params.sphere is not None

@@ -19,7 +19,7 @@ KINDS = {
     "inflow": INFLOW,
     "outflow": OUTFLOW,
 }
-WALLS = (SLIP, NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC)
+WALLS = (SLIP, NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC, SYMMETRY)
 GAUSSIAN = 0.0  # in `weight`: of the paper; else the power p of 1/dᵖ
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.components.meshless_gas.build import domain
+from quintet.components.meshless_gas.build import domain, transport_of
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.layout import layout, with_bodies
@@ -24,7 +24,13 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
             f"bodies that carry clouds need two dimensions and {BLOCK} neighbours at least; found "
             f"{params.dimensions} and {params.neighbours}. Correct dimensions and neighbours."
         )
-    assert params.box is not None
+    if params.box is None:
+        raise SceneError("bodies that carry clouds need a box around them. Give a box.")
+    if not params.viscous and any(one.temperature for one in keys.bodies):
+        raise SceneError(
+            "walls of a temperature hold the gas by friction. Say viscous = true, or leave out "
+            "temperature."
+        )
     if keys.axisymmetric and (params.kind_of("z-") != "symmetry" or params.box.lowest[2] != 0.0):
         raise SceneError(
             "an axisymmetric flow needs a box that begins at z = 0 with symmetry there; found "
@@ -49,7 +55,16 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         coefficients, np.ones(whole),
     )  # fmt: skip
     joint = ground._replace(cloud=cloud, stencils=made)
-    return MovingClouds(keys, joint, own, params.neighbours, team)
+    moving = MovingClouds(keys, joint, own, params.neighbours, team)
+    if params.viscous:
+        # Compiled only where the gas has friction.
+        from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
+
+        law = transport_of(params.gas)
+        moving.friction = Friction(keys, own, law)
+        if keys.axisymmetric:
+            moving.stresses = AxisStresses(whole, law.conduction)
+    return moving
 
 
 def soft_start(moving: MovingClouds, state: State, gamma: float) -> None:

@@ -4,7 +4,7 @@ Velocities are stored in the laboratory's frame, and fluxes computed in that of 
 neither sources of inertia nor a change of variables between clouds is needed.
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,23 @@ from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import Layout
 from quintet.components.meshless_gas.moving.params import Moving
-from quintet.components.meshless_gas.moving.refusals import refuse_jump, refuse_places, too_few
+from quintet.components.meshless_gas.moving.refusals import (
+    refuse_jump,
+    refuse_off_axis,
+    refuse_places,
+    too_few,
+)
 from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
 from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
+from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.stencils import SOUND, write_coefficients
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import StepError
+
+if TYPE_CHECKING:
+    from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
+    from quintet.components.meshless_gas.viscous.terms import Viscous
 
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -68,8 +78,10 @@ class MovingClouds:
         self.least = np.zeros(len(cloud.positions))  # weight of least squares across seams
         self.frame = np.zeros((len(cloud.positions), 3))
         self.wall_velocity = np.zeros((len(layout.walls), 3))
-        self.loads = np.zeros((len(bodies), 7))  # N, N m, W: now
-        self.summed = np.zeros((len(bodies), 7))  # in the mean over the last step
+        self.loads = np.zeros((len(bodies), 8))  # N, N m, W of walls on gas, W of heat: now
+        self.summed = np.zeros((len(bodies), 8))  # in the mean over the last step
+        self.friction: Friction | None = None  # of walls that hold the gas
+        self.stresses: AxisStresses | None = None  # of a viscous gas about an axis
         self.uncovered = 0  # nodes that came back since the start
         self._place(self.pose.centre)
         self._set_frame()
@@ -81,11 +93,13 @@ class MovingClouds:
         """Take the motion of driven bodies: places at the middle of the step, mean velocities."""
         if "motion.position" not in fields:
             return
-        centre = fields["motion.position"]
-        self.pose.velocity[self.driven] = fields["motion.velocity"]
+        flat = np.array([1.0, 0.0, 1.0])  # nothing leaves the plane
+        self.given = fields["motion.position"] * flat
+        self.pose.velocity[self.driven] = fields["motion.velocity"] * flat
         if "motion.angular_velocity" in fields:
-            self.pose.spin[self.driven] = fields["motion.angular_velocity"]
-        self.given = np.array(centre)
+            self.pose.spin[self.driven] = fields["motion.angular_velocity"] * (1.0 - flat)
+        if self.params.axisymmetric:
+            refuse_off_axis(self.given, self.pose.velocity[self.driven], self.driven)
 
     def begin(self, dt: float, primitive: Array, conservative: Array) -> None:
         """Put clouds where they are at the step's start; cut holes anew where they have moved."""
@@ -133,6 +147,8 @@ class MovingClouds:
             own.walls, own.above, own.heights, self.domain.cloud.normals[own.walls],
             self.wall_velocity, gamma, primitive,
         )  # fmt: skip
+        if self.friction is not None:
+            self.friction.hold(self.wall_velocity, primitive)
 
     def load(self, primitive: Array, flows: Array) -> None:
         """Find what bodies are loaded with now, and add what the gas gets from them to `flows`."""
@@ -142,19 +158,28 @@ class MovingClouds:
             own.walls, own.body, cloud.areas[own.walls], own.arms, self.wall_velocity, primitive,
             self.loads,
         )  # fmt: skip
+        if self.friction is not None:
+            self.friction.load(cloud, self.wall_velocity, primitive, self.loads)
         if self.params.axisymmetric:  # of a whole turn about the axis nothing else is left
             self.loads[:, 1:6] = 0.0
         flows[1:4] -= self.loads[:, :3].sum(axis=0)
-        flows[4] += self.loads[:, 6].sum()
+        flows[4] += (self.loads[:, 6] - self.loads[:, 7]).sum()
 
-    def add_rates(self, share: float, primitive: Array, gamma: float, residual: Array) -> None:
+    def add_rates(
+        self, share: float, work: Fluxes, viscous: "Viscous | None", gamma: float
+    ) -> None:
         """Add what symmetry about the axis asks for; sum the loads of a stage."""
         self.summed += share * self.loads
-        if self.params.axisymmetric:
-            rows = self.domain.inner
-            self.team.run(
-                add_axis, len(rows), rows, self.domain.cloud.positions, primitive, gamma, residual
-            )
+        if not self.params.axisymmetric:
+            return
+        rows, positions = self.domain.inner, self.domain.cloud.positions
+        self.team.run(add_axis, len(rows), rows, positions, work.primitive, gamma, work.residual)
+        if self.stresses is not None and viscous is not None:
+            flow = viscous.transported, work.gradients, viscous.gradients
+            self.stresses.add(
+                self.team, rows, positions, work.primitive, self.domain.stencils, flow,
+                work.residual,
+            )  # fmt: skip
 
     # Geometry
 

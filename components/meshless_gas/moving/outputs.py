@@ -13,11 +13,12 @@ def outputs(moving: MovingClouds, primitive: Array, params: MeshlessGasParams) -
     """Fields of the ports `bodies`, `surface`, `load` and `heat`."""
     own, pose, driven = moving.layout, moving.pose, moving.driven
     pressure, force = primitive[own.walls, 4], moving.summed[:, :3]
-    bodies = range(len(moving.radii))
+    bodies, held, count = range(len(moving.radii)), moving.friction, len(own.walls)
     return {
         "bodies.position": pose.centre.copy(),
         "bodies.velocity": pose.velocity.copy(),
         "bodies.force": force.copy(),
+        "bodies.heat": moving.summed[:, 7].copy(),
         "bodies.coefficient": force / _unit_force(moving, params)[:, None],
         "bodies.highest_pressure": np.array([pressure[own.body == b].max() for b in bodies]),
         "bodies.uncovered": np.full(len(bodies), float(moving.uncovered)),
@@ -25,9 +26,11 @@ def outputs(moving: MovingClouds, primitive: Array, params: MeshlessGasParams) -
         "surface.body": own.body.astype(float),
         "surface.angle": np.arctan2(own.arms[:, 2], -own.arms[:, 0]),
         "surface.pressure": pressure.copy(),
+        "surface.friction": np.zeros((count, 3)) if held is None else held.friction.copy(),
+        "surface.heat_flux": np.zeros(count) if held is None else held.heat.copy(),
         "load.force": force[driven],
         "load.torque": moving.summed[driven, 3:6],
-        "heat.heat_flow": np.zeros(len(driven)),
+        "heat.heat_flow": moving.summed[driven, 7],
     }
 
 

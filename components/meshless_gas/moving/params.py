@@ -34,6 +34,8 @@ class Body:
         Height of the first layer; if not said, 0.8 of the distance between nodes of the wall.
     growth : 1
         Of one layer over the one below it.
+    temperature : K
+        Of a wall that holds a viscous gas; if not said, the gas slips along it.
     weight : 1
         Of the least squares: 0 for a truncated Gaussian over the distance, else the power p of
         1/dᵖ.
@@ -48,6 +50,7 @@ class Body:
     spacing: Positive
     first: Positive | None = None
     growth: Annotated[float, Field(ge=1, le=2, allow_inf_nan=False)] = 1.08
+    temperature: Positive | None = None
     weight: NotNegative = 0.0
 
     @property
@@ -99,3 +102,14 @@ class Moving:
                         f"{list(one.position)} m, velocity {list(one.velocity)} m/s. Leave y and "
                         "z at 0."
                     )
+
+    @property
+    def expected_count(self) -> int:
+        """Nodes of all bodies' clouds."""
+        whole = sum(one.rays * len(one.heights) for one in self.bodies)
+        return whole // 2 if self.axisymmetric else whole
+
+    @property
+    def finest_spacing(self) -> float:
+        """Least distance [m] of nodes in bodies' clouds."""
+        return min(min(one.heights[1], math.tau * one.radius / one.rays) for one in self.bodies)

@@ -60,3 +60,14 @@ def too_few(count: int, place: Array) -> str:
         f"{np.array2string(place, precision=4)} m has not. Make spacings on both sides of the "
         "seam alike, or clouds thicker."
     )
+
+
+def refuse_off_axis(centre: Array, velocity: Array, bodies: NDArray[np.int64]) -> None:
+    """Refuse bodies that leave the axis of symmetry."""
+    wrong = np.flatnonzero((np.abs(centre[:, 2]) > 0.0) | (np.abs(velocity[:, 2]) > 0.0))
+    if len(wrong):
+        k = wrong[0]
+        raise SceneError(
+            f"bodies of an axisymmetric flow lie and move on the axis; body {bodies[k]} is at "
+            f"{centre[k].tolist()} m with {velocity[k].tolist()} m/s. Launch it along x."
+        )

@@ -1,0 +1,1 @@
+"""A particle crosses the shock layer of a sphere."""
