@@ -40,7 +40,7 @@ def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams
     gradient, primitive = fluxes.gradients[rows, 0], state.primitive[rows]
     return {
         "points": domain.cloud.positions[rows],
-        "spacing": domain.cloud.spacing[rows],
+        "spacing": domain.cloud.spacing[rows] if params.box is not None else reaches(domain),
         "density": primitive[:, 0].copy(),
         "pressure": primitive[:, 4].copy(),
         "velocity": primitive[:, 1:4].copy(),
@@ -48,6 +48,13 @@ def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams
         "mach": mach(primitive, params.gas),
         "schlieren": schlieren(np.sqrt((gradient * gradient).sum(axis=1))),
     }
+
+
+def reaches(domain: Domain) -> Array:
+    """Distance (n,) m of each node's farthest neighbour: layers are thinner than they are wide."""
+    rows, positions = domain.every, domain.cloud.positions
+    arms = positions[domain.stencils.neighbours[rows]] - positions[rows][:, None]
+    return np.asarray(np.sqrt((arms**2).sum(axis=2)).max(axis=1))
 
 
 def walls(params: MeshlessGasParams) -> Fields:

@@ -158,7 +158,8 @@ def _without_diagonals(full: Whole, cross: Whole, kind: Kinds) -> Whole:
     """Neighbours along lines alone, but where a corner would have none within."""
     inner = np.concatenate([kind == INNER, np.zeros(int(full.max()) + 1 - len(kind), bool)])
     lacks = ~np.any(inner[cross], axis=1)
-    return np.where(lacks[:, None], full[:, : cross.shape[1]], cross)
+    within_first = np.argsort(~inner[full], axis=1, kind="stable")[:, : cross.shape[1]]
+    return np.where(lacks[:, None], np.take_along_axis(full, within_first, axis=1), cross)
 
 
 def _spacing(positions: Array, neighbours: Whole, source: Whole) -> Array:
