@@ -35,7 +35,10 @@ def test_finer_clouds_come_nearer(run_scene: Run, scene: str, preset: str) -> No
 @pytest.mark.parametrize(
     "options",
     [
-        ("--set", "components.gas.sphere.layers.jitter=0.6", "--set", "components.gas.sphere.layers.cross=false"),
+        (
+            "--set", "components.gas.sphere.layers.jitter=0.6",
+            "--set", "components.gas.sphere.layers.cross=false",
+        ),
         (
             "--set", "components.gas.initial.velocity=[20.0, 0.0, 0.0]",
             "--set", "components.gas.boundaries.far.state.velocity=[20.0, 0.0, 0.0]",
