@@ -114,7 +114,7 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
 def test_bodies_off_the_axis_are_refused():
     gas = made(about_an_axis(is_driven=True))
     motion = {
-        "motion.position": gas.moving.pose.centre + [0.0, 0.0, 0.01],
+        "motion.position": gas.moving.pose.centre + np.array([0.0, 0.0, 0.01]),
         "motion.velocity": gas.moving.pose.velocity,
     }
     with pytest.raises(SceneError, match="lie and move on the axis"):
