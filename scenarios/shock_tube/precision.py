@@ -12,6 +12,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 
 # Mean error of the density of Sod's tube, processor time [s]: OpenFOAM 1912, 200 cells along x.
 SOD = {"rhoCentralFoam, 200": (3.12e-3, 0.08)}
@@ -20,7 +21,7 @@ LEVELS = {"Clawpack, 100": 4.39e-3, "Clawpack, 200": 2.25e-3, "Clawpack, 400": 1
 # Stand-off of the shock before a sphere at Mach 6 over its radius, processor time [s]: OpenFOAM
 # 1912 on a wedge of cells; stand-off of the Euler equations, by extrapolation.
 SPHERE = {"rhoCentralFoam, 24 x 24": (0.1480, 5.5), "rhoCentralFoam, 48 x 48": (0.1464, 45.7)}
-STANDOFF = 0.1465
+STANDOFF, UNSURE = 0.1465, 0.001
 
 
 def main(folders: list[str]) -> None:
@@ -49,6 +50,12 @@ def main(folders: list[str]) -> None:
             panel.annotate(
                 label, (times[-1], level), (0, 2), textcoords="offset points", ha="right"
             )
+        if not is_tube:
+            panel.axhline(UNSURE / STANDOFF, color="grey", linewidth=0.8, linestyle=":")
+            place = (times[0], UNSURE / STANDOFF)
+            panel.annotate("uncertainty of 0.1465", place, (0, 2), textcoords="offset points")
+        panel.margins(x=0.3)
+        panel.xaxis.set_minor_formatter(NullFormatter())
         what = "mean error of the density [kg/m3]" if is_tube else "error of the stand-off"
         panel.set(xlabel="processor time [s]", ylabel=what, title=study["scene"])
     out = Path(folders[0]) / "precision.png"
