@@ -92,6 +92,35 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
 
+def about_an_axis(**body):
+    settings = scene(share=1.0, gas=[-MACH, 0.0, 0.0])
+    settings["box"]["lowest"][2] = 0.0
+    settings["boundaries"]["z-"] = {"kind": "symmetry"}
+    settings["moving"]["axisymmetric"] = True
+    settings["moving"]["bodies"][0] |= body
+    return settings
+
+
+def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
+    gas = made(about_an_axis())
+    for _ in range(12):
+        gas.step(gas.stable_dt())
+    inner = gas.domain.inner
+    assert gas.moving.uncovered > 10
+    assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
+    assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
+
+
+def test_bodies_off_the_axis_are_refused():
+    gas = made(about_an_axis(is_driven=True))
+    motion = {
+        "motion.position": gas.moving.pose.centre + [0.0, 0.0, 0.01],
+        "motion.velocity": gas.moving.pose.velocity,
+    }
+    with pytest.raises(SceneError, match="lie and move on the axis"):
+        gas.take(motion)
+
+
 def test_uncovered_nodes_get_linear_fields_exactly():
     rng = np.random.default_rng(1)
     positions = rng.uniform(-1.0, 1.0, (9, 3))
