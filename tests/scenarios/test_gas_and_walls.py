@@ -21,6 +21,7 @@ def test_walls_do_to_a_gas_as_laws_say(run_scene: Run, scene: str) -> None:
         ("blunt_sphere", "mach3"),
         ("blunt_sphere", "cap"),
         ("blunt_sphere", "hot"),
+        ("blunt_sphere", "drag"),
         ("couette", "standard"),
         ("flat_plate", "quick"),
         ("flat_plate", "standard"),
