@@ -33,14 +33,22 @@ def measured(mesh: Mesh, gauges: Gauges) -> Measured:
     middle = mesh.node[mesh.corner].mean(axis=1)
     nodes = []
     for number, name in enumerate(gauges.node_set_gauges):
-        found = chosen(mesh, Faces(node_set=name), f"gauges.node_set_gauges.{number}")
-        nodes.append(np.flatnonzero(found))
+        where = f"gauges.node_set_gauges.{number}"
+        nodes.append(np.flatnonzero(chosen(mesh, Faces(node_set=name), where)))
+        if not len(nodes[-1]):
+            raise SceneError(
+                f"{where}: {name} must hold a node; it holds none. Correct its box, or name "
+                "another set."
+            )
     elements = []
     for number, one in enumerate(gauges.element_set_gauges):
         where = f"gauges.element_set_gauges.{number}"
         elements.append(elements_of(mesh, one, where))
         if not len(elements[-1]):
-            raise SceneError(f"{where}: it must hold an element; it holds none. Correct the box.")
+            raise SceneError(
+                f"{where}: it must hold an element; it holds none. Correct the box, or name "
+                "another set."
+            )
     return Measured(
         nearest(mesh.node, gauges.node_gauges),
         nearest(middle, gauges.element_gauges),

@@ -23,7 +23,6 @@ class ShockShape(NamedTuple):
 
 
 SPHERE = ShockShape(0.143, 3.24, 1.143, 0.54, 1.2)
-CYLINDER = ShockShape(0.386, 4.67, 1.386, 1.8, 0.75)
 
 
 def normal_shock(mach: float, gamma: float) -> tuple[float, float]:
@@ -91,12 +90,6 @@ def shock_radius(angle: Array, mach: float, shape: ShockShape = SPHERE) -> Array
     with np.errstate(divide="ignore", invalid="ignore"):
         near = 2.0 * c / (-b + root)
     return np.where(near > 0.0, near, np.inf)
-
-
-def newtonian(angle: Array, mach: float, gamma: float) -> Array:
-    """Pressure coefficient of modified Newtonian theory at angles [rad] from the flow."""
-    top = (pitot_pressure(mach, gamma) - 1.0) / (0.5 * gamma * mach**2)
-    return np.asarray(top * np.cos(angle) ** 2)
 
 
 class Stream(NamedTuple):

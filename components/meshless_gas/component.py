@@ -188,6 +188,7 @@ class MeshlessGas(Component):
             state.entered -= dt * self.particles.given()
         state.time += dt
         self._look_ahead()
+        state.change = density_change(state, self.domain, self.fluxes)
         if self.settling is not None and self.settling.is_due():
             self._settle()
 
@@ -219,8 +220,7 @@ class MeshlessGas(Component):
             self._feel()
             force = self.surface.force(self.fluxes.primitive)
             scale = self.surface.scale(self.fluxes.primitive)
-        change = density_change(self.state, self.domain, self.fluxes)
-        self.settling.look(change, force, scale, self.state.time)
+        self.settling.look(self.state.change, force, scale, self.state.time)
 
     def _feel(self) -> None:
         """Take friction and heat flux of walls, as the state is."""

@@ -10,7 +10,6 @@ from quintet.components.meshless_gas.clouds.params import Box, Plate, Sphere
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.interfaces.params import (
-    NotNegative,
     Number,
     Positive,
     Vector,
@@ -168,7 +167,7 @@ class MeshlessGasParams:
         Share of 1/Σ_j (|v·c_ij| + a |c_ij|) that a step takes.
     local_steps
         Whether each node takes the step that it bears, towards a steady flow: times are then those
-        of the node of the shortest step.
+        of the node of the shortest step, and what entered and drifts of `balance` say nothing.
     steady
         When the flow has settled; the force on the walls is then what is given.
     moving
@@ -195,7 +194,7 @@ class MeshlessGasParams:
     viscous: bool = False
     neighbours: Annotated[int, Field(ge=2, le=64)] = 9
     order: Literal[1, 2] = 2
-    limiter_threshold: NotNegative = 1e-6
+    limiter_threshold: Positive = 1e-6
     courant: Positive = 0.7
     local_steps: bool = False
     steady: Steady | None = None
@@ -219,10 +218,28 @@ class MeshlessGasParams:
                 f"a gas needs a box, a sphere or a plate of nodes, one of them; found "
                 f"{' and '.join(said) or 'none'}. Correct it."
             )
-        if self.particles is not None and (self.axisymmetric or self.moving is not None):
+        if self.particles is not None and (self.box is None or self.moving is not None):
             found.append(
-                "particles that nodes do not resolve go with clouds that stand still, of 2 or 3 "
-                "dimensions; found axisymmetric or moving. Leave out particles."
+                "particles that nodes do not resolve go with a box whose nodes stand still; found "
+                "a sphere, a plate or moving. Leave out particles, or give a box."
+            )
+        if (self.particles is not None or self.moving is not None) and (
+            self.local_steps or self.steady is not None
+        ):
+            found.append(
+                "local_steps and steady are for a flow round what stands still; found particles "
+                "or moving. Leave out local_steps and steady."
+            )
+        if self.moving is not None and (self.probes or self.fronts):
+            found.append(
+                "probes and fronts are read at nodes that stand still; found moving. Leave out "
+                "probes and fronts."
+            )
+        layered = self.plate or self.sphere
+        if layered is not None and layered.layers.jitter > 0.0 and not self.axisymmetric:
+            found.append(
+                f"layers: jitter is for an axisymmetric sphere; found {layered.layers.jitter:g}. "
+                "Leave it out."
             )
         if self.axisymmetric and (self.dimensions == 3 or self.sphere is None):
             found.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")

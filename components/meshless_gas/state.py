@@ -19,6 +19,7 @@ class State:
     begun: Array  # (5,) kg, N s, J, at the start
     time: float = 0.0  # s
     work: float = 0.0  # J, energy that came in since the start but for what partners brought
+    change: float = 0.0  # 1, root mean square of the densities' relative change in the last step
 
     def save(self) -> dict[str, NDArray[Any]]:
         """Copy out everything."""
@@ -28,7 +29,8 @@ class State:
         """Come back to a saved state, in the same arrays."""
         for name in ("conservative", "primitive", "entered", "begun"):
             getattr(self, name)[:] = saved[name]
-        self.time, self.work = float(saved["time"]), float(saved["work"])
+        for name in ("time", "work", "change"):
+            setattr(self, name, float(saved[name]))
 
 
 @dataclass(slots=True)

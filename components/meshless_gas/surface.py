@@ -31,7 +31,8 @@ class Surface:
         cloud = domain.cloud
         kind = cloud.kind[: cloud.nodes]
         names = ["", *(n for n in params.boundaries if params.kind_of(n) != "periodic")]
-        chosen = np.isin(kind, WALLS)
+        # Walls of bodies that carry clouds of their own have no patch of the box.
+        chosen = np.isin(kind, WALLS) & (cloud.patch[: cloud.nodes] > 0)
         if params.box is None:
             chosen &= cloud.patch[: cloud.nodes] == names.index("wall")
         self.rows = np.flatnonzero(chosen)

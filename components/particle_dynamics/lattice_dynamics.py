@@ -210,6 +210,12 @@ class LatticeDynamics(Component):
         size = max(size, kinetic, AUDITED * len(state.position) * self.unit)
         return (gained - put_in) / size
 
+    def _outer_work(self) -> float:
+        """Energy [J] of drive, damping and baths so far, but for a wall that a partner heats."""
+        state, wall = self.state, self.built.wall
+        heat = float(state.heat.sum() - state.heat[wall].sum())
+        return float(state.energies[WORK] - state.energies[DISSIPATED]) + heat
+
     def _integrals(self) -> Array:
         """Temperature [K s] of what is free to move, and heat of each bath [J], since the start."""
         free = len(self.built.start) - len(self.built.model.frozen)
@@ -297,6 +303,7 @@ class LatticeDynamics(Component):
             angular_momentum=np.cross(state.position, momentum).sum(axis=0),
             kinetic=kinetic,
             internal=potential,
+            work=self._outer_work(),
         )
 
     def view(self) -> Fields:

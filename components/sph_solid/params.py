@@ -203,7 +203,8 @@ class SphSolidParams:
     total_lagrangian
         Whether pairs are those of the start for good, and gradients those with respect to places
         there (Ganzenmüller): what is stretched forms no clumps, but bodies do not touch as they
-        come near, and fragments hold together by what they bear in compression.
+        come near, bodies that are neighbours at the start are one, and fragments hold together by
+        what they bear in compression.
     """
 
     spacing: Positive

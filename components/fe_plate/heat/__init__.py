@@ -2,12 +2,12 @@
 
     C dT/dt + K T = q,   K = ∫ k ∇N·∇N dV,   C = ∫ ρ c N dV
 
-Trilinear elements, integrated at eight points; heat capacities are lumped at the nodes, so that in
-boxes of cubes no temperature leaves the range of what is held and what was there at the start.
-Steps are those of Alexander's diagonally implicit scheme of two stages: of second order, damping
-what is fast (L-stable), stable at any size. Linear systems are solved by conjugate gradients with
-the diagonal as preconditioner. Heat is conserved to rounding whatever their tolerance: what a part
-lacks then is given by what holds it, or warms it evenly.
+Trilinear elements, integrated at eight points; heat capacities are lumped at the nodes. Steps are
+those of Alexander's diagonally implicit scheme of two stages: of second order, damping what is fast
+(L-stable), stable at any size; one longer than 2.4 times the slowest decay overshoots. Linear
+systems are solved by conjugate gradients with the diagonal as preconditioner. Heat of steps is
+conserved to rounding whatever their tolerance: what a part lacks then is given by what holds it, or
+warms it evenly; of what is steady to the tolerance.
 
 A temperature held at a point has no limit under refinement: the heat that enters there goes to
 nothing with the elements' size. Hold faces for results that do not depend on the mesh.

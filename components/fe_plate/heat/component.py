@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
+from quintet.components.fe_plate.heat import MANIFEST
 from quintet.components.fe_plate.heat.build import build, initial_state
 from quintet.components.fe_plate.heat.kernels import conduct, solve
 from quintet.components.fe_plate.heat.params import FeHeatParams
-from quintet.components.fe_plate.heat.ports import SHOWS, ports
+from quintet.components.fe_plate.heat.ports import SHOWS
 from quintet.components.fe_plate.heat.view import view
 from quintet.components.fe_plate.meshes.arrays import Array
 from quintet.components.fe_plate.meshes.mesh import faces_in
@@ -28,10 +29,12 @@ class FeHeat(Component):
         Parts, what is held, fluxes.
     """
 
+    Params: type[FeHeatParams] = FeHeatParams
+    manifest = MANIFEST
     shows = SHOWS
 
     def __init__(self, params: FeHeatParams) -> None:
-        self.params, (self.takes, self.gives) = params, ports(params)
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.model = build(params)
         mesh = self.model.mesh
         coupled = np.arange(len(mesh.side))
@@ -84,6 +87,7 @@ class FeHeat(Component):
         held = self.model.holder >= 0
         flow = np.bincount(self.model.holder[held], -gained[held], len(self.state.held))
         self.state.held[:] = flow
+        self.state.outside[0] += dt * float(flow.sum() + self.model.source.sum())
 
     def _advance(self, dt: float, load: Array) -> Array:
         """Step the temperatures [K]; return the mean net heat (n,) W that came to each node."""
@@ -156,11 +160,13 @@ class FeHeat(Component):
             array[:] = state[name]
 
     def totals(self) -> Totals:
-        """Mass, and heat above 0 K where the capacity is told."""
+        """Mass, and heat above 0 K; of what is steady none, for it stores none."""
         parts = np.bincount(self.model.part, self.model.volume)  # m3
-        density = [one.density or 0.0 for one in self.params.parts]
+        mass = float(parts @ [one.density or 0.0 for one in self.params.parts])
+        if self.params.steady:
+            return Totals(mass=mass)
         heat = float(self.model.capacity @ self.state.temperature)
-        return Totals(mass=float(parts @ density), internal=heat)
+        return Totals(mass=mass, internal=heat, work=float(self.state.outside[0]))
 
     def view(self) -> Fields:
         """Outer faces with their temperatures."""

@@ -26,3 +26,4 @@ class State(NamedTuple):
     temperature: Array  # (n,) K
     heat: Array  # (nodes of the surface,) W, of partners
     held: Array  # (h,) W, mean flow of the last step from what holds nodes into the body
+    outside: Array  # (1,) J, heat of fluxes and of what holds nodes since the start

@@ -228,7 +228,10 @@ class Part:
             )
 
         if self.cutout is not None:
-            raise ValueError(f"{where}: in two dimensions nothing is cut out. Make more parts.")
+            raise ValueError(
+                f"{where}: in two dimensions nothing is cut out; found a cutout. Leave it out, or "
+                "set dimensions = 3."
+            )
 
     def _edges(self) -> tuple[float, ...]:
         if self.cylinder is not None:

@@ -73,9 +73,7 @@ def sphere_cap(
         reach.weight,
     )
     none = np.zeros(0, np.int32)
-    surface = Surface(
-        near, none, np.zeros((0, 3, 3)), np.zeros((0, 3)), is_edge, _inward(points, is_edge)
-    )
+    surface = Surface(near, none, np.zeros((0, 3, 3)), is_edge, _inward(points, is_edge))
     return layered(places, surface, bounds, is_cross)
 
 

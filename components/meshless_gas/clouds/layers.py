@@ -25,7 +25,6 @@ class Surface(NamedTuple):
     neighbours: Whole  # (m, a)
     ghost_source: Whole  # (g,) node that a ghost copies
     ghost_turn: Array  # (g, 3, 3)
-    ghost_shift: Array  # (g, 3) m
     is_edge: NDArray[np.bool_]  # (m,) whether nothing is beyond it
     inward: Whole  # (m,) the neighbour towards the middle of one at an edge; itself elsewhere
 
@@ -75,7 +74,7 @@ def layered(
     turn = np.tile(surface.ghost_turn, (layers, 1, 1))
     flat = places.reshape(-1, 3)
     images = np.einsum("gij,gj->gi", turn, flat[owner])
-    positions = np.vstack([flat, images + np.tile(surface.ghost_shift, (layers, 1))])
+    positions = np.vstack([flat, images])
     patch, neighbours = _patches(layers, bounds), _neighbours(layers, surface, False)
     kind = bounds.kinds[patch]
     if is_cross:

@@ -134,7 +134,6 @@ def _meridian_surface(angle: Array, step: float, is_closed: bool) -> Surface:
         neighbours.astype(np.int32),
         source.astype(np.int32),
         rotations(turns),
-        np.zeros((len(source), 3)),
         is_edge,
         inward.astype(np.int32),
     )

@@ -26,21 +26,10 @@ def line(count: int) -> Surface:
     neighbours[-1, 1] = -1
     is_edge = (node == 0) | (node == count - 1)
     inward = np.clip(node, 1, count - 2)
-    return _surface(neighbours, [], np.zeros((0, 3)), is_edge, inward)
-
-
-def _surface(
-    neighbours: NDArray[np.int64],
-    source: list[int],
-    shift: Array,
-    is_edge: NDArray[np.bool_],
-    inward: NDArray[np.int64],
-) -> Surface:
     return Surface(
         neighbours.astype(np.int32),
-        np.array(source, np.int32),
-        np.tile(np.eye(3), (len(source), 1, 1)),
-        shift,
+        np.zeros(0, np.int32),
+        np.zeros((0, 3, 3)),
         is_edge,
         inward.astype(np.int32),
     )
@@ -87,8 +76,6 @@ def wall_line(
     share = np.zeros(len(foot))
     share[:-1] += 0.5 * length
     share[1:] += 0.5 * length
-    if len(surface.ghost_source):  # the half cells at the ends meet beyond the period
-        share[[0, -1]] += 0.5 * (math.sqrt((surface.ghost_shift[0] ** 2).sum()) - length.sum())
     areas = np.repeat(share[None], len(distance), axis=0)
     normals = np.tile(up, (len(foot), 1))
     bounds = Bounds(*numbers, kinds, normals, areas, -up * areas[-1][:, None], weight)

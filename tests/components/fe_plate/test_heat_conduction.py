@@ -165,7 +165,7 @@ def test_heat_is_conserved_whatever_the_tolerance(is_held):
 
 
 @pytest.mark.parametrize(("size", "step"), [((1.0, 1.0, 1e-3), 1e9), ((1.0, 1e-3, 1e-3), 1e-9)])
-def test_no_step_is_too_long_or_too_short_for_flat_elements(size, step):
+def test_very_long_and_very_short_steps_stay_in_bounds_in_flat_elements(size, step):
     """Temperatures stay between those that are held."""
     ends = (face(0.0, size, 400.0), face(1.0, size, 300.0))
     made = block(size, (10, 10, 3), 300.0, held=ends)
@@ -173,6 +173,22 @@ def test_no_step_is_too_long_or_too_short_for_flat_elements(size, step):
         made.step(step)
     assert made.state.temperature.min() > 300.0 - 1e-6
     assert made.state.temperature.max() < 400.0 + 1e-6
+
+
+def test_a_long_step_overshoots_by_a_quarter_at_most():
+    for dt in (0.5, 1.25, 5.0):
+        assert -0.26 < cooled(dt, seconds=dt)[0].min() < 0.0
+
+
+def test_heat_that_comes_from_outside_is_counted():
+    size = (1.0, 0.5, 0.5)
+    made = block(size, (3, 2, 2), 3.0, held=(face(0.0, size, 400.0), face(1.0, size, 300.0)))
+    begun = made.totals()
+    for _ in range(4):
+        made.step(0.02)
+    now = made.totals()
+    assert now.internal - begun.internal == pytest.approx(now.work - begun.work, rel=1e-10)
+    assert now.work > 0.0
 
 
 def test_conduction_and_mechanics_import_nothing_of_each_other():

@@ -1,5 +1,6 @@
 """A limit that is known exactly is found, with runs on both sides of it told apart."""
 
+import csv
 import json
 
 import pytest
@@ -7,7 +8,7 @@ from spring_scene import command, found_by, write
 
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.study.bisection import bisect
-from quintet.coupler.study.invariants import judge
+from quintet.coupler.study.invariants import energies, judge
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 
@@ -92,11 +93,11 @@ def test_a_range_without_a_limit_says_so(tmp_path, capsys):
     assert "holds from 0.01 to 0.02" in said and "at 0.3 already: energy" in said
 
 
-HEAD = "time,name,momentum_residual,kinetic,potential,internal\n"
+HEAD = "time,name,momentum_residual,kinetic,potential,internal,work\n"
 
 
 def verdict(folder, rows, status="done", **rules):
-    (folder / "ledger.csv").write_text(HEAD + rows)
+    (folder / "ledger.csv").write_text(HEAD + rows.replace("\n", ",0\n"))
     given = {"parameter": "window", "from": 1.0, "to": 2.0, **rules}
     limit, mistakes = read(LimitTable, given, "limit")
     assert not mistakes
@@ -225,3 +226,13 @@ def test_a_wrong_limit_is_refused_with_the_scene(tmp_path, capsys, case):
 def test_a_scene_without_limits_says_so(tmp_path, capsys):
     assert command("stability", write(tmp_path)) == 2
     assert "Add a [[stability]] for each." in capsys.readouterr().err
+
+
+def test_work_from_outside_is_no_rise_of_the_energy(tmp_path):
+    rows = "0,a,,1,0,0\n1,a,,9,0,0\n"
+    assert verdict(tmp_path, rows, energy={"factor": 2.0}).broke == "energy"
+    (tmp_path / "ledger.csv").write_text(HEAD + "0,a,,1,0,0,0\n1,a,,9,0,0,8\n")
+    assert energies(list(csv.DictReader((tmp_path / "ledger.csv").read_text().splitlines()))) == {
+        0.0: 1.0,
+        1.0: 1.0,
+    }

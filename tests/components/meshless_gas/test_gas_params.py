@@ -1,0 +1,37 @@
+"""What does not fit together in the parameters of a gas is refused with what to do."""
+
+import pytest
+
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.interfaces.params import read
+
+REST = {"density": 1.0, "pressure": 1.0}
+BOX = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.0, 1.0], "spacing": 0.1}
+PLATE = {"length": 1.0, "ahead": 0.2, "height": 0.5, "rays": 20, "finest": 0.01}
+BODY = {"radius": 0.1, "position": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1, "spacing": 0.05}
+POINTS = {"drag": "stokes"}
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"box": BOX, "local_steps": True, "particles": POINTS}, "Leave out local_steps"),
+        ({"box": BOX, "steady": {}, "particles": POINTS}, "Leave out local_steps"),
+        ({"box": BOX, "moving": {"bodies": [BODY]}, "local_steps": True}, "Leave out local_steps"),
+        ({"box": BOX, "moving": {"bodies": [BODY]}, "probes": [[0.1, 0.0, 0.1]]}, "still; found"),
+        ({"box": BOX, "moving": {"bodies": [BODY]}, "particles": POINTS}, "Leave out particles"),
+        ({"plate": PLATE | {"layers": {"count": 10}}, "particles": POINTS}, "give a box"),
+        ({"plate": PLATE | {"layers": {"count": 10, "jitter": 0.3}}}, "jitter is for an"),
+        ({}, "found none"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(keys, said):
+    table = {"gas": {"gas_constant": 1.0}, "initial": REST, **keys}
+    _, mistakes = read(MeshlessGasParams, table, "gas")
+    assert any(said in one for one in mistakes), mistakes
+
+
+def test_a_limiter_without_a_threshold_divides_nothing_by_nothing():
+    table = {"gas": {}, "initial": REST, "box": BOX, "limiter_threshold": 0.0}
+    _, mistakes = read(MeshlessGasParams, table, "gas")
+    assert any("limiter_threshold" in one for one in mistakes)
