@@ -1,11 +1,12 @@
 """Boxes: lattices of nodes, moved at random where told, with images beyond some of their faces."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import (
     INFLOW,
@@ -103,23 +104,8 @@ def box(
         [grid.ravel() for grid in np.meshgrid(*(one.widths for one in lattices), indexing="ij")],
         axis=1,
     )
-    place = np.indices([len(one.places) for one in lattices]).reshape(3, -1).T
     count = len(positions)
-    kind = np.zeros(count, np.int8)
-    patch = np.zeros(count, np.int32)
-    normals, areas = np.zeros((count, 3)), np.zeros((count, 3))
-    rank = {INFLOW: 2, OUTFLOW: 0}  # at edges inflows come before walls, and outflows after them
-    for d, side in product(axes, (0, 1)):
-        if not lattices[d].has_ends[side]:
-            continue
-        face = AXES[d] + "-+"[side]
-        sign, own = (1.0, -1.0)[side], KINDS[faces[face]]
-        on = place[:, d] == (0, len(lattices[d].places) - 1)[side]
-        areas[on, d] += sign * widths[on].prod(axis=1) / widths[on, d]
-        ranks = np.array([rank.get(one, 1) if one != INNER else -1 for one in range(8)])
-        first = on & (ranks[kind] < ranks[own])
-        kind[first], patch[first], normals[first] = own, patches[face], 0.0
-        normals[first, d] = sign
+    kind, patch, normals, areas = _faces(lattices, widths, axes, faces, patches)
     step = np.array([one.widths.max() for one in lattices])
     if jitter > 0.0:
         moves = np.random.default_rng(seed).uniform(-0.5, 0.5, (count, 3)) * jitter * step
@@ -141,6 +127,34 @@ def box(
     for d in axes:
         made = with_images(made, d, (lowest[d], highest[d]), ends[d], reach * step[d])
     return made
+
+
+def _faces(
+    lattices: Sequence[Lattice],
+    widths: Array,
+    axes: tuple[int, ...],
+    faces: Mapping[str, str],
+    patches: Mapping[str, int],
+) -> tuple[NDArray[np.int8], NDArray[np.int32], Array, Array]:
+    """Kinds (n,), numbers of boundaries (n,), normals and areas (n, 3) m2 of the nodes of a box."""
+    place = np.indices([len(one.places) for one in lattices]).reshape(3, -1).T
+    count = len(widths)
+    kind = np.zeros(count, np.int8)
+    patch = np.zeros(count, np.int32)
+    normals, areas = np.zeros((count, 3)), np.zeros((count, 3))
+    rank = {INFLOW: 2, OUTFLOW: 0}  # at edges inflows come before walls, and outflows after them
+    ranks = np.array([rank.get(one, 1) if one != INNER else -1 for one in range(8)])
+    for d, side in product(axes, (0, 1)):
+        if not lattices[d].has_ends[side]:
+            continue
+        face = AXES[d] + "-+"[side]
+        sign, own = (1.0, -1.0)[side], KINDS[faces[face]]
+        on = place[:, d] == (0, len(lattices[d].places) - 1)[side]
+        areas[on, d] += sign * widths[on].prod(axis=1) / widths[on, d]
+        first = on & (ranks[kind] < ranks[own])
+        kind[first], patch[first], normals[first] = own, patches[face], 0.0
+        normals[first, d] = sign
+    return kind, patch, normals, areas
 
 
 def with_images(

@@ -76,52 +76,45 @@ def layout(
     gamma : float, 1
     """
     count = cloud.nodes
-    ghosts = len(cloud.owner) - sum(len(one.cloud.owner) for one in rings)
+    sizes = [one.cloud.nodes for one in rings]
+    imaged = [len(one.cloud.owner) for one in rings]
+    firsts = background + np.cumsum([0, *sizes[:-1]])  # rows of each body's cloud begin here
+    beyond = count + len(cloud.owner) - sum(imaged) + np.cumsum([0, *imaged[:-1]])  # its images
     height, volumes = np.full(count, np.inf), cloud.volumes[:count].copy()
-    first, image = background, count + ghosts
-    carried, carrier, offsets, walls, body, above = [], [], [], [], [], []
-    heights, arms, second, images = [], [], [], []
-    for b, one in enumerate(rings):
-        nodes, rows = one.cloud.nodes, one.home
-        own = np.where(rows < nodes, rows + first, rows - nodes + image)
-        place = np.arange(first, first + nodes)
+    for one, body, first, image in zip(rings, params.bodies, firsts, beyond, strict=True):
+        place = np.arange(first, first + one.cloud.nodes)
+        own = one.home
+        own = np.where(own < len(place), own + first, own - len(place) + image)
         neighbours[place] = place[:, None]
         neighbours[place, : own.shape[1]] = own
         height[place] = one.height
         # Nodes beyond what the background leaves free count no volume twice.
-        body_ = params.bodies[b]
-        depth = one.height.max() - (params.overlap + 0.5) * body_.spacing
-        volumes[place] *= one.height <= depth
-        carried.append(place)
-        carrier.append(np.full(nodes, b))
-        offsets.append(one.cloud.positions[:nodes])
-        wall = np.arange(one.rays)
-        walls.append(first + wall)
-        body.append(np.full(one.rays, b))
-        above.append(first + np.stack([wall + one.rays, wall + 2 * one.rays], axis=1))
-        levels = one.height[:: one.rays]
-        heights.append(np.tile(levels[1:3], (one.rays, 1)))
-        arms.append(one.cloud.positions[: one.rays])
-        second.append(levels[2])
-        images.append(np.arange(image, image + len(one.cloud.owner)))
-        first, image = first + nodes, image + len(one.cloud.owner)
+        volumes[place] *= one.height <= one.height.max() - (params.overlap + 0.5) * body.spacing
+    walls = [first + np.arange(one.rays) for one, first in zip(rings, firsts, strict=True)]
+    rays = [one.rays for one in rings]
+    levels = [one.height[:: one.rays] for one in rings]
+    images = [image + np.arange(size) for image, size in zip(beyond, imaged, strict=True)]
+    above = [
+        np.stack([wall + one.rays, wall + 2 * one.rays], axis=1)
+        for one, wall in zip(rings, walls, strict=True)
+    ]
     all_images = np.concatenate(images)
     sides = [(0, -1), (0, 1), (2, 1)]
     return Layout(
         home=neighbours[:count].copy(),
         height=height,
         volumes=volumes,
-        carried=np.concatenate(carried),
-        carrier=np.concatenate(carrier),
-        offsets=np.concatenate(offsets),
+        carried=np.arange(background, background + sum(sizes)),
+        carrier=np.repeat(np.arange(len(rings)), sizes),
+        offsets=np.concatenate([one.cloud.positions[: one.cloud.nodes] for one in rings]),
         images=all_images,
         imaged=cloud.owner[all_images - count].astype(np.int64),
         walls=np.concatenate(walls),
-        body=np.concatenate(body),
+        body=np.repeat(np.arange(len(rings)), rays),
         above=np.concatenate(above),
-        heights=np.concatenate(heights),
-        arms=np.concatenate(arms),
-        second=np.array(second),
+        heights=np.repeat([level[1:3] for level in levels], rays, axis=0),
+        arms=np.concatenate([one.cloud.positions[: one.rays] for one in rings]),
+        second=np.array([level[2] for level in levels]),
         box=box,
         open_sides=sides if params.axisymmetric else [*sides, (2, -1)],
         gamma=gamma,
