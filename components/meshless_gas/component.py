@@ -28,6 +28,7 @@ from quintet.components.meshless_gas.kernels.motion import (
     write_sound,
 )
 from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
+from quintet.components.meshless_gas.limiters import limiter_of
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
@@ -97,6 +98,7 @@ class MeshlessGas(Component):
         # What is None is not compiled.
         self.planar = True if params.planar else None
         self.sloped = True if params.order == 2 else None
+        self.limiter = limiter_of(params.limiter, params.limiter_threshold)
         self.steps = self.fluxes.steps if params.local_steps else None
         self.viscous = None
         if params.viscous:
@@ -277,7 +279,7 @@ class MeshlessGas(Component):
         self.team.run(
             write_residuals, blocks, own.inner, cloud.positions, work.primitive, work.gradients,
             work.lowest, neighbours, coefficients, self.frame, self.planar, self.sloped,
-            self.gamma, self.params.limiter_threshold, work.residual,
+            self.gamma, self.limiter, work.residual,
         )  # fmt: skip
         if self.viscous is not None:
             self.viscous.add(work)

@@ -7,7 +7,7 @@ import pytest
 from gases import GAMMA, gas, given, run
 from scipy.spatial import cKDTree
 
-from quintet.components.meshless_gas import laws
+from quintet.components.meshless_gas import laws, limiters
 from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.ghosts import write_ghost_gradients
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -58,10 +58,10 @@ def test_flux_of_the_mirror_image_is_the_image_of_the_flux():
 
 
 def test_change_to_the_middle_is_exact_for_parabolas_and_nothing_at_extremes():
-    assert laws.half_step.py_func(-1.0, 3.0, 0.0) == 0.0
-    assert laws.half_step.py_func(2.0, 2.0, 0.0) == pytest.approx(1.0)
+    assert limiters.van_albada.py_func(-1.0, 3.0, 0.0) == 0.0
+    assert limiters.van_albada.py_func(2.0, 2.0, 0.0) == pytest.approx(1.0)
     # Means of x² over cells of 1: 1/12, 13/12, 49/12; at the side of the middle one it is 9/4.
-    assert 13 / 12 + laws.half_step.py_func(1.0, 3.0, 1e9) == pytest.approx(9 / 4)
+    assert 13 / 12 + limiters.van_albada.py_func(1.0, 3.0, 1e9) == pytest.approx(9 / 4)
 
 
 def test_wall_pressure_is_that_behind_the_shock_that_stops_the_gas():
