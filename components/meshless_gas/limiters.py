@@ -142,8 +142,8 @@ def limiter_of(name: str, threshold: float | None) -> Limiter:
 
 
 def half_step(limiter: Limiter, upwind: float, across: float, threshold: float) -> float:
-    """Change from a node to the middle of a pair by a limiter; compiled functions call it."""
-    return LAWS[type(limiter)](upwind, across, threshold)
+    """Change from a node to the middle of a pair by a limiter."""
+    raise NotImplementedError("it is called by compiled functions only")
 
 
 @overload(half_step, jit_options=INLINED)
