@@ -41,10 +41,10 @@ def write_temperature_gradients(  # type: ignore[no-untyped-def]
 
 
 @njit(**FAST)
-def write_ghost_slopes(owner, turn, gradients):  # type: ignore[no-untyped-def]
+def write_ghost_slopes(begin, end, owner, turn, gradients):  # type: ignore[no-untyped-def]
     """Turn gradients (n, 3) of a scalar to the ghosts of their nodes."""
     first = gradients.shape[0] - owner.shape[0]
-    for g in range(owner.shape[0]):
+    for g in range(begin, end):
         x, y, z = gradients[owner[g], 0], gradients[owner[g], 1], gradients[owner[g], 2]
         for a in range(3):
             along = turn[g, a, 0] * x + turn[g, a, 1] * y + turn[g, a, 2] * z

@@ -78,7 +78,7 @@ def test_gradients_of_ghosts_are_those_of_the_turned_field():
     scalar, tensor = np.array([1.0, 2.0, 3.0]), np.arange(9.0).reshape(3, 3)
     gradients = np.zeros((2, 5, 3))
     gradients[0, 0], gradients[0, 1:4] = scalar, tensor
-    write_ghost_gradients(np.zeros(1, np.int32), turn[None], gradients, np.ones(2))
+    write_ghost_gradients(0, 1, np.zeros(1, np.int32), turn[None], gradients, np.ones(2))
     assert gradients[1, 0] == pytest.approx(turn @ scalar)
     assert gradients[1, 1:4] == pytest.approx(turn @ tensor @ turn.T)
 
