@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BAND = 3.0  # spacings about a seam within which neighbours are found anew
-NEAR = 3  # times as many nodes are looked at as a node has neighbours
+NEAR = 4  # times as many nodes are looked at as a node has neighbours
 KNOWN = 8  # nodes that tell the state of one that is uncovered
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
 
