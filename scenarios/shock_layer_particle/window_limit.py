@@ -4,8 +4,8 @@
 
 RATIO is the density of the sphere over that of the gas. One that begins to move at t = 0 is held
 back by Z v exp(-at/R) cos(at/R), Z = 4/3 π R² ρ a: Longhorn, Q. J. Mech. Appl. Math. 5 (1952) 64.
-The gas is told a velocity for a window and gives back the mean force in it, which the sphere takes for
-the next: v[n+1] = v[n] - w Z/m Σ_j (v[n-j] - v[n-j-1]) K_j.
+The gas is told a velocity for a window and gives back the mean force in it, which the sphere takes
+for the next: v[n+1] = v[n] - w Z/m Σ_j (v[n-j] - v[n-j-1]) K_j.
 """
 
 import sys

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from quintet.components.meshless_gas.clouds.grading import capped
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -111,6 +112,51 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
 
+def in_a_stream(**body):
+    """A sphere about an axis, in a box that ends where its cloud is cut off."""
+    settings = about_an_axis(velocity=[0.0, 0.0, 0.0], position=[0.0, 0.0, 0.0], **body)
+    wind = {"density": 1.0, "pressure": PRESSURE, "velocity": [MACH, 0.0, 0.0]}
+    settings |= {"initial": wind}
+    leave = {"kind": "outflow"}
+    settings["boundaries"] |= {"x-": {"kind": "inflow", "state": wind}, "x+": leave, "z+": leave}
+    settings["box"]["highest"][0] = 0.0 if "sector" in body else 1.7
+    return settings
+
+
+def test_a_cloud_that_ends_at_a_sector_says_what_the_whole_says_upstream():
+    _, whole = flown(made(in_a_stream()), 1.2)
+    gas = made(in_a_stream(sector=0.5 * np.pi))
+    _, cut = flown(gas, 1.2)
+    angle = gas.give(frozenset(["surface.angle"]))["surface.angle"]
+    other = (np.arange(24) + 0.5) * np.pi / 24
+    near = angle < 1.3
+    assert np.abs(cut - np.interp(angle, other, whole))[near].max() < 0.015 * whole.max()
+    imbalance = gas.give(frozenset(["balance.imbalance"]))["balance.imbalance"][0]
+    assert abs(imbalance) < 0.01
+    kept = gas.save()
+    gas.step(1e-3)
+    after = gas.save()
+    gas.load(kept)
+    gas.step(1e-3)
+    assert np.array_equal(gas.state.primitive, after["primitive"])
+
+
+def test_a_cloud_that_ends_where_its_box_does_not_is_refused():
+    settings = in_a_stream(sector=0.5 * np.pi)
+    settings["box"]["highest"][0] = 0.5
+    with pytest.raises(SceneError, match="must end there too"):
+        made(settings)
+
+
+def test_layers_grow_to_the_largest_and_no_further():
+    heights = capped(np.array([0.01, 0.03]), 1.0, 20, 0.07)
+    steps = np.diff(heights, axis=0)
+    assert np.allclose(steps[0], [0.01, 0.03])
+    assert np.allclose(heights[-1], 1.0)
+    assert steps.max() < 0.07 + 1e-12
+    assert (np.diff(steps, axis=0) > -1e-12).all()
+
+
 def test_bodies_off_the_axis_are_refused():
     gas = made(about_an_axis(is_driven=True))
     motion = {
@@ -141,6 +187,21 @@ def test_nodes_behind_a_body_are_no_neighbours():
     lacks = choose(np.array([0]), found, positions, np.full(3, 0.1), *body, 1, near)
     assert lacks == -1
     assert near[0, 0] == 2
+
+
+def test_nodes_beside_a_coarser_cloud_have_neighbours_on_its_side():
+    fine = [[-0.1 * a, 0.0, 0.1 * b] for a in range(4) for b in (0, -1, 1, -2, 2)]
+    positions = np.array([*fine, [0.35, 0.0, 0.1], [0.36, 0.0, -0.2]])
+    order = np.argsort((positions**2).sum(axis=1), kind="stable")
+    near = np.zeros((len(positions), 8), np.int32)
+    far = np.array([[9.0, 0.0, 9.0]]), np.array([0.1])
+    spacing = np.full(len(positions), 0.1)
+    assert choose(np.array([0]), order[None], positions, spacing, *far, 8, near) == -1
+    arms = positions[near[0]]
+    assert arms[:, 0].max() == 0.35
+    assert arms[:, 2].min() < 0.0 < arms[:, 2].max()
+    assert arms[:, 0].min() < 0.0
+    assert len(set(near[0])) == 8
 
 
 def test_hysteresis_keeps_nodes_from_coming_and_going():
