@@ -11,7 +11,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
 )
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.shares import LIGHT
+from quintet.components.meshless_gas.shares import LIGHT, SUMS
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.viscous.flux import (
     add_viscous,
@@ -100,7 +100,7 @@ class Viscous:
         )  # fmt: skip
         self.team.run(
             write_temperature_gradients, len(own.every), own.every, neighbours, coefficients,
-            self.transported, self.gradients,
+            self.transported, self.gradients, fewest=SUMS,
         )  # fmt: skip
         self.team.run(
             write_ghost_slopes, len(cloud.owner), cloud.owner, cloud.turn, self.gradients,

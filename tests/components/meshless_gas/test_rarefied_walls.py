@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gases import given
 
 from quintet.components.meshless_gas.boundaries import Boundary
 from quintet.components.meshless_gas.component import MeshlessGas
@@ -12,7 +13,6 @@ from quintet.components.meshless_gas.transport import Transport, sutherland
 from quintet.components.meshless_gas.viscous.laws import jump_length, mean_free_path, slip_length
 from quintet.components.meshless_gas.viscous.slip import write_slip_tractions
 from quintet.interfaces.params import read
-from tests.components.meshless_gas.gases import given
 
 GAMMA, R, PRANDTL, SPEED = 1.4, 1.0 / 1.4, 0.72, 1.0
 WALL = {"kind": "isothermal", "temperature": 1.0}
