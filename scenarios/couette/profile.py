@@ -1,8 +1,8 @@
 """Temperature and velocity across the gap: ``python -m quintet.scenarios.couette.profile RUN ...``.
 
-RUN is the folder of a run of this scene, or several. Draws `profile.png` beside the first, with the
-exact solution: T = T_w + Pr/(2 c_p) u (U - u), and u where the friction ∫ μ(T(u)) du/h is one. Prints
-by how much less heat goes through the upper wall, which moves, than through the lower one.
+RUN is the folder of a run of this scene, or several. Draws `profile.png` beside the first, with
+the exact solution: T = T_w + Pr/(2 c_p) u (U - u), and u where the friction ∫ μ(T(u)) du/h is one.
+Prints by how much less heat goes through the upper wall, which moves, than through the lower one.
 """
 
 import sys
