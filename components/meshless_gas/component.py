@@ -32,7 +32,7 @@ from quintet.components.meshless_gas.node_motion import node_motion
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
-from quintet.components.meshless_gas.shares import FEWEST, LIGHT
+from quintet.components.meshless_gas.shares import FEWEST, LIGHT, SUMS
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.steady import Settling
 from quintet.components.meshless_gas.view import view, walls
@@ -245,11 +245,11 @@ class MeshlessGas(Component):
         own, work, cloud = self.domain, self.fluxes, self.domain.cloud
         self.team.run(
             write_gradients, len(own.every), own.every, work.primitive, *own.stencils,
-            self.planar, work.gradients, work.lowest,
+            self.planar, work.gradients, work.lowest, fewest=SUMS,
         )  # fmt: skip
         self.team.run(
             write_ghost_gradients, len(cloud.owner), cloud.owner, cloud.turn, work.gradients,
-            work.lowest, fewest=LIGHT,
+            work.lowest, fewest=SUMS,
         )  # fmt: skip
 
     def _write_rates(self) -> None:
@@ -274,6 +274,7 @@ class MeshlessGas(Component):
         least = self.team.run(
             write_bounds, len(own.inner), own.inner, work.primitive, work.sound,
             own.stencils.neighbours, own.stencils.coefficients, self.frame, work.bounds,
+            fewest=SUMS,
         )  # fmt: skip
         self.bound = min(least)
         if self.viscous is not None:
@@ -291,7 +292,7 @@ class MeshlessGas(Component):
         given: dict[str, Array] = {}
         ports_wanted = {key.partition(".")[0] for key in wanted}
         if "balance" in ports_wanted:
-            given.update(balance(self.state, self.domain, self.fluxes, self.gamma))
+            given.update(balance(self.state, self.domain, self.fluxes, self.gamma, self.team))
         if "error" in ports_wanted:
             given.update(errors(self.params, self.state, self.domain.cloud, self.team))
         if "probes" in ports_wanted:
@@ -328,7 +329,7 @@ class MeshlessGas(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""
-        return totals(self.state, self.domain.cloud)
+        return totals(self.state, self.domain.cloud, self.team)
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""

@@ -14,7 +14,6 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 
-from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell, pitot_pressure
 from quintet.coupler.files.recording import Recording
 from quintet.interfaces.component import Array
 
@@ -37,44 +36,30 @@ class Run:
         self.has_particles = len(bodies) > 1
         launches = [one.get("launch", 0.0) for one in scene["components"]["particle"]["spheres"]]
         self.launch = min(launches)
-        stream, wall = _stream(gas), float(bodies[0].get("temperature", 0.0))
         with Recording(folder) as recording:
             self.times = recording.times("gas")
             pressure = recording.field("gas", "surface.pressure")
-            heat = recording.field("gas", "surface.heat_flux")
+            heat = recording.field("gas", "surface.heat_ratio")
             angle = recording.field("gas", "surface.angle")[0]
             self.places = recording.field("gas", "bodies.position")[:, 1:, 0]
         ends = np.flatnonzero(np.diff(angle) < 0.0)
         nodes = int(ends[0]) + 1 if len(ends) else len(angle)  # of the first body
         self.angle = np.degrees(angle[:nodes])
-        self.pressure = pressure[:, :nodes] / (stream.pressure * pitot_pressure(stream.mach, 1.4))
-        self.heat: Array | None = None
-        if wall > 0.0:
-            self.heat = heat[:, :nodes] / fay_riddell(stream, float(bodies[0]["radius"]), wall)
+        self.pressure = pressure[:, :nodes] / _pitot(gas["initial"])
+        self.heat = heat[:, :nodes] if gas.get("viscous") else None  # over Fay and Riddell's
 
     def at(self, time: float) -> int:
         """Row of a time."""
         return int(np.abs(self.times - time).argmin())
 
 
-def _stream(gas: dict[str, Any]) -> Stream:
-    """The free stream of a scene's gas; γ = 1.4."""
-    state, law = gas["initial"], gas["gas"]
+def _pitot(state: dict[str, Any]) -> float:
+    """Rayleigh's pitot pressure [Pa]; γ = 1.4."""
     density, pressure = float(state["density"]), float(state["pressure"])
-    speed = float(np.linalg.norm(state["velocity"]))
-    return Stream(
-        mach=speed / float(np.sqrt(1.4 * pressure / density)),
-        pressure=pressure,
-        temperature=pressure / (density * float(law["gas_constant"])),
-        gamma=1.4,
-        gas_constant=float(law["gas_constant"]),
-        prandtl=float(law.get("prandtl", 0.72)),
-        sutherland=(
-            float(law.get("viscosity", 1.0)),
-            float(law.get("reference_temperature", 1.0)),
-            float(law.get("sutherland", 0.0)),
-        ),
-    )
+    speed = np.array(state["velocity"], float)
+    square = float(speed @ speed) * density / (1.4 * pressure)
+    behind = (1.0 - 1.4 + 2.8 * square) / 2.4
+    return pressure * behind * (2.4**2 * square / (5.6 * square - 0.8)) ** 3.5
 
 
 def ring(angle: Array, values: Array) -> tuple[Array, Array]:

@@ -6,8 +6,10 @@ import sys
 import numpy as np
 import pytest
 
+from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
 from quintet.components.meshless_gas.clouds.grading import capped
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.moving.outputs import unit_heat
 from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.errors import SceneError, StepError
@@ -53,10 +55,14 @@ def scene(share=0.0, way=WAY, gas=None, bodies=None, **keys):
     }
 
 
-def made(settings):
+def params_of(settings):
     params, mistakes = read(MeshlessGasParams, settings, "gas")
     assert not mistakes, mistakes
-    return MeshlessGas(params)
+    return params
+
+
+def made(settings):
+    return MeshlessGas(params_of(settings))
 
 
 def flown(gas, end):
@@ -81,6 +87,21 @@ def test_a_body_that_moves_feels_what_one_in_a_stream_feels(fixed, share):
     drag, pressure = flown(made(scene(share)), WAY * RADIUS / MACH)
     assert abs(drag / fixed[0] - 1.0) < 0.005
     assert np.abs(pressure - fixed[1]).max() < 0.01 * fixed[1].max()
+
+
+@pytest.mark.full
+def test_a_body_flies_through_a_finer_part_of_a_box_as_through_a_fine_one():
+    whole, parts = scene(1.0), scene(1.0)
+    for one in (whole, parts):
+        one["box"] |= {"lowest": [-3.0, 0.0, -3.0], "highest": [WAY * RADIUS + 3.0, 0.0, 3.0]}
+    path = {"lowest": [-1.9, 0.0, -1.6], "highest": [WAY * RADIUS + 1.6, 0.0, 1.6]}
+    parts["box"] |= {"spacing": 0.25, "refinements": [path]}
+    fine, coarse = made(whole), made(parts)
+    assert coarse.items() < 0.65 * fine.items()
+    drag, pressure = flown(fine, WAY * RADIUS / MACH)
+    found, pressures = flown(coarse, WAY * RADIUS / MACH)
+    assert abs(found / drag - 1.0) < 0.002
+    assert np.abs(pressures - pressure).max() < 0.005 * pressure.max()
 
 
 def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
@@ -146,6 +167,17 @@ def test_a_cloud_that_ends_where_its_box_does_not_is_refused():
     settings["box"]["highest"][0] = 0.5
     with pytest.raises(SceneError, match="must end there too"):
         made(settings)
+
+
+def test_heat_is_told_over_that_of_fay_and_riddell_at_a_sphere():
+    warm = in_a_stream(temperature=2.0) | {"viscous": True}
+    warm["gas"] = warm["gas"] | {"viscosity": 1e-3, "reference_temperature": 1.0, "sutherland": 1.0}
+    stream = Stream(MACH, PRESSURE, 1.0, 1.4, PRESSURE, 0.72, (1e-3, 1.0, 1.0))
+    assert unit_heat(params_of(warm))[0] == pytest.approx(fay_riddell(stream, RADIUS, 2.0))
+    flying = about_an_axis(temperature=2.0) | {k: warm[k] for k in ("viscous", "gas")}
+    flying["initial"] = warm["initial"] | {"velocity": [0.0, 0.0, 0.0]}
+    assert unit_heat(params_of(flying))[0] == pytest.approx(fay_riddell(stream, RADIUS, 2.0))
+    assert unit_heat(params_of(in_a_stream()))[0] == np.inf
 
 
 def test_layers_grow_to_the_largest_and_no_further():
