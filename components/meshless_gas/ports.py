@@ -18,6 +18,7 @@ SHOWS = (
     TEMPERATURE,
     MACH,
     Field("schlieren", (), "1"),
+    Field("shadowgraph", (), "1"),
     Field("spacing", (), "m"),  # of nodes
 )
 # Of all nodes, one row; sums of densities over their volumes.
@@ -125,6 +126,8 @@ SURFACE = Port(
         PRESSURE,
         Field("friction", (3,), "Pa"),
         Field("heat_flux", (), "W/m2"),  # into the body
+        # Over that of Fay and Riddell where the stream at the start meets a sphere; 0 of others.
+        Field("heat_ratio", (), "1"),
     ),
 )
 
