@@ -27,6 +27,7 @@ from quintet.components.meshless_gas.kernels.motion import (
     write_bounds,
     write_sound,
 )
+from quintet.components.meshless_gas.kernels.outflows import continue_outflows
 from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
@@ -248,6 +249,9 @@ class MeshlessGas(Component):
             own.weights, own.patches, self.frame, self.gamma, self.params.gas.gas_constant,
             work.primitive,
         )  # fmt: skip
+        continue_outflows(
+            *own.outflows, cloud.patch, own.patches, cloud.normals, self.gamma, work.primitive
+        )
         if self.viscous is not None:
             self.viscous.hold(work.primitive)
         if self.moving is not None:

@@ -1,0 +1,124 @@
+"""States of outflow nodes by planes through the nodes within, of second order.
+
+What leaves faster than sound is the gas within, continued to the boundary. Of slower gas the wave
+that comes in from beyond is left out: its amplitude δp - ρa δu there is that of the gas within.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, Cloud, Whole
+from quintet.components.meshless_gas.kernels.boundaries import BACK_PRESSURE
+from quintet.components.meshless_gas.laws import SENSED, WIDTH
+from quintet.components.shared.numba_options import EXACT
+from quintet.interfaces.component import Array
+
+LEAST = 0.5  # of the density and pressure nearby: what a continued state must keep
+CROSSING = 0.2  # Mach numbers about that of sound over which the incoming wave is let go
+
+
+class Outflows(NamedTuple):
+    """Outflow nodes, and the planes through what is near to them within."""
+
+    rows: NDArray[np.int32]  # (o,)
+    near: Whole  # (o, m), padded with the node itself
+    weights: Array  # (o, m) 1, of their values in that of the plane at the node; 0 where padded
+
+
+def outflows(cloud: Cloud, neighbours: Whole) -> Outflows:
+    """Planes by least squares through neighbours within and theirs, of weight 1/d²."""
+    rows = np.flatnonzero(cloud.kind == OUTFLOW).astype(np.int32)
+    found = neighbours[neighbours[rows]].reshape(len(rows), -1)
+    found = np.sort(np.hstack([neighbours[rows], found]), axis=1)
+    first = np.hstack([np.ones((len(rows), 1), bool), np.diff(found, axis=1) > 0])
+    chosen = first & (cloud.kind[found] == INNER)
+    many = int(chosen.sum(axis=1).max(initial=0))
+    order = np.argsort(~chosen, axis=1, kind="stable")[:, :many]
+    chosen, found = (np.take_along_axis(one, order, axis=1) for one in (chosen, found))
+    near = np.where(chosen, found, rows[:, None])
+    arm = cloud.positions[near] - cloud.positions[rows][:, None]
+    distance = np.sqrt((arm**2).sum(axis=2))
+    scale = distance.max(axis=1, initial=0.0)[:, None]
+    root = np.divide(scale, distance, out=np.zeros_like(distance), where=distance > 0.0)
+    basis = np.concatenate([np.ones((*arm.shape[:2], 1)), arm / scale[:, :, None]], axis=2)
+    # Directions in which nothing is near, as across a half plane, have no slope.
+    inverse = np.linalg.pinv(root[:, :, None] * basis, rcond=1e-6)
+    return Outflows(rows, near.astype(np.int32), inverse[:, 0] * root)
+
+
+@njit(**EXACT)
+def continue_outflows(
+    rows: Any,
+    near: Any,
+    weights: Any,
+    patch: Any,
+    patches: Any,
+    normals: Any,
+    gamma: float,
+    primitive: Any,
+) -> None:
+    """Write the states of outflow nodes that hold those of their neighbours: of second order.
+
+    Parameters
+    ----------
+    rows : (o,)
+    near : (o, m)
+        Nodes within.
+    weights : (o, m) 1
+    patch : (n,)
+        Which of `patches` nodes belong to.
+    patches : (p, PATCH_COLUMNS)
+    normals : (n, 3) 1
+        Into the gas.
+    gamma : float, 1
+    primitive : (n, 5) kg/m3, m/s, Pa
+        The rows are written.
+
+    References
+    ----------
+    Hirsch, Numerical Computation of Internal and External Flows 2 (1990), section 19.1.
+    """
+    more = np.empty(5)
+    for row in range(rows.shape[0]):
+        i = rows[row]
+        density, pressure = primitive[i, 0], primitive[i, 4]
+        sound = math.sqrt(gamma * pressure / density)
+        out = 0.0
+        for d in range(3):
+            out -= primitive[i, 1 + d] * normals[i, d]
+        if patches[patch[i], BACK_PRESSURE] > 0.0 and abs(out) < sound:
+            continue
+        for q in range(5):
+            more[q] = -primitive[i, q]
+        low, high = math.inf, 0.0
+        for k in range(near.shape[1]):
+            j = near[row, k]
+            if j == i:
+                continue
+            low, high = min(low, primitive[j, 4]), max(high, primitive[j, 4])
+            for q in range(5):
+                more[q] += weights[row, k] * primitive[j, q]
+        keep = min(max((low / high - SENSED) / WIDTH, 0.0), 1.0)  # none where a shock is near
+        outward = 0.0
+        for d in range(3):
+            outward -= more[1 + d] * normals[i, d]
+        # Waves: what is carried along leaves with the gas; what runs against it if that is faster.
+        carried = min(max(out / (CROSSING * sound), 0.0), 1.0)
+        against = min(max((out / sound - 1.0) / CROSSING, 0.0), 1.0)
+        ahead = 0.5 * (more[4] + density * sound * outward)
+        behind = 0.5 * against * (more[4] - density * sound * outward)
+        push, speed = ahead + behind, (ahead - behind) / (density * sound)
+        if keep * push < (LEAST - 1.0) * pressure:
+            continue
+        heavier = carried * (more[0] - more[4] / (sound * sound)) + push / (sound * sound)
+        if keep * heavier < (LEAST - 1.0) * density:
+            continue
+        primitive[i, 0] += keep * heavier
+        primitive[i, 4] += keep * push
+        for d in range(3):
+            along = more[1 + d] + outward * normals[i, d]
+            primitive[i, 1 + d] += keep * (carried * along - speed * normals[i, d])
