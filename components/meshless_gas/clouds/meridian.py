@@ -12,7 +12,7 @@ from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
     Bounds,
     LayeredCloud,
-    Surface,
+    SurfaceGrid,
     kinds_of,
     layered,
     rotations,
@@ -98,7 +98,7 @@ def _frusta(angle: Array, radius: float, mach: float, reach: Reach) -> Array:
     return np.stack([along, np.zeros(len(along)), across], axis=1)
 
 
-def _cone(angle: float, radii: Array, surface: Surface) -> Array:
+def _cone(angle: float, radii: Array, surface: SurfaceGrid) -> Array:
     """Areas (layers, m, 3) m2 into the gas of the cone that the last ray sweeps, layer by layer."""
     sides = np.zeros((*radii.shape, 3))
     if surface.is_edge[-1]:
@@ -125,7 +125,7 @@ def outer_radius(angle: Array, radius: float, mach: float, reach: Reach) -> Arra
     return np.minimum(np.maximum(wanted, radius * 1.02), reach.farthest)
 
 
-def _meridian_surface(angle: Array, step: float, is_closed: bool) -> Surface:
+def _meridian_surface(angle: Array, step: float, is_closed: bool) -> SurfaceGrid:
     """Each ray has one before and one after it, and two of its own, turned about the axis."""
     count = len(angle)
     turn = np.minimum(step / np.sin(angle), WIDEST)
@@ -142,7 +142,7 @@ def _meridian_surface(angle: Array, step: float, is_closed: bool) -> Surface:
     neighbours = np.stack([before, after, ray + count, ray + 2 * count], axis=1)
     is_edge = np.zeros(count, bool)
     is_edge[-1] = not is_closed
-    return Surface(
+    return SurfaceGrid(
         neighbours.astype(np.int32),
         source.astype(np.int32),
         rotations(turns),

@@ -3,11 +3,9 @@
 import numpy as np
 
 from quintet.components.meshless_gas.build import domain, transport_of
-from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.layout import layout, with_bodies
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.state import State
 from quintet.components.meshless_gas.stencils import Stencils, write_coefficients
 from quintet.components.shared.threads import Team
 from quintet.interfaces.errors import SceneError
@@ -47,7 +45,7 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
     neighbours[:nodes] = np.where(found < nodes, found, found + cloud.nodes - nodes)
     coefficients[:nodes] = ground.stencils.coefficients[:nodes]
     box = np.array([params.box.lowest, params.box.highest])
-    own = layout(cloud, nodes, rings, keys, neighbours, box, params.gas.gamma)
+    own = layout(cloud, nodes, rings, keys, neighbours, box)
     rows = np.arange(nodes, cloud.nodes)
     made = Stencils(neighbours, coefficients)
     team.run(
@@ -55,7 +53,7 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         coefficients, np.ones(whole),
     )  # fmt: skip
     joint = ground._replace(cloud=cloud, stencils=made)
-    moving = MovingClouds(keys, joint, own, params.neighbours, team)
+    moving = MovingClouds(params, joint, own, team)
     if params.viscous:
         # Compiled only where the gas has friction.
         from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
@@ -65,16 +63,3 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         if keys.axisymmetric:
             moving.stresses = AxisStresses(whole, law.conduction)
     return moving
-
-
-def soft_start(moving: MovingClouds, state: State, gamma: float) -> None:
-    """Let gas near a body begin with the body's velocity, which fades over one radius."""
-    positions = moving.domain.cloud.positions[: len(state.primitive)]
-    for radius, centre, velocity in zip(
-        moving.radii, moving.pose.centre, moving.pose.velocity, strict=True
-    ):
-        away = np.sqrt(((positions - centre) ** 2)[:, ::2].sum(axis=1)) / radius - 1.0
-        share = 1.0 - np.clip(away, 0.0, 1.0)[:, None]
-        state.primitive[:, 1:4] += share * (velocity - state.primitive[:, 1:4])
-    write_conservative(state.primitive, gamma, state.conservative)
-    state.begun[:] = moving.domain.cloud.volumes[: len(positions)] @ state.conservative

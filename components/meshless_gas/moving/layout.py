@@ -14,7 +14,7 @@ from quintet.interfaces.component import Array
 Rows = NDArray[np.int64]
 
 
-class Layout(NamedTuple):
+class CloudLayout(NamedTuple):
     """What of the clouds of bodies never changes; n nodes, w of them of walls."""
 
     home: Whole  # (n, K) neighbours of each node in its own cloud
@@ -33,7 +33,6 @@ class Layout(NamedTuple):
     second: Array  # (b,) m, height of the second layer of each body
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
-    gamma: float
 
 
 def with_bodies(background: Cloud, params: Moving, patch: int) -> tuple[Cloud, list[Ring]]:
@@ -59,8 +58,7 @@ def layout(
     params: Moving,
     neighbours: Whole,
     box: Array,
-    gamma: float,
-) -> Layout:
+) -> CloudLayout:
     """Say how bodies' clouds lie in the joined cloud.
 
     Parameters
@@ -73,7 +71,6 @@ def layout(
     neighbours : (n, K)
         Of the background; rows of other nodes are written.
     box : (2, 3) m
-    gamma : float, 1
     """
     count = cloud.nodes
     sizes = [one.cloud.nodes for one in rings]
@@ -100,7 +97,7 @@ def layout(
     ]
     all_images = np.concatenate(images)
     sides = [(0, -1), (0, 1), (2, 1)]
-    return Layout(
+    return CloudLayout(
         home=neighbours[:count].copy(),
         height=height,
         volumes=volumes,
@@ -117,5 +114,4 @@ def layout(
         second=np.array([level[2] for level in levels]),
         box=box,
         open_sides=sides if params.axisymmetric else [*sides, (2, -1)],
-        gamma=gamma,
     )
