@@ -230,7 +230,13 @@ class MeshlessGas(Component):
             work.primitive,
         )  # fmt: skip
         continue_outflows(
-            *own.outflows, cloud.patch, own.patches, cloud.normals, self.gamma, work.primitive
+            *own.outflows,
+            cloud.positions,
+            cloud.patch,
+            own.patches,
+            cloud.normals,
+            self.gamma,
+            work.primitive,
         )
         if self.viscous is not None:
             self.viscous.hold(work.primitive)
