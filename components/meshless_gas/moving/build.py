@@ -5,6 +5,7 @@ import numpy as np
 from quintet.components.meshless_gas.build import domain, transport_of
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.layout import layout, with_bodies
+from quintet.components.meshless_gas.moving.refusals import refuse_sector
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.stencils import Stencils, write_coefficients
 from quintet.components.shared.threads import Team
@@ -35,6 +36,7 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
             f"{params.kind_of('z-')} at {params.box.lowest[2]:g} m. Correct the box, or "
             'boundaries."z-".'
         )
+    refuse_sector(params)
     ground = domain(params, team)
     nodes = ground.cloud.nodes
     cloud, rings = with_bodies(ground.cloud, keys, 0)
@@ -52,7 +54,8 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         write_coefficients, len(rows), rows, cloud.positions, neighbours, cloud.weight, True,
         coefficients, np.ones(whole),
     )  # fmt: skip
-    joint = ground._replace(cloud=cloud, stencils=made)
+    bounding = np.concatenate([ground.bounding, own.leaving.astype(np.int32)])
+    joint = ground._replace(cloud=cloud, stencils=made, bounding=bounding)
     moving = MovingClouds(params, joint, own, team)
     if params.viscous:
         # Compiled only where the gas has friction.
