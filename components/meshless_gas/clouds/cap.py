@@ -54,7 +54,7 @@ def sphere_cap(
     """
     points, triangles = geodesic(max(1, round(reach.rays * ARC / math.pi)))
     angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
-    whole = triangles[(angle <= reach.sector)[triangles].all(axis=1)]
+    whole = _without_ears(triangles[(angle <= reach.sector)[triangles].all(axis=1)])
     kept = np.zeros(len(points), bool)
     kept[whole] = True
     number = np.where(kept, np.cumsum(kept) - 1, -1)
@@ -165,13 +165,27 @@ def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.b
     return near, is_edge
 
 
-def _rim(places: Array, faces: NDArray[np.int64]) -> Array:
-    """Areas (layers, m, 3) m2 into the gas over the grid's edge: half of a side to each end."""
+def _sides(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Sides (s, 3) of one triangle alone, and its third corner."""
     sides = np.vstack([np.roll(faces, -k, axis=1) for k in range(3)])
     _, first, often = np.unique(
         np.sort(sides[:, :2], axis=1), axis=0, return_index=True, return_counts=True
     )
-    a, b, c = sides[first[often == 1]].T  # a side of one triangle alone, and its third corner
+    return np.asarray(sides[first[often == 1]])
+
+
+def _without_ears(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Triangles but for those whose three corners lie at the edge: none of them is within."""
+    while True:
+        at_edge = np.isin(faces, _sides(faces)[:, :2]).all(axis=1)
+        if not at_edge.any():
+            return faces
+        faces = faces[~at_edge]
+
+
+def _rim(places: Array, faces: NDArray[np.int64]) -> Array:
+    """Areas (layers, m, 3) m2 into the gas over the grid's edge: half of a side to each end."""
+    a, b, c = _sides(faces).T
     ray = places[-1] - places[0]
     up = heights(places)[:, :, None] * ray / np.sqrt((ray**2).sum(axis=1))[:, None]
     found = np.zeros(places.shape)
