@@ -1,4 +1,4 @@
-"""Physics of one pair of nodes: slopes with their limiter, the flux between two states, the wall.
+"""Physics of one pair of nodes: where slopes are kept, the flux between two states, the wall.
 
 Loops over lanes call these, so nothing branches: what does not hold is chosen away.
 """
@@ -7,36 +7,11 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.numba_options import FAST
+from quintet.components.meshless_gas.limiters import INLINED
 
-# Always part of the loop that calls it, so that vectors are made of it.
-INLINED = FAST | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
 SENSED, WIDTH = 0.2, 0.3  # pressure ratio below which slopes vanish, and over which they grow
 COLLIDING = 4.0  # ram pressure over pressure above which streams collide
 LEAST = 0.05  # of the smaller of two densities or pressures: below it slopes are left out
-GATE = 0.5  # Mach number of the flow into a wall above which the wall pushes back
-
-
-@njit(**INLINED)
-def half_step(upwind, across, threshold):  # type: ignore[no-untyped-def]
-    """Change from a node to the middle of a pair: MUSCL, κ = 1/3, limiter 2 of van Albada.
-
-    Parameters
-    ----------
-    upwind : float
-        Difference to the mirror image of the other node, 2∇q·r - Δq.
-    across : float
-        Difference Δq to the other node.
-    threshold : float
-        Squares of differences that are small beside it are not limited.
-
-    References
-    ----------
-    van Albada, van Leer & Roberts, Astron. Astrophys. 108 (1982) 76; κ scheme: van Leer (1985).
-    """
-    product = 2.0 * upwind * across + threshold
-    s = max(product, 0.0) / (upwind * upwind + across * across + threshold)
-    return s * ((0.25 - s / 12.0) * upwind + (0.25 + s / 12.0) * across)
 
 
 @njit(**INLINED)
@@ -113,13 +88,9 @@ def ausmpw(  # type: ignore[no-untyped-def]
 def wall_pressure(pressure, mach, gamma):  # type: ignore[no-untyped-def]
     """Pressure [Pa] at a wall that gas runs into at a Mach number: behind the shock that stops it.
 
-    Below `GATE` it is the pressure of the gas: a settled flow does not run into its walls, and what
-    is left of it in a node beside one must not raise the pressure.
-
     References
     ----------
     Toro, Riemann Solvers and Numerical Methods for Fluid Dynamics (2009), section 6.3.3.
     """
-    normal = mach if mach > GATE else 0.0
-    part = 0.25 * (gamma + 1.0) * normal
-    return pressure * (1.0 + gamma * normal * (part + math.sqrt(part * part + 1.0)))
+    part = 0.25 * (gamma + 1.0) * mach
+    return pressure * (1.0 + gamma * mach * (part + math.sqrt(part * part + 1.0)))

@@ -10,6 +10,7 @@ from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, 
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.interfaces.params import (
+    NotNegative,
     Number,
     Positive,
     Vector,
@@ -160,9 +161,13 @@ class MeshlessGasParams:
         Of each node of a box; the nearest.
     order
         Of the scheme in space.
+    limiter
+        Of the slopes of density, velocity and pressure. Superbee keeps contacts sharp, and turns
+        smooth slopes into steps.
     limiter_threshold : 1
-        Squares of differences below this share of the square of what they are differences of are
-        not limited. Smooth flows are computed best with 1e-2.
+        Of van Albada's limiter, 1e-6 if not given: squares of differences below this share of the
+        square of what they are differences of are not limited. Smooth flows are computed best with
+        1e-2.
     courant : 1
         Share of 1/Σ_j (|v·c_ij| + a |c_ij|) that a step takes.
     local_steps
@@ -194,7 +199,8 @@ class MeshlessGasParams:
     viscous: bool = False
     neighbours: Annotated[int, Field(ge=2, le=64)] = 9
     order: Literal[1, 2] = 2
-    limiter_threshold: Positive = 1e-6
+    limiter: Literal["van_albada", "minmod", "van_leer", "koren", "superbee"] = "van_albada"
+    limiter_threshold: NotNegative | None = None
     courant: Positive = 0.7
     local_steps: bool = False
     steady: Steady | None = None
@@ -247,6 +253,13 @@ class MeshlessGasParams:
             found.append("a sphere in 2 dimensions must be axisymmetric. Say axisymmetric = true.")
         if self.vortex is not None and self.box is None:
             found.append("a vortex drifts through a periodic box. Give a box.")
+        if self.limiter == "van_albada" and self.limiter_threshold == 0.0:
+            found.append("limiter_threshold must be above 0 with van Albada's limiter. Raise it.")
+        if self.limiter != "van_albada" and self.limiter_threshold:
+            found.append(
+                f"limiter_threshold is of van Albada's limiter; found {self.limiter}. Leave it out "
+                "or say 0."
+            )
         if self.plate is not None and self.dimensions == 3:
             found.append("a plate is of 2 dimensions. Leave dimensions out.")
         return found

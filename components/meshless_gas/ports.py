@@ -79,7 +79,11 @@ def body(params: MeshlessGasParams) -> Port:
             names.append("standoff")  # of the bow shock from the wall, over the radius
         if params.boundaries["wall"].temperature is not None:
             names.append("heat_ratio")  # heat flux there, over that of Fay and Riddell
-    fields = (Field("force", (3,), "N"), Field("heat", (), "W"))
+    fields = (
+        Field("force", (3,), "N"),
+        Field("torque", (3,), "N m"),  # about the centre of a sphere, else about the origin
+        Field("heat", (), "W"),
+    )
     return Port("body", fields=(*fields, *(Field(name, (), "1") for name in names)))
 
 
@@ -102,6 +106,7 @@ BODIES = Port(
         POSITION,
         VELOCITY,
         Field("force", (3,), "N"),
+        Field("torque", (3,), "N m"),  # about its centre
         Field("heat", (), "W"),  # into the body
         # Over ½ρU² and the area that faces the flow, of the state at the start and the body's
         # velocity there.

@@ -64,11 +64,22 @@ class WallLoads:
         pressure = primitive[self.rows, 4] - (self.stream.pressure if self.stream else 0.0)
         return sums(pressure, self.friction, self.areas, self.sizes, self.params.axisymmetric)
 
+    def torque(self, primitive: Array) -> Array:
+        """Torque (3,) N m on all walls together, about the centre of a sphere or the origin."""
+        if self.params.axisymmetric:  # whole rings have none
+            return np.zeros(3)
+        one = self.params.sphere
+        arms = self.places - (np.zeros(3) if one is None else np.array(one.centre))
+        return np.asarray(np.cross(arms, self._each(primitive)).sum(axis=0))
+
     def scale(self, primitive: Array) -> float:
         """Sum [N] of the sizes of forces on nodes, with which their sum's change is compared."""
+        return float(np.sqrt((self._each(primitive) ** 2).sum(axis=1)).sum())
+
+    def _each(self, primitive: Array) -> Array:
+        """Forces (w, 3) N on nodes."""
         pressure = primitive[self.rows, 4] - (self.stream.pressure if self.stream else 0.0)
-        each = self.sizes[:, None] * self.friction - pressure[:, None] * self.areas
-        return float(np.sqrt((each**2).sum(axis=1)).sum())
+        return np.asarray(self.sizes[:, None] * self.friction - pressure[:, None] * self.areas)
 
     def wall(self, primitive: Array) -> Fields:
         """Fields of the port `wall`."""
@@ -84,6 +95,7 @@ class WallLoads:
         force = self.force(primitive)
         given = {
             "body.force": force[None],
+            "body.torque": self.torque(primitive)[None],
             "body.heat": np.array([(self.sizes * self.heat).sum()]),
             "body.settled": np.array([settled]),
         }

@@ -15,9 +15,9 @@ from quintet.components.meshless_gas.laws import (
     INLINED,
     LEAST,
     ausmpw,
-    half_step,
     smoothness,
 )
+from quintet.components.meshless_gas.limiters import half_step
 from quintet.components.shared.numba_options import FAST
 
 LANES = 16
@@ -44,7 +44,7 @@ def write_residuals(
     planar: Any,
     sloped: Any,
     gamma: float,
-    threshold: float,
+    limiter: Any,
     residual: Any,
 ) -> None:
     """Write dq/dt of density, momentum and energy by the inviscid fluxes.
@@ -52,7 +52,7 @@ def write_residuals(
     Parameters
     ----------
     first, last : int
-        Blocks of LANES nodes of `rows`.
+        Of `rows`; LANES of them go side by side.
     rows : (m,)
         Nodes that are advanced.
     positions : (n, 3) m
@@ -69,22 +69,21 @@ def write_residuals(
     sloped : None or True
         Of None the scheme is of first order.
     gamma : float, 1
-    threshold : float, 1
-        Of the limiter, over the squares of what it compares.
+    limiter : Limiter
+        Of slopes; its class is known when this is compiled.
     residual : (n, 5) kg/(m3 s), N/m3, W/m3
         Written.
     """
     work = np.zeros(ROWS * LANES)
-    for block in range(first, last):
-        begin = block * LANES
-        count = min(LANES, rows.shape[0] - begin)
+    for begin in range(first, last, LANES):
+        count = min(LANES, last - begin)
         load_nodes(rows, begin, count, primitive, gradients, lowest, frame, planar, sloped, work)
         for k in range(neighbours.shape[1]):
             load_pairs(
                 rows, begin, count, k, positions, primitive, gradients, lowest, neighbours,
                 coefficients, frame, planar, sloped, work,
             )  # fmt: skip
-            add_fluxes(planar, sloped, gamma, threshold, work)
+            add_fluxes(planar, sloped, gamma, limiter, work)
         for lane in range(count):
             i = np.uintp(rows[begin + lane])
             r0, r1 = work[SUM * LANES + lane], work[(SUM + 1) * LANES + lane]
@@ -158,7 +157,7 @@ def load_pairs(  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def change(work, q, lane, across, threshold, planar):  # type: ignore[no-untyped-def]
+def change(work, q, lane, across, limiter, threshold, planar):  # type: ignore[no-untyped-def]
     """Changes of a variable from both nodes to the middle of their pair."""
     at = (OWN_SLOPE + 3 * q) * LANES + lane
     own = work[at] * work[ARM * LANES + lane]
@@ -167,13 +166,13 @@ def change(work, q, lane, across, threshold, planar):  # type: ignore[no-untyped
         own += work[at + LANES] * work[(ARM + 1) * LANES + lane]
     other = work[(OTHER_SLOPE + q) * LANES + lane]
     return (
-        half_step(own - across, across, threshold),
-        half_step(other - across, across, threshold),
+        half_step(limiter, own - across, across, threshold),
+        half_step(limiter, other - across, across, threshold),
     )
 
 
 @njit(**INLINED)
-def add_fluxes(planar, sloped, gamma, threshold, work):  # type: ignore[no-untyped-def]
+def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped-def]
     """Add what the k-th neighbours give to their nodes."""
     heat = gamma / (gamma - 1.0)
     for lane in range(LANES):
@@ -196,10 +195,11 @@ def add_fluxes(planar, sloped, gamma, threshold, work):  # type: ignore[no-untyp
             closing = max((u - ur) * x + (v - vr) * y + (w - wr) * z, 0.0)
             ram = min(r, rr) * closing * closing
             keep = smoothness(lowest_i, lowest_j, p, pr, ram)
-            mean_r, mean_p = r + rr, p + pr
+            mean_r, mean_p, threshold = r + rr, p + pr, limiter.threshold
+            eps_r = threshold * mean_r * mean_r
             eps_p = threshold * mean_p * mean_p
-            a, b = change(work, 0, lane, rr - r, threshold * mean_r * mean_r, planar)
-            c, d = change(work, 4, lane, pr - p, eps_p, planar)
+            a, b = change(work, 0, lane, rr - r, limiter, eps_r, planar)
+            c, d = change(work, 4, lane, pr - p, limiter, eps_p, planar)
             least_r, least_p = LEAST * min(r, rr), LEAST * min(p, pr)
             sound = (
                 (r + keep * a > least_r)
@@ -211,12 +211,12 @@ def add_fluxes(planar, sloped, gamma, threshold, work):  # type: ignore[no-untyp
             rl, rr = r + keep * a, rr - keep * b
             pl, pr = p + keep * c, pr - keep * d
             eps_v = threshold * mean_p / mean_r
-            a, b = change(work, 1, lane, ur - u, eps_v, planar)
+            a, b = change(work, 1, lane, ur - u, limiter, eps_v, planar)
             ul, ur = u + keep * a, ur - keep * b
-            a, b = change(work, 3, lane, wr - w, eps_v, planar)
+            a, b = change(work, 3, lane, wr - w, limiter, eps_v, planar)
             wl, wr = w + keep * a, wr - keep * b
             if planar is None:
-                a, b = change(work, 2, lane, vr - v, eps_v, planar)
+                a, b = change(work, 2, lane, vr - v, limiter, eps_v, planar)
                 vl, vr = v + keep * a, vr - keep * b
         normal_l, normal_r = ul * x + vl * y + wl * z, ur * x + vr * y + wr * z
         lowest = min(lowest_i, lowest_j)

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BAND = 3.0  # spacings about a seam within which neighbours are found anew
-NEAR = 3  # times as many nodes are looked at as a node has neighbours
+NEAR = 4  # times as many nodes are looked at as a node has neighbours
 KNOWN = 8  # nodes that tell the state of one that is uncovered
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
 
@@ -70,7 +70,7 @@ class MovingClouds:
         self.pose = Pose(
             np.array([one.position for one in bodies]),
             np.array([one.velocity for one in bodies]),
-            np.zeros((len(bodies), 3)),
+            np.array([(0.0, one.angular_velocity, 0.0) for one in bodies]),
         )
         self.driven = np.array([k for k, one in enumerate(bodies) if one.is_driven], np.int64)
         self.given: Array | None = None  # (driven, 3) m, places at the middle of the coming step
@@ -172,7 +172,7 @@ class MovingClouds:
             self.loads,
         )  # fmt: skip
         if self.friction is not None:
-            self.friction.load(cloud, self.wall_velocity, primitive, self.loads)
+            self.friction.load(cloud, self.wall_velocity, self.pose.spin, primitive, self.loads)
         if self.params.axisymmetric:  # of a whole turn about the axis nothing else is left
             self.loads[:, 1:6] = 0.0
         flows[1:4] -= self.loads[:, :3].sum(axis=0)

@@ -12,7 +12,7 @@ from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.stencils import Stencils
-from quintet.components.meshless_gas.transport import Transport
+from quintet.components.meshless_gas.transport import Transport, sutherland
 from quintet.components.meshless_gas.viscous.walls import write_tractions
 from quintet.components.shared.numba_options import FAST
 from quintet.components.shared.threads import Team
@@ -28,6 +28,8 @@ class Friction:
         self.law, self.layout, self.temperature = law, layout, warmth[self.held]
         self.rows = layout.walls[self.held].astype(np.int32)
         self.above = layout.above[self.held].astype(np.int32)
+        # Pa s, of the gas at held walls.
+        self.viscosity = np.array([sutherland.py_func(one, law) for one in self.temperature])
         self.friction = np.zeros((len(layout.walls), 3))  # Pa, on all walls
         self.heat = np.zeros(len(layout.walls))  # W/m2, into all walls
 
@@ -37,15 +39,23 @@ class Friction:
         primitive[rows, 0] = primitive[rows, 4] / (self.law.gas_constant * self.temperature)
         primitive[rows, 1:4] = velocity[self.held]
 
-    def load(self, cloud: Cloud, velocity: Array, primitive: Array, loads: Array) -> None:
-        """Add friction and heat to what bodies are loaded with: (b, 8) N, N m, W, W."""
+    def load(
+        self, cloud: Cloud, velocity: Array, spin: Array, primitive: Array, loads: Array
+    ) -> None:
+        """Add friction and heat to what bodies are loaded with: (b, 8) N, N m, W, W.
+
+        Gas that turns with its wall is not sheared: of the slope of the velocity along the normal
+        n, ω × n is rotation.
+        """
         own, held = self.layout, self.held
         friction, heat = np.empty((len(held), 3)), np.empty(len(held))
         write_tractions(
             self.rows, self.above, cloud.positions, cloud.normals, velocity[held], primitive,
             self.law, friction, heat,
         )  # fmt: skip
-        self.friction[held], self.heat[held] = friction, heat
+        turning = np.cross(spin[own.body[held]], cloud.normals[self.rows])  # 1/s
+        self.friction[held] = friction - self.viscosity[:, None] * turning
+        self.heat[held] = heat
         size = np.sqrt((cloud.areas[own.walls] ** 2).sum(axis=1))
         force = size[:, None] * self.friction
         torque, work = np.cross(own.arms, force), (force * velocity).sum(axis=1)

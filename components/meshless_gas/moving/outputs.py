@@ -21,6 +21,7 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
         "bodies.position": pose.centre.copy(),
         "bodies.velocity": pose.velocity.copy(),
         "bodies.force": force.copy(),
+        "bodies.torque": moving.summed[:, 3:6].copy(),
         "bodies.heat": moving.summed[:, 7].copy(),
         "bodies.coefficient": force / moving.unit_force[:, None],
         "bodies.highest_pressure": np.array([pressure[own.body == b].max() for b in bodies]),

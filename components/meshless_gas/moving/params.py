@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
+from quintet.interfaces.params import NotNegative, Number, Positive, Vector, parameters
 
 ROUND = 8  # fewest nodes round a body
 CLOSE = 1e-6  # rad, within which a sector is what it is meant to be
@@ -23,6 +23,8 @@ class Body:
         Of the body.
     velocity : m/s
         Of one that is not driven; of one that is, at the start.
+    angular_velocity : rad/s
+        About y, of a cylinder that holds the gas and is not driven; of one that is, at the start.
     is_driven
         Whether a partner moves it: it is then a row of the ports `motion`, `load` and `heat`.
     rays : 1
@@ -52,6 +54,7 @@ class Body:
     position: Vector
     radius: Positive
     velocity: Vector = (0.0, 0.0, 0.0)
+    angular_velocity: Number = 0.0
     is_driven: bool = False
     rays: Annotated[int, Field(ge=ROUND)]
     thickness: Positive
@@ -64,6 +67,11 @@ class Body:
     weight: NotNegative = 0.0
 
     def __post_init__(self) -> None:
+        if self.angular_velocity and self.temperature is None:
+            raise ValueError(
+                "angular_velocity is of a wall that holds the gas; found one that slips. Give a "
+                "temperature, or leave out angular_velocity."
+            )
         if not self.is_cut:
             if self.first_at_sector is not None:
                 raise ValueError(
@@ -148,6 +156,11 @@ class Moving:
                         "bodies of an axisymmetric flow lie and move on the axis; found position "
                         f"{list(one.position)} m, velocity {list(one.velocity)} m/s. Leave y and "
                         "z at 0."
+                    )
+                if one.angular_velocity:
+                    raise ValueError(
+                        "spheres of an axisymmetric flow do not turn about y; found "
+                        f"{one.angular_velocity:g} rad/s. Leave out angular_velocity."
                     )
 
     @property

@@ -42,9 +42,3 @@ def test_what_does_not_go_together_is_refused(keys, said):
     table = {"gas": {"gas_constant": 1.0}, "initial": REST, **keys}
     _, mistakes = read(MeshlessGasParams, table, "gas")
     assert any(said in one for one in mistakes), mistakes
-
-
-def test_a_limiter_without_a_threshold_divides_nothing_by_nothing():
-    table = {"gas": {}, "initial": REST, "box": BOX, "limiter_threshold": 0.0}
-    _, mistakes = read(MeshlessGasParams, table, "gas")
-    assert any("limiter_threshold" in one for one in mistakes)

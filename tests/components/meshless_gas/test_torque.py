@@ -1,0 +1,98 @@
+"""Cylinders that turn in a viscous gas: torque by the exact solution, spin by a partner."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import integrate, special
+
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.interfaces.params import read
+
+PRESSURE = 1.0 / 1.4  # Pa: the speed of sound is 1 m/s
+VISCOSITY, SPIN, RADIUS = 0.1, 0.1, 1.0  # Pa s, rad/s, m
+END = 3.0  # s
+
+
+def turning(rays=24, **body):
+    """A cylinder that begins to turn in gas at rest, in a box that it does not feel."""
+    spacing = math.tau * RADIUS / rays
+    round_it = {"rays": rays, "thickness": 6.0 * spacing, "spacing": spacing}
+    table = {
+        "gas": {"gas_constant": PRESSURE, "viscosity": VISCOSITY, "reference_temperature": 1.0},
+        "viscous": True,
+        "neighbours": 8,
+        "box": {"lowest": [-4.0, 0.0, -4.0], "highest": [4.0, 0.0, 4.0], "spacing": spacing},
+        "boundaries": {f"{axis}{side}": {"kind": "symmetry"} for axis in "xz" for side in "-+"},
+        "initial": {"density": 1.0, "pressure": PRESSURE},
+        "moving": {
+            "bodies": [
+                {"position": [0.0, 0.0, 0.0], "radius": RADIUS, "first": 0.5 * spacing}
+                | {"temperature": 1.0, "angular_velocity": SPIN} | round_it | body,
+            ]
+        },
+    }  # fmt: skip
+    params, mistakes = read(MeshlessGasParams, table, "gas")
+    return (None, mistakes) if mistakes else (MeshlessGas(params), [])
+
+
+def exact_torque(time):
+    """Torque [N m] per length on a cylinder that began to turn: its transform is 2 + q K0/K1(q).
+
+    q² = s R²/ν; after Carslaw & Jaeger, Conduction of Heat in Solids (1959), section 13.5.
+    """
+    shown = VISCOSITY * time / RADIUS**2
+
+    def part(log):
+        u = math.exp(log)
+        return math.exp(-u * u * shown) / (special.j1(u) ** 2 + special.y1(u) ** 2)
+
+    transient = 4.0 / math.pi**2 * integrate.quad(part, -30.0, 8.0, limit=400)[0]
+    return -math.tau * VISCOSITY * SPIN * RADIUS**2 * (2.0 + transient)
+
+
+@pytest.mark.full  # kernels of friction with moving nodes
+def test_torque_on_a_cylinder_that_turns_is_that_of_the_exact_solution():
+    gas, _ = turning()
+    turned = 0.0  # N m s, by which the cylinder was stopped
+    while gas.state.time < END - 1e-12:
+        dt = min(gas.stable_dt(), END - gas.state.time)
+        gas.step(dt)
+        torque = gas.give(frozenset({"bodies.torque"}))["bodies.torque"][0]
+        turned -= dt * torque[1]
+        if gas.state.time > 0.5 * END:
+            assert torque[1] == pytest.approx(exact_torque(gas.state.time), rel=0.02)
+    assert torque[[0, 2]] == pytest.approx(0.0, abs=1e-12)
+    exact, _ = integrate.quad(lambda root: -2.0 * root * exact_torque(root * root), 0.0, END**0.5)
+    assert turned == pytest.approx(exact, rel=0.02)
+
+
+@pytest.mark.full
+def test_a_partner_turns_a_cylinder_and_is_told_its_torque():
+    alone, driven = turning()[0], turning(is_driven=True)[0]
+    motion = {
+        "motion.position": np.zeros((1, 3)),
+        "motion.velocity": np.zeros((1, 3)),
+        "motion.angular_velocity": np.array([[0.0, SPIN, 0.0]]),
+    }
+    for _ in range(10):
+        dt = alone.stable_dt()
+        driven.take(motion)
+        for gas in (alone, driven):
+            gas.step(dt)
+    told = driven.give(frozenset({"load.torque"}))["load.torque"]
+    assert np.array_equal(told, alone.give(frozenset({"bodies.torque"}))["bodies.torque"])
+    motion["motion.angular_velocity"] = -motion["motion.angular_velocity"]
+    driven.take(motion)
+    driven.step(dt)
+    assert driven.give(frozenset({"load.torque"}))["load.torque"][0, 1] > -told[0, 1]
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [({"temperature": None}, "found one that slips"), ({"sector": 0.5 * math.pi}, "sector")],
+)
+def test_what_cannot_turn_the_gas_is_refused(body, said):
+    _, mistakes = turning(**body)
+    assert any(said in one for one in mistakes), mistakes
