@@ -229,15 +229,11 @@ class MeshlessGas(Component):
             own.weights, own.patches, self.frame, self.gamma, self.params.gas.gas_constant,
             work.primitive,
         )  # fmt: skip
-        continue_outflows(
-            *own.outflows,
-            cloud.positions,
-            cloud.patch,
-            own.patches,
-            cloud.normals,
-            self.gamma,
-            work.primitive,
-        )
+        if len(own.outflows.rows):
+            continue_outflows(
+                *own.outflows, cloud.positions, cloud.patch, own.patches, cloud.normals,
+                self.gamma, work.primitive,
+            )  # fmt: skip
         if self.viscous is not None:
             self.viscous.hold(work.primitive)
         self.motion.hold_walls(work.primitive)
@@ -301,7 +297,7 @@ class MeshlessGas(Component):
         given: dict[str, Array] = {}
         ports_wanted = {key.partition(".")[0] for key in wanted}
         if "balance" in ports_wanted:
-            given.update(balance(self.state, self.domain, self.fluxes, self.gamma))
+            given.update(balance(self.params, self.state, self.domain, self.fluxes))
         if "error" in ports_wanted:
             given.update(errors(self.params, self.state, self.domain.cloud, self.team))
         if "probes" in ports_wanted:
@@ -338,7 +334,7 @@ class MeshlessGas(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""
-        return totals(self.state, self.domain.cloud)
+        return totals(self.params, self.state, self.domain.cloud)
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""

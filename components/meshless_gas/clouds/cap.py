@@ -181,9 +181,9 @@ def _rim(places: Array, faces: NDArray[np.int64]) -> Array:
     a, b, c = _sides(faces).T
     ray = places[-1] - places[0]
     up = heights(places)[:, :, None] * ray / np.sqrt((ray**2).sum(axis=1))[:, None]
-    found = np.zeros(places.shape)
+    found = np.zeros(places.shape).transpose(1, 0, 2)
     for one in (a, b):
         area = 0.5 * np.cross(places[:, b] - places[:, a], up[:, one])
         area *= np.sign((area * (places[:, c] - places[:, a])).sum(axis=2))[:, :, None]
-        np.add.at(found, (slice(None), one), area)
-    return found
+        np.add.at(found, one, area.transpose(1, 0, 2))
+    return found.transpose(1, 0, 2)

@@ -34,7 +34,7 @@ class Outflows(NamedTuple):
 def outflows(cloud: Cloud, neighbours: Whole) -> Outflows:
     """Planes by least squares through neighbours within and theirs, of weight 1/d²."""
     rows = np.flatnonzero(cloud.kind == OUTFLOW).astype(np.int32)
-    found = neighbours[neighbours[rows]].reshape(len(rows), -1)
+    found = neighbours[neighbours[rows]].reshape(len(rows), neighbours.shape[1] ** 2)
     found = np.sort(np.hstack([neighbours[rows], found]), axis=1)
     first = np.hstack([np.ones((len(rows), 1), bool), np.diff(found, axis=1) > 0])
     chosen = first & (cloud.kind[found] == WITHIN)
