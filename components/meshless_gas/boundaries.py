@@ -8,6 +8,7 @@ from pydantic import Field
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
 HOLDING = ("isothermal", "adiabatic")  # walls that hold the gas
+HELD = {"velocity", "accommodation"}  # what both may be given
 
 
 @parameters
@@ -107,6 +108,23 @@ class TotalState:
 
 
 @parameters
+class Accommodation:
+    """How molecules leave a wall, where the gas is rarefied.
+
+    Parameters
+    ----------
+    momentum : 1
+        Share of them that leave it in any direction, the others as from a mirror: σ of Maxwell.
+    energy : 1
+        Share of what their energy differs from that of the wall which they leave there: α of
+        Smoluchowski.
+    """
+
+    momentum: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 1.0
+    energy: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 1.0
+
+
+@parameters
 class Boundary:
     """What is at a part of the boundary.
 
@@ -127,6 +145,9 @@ class Boundary:
         Of an isothermal wall.
     velocity : m/s
         Of an isothermal or adiabatic wall, along itself.
+    accommodation
+        Of an isothermal or adiabatic wall: the gas then slips along it by its mean free path and
+        its temperature jumps there; if not said both are the wall's.
     """
 
     kind: Literal["periodic", "symmetry", "slip", "isothermal", "adiabatic", "inflow", "outflow"]
@@ -135,22 +156,23 @@ class Boundary:
     pressure: Positive | None = None
     temperature: Positive | None = None
     velocity: Vector | None = None
+    accommodation: Accommodation | None = None
 
     def __post_init__(self) -> None:
-        names = ("state", "total", "pressure", "temperature", "velocity")
+        names = ("state", "total", "pressure", "temperature", "velocity", "accommodation")
         said = [one for one in names if getattr(self, one) is not None]
         wrong = {
             "inflow": said not in (["state"], ["total"]),
             "outflow": bool(set(said) - {"pressure"}),
-            "isothermal": bool(set(said) - {"temperature", "velocity"}) or not self.temperature,
-            "adiabatic": bool(set(said) - {"velocity"}),
+            "isothermal": bool(set(said) - {"temperature", *HELD}) or not self.temperature,
+            "adiabatic": bool(set(said) - HELD),
         }
         if wrong.get(self.kind, bool(said)):
             need = {
                 "inflow": "state or total",
                 "outflow": "pressure or nothing",
-                "isothermal": "temperature, and velocity or not",
-                "adiabatic": "velocity or nothing",
+                "isothermal": "temperature, and velocity and accommodation or not",
+                "adiabatic": "velocity, accommodation or nothing",
             }
             raise ValueError(
                 f"a boundary of kind {self.kind} takes {need.get(self.kind, 'nothing')}; found "

@@ -30,7 +30,12 @@ from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import State
-from quintet.components.meshless_gas.stencils import Stencils, nearest_neighbours, stencils
+from quintet.components.meshless_gas.stencils import (
+    Stencils,
+    graded_neighbours,
+    nearest_neighbours,
+    stencils,
+)
 from quintet.components.meshless_gas.transport import Transport
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
@@ -108,8 +113,10 @@ def _cloud(params: MeshlessGasParams, names: list[str], team: Team) -> tuple[Clo
         weight=one.weight,
         neighbours=params.neighbours,
         planar=params.planar,
+        parts=[part.part for part in one.refinements],
     )
-    return cloud, nearest_neighbours(cloud, params.neighbours, team)
+    find = graded_neighbours if one.refinements else nearest_neighbours
+    return cloud, find(cloud, params.neighbours, team)
 
 
 def transport_of(gas: Gas) -> Transport:

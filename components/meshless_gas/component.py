@@ -33,7 +33,7 @@ from quintet.components.meshless_gas.node_motion import node_motion
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
-from quintet.components.meshless_gas.shares import FEWEST, LIGHT
+from quintet.components.meshless_gas.shares import FEWEST, LIGHT, SUMS
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.steady import Settling
 from quintet.components.meshless_gas.view import view, walls
@@ -251,11 +251,11 @@ class MeshlessGas(Component):
         own, work, cloud = self.domain, self.fluxes, self.domain.cloud
         self.team.run(
             write_gradients, len(own.every), own.every, work.primitive, *own.stencils,
-            self.planar, work.gradients, work.lowest,
+            self.planar, work.gradients, work.lowest, fewest=SUMS,
         )  # fmt: skip
         self.team.run(
             write_ghost_gradients, len(cloud.owner), cloud.owner, cloud.turn, work.gradients,
-            work.lowest, fewest=LIGHT,
+            work.lowest, fewest=SUMS,
         )  # fmt: skip
 
     def _write_rates(self) -> None:
@@ -280,6 +280,7 @@ class MeshlessGas(Component):
         least = self.team.run(
             write_bounds, len(own.inner), own.inner, work.primitive, work.sound,
             own.stencils.neighbours, own.stencils.coefficients, self.frame, work.bounds,
+            fewest=SUMS,
         )  # fmt: skip
         self.bound = min(least)
         if self.viscous is not None:

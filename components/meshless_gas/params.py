@@ -3,10 +3,12 @@
 import math
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
 from quintet.components.meshless_gas.boundaries import HOLDING, Boundary, Gas, GasState
 from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, SphereCloud
+from quintet.components.meshless_gas.clouds.refinement import wrong_part
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.interfaces.params import (
@@ -334,6 +336,11 @@ class MeshlessGasParams:
                     f"box: along {axis} it must be two spacings long at least; found "
                     f"{length:g} m. Correct lowest and highest, or spacing."
                 )
+        corners = np.array(self.box.lowest), np.array(self.box.highest)
+        kinds = {name: self.kind_of(name) for name in names}
+        for part in self.box.refinements:
+            wrong = wrong_part(part.part, corners, self.box.spacing, kinds)
+            found += [f"box.refinements: {wrong}"] if wrong else []
         return found
 
     def kind_of(self, face: str) -> str:

@@ -50,6 +50,21 @@ def nearest_neighbours(
     return np.concatenate([kept, ghosts])
 
 
+def graded_neighbours(cloud: Cloud, count: int, team: Team) -> Whole:
+    """Neighbours (n, count) of nodes where spacings double: the nearest in the pair's mean spacing.
+
+    By the distance alone a node beside finer ones would have them for neighbours, on one side.
+    """
+    axes = int((np.ptp(cloud.positions, axis=0) > 0.0).sum())
+    more = min(count * 2**axes, len(cloud.positions) - 1)  # as finer ones crowd out what is beyond
+    near = nearest_neighbours(cloud, more, team)
+    arms = cloud.positions[near] - cloud.positions[:, None]
+    mean = 0.5 * (cloud.spacing[near] + cloud.spacing[:, None])
+    away = np.round(np.sqrt((arms**2).sum(axis=2)) / mean, 9)  # equal ones in order of distance
+    order = np.argsort(away, axis=1, kind="stable")[:, :count]
+    return np.take_along_axis(near, order, axis=1)
+
+
 def stencils(cloud: Cloud, neighbours: Whole, planar: bool, team: Team) -> Stencils:
     """Coefficients of all nodes; refuses clouds whose neighbours do not span the space."""
     coefficients = np.zeros((*neighbours.shape, 3))

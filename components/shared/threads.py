@@ -25,6 +25,7 @@ class Team:
     def ends(self, rows: int, fewest: int | None = None) -> list[int]:
         """Where the shares of some rows begin and end, from 0 on."""
         shares = min(self.shares * self.size, rows // (fewest or self.fewest))
+        shares -= shares % self.size if shares > self.size else 0  # as many for each
         if self._pool is None or shares < 2:
             return [0, rows]
         return [rows * share // shares for share in range(shares + 1)]

@@ -97,16 +97,16 @@ def test_energy_of_glued_chains_stays_over_thirty_transits(tmp_path, order):
     assert np.abs(energies - energies[0]).max() < 0.06 * energies[0]  # what leapfrog swings by
 
 
-STIFFER = [[5 * TRANSIT, 0.125], [15 * TRANSIT, 1.0], [22 * TRANSIT, 0.3]]
+STIFFER = [[2.5 * TRANSIT, 0.125], [7.5 * TRANSIT, 1.0], [11 * TRANSIT, 0.3]]
 
 
 @pytest.mark.parametrize("window", ["auto", 0.9])
 @pytest.mark.parametrize("rods", [{"stiffer": STIFFER}, {"hover": 0.08}], ids=["changes", "hovers"])
 def test_windows_follow_the_state_and_energy_stays(tmp_path, rods, window):
     """Both sides make one equal step in every window, whatever the stable step does."""
-    trace = _run(tmp_path, 30 * TRANSIT, rods=rods, window=window)
+    trace = _run(tmp_path, 15 * TRANSIT, rods=rods, window=window)
     assert abs(_gain(trace) - 1.0) < 0.03
-    assert trace.times[-1] == 30 * TRANSIT
+    assert trace.times[-1] == 15 * TRANSIT
     windows = np.diff(trace.times)
     allowed = np.array([min(one.values()) for one in trace.stable])[:-1]
     assert (windows <= allowed * (1 + 1e-9)).all()

@@ -8,7 +8,7 @@ from quintet.scenarios.gap.table import main
 
 Run = Callable[..., dict]
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.full
 WIDE = ("gap_1.25", "gap_1.5", "gap_2", "gap_3", "gap_4")
 
 

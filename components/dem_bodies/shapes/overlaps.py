@@ -37,7 +37,10 @@ def check(bodies: Bodies, planes: "Sequence[Plane]") -> None:
 
 def require_above(first: int, body: "Body", m: int, plane: "Plane") -> None:
     """Refuse a body, or the lowest of its copies, that reaches below a plane."""
-    allowed = placement.ALLOWED * placement.bounding_radius(body)
+    reach = placement.bounding_radius(body)
+    if body.copies is None and placement.height(body, plane) > reach:
+        return
+    allowed = placement.ALLOWED * reach
     number, gap = 0, placement.plane_gap(body, plane)
     if body.copies is not None:
         normal = np.array(plane.normal) / np.linalg.norm(plane.normal)

@@ -1,5 +1,6 @@
 """How far bodies are from one another and from planes, as they stand at the start."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,8 +72,18 @@ def bounding_radius(body: "Body") -> float:
     """Radius [m] about the centre of mass that holds the body."""
     if body.size is not None:
         return 0.5 * float(np.linalg.norm(body.size))
+    if body.diameter is not None:
+        return 0.5 * body.diameter
     centres, radii = contact_spheres(body)
     return float((np.linalg.norm(centres, axis=1) + radii).max())
+
+
+def height(body: "Body", plane: "Plane") -> float:
+    """Distance [m] of a body's centre of mass from a plane."""
+    rise = sum(
+        (a - b) * n for a, b, n in zip(body.position, plane.point, plane.normal, strict=True)
+    )
+    return rise / math.hypot(*plane.normal)
 
 
 def plane_gap(body: "Body", plane: "Plane") -> float:

@@ -16,6 +16,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
     Cloud,
     with_ghosts,
 )
+from quintet.components.meshless_gas.clouds.refinement import FinePart, halved
 from quintet.interfaces.component import Array
 
 AXES = ("x", "y", "z")
@@ -70,6 +71,7 @@ def box(
     weight: float = 0.0,
     neighbours: int = 9,
     planar: bool = True,
+    parts: Sequence[FinePart] = (),
 ) -> Cloud:
     """Make a box.
 
@@ -89,6 +91,8 @@ def box(
         Of the least squares.
     neighbours, planar
         For how far images are needed; whether y is left out.
+    parts
+        Where nodes are finer.
     """
     axes = (0, 2) if planar else (0, 1, 2)
     ends = [(faces.get(axis + "-", PERIODIC), faces.get(axis + "+", PERIODIC)) for axis in AXES]
@@ -104,21 +108,25 @@ def box(
         [grid.ravel() for grid in np.meshgrid(*(one.widths for one in lattices), indexing="ij")],
         axis=1,
     )
-    count = len(positions)
     kind, patch, normals, areas = _faces(lattices, widths, axes, faces, patches)
     step = np.array([one.widths.max() for one in lattices])
+    spacing = max(step[d] for d in axes)
+    cells = halved(positions, widths, kind == INNER, spacing, parts, axes)
+    positions, count, rows = cells.positions, len(cells.positions), cells.origin
+    finer = 0.5**cells.level
     if jitter > 0.0:
         moves = np.random.default_rng(seed).uniform(-0.5, 0.5, (count, 3)) * jitter * step
-        positions[:, axes] += np.where(kind[:, None] == INNER, moves, 0.0)[:, axes]
+        moves *= finer[:, None]
+        positions[:, axes] += np.where(kind[rows, None] == INNER, moves, 0.0)[:, axes]
     made = Cloud(
         positions=positions,
-        kind=kind,
-        normals=normals,
-        spacing=np.full(count, max(step[d] for d in axes)),
+        kind=kind[rows],
+        normals=normals[rows],
+        spacing=spacing * finer,
         region=np.zeros(count, np.int32),
-        volumes=widths.prod(axis=1),
-        areas=areas,
-        patch=patch,
+        volumes=cells.widths.prod(axis=1),
+        areas=areas[rows],
+        patch=patch[rows],
         weight=np.full(count, weight),
         owner=np.zeros(0, np.int32),
         turn=np.zeros((0, 3, 3)),

@@ -3,9 +3,37 @@
 import math
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
+from quintet.components.meshless_gas.clouds.refinement import FinePart, transition
+from quintet.interfaces.component import Array
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
+
+
+@parameters
+class Refinement:
+    """A part of a box where nodes are finer.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Its corners; y is left out in two dimensions.
+    levels : 1
+        How many times the spacing is halved there.
+    width : 1
+        Of each level between, in its own spacings.
+    """
+
+    lowest: Vector
+    highest: Vector
+    levels: Annotated[int, Field(ge=1, le=8)] = 1
+    width: Annotated[float, Field(ge=2, allow_inf_nan=False)] = 4.0
+
+    @property
+    def part(self) -> FinePart:
+        """As clouds are made of it."""
+        return FinePart(np.array(self.lowest), np.array(self.highest), self.levels, self.width)
 
 
 @parameters
@@ -25,6 +53,8 @@ class BoxCloud:
     weight : 1
         Of the least squares: 0 for a truncated Gaussian over the distance, else the power p of
         1/dᵖ.
+    refinements
+        Parts where nodes are finer; the spacing doubles level by level around them.
     """
 
     lowest: Vector
@@ -33,19 +63,30 @@ class BoxCloud:
     jitter: Annotated[float, Field(ge=0, le=0.9, allow_inf_nan=False)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 1
     weight: NotNegative = 0.0
+    refinements: tuple[Refinement, ...] = ()
 
     @property
     def finest_spacing(self) -> float:
         """Least distance [m] of nodes."""
-        return self.spacing
+        deepest: int = max((one.levels for one in self.refinements), default=0)
+        return self.spacing / 2**deepest
 
     def expected_count(self, dimensions: int) -> int:
-        """About how many nodes there will be."""
+        """About how many nodes there will be, at most."""
         axes = (0, 2) if dimensions == 2 else (0, 1, 2)
-        count = 1.0
-        for d in axes:
-            count *= max(1.0, (self.highest[d] - self.lowest[d]) / self.spacing)
+        count = self._count(np.array(self.lowest), np.array(self.highest), self.spacing, axes)
+        for one in self.refinements:
+            for depth in range(one.levels):
+                away = transition(one.levels, depth, one.width, self.spacing)
+                low = np.maximum(np.array(one.lowest) - away, self.lowest)
+                high = np.minimum(np.array(one.highest) + away, self.highest)
+                cells = self._count(low, high, self.spacing / 2**depth, axes)
+                count += cells * (2 ** len(axes) - 1)
         return round(count)
+
+    @staticmethod
+    def _count(low: Array, high: Array, spacing: float, axes: tuple[int, ...]) -> float:
+        return float(np.prod([max(1.0, (high[d] - low[d]) / spacing) for d in axes]))
 
 
 @parameters

@@ -84,17 +84,7 @@ def write_residuals(
                 coefficients, frame, planar, sloped, work,
             )  # fmt: skip
             add_fluxes(planar, sloped, gamma, limiter, work)
-        for lane in range(count):
-            i = np.uintp(rows[begin + lane])
-            r0, r1 = work[SUM * LANES + lane], work[(SUM + 1) * LANES + lane]
-            r2, r3 = work[(SUM + 2) * LANES + lane], work[(SUM + 3) * LANES + lane]
-            r4 = work[(SUM + 4) * LANES + lane]
-            if frame is not None:
-                x, y, z = frame[i, 0], frame[i, 1], frame[i, 2]
-                r4 += x * r1 + y * r2 + z * r3 + 0.5 * (x * x + y * y + z * z) * r0
-                r1, r2, r3 = r1 + x * r0, r2 + y * r0, r3 + z * r0
-            residual[i, 0], residual[i, 1], residual[i, 2] = r0, r1, r2
-            residual[i, 3], residual[i, 4] = r3, r4
+        store(rows, begin, count, frame, work, residual)
 
 
 @njit(**INLINED)
@@ -236,3 +226,19 @@ def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped
             work[(SUM + 2) * LANES + lane] += factor * (
                 left * vl + right * vr - mass * v + push * y
             )
+
+
+@njit(**INLINED)
+def store(rows, begin, count, frame, work, residual):  # type: ignore[no-untyped-def]
+    """Write the sums of a block's nodes, in the laboratory's frame."""
+    for lane in range(count):
+        i = np.uintp(rows[begin + lane])
+        r0, r1 = work[SUM * LANES + lane], work[(SUM + 1) * LANES + lane]
+        r2, r3 = work[(SUM + 2) * LANES + lane], work[(SUM + 3) * LANES + lane]
+        r4 = work[(SUM + 4) * LANES + lane]
+        if frame is not None:
+            x, y, z = frame[i, 0], frame[i, 1], frame[i, 2]
+            r4 += x * r1 + y * r2 + z * r3 + 0.5 * (x * x + y * y + z * z) * r0
+            r1, r2, r3 = r1 + x * r0, r2 + y * r0, r3 + z * r0
+        residual[i, 0], residual[i, 1], residual[i, 2] = r0, r1, r2
+        residual[i, 3], residual[i, 4] = r3, r4

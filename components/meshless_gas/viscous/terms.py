@@ -11,7 +11,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
 )
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.shares import LIGHT
+from quintet.components.meshless_gas.shares import LIGHT, SUMS
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.viscous.flux import (
     add_viscous,
@@ -52,11 +52,17 @@ class Viscous:
                 "Raise neighbours, or refine the cloud there."
             )
         names = ("", *(n for n in params.boundaries if params.kind_of(n) != "periodic"))
-        walls = [params.boundaries.get(names[number]) for number in cloud.patch[self.rows]]
-        self.velocity = np.array([one.velocity or (0.0, 0.0, 0.0) for one in walls if one])
+        walls = [params.boundaries[names[number]] for number in cloud.patch[self.rows]]
+        self.velocity = np.array([one.velocity or (0.0, 0.0, 0.0) for one in walls])
         self.velocity = self.velocity.reshape(-1, 3)
-        self.temperature = np.array([one.temperature or -1.0 for one in walls if one])
+        self.temperature = np.array([one.temperature or -1.0 for one in walls])
         self.above = nodes_above(self.rows, domain)
+        self.rarefied = None
+        if any(one.accommodation is not None for one in walls):
+            # Compiled only where a gas slips along walls.
+            from quintet.components.meshless_gas.viscous.rarefied import RarefiedWalls
+
+            self.rarefied = RarefiedWalls(params, walls, self.rows, self.above, self.law)
         whole = len(cloud.positions)
         self.transported, self.gradients = np.ones((whole, 2)), np.zeros((whole, 3))
         self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
@@ -67,6 +73,8 @@ class Viscous:
             self.rows, self.domain.stencils.neighbours, self.weights, self.velocity,
             self.temperature, self.law, primitive,
         )  # fmt: skip
+        if self.rarefied is not None:
+            self.rarefied.slide(self.domain, self.velocity, self.temperature, primitive)
 
     def add_flows(self, primitive: Array, flows: Array) -> None:
         """Find friction and heat flux at walls, and take them from what enters the gas."""
@@ -75,6 +83,10 @@ class Viscous:
             self.rows, self.above, cloud.positions, cloud.normals, self.velocity, primitive,
             self.law, self.friction, self.heat,
         )  # fmt: skip
+        if self.rarefied is not None:
+            self.rarefied.write_tractions(
+                self.domain, self.velocity, primitive, self.friction, self.heat
+            )
         self.heat[self.temperature < 0.0] = 0.0
         add_wall_flows(self.rows, cloud.areas, self.velocity, self.friction, self.heat, flows)
 
@@ -88,7 +100,7 @@ class Viscous:
         )  # fmt: skip
         self.team.run(
             write_temperature_gradients, len(own.every), own.every, neighbours, coefficients,
-            self.transported, self.gradients,
+            self.transported, self.gradients, fewest=SUMS,
         )  # fmt: skip
         self.team.run(
             write_ghost_slopes, len(cloud.owner), cloud.owner, cloud.turn, self.gradients,

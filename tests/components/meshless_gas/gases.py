@@ -28,8 +28,9 @@ def tube(nodes: int, left: Any, right: Any, **given: Any) -> MeshlessGas:
     """A shock tube of 1 m, its diaphragm in the middle."""
     spacing = 1.0 / (nodes - 1)
     sides = [state(*one) for one in (left, right)]
+    box = {"highest": [1.0, 0.0, 6.0 * spacing], "spacing": spacing}
     return gas(
-        box={"highest": [1.0, 0.0, 6.0 * spacing], "spacing": spacing},
+        box=box | given.pop("box", {}),
         riemann={"position": 0.5, "left": sides[0], "right": sides[1]},
         boundaries={
             name: {"kind": "inflow", "state": one}

@@ -83,6 +83,21 @@ def test_a_body_that_moves_feels_what_one_in_a_stream_feels(fixed, share):
     assert np.abs(pressure - fixed[1]).max() < 0.01 * fixed[1].max()
 
 
+@pytest.mark.full
+def test_a_body_flies_through_a_finer_part_of_a_box_as_through_a_fine_one():
+    whole, parts = scene(1.0), scene(1.0)
+    for one in (whole, parts):
+        one["box"] |= {"lowest": [-3.0, 0.0, -3.0], "highest": [WAY * RADIUS + 3.0, 0.0, 3.0]}
+    path = {"lowest": [-1.9, 0.0, -1.6], "highest": [WAY * RADIUS + 1.6, 0.0, 1.6]}
+    parts["box"] |= {"spacing": 0.25, "refinements": [path]}
+    fine, coarse = made(whole), made(parts)
+    assert coarse.items() < 0.65 * fine.items()
+    drag, pressure = flown(fine, WAY * RADIUS / MACH)
+    found, pressures = flown(coarse, WAY * RADIUS / MACH)
+    assert abs(found / drag - 1.0) < 0.002
+    assert np.abs(pressures - pressure).max() < 0.005 * pressure.max()
+
+
 def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
     gas = made(scene(share=1.0, gas=[-MACH, 0.0, 0.0]))
     for _ in range(12):

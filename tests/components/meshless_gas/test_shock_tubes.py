@@ -74,6 +74,7 @@ def test_a_step_beyond_the_limit_ends_with_where_and_what_to_do():
 def test_two_threads_give_the_bits_of_one(monkeypatch):
     for shared_out in (component, diagnostics):
         monkeypatch.setattr(shared_out, "LIGHT", 20)  # also what is too little to be worth it
+    monkeypatch.setattr(component, "SUMS", 20)
     monkeypatch.setattr(diagnostics, "WHOLESALE", 20)
     one, two = (
         run(tube(200, *SOD, resources=Resources(threads=threads)), 0.02) for threads in (1, 2)

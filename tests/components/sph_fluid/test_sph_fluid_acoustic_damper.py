@@ -60,7 +60,7 @@ def fading(fluid: SphFluid) -> float:
 
 
 @pytest.mark.parametrize(("spacing", "error"), [(0.02, 0.09), (0.01, 0.06)])
-@pytest.mark.parametrize("diffusion", [0.0, 0.1])
+@pytest.mark.parametrize("diffusion", [0.0, pytest.param(0.1, marks=pytest.mark.full)])
 def test_sound_fades_as_bulk_viscosity_lets_it(
     spacing: float, error: float, diffusion: float
 ) -> None:

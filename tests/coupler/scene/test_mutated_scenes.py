@@ -103,7 +103,7 @@ def small(mutant):
 
 
 def test_a_few_mutated_scenes_are_refused_in_sentences(capsys, tmp_path):
-    sound = check_all(capsys, tmp_path, 132, SEED)
+    sound = check_all(capsys, tmp_path, 66, SEED)
     springs = [mutant for mutant in sound if mutant.name.startswith("two_springs")]
     for number, mutant in enumerate(springs[:2]):
         status, said = start(mutant, tmp_path / f"out{number}")

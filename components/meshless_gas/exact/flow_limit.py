@@ -1,0 +1,129 @@
+"""Largest Courant number of a scene's flow, by von Neumann's analysis at each of its nodes.
+
+    python -m quintet.components.meshless_gas.exact.flow_limit SCENE.toml [NAME]
+
+The gas of a scene file, with the settings of its limit of stability NAME (the first if not said),
+is run by itself to the end of that limit at the Courant number that holds; each node's neighbours
+are then taken for a lattice, and its state, and share of slopes that shocks leave, for those all
+over.
+"""
+
+import copy
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.exact.von_neumann import Fluid, Lattice, largest_step
+from quintet.components.meshless_gas.laws import smoothness
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import read
+
+Rows = NDArray[np.int32]
+Flags = NDArray[np.bool_]
+NODES = 250  # that are looked at
+SPREAD = 3.0  # times the least bound, beyond which no node limits a step that all take
+STILL = 1e-3  # change of the density that counts as none
+OFF = 1e-3  # speeds of sound by which velocities are moved off the kinks of the fluxes
+
+
+def flow_limit(gas: MeshlessGas) -> tuple[float, int]:
+    """Return the largest Courant number of a flow as it is now, and the node that limits it."""
+    gas._write_gradients()
+    bounds = gas.fluxes.bounds
+    rows = gas.domain.inner[np.argsort(bounds[gas.domain.inner], kind="stable")]
+    least = bounds[rows[0]]
+    if not gas.params.local_steps:
+        rows = rows[bounds[rows] < SPREAD * least]
+    rows = rows[is_disturbed(gas, rows)]
+    rows = rows[:: -(-len(rows) // NODES)]
+    found = np.array([bearable(gas, int(row)) for row in rows])
+    found /= bounds[rows] if gas.params.local_steps else least
+    return float(found.min()), int(rows[found.argmin()])
+
+
+def is_disturbed(gas: MeshlessGas, rows: Rows) -> Flags:
+    """Whether the gas at nodes is not as it was at the start: what is not has no waves to grow."""
+    if gas.params.initial is None:
+        return np.ones(len(rows), bool)
+    before = gas.params.initial.primitive(gas.params.gas)[0]
+    return np.asarray(np.abs(gas.fluxes.primitive[rows, 0] / before - 1.0) > STILL)
+
+
+def bearable(gas: MeshlessGas, row: int) -> float:
+    """Return the largest step [s] that a node bears, were all as it is."""
+    state, gamma = gas.fluxes.primitive[row], gas.gamma
+    sound = float(np.sqrt(gamma * state[4] / state[0]))
+    speed = state[1:4] - (0.0 if gas.frame is None else gas.frame[row])
+    near = gas.domain.stencils.neighbours[row]
+    arms = gas.domain.cloud.positions[near] - gas.domain.cloud.positions[row]
+    kept = (arms != 0.0).any(axis=1)
+    arms, coefficients = arms[kept], gas.domain.stencils.coefficients[row][kept]
+    lattice = Lattice(  # even: as many and as far on either side
+        np.concatenate([arms, -arms]), 0.5 * np.concatenate([coefficients, -coefficients])
+    )
+    fluid = Fluid(gamma)
+    if gas.viscous is not None:
+        viscosity = float(gas.viscous.transported[row, 1]) / (state[0] * sound)
+        fluid = Fluid(gamma, viscosity, gas.params.gas.prandtl)
+    moved = speed / sound + OFF * np.array([1.0, 0.0, 0.7])
+    return largest_step(lattice, moved, slopes(gas, row, near[kept]), fluid) / sound
+
+
+def slopes(gas: MeshlessGas, row: int, near: Array) -> float:
+    """Share of a node's slopes that shocks leave, mean of its neighbours."""
+    if gas.params.order == 1:
+        return 0.0
+    least, pressure = gas.fluxes.lowest, gas.fluxes.primitive[:, 4]
+    shares = [
+        smoothness.py_func(least[row], least[j], pressure[row], pressure[j], 0.0) for j in near
+    ]
+    return float(np.mean(shares))
+
+
+def gas_of(path: Path, name: str = "") -> tuple[MeshlessGas, dict[str, Any]]:
+    """Make the gas of a scene file as its limit of that name has it; return it, and the limit."""
+    scene = tomllib.loads(path.read_text())
+    limits = [one for one in scene.get("stability", []) if name in ("", one.get("name"))]
+    if not limits:
+        raise SceneError(f"{path}: a limit of stability must be there; found none. Add it.")
+    limit = copy.deepcopy(limits[0])
+    for place, value in limit.get("settings", {}).items():
+        put(scene, place.split("."), value)
+    if "against" in limit:
+        put(scene, limit["against"]["parameter"].split("."), limit["against"]["values"][0])
+    (table,) = (one for one in scene["components"].values() if one["kind"] == "meshless_gas")
+    given = {key: value for key, value in table.items() if key not in ("kind", "threads")}
+    params, mistakes = read(MeshlessGasParams, given, "gas")
+    if mistakes:
+        raise SceneError(mistakes[0])
+    limit.setdefault("end", scene["end"])
+    return MeshlessGas(params), limit
+
+
+def put(scene: dict[str, Any], path: list[str], value: Any) -> None:
+    """Set what a dotted path leads to; numbers count items of lists."""
+    at: Any = scene
+    for one in path[:-1]:
+        at = at[int(one)] if isinstance(at, list) else at[one]
+    at[path[-1]] = value
+
+
+def main(words: list[str]) -> None:
+    """Print the limit."""
+    gas, limit = gas_of(Path(words[0]), *words[1:2])
+    while gas.state.time < limit["end"] and np.isfinite(dt := gas.stable_dt()):
+        gas.step(dt)
+    found, row = flow_limit(gas)
+    place = np.array2string(gas.domain.cloud.positions[row], precision=3)
+    print(f"{limit['name']}: {found:.2f}, by the node at {place} m")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,66 @@
+"""Walls along which a rarefied gas slips."""
+
+import numpy as np
+
+from quintet.components.meshless_gas.boundaries import Boundary
+from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.clouds.cloud import Whole
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.transport import Transport
+from quintet.components.meshless_gas.viscous.laws import jump_length, slip_length
+from quintet.components.meshless_gas.viscous.slip import (
+    write_jumps,
+    write_slip_tractions,
+    write_slips,
+)
+from quintet.interfaces.component import Array
+
+
+class RarefiedWalls:
+    """Those of the walls that have accommodation coefficients; it remembers nothing."""
+
+    def __init__(
+        self,
+        params: MeshlessGasParams,
+        walls: list[Boundary],
+        rows: Whole,
+        above: Whole,
+        law: Transport,
+    ) -> None:
+        self.law = law
+        given = [one.accommodation for one in walls]
+        self.chosen = np.array([n for n, one in enumerate(given) if one is not None])
+        self.rows, self.above = rows[self.chosen], above[self.chosen]
+        gas = params.gas
+        self.lengths = np.array(
+            [
+                (slip_length(one.momentum), jump_length(one.energy, gas.gamma, gas.prandtl))
+                for one in given
+                if one is not None
+            ]
+        )
+        self.curvature = 1.0 / params.sphere.radius if params.sphere is not None else 0.0
+
+    def slide(self, domain: Domain, velocity: Array, temperature: Array, primitive: Array) -> None:
+        """Let the gas have its own temperature and velocity at walls that have others."""
+        cloud, chosen = domain.cloud, self.chosen
+        write_jumps(
+            self.rows, self.above, cloud.positions, cloud.normals, velocity[chosen],
+            temperature[chosen], self.lengths, self.curvature, self.law, primitive,
+        )  # fmt: skip
+        write_slips(
+            self.rows, self.above, cloud.positions, cloud.normals, *domain.stencils, cloud.owner,
+            velocity[chosen], self.lengths, self.curvature, self.law, primitive,
+        )  # fmt: skip
+
+    def write_tractions(
+        self, domain: Domain, velocity: Array, primitive: Array, friction: Array, heat: Array
+    ) -> None:
+        """Write viscous stress (w, 3) Pa and heat flux (w,) W/m2 of these among all walls."""
+        cloud, chosen = domain.cloud, self.chosen
+        stress, flux = np.empty((len(chosen), 3)), np.empty(len(chosen))
+        write_slip_tractions(
+            self.rows, self.above, cloud.positions, cloud.normals, *domain.stencils,
+            velocity[chosen], self.curvature, self.law, primitive, stress, flux,
+        )  # fmt: skip
+        friction[chosen], heat[chosen] = stress, flux

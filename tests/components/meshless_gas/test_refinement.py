@@ -1,0 +1,108 @@
+"""Boxes with finer parts: their nodes, and flows across where the spacing doubles."""
+
+import numpy as np
+import pytest
+from gases import SOD, gas, given, run, state, tube
+
+from quintet.components.meshless_gas.bench import vortex
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.interfaces.params import read
+
+FINER = ((0.4, 0.62), (0.72, 0.78))  # m
+AIR = {"density": 1.0, "pressure": 1.0}
+
+
+def part(low, high, **keys):
+    return {"lowest": [low] * 3, "highest": [high] * 3} | keys
+
+
+def refined_vortex(nodes, *parts):
+    table = vortex(nodes)
+    table["box"]["refinements"] = list(parts)
+    params, mistakes = read(MeshlessGasParams, table, "gas")
+    assert not mistakes, mistakes
+    return MeshlessGas(params)
+
+
+def test_spacings_double_level_by_level_and_volumes_fill_the_box():
+    made = gas(
+        initial=AIR, box={"spacing": 0.05, "refinements": [part(0.45, 0.55, levels=3)], "jitter": 0}
+    )
+    cloud, params = made.domain.cloud, made.params
+    spacing = cloud.spacing[: made.items()]
+    assert cloud.volumes.sum() == pytest.approx(1.0, rel=1e-12)
+    assert np.unique(spacing) == pytest.approx([0.00625, 0.0125, 0.025, 0.05])
+    middle = np.abs(cloud.positions[: made.items(), ::2] - 0.5).max(axis=1) < 0.05
+    assert spacing[middle] == pytest.approx(0.00625)
+    beside = cloud.spacing[made.domain.stencils.neighbours[: made.items()]]
+    assert beside.max() / beside.min() > 7.0
+    assert (beside <= 2.001 * spacing[:, None]).all()
+    assert (beside >= 0.499 * spacing[:, None]).all()
+    assert made.items() == pytest.approx(params.expected_count, rel=0.2)
+    assert params.box.finest_spacing == pytest.approx(0.00625)
+
+
+def test_nodes_beside_finer_ones_are_surrounded():
+    made = gas(
+        initial=AIR, box={"spacing": 0.05, "refinements": [part(0.3, 0.7)], "jitter": 0},
+        neighbours=9,
+    )  # fmt: skip
+    cloud, near = made.domain.cloud, made.domain.stencils.neighbours
+    arms = cloud.positions[near[: made.items()]] - cloud.positions[: made.items(), None]
+    for axis in (0, 2):
+        for sign in (-1.0, 1.0):
+            assert ((sign * arms[:, :, axis] > 0.0).sum(axis=1) >= 2).all()
+
+
+def test_a_vortex_into_a_finer_part_gains_by_it():
+    coarse, into, within = (
+        given(run(refined_vortex(24, *parts), 2.0), "error.density")[0]
+        for parts in ((), (part(6.0, 9.0),), (part(3.0, 9.0, levels=1),))
+    )
+    assert into < 0.85 * coarse
+    assert within < 0.25 * coarse
+
+
+def test_waves_of_a_tube_pass_into_finer_parts_and_out_of_them():
+    across = [{"lowest": [a, 0.0, -1.0], "highest": [b, 0.0, 1.0]} for a, b in FINER]
+    made = tube(100, *SOD, box={"refinements": across})
+    run(made, 0.2)
+    density, pressure = made.state.primitive[:, 0], made.state.primitive[:, 4]
+    assert given(made, "error.density")[0] < 7.0e-3  # 7.1e-3 without finer parts
+    assert density.max() < 1.0 + 2e-3 and density.min() > 0.125 - 2e-3
+    assert pressure.min() > 0.1 - 2e-3
+    assert abs(given(made, "balance.mass_drift")[0]) < 1e-3
+
+
+@pytest.mark.full  # kernels in space
+def test_a_stream_in_space_stays_as_it_is_where_the_spacing_doubles():
+    wind = AIR | {"velocity": [1.5, 0.5, -0.3]}
+    made = gas(
+        dimensions=3, neighbours=14, initial=wind,
+        box={"spacing": 0.1, "refinements": [part(0.35, 0.65)]},
+    )  # fmt: skip
+    assert made.domain.cloud.volumes.sum() == pytest.approx(1.0, rel=1e-12)
+    run(made, 0.1)
+    exact = np.tile([1.0, 1.5, 0.5, -0.3, 1.0], (made.items(), 1))
+    assert made.state.primitive == pytest.approx(exact, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "keys", "said"),
+    [
+        (0.5, 0.4, {}, "highest corner must lie beyond"),
+        (0.1, 0.4, {"levels": 2}, "too near to the face x-"),
+        (1.2, 1.4, {}, "outside of the box"),
+    ],
+)
+def test_parts_that_cannot_be_finer_are_refused(low, high, keys, said):
+    inflow = {"kind": "inflow", "state": state(1.0, 1.0, 1.0)}
+    table = {
+        "initial": AIR,
+        "boundaries": {"x-": inflow, "x+": {"kind": "outflow"}},
+        "box": {"lowest": [0.0] * 3, "highest": [1.0] * 3, "spacing": 0.05}
+        | {"refinements": [part(low, high, **keys)]},
+    }
+    mistakes = read(MeshlessGasParams, table, "gas")[1]
+    assert any(said in one for one in mistakes), mistakes
