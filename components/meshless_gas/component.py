@@ -298,7 +298,7 @@ class MeshlessGas(Component):
         given: dict[str, Array] = {}
         ports_wanted = {key.partition(".")[0] for key in wanted}
         if "balance" in ports_wanted:
-            given.update(balance(self.params, self.state, self.domain, self.fluxes))
+            given.update(balance(self.params, self.state, self.domain, self.fluxes, self.team))
         if "error" in ports_wanted:
             given.update(errors(self.params, self.state, self.domain.cloud, self.team))
         if "probes" in ports_wanted:
@@ -335,7 +335,7 @@ class MeshlessGas(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""
-        return totals(self.params, self.state, self.domain.cloud)
+        return totals(self.params, self.state, self.domain.cloud, self.team)
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""

@@ -226,10 +226,10 @@ class MeshlessGasParams:
                 f"a gas needs a box, a sphere or a plate of nodes, one of them; found "
                 f"{' and '.join(said) or 'none'}. Correct it."
             )
-        if self.particles is not None and (self.box is None or self.moving is not None):
+        if self.particles is not None and self.moving is not None:
             found.append(
-                "particles that nodes do not resolve go with a box whose nodes stand still; found "
-                "a sphere, a plate or moving. Leave out particles, or give a box."
+                "particles that nodes do not resolve go with nodes that stand still; found moving. "
+                "Leave out particles, or moving."
             )
         if (self.particles is not None or self.moving is not None) and (
             self.local_steps or self.steady is not None

@@ -18,6 +18,7 @@ SHOWS = (
     TEMPERATURE,
     MACH,
     Field("schlieren", (), "1"),
+    Field("shadowgraph", (), "1"),
     Field("spacing", (), "m"),  # of nodes
 )
 # Of all nodes, one row; sums of densities over their volumes.

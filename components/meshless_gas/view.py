@@ -11,6 +11,7 @@ from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.faces import box, polygons
 
 DARKEST = 15.0  # exponent of the steepest gradient
+CONTRAST = 15.0  # of the greatest curvature: light that it bends is all gone, or twice as bright
 
 
 def schlieren(gradient: Array) -> Array:
@@ -35,6 +36,45 @@ def schlieren(gradient: Array) -> Array:
     return np.asarray(np.exp(-DARKEST * gradient / largest))
 
 
+def shadowgraph(curvature: Array) -> Array:
+    """Brightness of a numerical shadowgraph, 0.5 where the density's gradient is uniform.
+
+    Light is bent towards dense gas: a shock is dark on the side of the thin gas, and bright behind.
+
+    Parameters
+    ----------
+    curvature : (n,) float array, kg/m5
+        Laplacian of the density.
+
+    Returns
+    -------
+    (n,) float array
+
+    References
+    ----------
+    Settles, Schlieren and Shadowgraph Techniques, Springer (2001), section 6.1.
+    """
+    largest = float(np.abs(curvature).max(initial=0.0))
+    if not largest > 0.0:
+        return np.full_like(curvature, 0.5)
+    return np.asarray(0.5 - 0.5 * np.tanh(CONTRAST * curvature / largest))
+
+
+def laplacian(domain: Domain, gradients: Array) -> Array:
+    """Sum (m,) of the second derivatives of a field at nodes that are not left out.
+
+    Parameters
+    ----------
+    domain : Domain
+    gradients : (n, 3) float array
+        Of the field, at all nodes and ghosts.
+    """
+    rows = domain.every
+    near, coefficients = domain.stencils.neighbours[rows], domain.stencils.coefficients[rows]
+    rise = gradients[near] - gradients[rows][:, None]
+    return np.asarray((coefficients * rise).sum(axis=(1, 2)))
+
+
 def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams) -> Fields:
     """Nodes that are not left out, with the gradients of the last stage."""
     rows = domain.every
@@ -48,6 +88,7 @@ def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams
         "temperature": temperature(primitive, params.gas),
         "mach": mach(primitive, params.gas),
         "schlieren": schlieren(np.sqrt((gradient * gradient).sum(axis=1))),
+        "shadowgraph": shadowgraph(laplacian(domain, fluxes.gradients[:, 0])),
     }
 
 

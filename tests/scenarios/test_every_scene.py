@@ -1,11 +1,12 @@
 """Every scene that comes with quintet, run as it stands, ends as its tables in README say."""
 
 import json
+import tomllib
 
 import pytest
 
 from quintet.coupler.cli import main
-from quintet.coupler.scene.read import library
+from quintet.coupler.scene.read import library, load
 
 # Expectations that are not met, and said so in README: all others are.
 UNMET = {"dam_break_box": {"p3.arrival", "front.arrival"}}
@@ -26,3 +27,11 @@ def test_a_scene_meets_what_its_tables_say(tmp_path, scene):
     assert ended.value.code == (1 if unmet else 0)
     for link in found["ledger"]["links"]:
         assert link["momentum_residual"] <= 1e-12
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("scene", sorted(library()))
+def test_every_preset_of_a_scene_can_be_read_with_its_limits_and_studies(scene):
+    presets = tomllib.loads(library()[scene].read_text()).get("presets", {})
+    for preset in ("", *presets):
+        assert load(scene, preset).file.name == scene

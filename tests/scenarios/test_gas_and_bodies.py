@@ -4,13 +4,62 @@ from collections.abc import Callable
 
 import pytest
 
+from quintet.scenarios.moving_sphere.compare import Flight, flight
+
 Run = Callable[..., dict]
+Fly = Callable[[str], Flight]
+# A body fixed in a stream, and the same with half or all of the relative velocity of its own.
+SAME = {
+    "10 spacings on a radius": ("fixed", ("half", "")),
+    "20 spacings on a radius": ("fine_fixed", ("fine_half", "fine")),
+    "no slip": ("no_slip_fixed", ("no_slip",)),
+    "34 degrees to the lattice": ("oblique_fixed", ("oblique",)),
+}
+
+
+@pytest.fixture(scope="module")
+def fly(run_scene: Run) -> Fly:
+    """Run a preset of `moving_sphere` once; return what its body felt."""
+    known: dict[str, Flight] = {}
+
+    def made(preset: str) -> Flight:
+        if preset not in known:
+            found = run_scene("moving_sphere", *(("--preset", preset) if preset else ()))
+            assert all(one["met"] for one in found["expect"]), found["expect"]
+            known[preset] = flight(found["folder"])
+        return known[preset]
+
+    return made
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("preset", ["fixed", "half", "quick", "oblique", "no_slip_fixed"])
-def test_what_a_body_feels_does_not_depend_on_who_moves(run_scene: Run, preset: str) -> None:
-    found = run_scene("moving_sphere", "--preset", preset)
+@pytest.mark.parametrize("name", SAME)
+def test_what_a_body_feels_does_not_depend_on_who_moves(fly: Fly, name: str) -> None:
+    preset, others = SAME[name]
+    fixed = fly(preset)
+    for one in (fixed, *map(fly, others)):
+        assert one.error < 0.005 * one.mean
+        assert one.mean == pytest.approx(fixed.mean, rel=0.02)
+        assert max(one.pressure_off(fixed)) < 0.02
+
+
+@pytest.mark.full
+def test_a_finer_cloud_makes_less_of_a_difference_between_moving_and_fixed(fly: Fly) -> None:
+    def off(name: str) -> float:
+        preset, others = SAME[name]
+        return max(abs(fly(one).mean / fly(preset).mean - 1.0) for one in others)
+
+    assert off("20 spacings on a radius") < off("10 spacings on a radius") < 0.006
+
+
+@pytest.mark.full
+def test_a_body_that_moves_costs_a_node_little_more_than_one_that_is_fixed(fly: Fly) -> None:
+    assert fly("oblique").cost < 2.0 * fly("oblique_fixed").cost
+
+
+@pytest.mark.full
+def test_half_of_the_way_is_enough_for_a_first_look(run_scene: Run) -> None:
+    found = run_scene("moving_sphere", "--preset", "quick")
     assert all(one["met"] for one in found["expect"]), found["expect"]
 
 

@@ -11,7 +11,7 @@ from quintet.coupler.files.recording import Recording
 Run = Callable[..., dict]
 
 SCENE = str(Path(__file__).parent / "two_contacts.toml")
-G, END = 9.81, 0.3  # m/s2, s
+G, END = 9.81, 0.15  # m/s2, s
 
 
 @pytest.fixture(scope="module")

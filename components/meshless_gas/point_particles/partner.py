@@ -5,8 +5,11 @@ import numpy as np
 from quintet.components.meshless_gas.build import Domain, transport_of
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.point_particles.half_plane import into, out_of, turns
 from quintet.components.meshless_gas.point_particles.interphase import InterphaseExchange
+from quintet.components.meshless_gas.point_particles.kernels import OUTSIDE
 from quintet.components.meshless_gas.point_particles.particles import Particles
+from quintet.components.meshless_gas.view import reaches
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import StepError
 
@@ -31,9 +34,14 @@ class Partner:
 
     def __init__(self, params: MeshlessGasParams, domain: Domain) -> None:
         assert params.particles is not None
-        gas = params.gas
+        gas, cloud = params.gas, domain.cloud
+        if params.box is None:
+            # Layers are thinner than they are wide: a particle has left the gas that is farther
+            # from its nearest node than all neighbours of this are.
+            reach = reaches(domain)[np.concatenate([np.arange(cloud.nodes), cloud.owner])]
+            cloud = cloud._replace(spacing=reach / OUTSIDE)
         self.exchange = InterphaseExchange(
-            params.particles, domain.cloud, params.planar, transport_of(gas), gas.gamma, gas.prandtl
+            params.particles, cloud, params.planar, transport_of(gas), gas.gamma, gas.prandtl
         )
         # What boundary nodes were given would be lost: their states follow from others.
         advanced = np.zeros(domain.cloud.nodes, bool)
@@ -41,12 +49,15 @@ class Partner:
         images = advanced[domain.cloud.owner]
         self.exchange.look_among(np.flatnonzero(np.concatenate([advanced, images])))
         self.periods = periods(params)
+        one = params.sphere
+        self.axis = np.array(one.centre) if one is not None and params.axisymmetric else None
         self.hold(0)
 
     def hold(self, count: int) -> None:
         """Make room for so many particles, of which nothing is known."""
         self.exchange.resize(count)
         self.particles = self.exchange.particles
+        self.turned = np.tile([1.0, 0.0], (count, 1))  # out of the half-plane of an axis
 
     def bind(self, static: Fields) -> None:
         """Learn how heavy they are, how much heat they hold, and how many each stands for."""
@@ -83,11 +94,19 @@ class Partner:
             )
 
     def place(self) -> None:
-        """Begin a step: find the nodes around them, or around their images in a periodic box."""
-        x = self.particles.position.copy()
+        """Begin a step: find the nodes around them, or around their images.
+
+        These are in a periodic box, or about an axis in the half-plane that has nodes.
+        """
+        one, x = self.particles, self.particles.position.copy()
         for axis, low, length in self.periods:
             x[:, axis] = low + np.mod(x[:, axis] - low, length)
-        self.exchange.place(self.particles._replace(position=x))
+        if self.axis is not None:
+            turned = self.turned = turns(x, self.axis)
+            x = self.axis + into(turned, x - self.axis)
+            velocity, acceleration = into(turned, one.velocity), into(turned, one.acceleration)
+            one = one._replace(velocity=velocity, acceleration=acceleration)
+        self.exchange.place(one._replace(position=x))
 
     def add(
         self, primitive: Array, residual: Array, dt: float, stage: tuple[float, float, float]
@@ -104,9 +123,9 @@ class Partner:
 
     def loads(self) -> Fields:
         """Mean force [N] and heat [W] on each in the last step."""
-        force = self.exchange.loads.force
+        force = out_of(self.turned, self.exchange.loads.force)
         return {
-            "particle_load.force": force.copy(),
+            "particle_load.force": force,
             "particle_load.torque": np.zeros_like(force),
             "particle_heat.heat_flow": self.exchange.loads.heat.copy(),
         }
@@ -119,6 +138,7 @@ class Partner:
         """Copy out what was told, and the last loads; they stand where they were placed."""
         kept = {f"particles.{name}": getattr(self.particles, name).copy() for name in TOLD + STATIC}
         kept["particles.placed"] = self.exchange.particles.position.copy()
+        kept["particles.turned"] = self.turned.copy()
         for name in SUMS:
             kept[f"particles.{name}"] = getattr(self.exchange.loads, name).copy()
         return kept
@@ -128,6 +148,7 @@ class Partner:
         told = {name: np.array(state[f"particles.{name}"]) for name in TOLD + STATIC}
         self.particles = Particles(**told)
         placed = self.particles._replace(position=np.array(state["particles.placed"]))
+        self.turned = np.array(state["particles.turned"])
         self.exchange.place(placed)
         for name in SUMS:
             getattr(self.exchange.loads, name)[:] = state[f"particles.{name}"]

@@ -23,7 +23,6 @@ POINTS = {"drag": "stokes"}
         ({"box": BOX, "moving": {"bodies": [BODY]}, "local_steps": True}, "Leave out local_steps"),
         ({"box": BOX, "moving": {"bodies": [BODY]}, "probes": [[0.1, 0.0, 0.1]]}, "still; found"),
         ({"box": BOX, "moving": {"bodies": [BODY]}, "particles": POINTS}, "Leave out particles"),
-        ({"plate": PLATE | {"layers": {"count": 10}}, "particles": POINTS}, "give a box"),
         ({"plate": PLATE | {"layers": {"count": 10, "jitter": 0.3}}}, "jitter is for an"),
         ({"box": BOX, "moving": CUT | {"axisymmetric": False}}, "on an axis of symmetry"),
         (

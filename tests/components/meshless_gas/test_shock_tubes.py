@@ -8,6 +8,7 @@ from gases import GAMMA, SOD, gas, given, run, state, tube
 
 from quintet.components.meshless_gas import component, diagnostics
 from quintet.components.meshless_gas.exact.riemann import Side, star
+from quintet.components.meshless_gas.view import laplacian
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
 
@@ -89,6 +90,20 @@ def test_a_picture_after_load_is_that_before_save():
     before, after = made.view(), other.view()
     assert before["schlieren"].min() < 1e-3
     assert all(np.array_equal(before[key], after[key]) for key in before)
+
+
+def test_a_shock_is_dark_ahead_and_bright_behind_on_a_shadowgraph():
+    made = run(tube(50, *SOD), 0.1)
+    shown, place = made.view(), made.view()["points"][:, 0]
+    near = np.abs(place - 0.6752) < 0.06
+    light = shown["shadowgraph"][near]
+    assert place[near][light.argmin()] > place[near][light.argmax()]
+    assert light.min() < 0.1 and light.max() > 0.9
+    assert shown["shadowgraph"][place < 0.1] == pytest.approx(0.5, abs=1e-4)
+    # Least squares of a linear field are exact.
+    inner = np.isin(made.domain.every, made.domain.inner)
+    field = made.domain.cloud.positions * np.array([2.0, 0.0, 0.0])
+    assert laplacian(made.domain, field)[inner] == pytest.approx(2.0)
 
 
 @pytest.mark.full  # a kernel of its own

@@ -1,0 +1,119 @@
+"""Point particles among nodes in layers; about an axis each stands for a ring of grains."""
+
+import numpy as np
+import pytest
+
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.point_particles.half_plane import into, out_of, turns
+from quintet.interfaces.params import read
+
+WIND = {"density": 1.0, "pressure": 1.0 / 1.4, "velocity": [3.0, 0.0, 0.0]}
+INFLOW = {"kind": "inflow", "state": WIND}
+ROUND = {"wall": {"kind": "slip"}, "far": INFLOW, "exit": {"kind": "outflow"}}
+SPHERE = {"radius": 1.0, "rays": 12, "layers": {"count": 10}, "farthest": 2.0}
+CLOUDS = {
+    "axis": {"axisymmetric": True, "sphere": SPHERE, "boundaries": ROUND},
+    "space": {"dimensions": 3, "sphere": SPHERE | {"rays": 6}, "boundaries": ROUND},
+    "plate": {
+        "plate": {
+            "length": 2.0, "ahead": 0.5, "height": 1.0, "rays": 10, "finest": 0.1,
+            "layers": {"count": 10},
+        },
+        "boundaries": {
+            "wall": {"kind": "slip"}, "ahead": {"kind": "slip"}, "inlet": INFLOW,
+            "far": {"kind": "outflow"}, "exit": {"kind": "outflow"},
+        },
+    },
+}  # fmt: skip
+PLACES = {"axis": [-1.06, 0.0, 0.5], "space": [-1.1, 0.02, 0.3], "plate": [0.8, 0.0, 0.5]}
+MASS, SIZE = 1e-4, 1e-3  # kg, m: of a grain that is light, so that it is dragged much
+
+
+def gas_of(cloud, places, parcel=5.0, reaction=True, **moving):
+    """A gas and what it is told of particles."""
+    table = CLOUDS[cloud] | {"gas": {"gas_constant": 1.0, "viscosity": 0.1}, "initial": WIND}
+    table |= {"particles": {"drag": "stokes", "reaction": reaction}}
+    params, mistakes = read(MeshlessGasParams, table, "gas")
+    assert not mistakes, mistakes
+    made, count = MeshlessGas(params), len(places)
+    held = {"mass": MASS, "heat_capacity": 1e-4, "number": 1.0}
+    made.bind(
+        {f"particles.{name}": np.full(count, parcel * one) for name, one in held.items()},
+        frozenset(),
+    )
+    told = {
+        "position": np.array(places),
+        "velocity": np.zeros((count, 3)),
+        "acceleration": np.zeros((count, 3)),
+        "temperature": np.full(count, 0.5),
+        "diameter": np.full(count, SIZE),
+        "launched": np.ones(count),
+    } | moving
+    fields = {f"particles.{name}": one for name, one in told.items()}
+    made.prime(fields)
+    made.take(fields)
+    return made
+
+
+def loads(made):
+    """Forces [N] and heat [W] on particles."""
+    given = made.give(frozenset({"particle_load.force", "particle_heat.heat_flow"}))
+    return given["particle_load.force"], given["particle_heat.heat_flow"]
+
+
+def test_turned_vectors_come_back():
+    rng = np.random.default_rng(2)
+    places, vectors = rng.normal(size=(2, 6, 3))
+    places[0, 1:] = 0.0  # on the axis
+    turned = turns(places, np.zeros(3))
+    seen = into(turned, places)
+    assert seen[:, 1] == pytest.approx(0.0, abs=1e-15)
+    assert seen[:, 2] == pytest.approx(np.hypot(places[:, 1], places[:, 2]))
+    assert out_of(turned, into(turned, vectors)) == pytest.approx(vectors)
+
+
+@pytest.mark.full  # kernels in space
+@pytest.mark.parametrize("cloud", CLOUDS)
+def test_what_particles_get_nodes_in_layers_lose(cloud):
+    made = gas_of(cloud, [PLACES[cloud]])
+    volumes = made.domain.cloud.volumes[: made.items()]
+    free = gas_of(cloud, [PLACES[cloud]], reaction=False)
+    dt = 0.2 * min(made.stable_dt(), free.stable_dt())
+    before = made.state.conservative.copy()
+    made.particles.place()
+    made._write_rates()
+    rates = made.fluxes.residual[: made.items()].copy()
+    made.particles.add(made.fluxes.primitive, made.fluxes.residual, dt, (0.0, 1.0, 1.0))
+    lost = (volumes[:, None] * (made.fluxes.residual[: made.items()] - rates)).sum(axis=0)
+    force, heat = loads(made)
+    assert np.array_equal(before, made.state.conservative)
+    assert force[0, 0] > 0.0 and heat[0] > 0.0
+    assert lost[1] == pytest.approx(-force[0, 0], rel=1e-12)
+    assert lost[4] == pytest.approx(-heat[0], rel=1e-12)  # the particle rests
+    if cloud != "axis":
+        assert lost[1:4] == pytest.approx(-force[0], rel=1e-12)
+
+
+@pytest.mark.full
+def test_a_ring_of_grains_is_the_same_at_every_angle():
+    turn, x, radius = 1.1, *np.array(PLACES["axis"])[[0, 2]]
+    aside = [x, radius * np.sin(turn), radius * np.cos(turn)]
+    made = gas_of("axis", [PLACES["axis"], aside])
+    dt = 0.5 * made.stable_dt()
+    made.step(dt)
+    force, heat = loads(made)
+    assert np.hypot(*force[1, 1:]) == pytest.approx(force[0, 2], rel=1e-9)
+    assert force[1, 1] == pytest.approx(force[0, 2] * np.sin(turn), rel=1e-9)
+    assert force[1, 0] == pytest.approx(force[0, 0], rel=1e-12)
+    assert heat[1] == pytest.approx(heat[0], rel=1e-12)
+    # Two halves of the grains are those of one particle with all of them.
+    whole = gas_of("axis", [PLACES["axis"]], parcel=10.0)
+    whole.step(dt)
+    assert loads(whole)[0][0] == pytest.approx(2.0 * force[0], rel=1e-9)
+    assert whole.state.conservative == pytest.approx(made.state.conservative, rel=1e-9, abs=1e-12)
+    kept = made.save()
+    after = loads(made)[0]
+    made.step(dt)
+    made.load(kept)
+    assert np.array_equal(loads(made)[0], after)
