@@ -126,6 +126,8 @@ SURFACE = Port(
         PRESSURE,
         Field("friction", (3,), "Pa"),
         Field("heat_flux", (), "W/m2"),  # into the body
+        # Over that of Fay and Riddell where the stream at the start meets a sphere; 0 of others.
+        Field("heat_ratio", (), "1"),
     ),
 )
 

@@ -78,10 +78,11 @@ def laplacian(domain: Domain, gradients: Array) -> Array:
 def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams) -> Fields:
     """Nodes that are not left out, with the gradients of the last stage."""
     rows = domain.every
+    has_layers = params.box is None or params.moving is not None
     gradient, primitive = fluxes.gradients[rows, 0], state.primitive[rows]
     return {
         "points": domain.cloud.positions[rows],
-        "spacing": domain.cloud.spacing[rows] if params.box is not None else reaches(domain),
+        "spacing": reaches(domain) if has_layers else domain.cloud.spacing[rows],
         "density": primitive[:, 0].copy(),
         "pressure": primitive[:, 4].copy(),
         "velocity": primitive[:, 1:4].copy(),

@@ -1,16 +1,18 @@
-"""Pressure on the sphere, and ways of particles.
+"""Pressure and heat flux on the sphere, and ways of particles.
 
 ``python -m quintet.scenarios.shock_layer_particle.surface RUN ...``, RUN the folder of a run of
-this scene. Draws `surface.png` beside the first: pressure along the
-sphere at several times, its largest value and where it is, and how far particles go.
+this scene; that of preset `alone` says what is there without a particle. Draws `surface.png` beside
+the first.
 """
 
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 
 from quintet.coupler.files.recording import Recording
 from quintet.interfaces.component import Array
@@ -18,93 +20,162 @@ from quintet.interfaces.component import Array
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-CURVES = 6  # times at which pressure is drawn
+CURVES = 6  # times of which curves are drawn
+EARLY = 1.6  # exponent that puts more of them early
+OFF = 10.0  # degrees from the axis, beyond which a peak is that of the ring
+SETTLED = 0.3  # s after the first launch
 
 
 class Run:
-    """One run: pressure along the sphere, and where particles are, over time."""
+    """One run: what the sphere feels, and where particles are, over time."""
 
     def __init__(self, folder: Path) -> None:
         scene = tomllib.loads((folder / "scene.toml").read_text())
+        gas, bodies = scene["components"]["gas"], scene["components"]["gas"]["moving"]["bodies"]
         self.name = folder.name
-        self.launch = float(scene["components"]["particle"]["spheres"][0]["launch"])
-        state = scene["components"]["gas"]["initial"]
-        self.rest = _pitot(state)
+        self.has_particles = len(bodies) > 1
+        launches = [one.get("launch", 0.0) for one in scene["components"]["particle"]["spheres"]]
+        self.launch = min(launches)
         with Recording(folder) as recording:
             self.times = recording.times("gas")
             pressure = recording.field("gas", "surface.pressure")
+            heat = recording.field("gas", "surface.heat_ratio")
             angle = recording.field("gas", "surface.angle")[0]
             self.places = recording.field("gas", "bodies.position")[:, 1:, 0]
-        wall = np.flatnonzero(np.diff(angle) < 0.0)
-        nodes = wall[0] + 1 if len(wall) else len(angle)  # of the first body
-        self.pressure = pressure[:, :nodes] / self.rest
+        ends = np.flatnonzero(np.diff(angle) < 0.0)
+        nodes = int(ends[0]) + 1 if len(ends) else len(angle)  # of the first body
         self.angle = np.degrees(angle[:nodes])
+        self.pressure = pressure[:, :nodes] / _pitot(gas["initial"])
+        self.heat = heat[:, :nodes] if gas.get("viscous") else None  # over Fay and Riddell's
 
     def at(self, time: float) -> int:
         """Row of a time."""
         return int(np.abs(self.times - time).argmin())
 
 
-def _pitot(state: dict[str, object]) -> float:
+def _pitot(state: dict[str, Any]) -> float:
     """Rayleigh's pitot pressure [Pa]; γ = 1.4."""
-    density, pressure = float(str(state["density"])), float(str(state["pressure"]))
+    density, pressure = float(state["density"]), float(state["pressure"])
     speed = np.array(state["velocity"], float)
     square = float(speed @ speed) * density / (1.4 * pressure)
     behind = (1.0 - 1.4 + 2.8 * square) / 2.4
     return pressure * behind * (2.4**2 * square / (5.6 * square - 0.8)) ** 3.5
 
 
-def ring(run: Run) -> tuple[Array, Array]:
-    """Largest pressure off the axis over time, and its angle [degrees]."""
-    off = run.angle > 10.0
-    row = run.pressure[:, off].argmax(axis=1)
-    return run.pressure[:, off][np.arange(len(row)), row], run.angle[off][row]
+def ring(angle: Array, values: Array) -> tuple[Array, Array]:
+    """Largest value off the axis over time, and its angle [degrees].
+
+    Parameters
+    ----------
+    angle : (a,) degrees
+    values : (times, a)
+    """
+    off = angle > OFF
+    row = values[:, off].argmax(axis=1)
+    return values[:, off][np.arange(len(row)), row], angle[off][row]
 
 
-def draw(runs: list[Run], path: Path) -> None:
-    """Draw the three panels."""
-    figure, (along, peak, ways) = plt.subplots(1, 3, figsize=(15.0, 4.6), layout="constrained")
+def draw(runs: list[Run], alone: Run | None, path: Path) -> None:
+    """Draw all panels."""
     one = runs[0]
-    shown = np.linspace(one.launch, one.times[-1], CURVES)
-    for k, time in enumerate(shown):
-        colour = plt.get_cmap("viridis")(k / (CURVES - 1))
-        row = one.at(time)
-        label = f"t = {one.times[row]:.1f} s, particle at {-one.places[row, 0]:.2f} R"
-        along.plot(one.angle, one.pressure[row], color=colour, label=label)
-    newton = np.cos(np.radians(np.minimum(one.angle, 90.0))) ** 2
-    along.plot(one.angle, newton, "k:", label="cos², without a particle")
-    along.set(xlim=(0, 110), xlabel="angle from the axis [degrees]", title=f"sphere, {one.name}")
-    along.set_ylabel("pressure over Rayleigh's pitot pressure")
-    along.legend(fontsize="small")
-    after = one.times >= one.launch
-    height, angle = ring(one)
-    peak.plot(one.times[after], angle[after], color="tab:blue")
-    peak.set(xlabel="t [s]", title="largest pressure off the axis")
-    peak.set_ylabel("its angle [degrees]", color="tab:blue")
-    other = peak.twinx()
-    other.plot(one.times[after], height[after], color="tab:red")
-    other.set_ylabel("its size over Rayleigh's pitot pressure", color="tab:red")
+    rows = 1 if one.heat is None else 2
+    figure, panels = plt.subplots(
+        rows, 3, figsize=(16.0, 4.8 * rows), layout="constrained", squeeze=False
+    )
+    undisturbed = None if alone is None else alone.pressure[-1]
+    _along(panels[0, 0], one, one.pressure, undisturbed, "pressure over Rayleigh's pitot pressure")
+    _against_time(panels[0, 1], one, one.pressure, 1.0, "pressure", "Rayleigh's pitot pressure")
     for run in runs:
         for k in range(run.places.shape[1]):
-            ways.plot(run.times, -run.places[:, k], label=f"{run.name}, particle {k}")
-    ways.set(xlabel="t [s]", ylabel="distance from the sphere's centre [R]", title="particles")
-    ways.legend(fontsize="small")
-    figure.savefig(path, dpi=110)
+            panels[0, 2].plot(run.times, -run.places[:, k], label=f"{run.name}, particle {k}")
+    panels[0, 2].set(xlabel="t [s]", ylabel="distance from the sphere's centre [R]")
+    panels[0, 2].set(title="particles")
+    panels[0, 2].legend(fontsize="small")
+    if one.heat is not None:
+        known = None if alone is None or alone.heat is None else alone.heat[-1]
+        rest = 1.0 if known is None else float(known[0])
+        label = "heat flux over that of Fay and Riddell"
+        _along(panels[1, 0], one, one.heat, known, label)
+        text = "that of Fay and Riddell" if known is None else "that at the axis without a particle"
+        _against_time(panels[1, 1], one, one.heat, rest, "heat flux", text)
+        _map(panels[1, 2], one, one.heat, known)
+    figure.savefig(path, dpi=100)
+
+
+def _along(panel: Axes, run: Run, values: Array, undisturbed: Array | None, label: str) -> None:
+    """Values along the sphere at several times."""
+    shown = run.launch + (run.times[-1] - run.launch) * np.linspace(0.0, 1.0, CURVES) ** EARLY
+    for k, time in enumerate(shown):
+        row = run.at(time)
+        text = f"t = {run.times[row]:.1f} s, particle at {-run.places[row, 0]:.2f} R"
+        panel.plot(
+            run.angle, values[row], color=plt.get_cmap("viridis")(k / (CURVES - 0.5)), label=text
+        )
+    if undisturbed is not None:
+        panel.plot(run.angle, undisturbed, "k--", label="without a particle")
+    panel.set(xlim=(0, 90), xlabel="angle from the axis [degrees]", ylabel=label)
+    panel.set(title=f"along the sphere, {run.name}")
+    panel.legend(fontsize="small")
+
+
+def _against_time(panel: Axes, run: Run, values: Array, rest: float, name: str, over: str) -> None:
+    """Size and angle of the ring over time."""
+    after = run.times >= run.launch
+    height, angle = ring(run.angle, values)
+    panel.plot(run.times[after], angle[after], color="tab:blue", linewidth=0.8)
+    panel.set(xlabel="t [s]", title=f"largest {name} beyond {OFF:.0f} degrees")
+    panel.set_ylabel("its angle [degrees]", color="tab:blue")
+    other = panel.twinx()
+    other.plot(run.times[after], height[after] / rest, color="tab:red")
+    other.set_ylabel(f"its size over {over}", color="tab:red")
+
+
+def _map(panel: Axes, run: Run, values: Array, undisturbed: Array | None) -> None:
+    """Values over time and angle, over those without a particle where they are known."""
+    after = run.times >= run.launch
+    shown = values[after] if undisturbed is None else values[after] / undisturbed
+    mesh = panel.pcolormesh(
+        run.times[after], run.angle, shown.T, cmap="inferno", shading="nearest", vmin=0.0,
+        rasterized=True,
+    )  # fmt: skip
+    panel.set(xlabel="t [s]", ylabel="angle from the axis [degrees]", title="heat flux")
+    text = "that of Fay and Riddell" if undisturbed is None else "that there without a particle"
+    panel.figure.colorbar(mesh, ax=panel, label=f"over {text}")
+
+
+def tell(run: Run, alone: Run | None) -> str:
+    """Say what the README says of a run."""
+    after = run.times >= run.launch + SETTLED
+    said = [f"{run.name}: farthest {np.round(-run.places.min(axis=0), 3).tolist()} R"]
+    pairs = [("pressure over Rayleigh's", run.pressure, 1.0)]
+    if run.heat is not None:
+        pairs.append(("heat flux over Fay and Riddell's", run.heat, 1.0))
+        if alone is not None and alone.heat is not None:
+            rest = float(alone.heat[-1, 0])
+            pairs.append(("heat flux over that at the axis without a particle", run.heat, rest))
+            pairs.append(("heat flux over that there without", run.heat / alone.heat[-1], 1.0))
+    for name, values, rest in pairs:
+        height, angle = ring(run.angle, values)
+        best = np.flatnonzero(after)[height[after].argmax()]
+        said.append(
+            f"  largest {name}: {height[best] / rest:.2f} at {angle[best]:.0f} degrees, "
+            f"t = {run.times[best]:.2f} s, particle at {-run.places[best, 0]:.2f} R; "
+            f"outermost at {angle[after].max():.0f} degrees"
+        )
+    return "\n".join(said)
 
 
 def main() -> None:
     """Draw, and print what the README says."""
-    runs = [Run(Path(folder)) for folder in sys.argv[1:]]
+    given = [Run(Path(folder)) for folder in sys.argv[1:]]
+    runs = [run for run in given if run.has_particles]
+    alone = next((run for run in given if not run.has_particles), None)
     for run in runs:
-        height, angle = ring(run)
-        after = run.times >= run.launch + 0.3
-        best = np.flatnonzero(after)[height[after].argmax()]
-        print(
-            f"{run.name}: farthest {np.round(-run.places.min(axis=0), 3).tolist()} R; largest "
-            f"{height[best]:.2f} of Rayleigh's at {angle[best]:.0f} degrees, t = "
-            f"{run.times[best]:.2f} s; outermost ring at {angle[after].max():.0f} degrees"
-        )
-    draw(runs, Path(sys.argv[1]) / "surface.png")
+        print(tell(run, alone))
+    if alone is not None:
+        heat = "" if alone.heat is None else f"; heat flux {alone.heat[-1, 0]:.3f} of Fay-Riddell's"
+        print(f"{alone.name}: pressure on the axis {alone.pressure[-1, 0]:.3f} of pitot's{heat}")
+    draw(runs, alone, Path(sys.argv[1]) / "surface.png")
 
 
 if __name__ == "__main__":

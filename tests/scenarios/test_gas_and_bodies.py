@@ -64,7 +64,15 @@ def test_half_of_the_way_is_enough_for_a_first_look(run_scene: Run) -> None:
 
 
 @pytest.mark.full
-def test_a_particle_that_crosses_a_shock_layer_raises_a_ring_of_pressure(run_scene: Run) -> None:
+def test_a_particle_that_crosses_a_shock_layer_drives_a_ring_of_heat_outwards(
+    run_scene: Run,
+) -> None:
     found = run_scene("shock_layer_particle")
     assert all(one["met"] for one in found["expect"]), found["expect"]
     assert all(one["momentum_residual"] <= 1e-12 for one in found["ledger"]["links"])
+
+
+@pytest.mark.full
+def test_heat_flux_at_a_sphere_is_that_of_fay_and_riddell(run_scene: Run) -> None:
+    found = run_scene("shock_layer_particle", "--preset", "alone")
+    assert all(one["met"] for one in found["expect"]), found["expect"]

@@ -1,10 +1,18 @@
 """Gas at walls, coarse: a blunt body, friction and heat between walls, a boundary layer."""
 
+import json
+import tomllib
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+import quintet.scenarios.blunt_sphere.drag as sphere_drag
+from quintet.components.meshless_gas.point_particles.laws import LOTH, drag_factor
+
 Run = Callable[..., dict]
+SPHERE = tomllib.loads(Path(sphere_drag.__file__).with_name("scene.toml").read_text())
+CASES = {one["label"]: one["settings"] for one in SPHERE["presets"]["drag"]["study"]}
 
 
 @pytest.mark.parametrize("scene", ["blunt_sphere", "couette"])
@@ -20,7 +28,6 @@ def test_walls_do_to_a_gas_as_laws_say(run_scene: Run, scene: str) -> None:
         ("blunt_sphere", "standard"),
         ("blunt_sphere", "mach3"),
         ("blunt_sphere", "hot"),
-        ("blunt_sphere", "drag"),
         ("couette", "standard"),
         ("flat_plate", "quick"),
         ("flat_plate", "standard"),
@@ -64,3 +71,21 @@ def test_a_sphere_in_space_has_the_shock_of_an_axisymmetric_one(run_scene: Run) 
 def test_a_uniform_stream_may_strike_a_sphere_at_once(run_scene: Run, options: list[str]) -> None:
     found = run_scene("blunt_sphere", "--preset", "quick", *options)
     assert found["by_name"]["pitot"]["value"] == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("case", ["M2 Re1000", "M2 Re100", "M6 Re300"])
+def test_drag_of_a_sphere_is_within_8_percent_of_loths(run_scene: Run, case: str) -> None:
+    given = [f"{path}={json.dumps(value)}" for path, value in CASES[case].items()]
+    found = run_scene("blunt_sphere", "--preset", "drag", *(p for g in given for p in ("--set", g)))
+    assert found["by_name"]["drag"]["met"], found["expect"]
+
+
+def test_drags_are_compared_with_the_law_of_loth() -> None:
+    for settings in CASES.values():
+        mach = settings["components.gas.initial.velocity"][0]
+        reynolds = 2.0 * mach / settings["components.gas.gas.viscosity"]
+        law = 24.0 / reynolds * drag_factor(LOTH, reynolds, mach, mach / reynolds, 1.0, 1.4)
+        assert sphere_drag.loth(mach, reynolds) == pytest.approx(law, rel=1e-12)
+        assert settings["expect.0.value"] == pytest.approx(law, rel=1e-3)
+        assert settings["expect.0.within"] == pytest.approx(0.08 * law, rel=1e-2)

@@ -28,7 +28,7 @@ SCENES = {
     "moving_sphere": ("quick", 0.4, 1.0 / 30.0, ()),
     "moving_sphere oblique": ("oblique", 0.2, 1.0 / 30.0, ()),
     "moving_sphere no_slip": ("no_slip", 0.1, 1.0 / 30.0, ()),
-    "shock_layer_particle": ("", 0.24, 0.01, (f"{LAUNCH}=0.04",)),
+    "shock_layer_particle": ("", 0.08, 0.01, (f"{LAUNCH}=0.02",)),
     "shock_layer_particle two": ("two", 0.12, 0.01, (f"{LAUNCH}=0.02",)),
     "dust_in_stream": ("", 6e-4, 8e-6, ()),
     "dusty_shock": ("quick", 3e-4, 1e-5, ()),

@@ -25,10 +25,10 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         )
     if params.box is None:
         raise SceneError("bodies that carry clouds need a box around them. Give a box.")
-    if not params.viscous and any(one.temperature for one in keys.bodies):
+    if not params.viscous and any(one.is_holding for one in keys.bodies):
         raise SceneError(
-            "walls of a temperature hold the gas by friction. Say viscous = true, or leave out "
-            "temperature."
+            "walls of a temperature, or adiabatic ones, hold the gas by friction. Say viscous = "
+            "true, or leave out temperature and is_adiabatic."
         )
     if keys.axisymmetric and (params.kind_of("z-") != "symmetry" or params.box.lowest[2] != 0.0):
         raise SceneError(

@@ -18,7 +18,7 @@ from quintet.components.meshless_gas.kernels.outflows import uncovered
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
-from quintet.components.meshless_gas.moving.outputs import outputs, unit_force
+from quintet.components.meshless_gas.moving.outputs import outputs, unit_force, unit_heat
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
@@ -65,6 +65,7 @@ class MovingClouds:
         self.params, self.domain, self.layout, self.team = params.moving, domain, layout, team
         self.gamma, self.unit_force = params.gas.gamma, unit_force(params)
         self.outflows = domain.outflows  # of the box, whether left out or not
+        self.unit_heat = unit_heat(params)
         self.kept = params.neighbours  # of a node across seams
         bodies, cloud = self.params.bodies, domain.cloud
         self.pose = Pose(

@@ -18,26 +18,39 @@ from quintet.components.shared.numba_options import FAST
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 
+LEAST = 0.3  # of the nearer node's temperature: what an adiabatic wall must keep
+
 
 class Friction:
-    """Friction and heat at the walls of bodies that have a temperature."""
+    """Friction and heat at the walls of bodies that hold the gas."""
 
     def __init__(self, params: Moving, layout: CloudLayout, law: Transport) -> None:
         warmth = np.array([one.temperature or 0.0 for one in params.bodies])[layout.body]
-        self.held = np.flatnonzero(warmth > 0.0)
+        insulating = np.array([one.is_adiabatic for one in params.bodies])[layout.body]
+        self.held = np.flatnonzero((warmth > 0.0) | insulating)
         self.law, self.layout, self.temperature = law, layout, warmth[self.held]
+        self.insulating = np.flatnonzero(insulating[self.held])  # of those that are held
         self.rows = layout.walls[self.held].astype(np.int32)
         self.above = layout.above[self.held].astype(np.int32)
-        # Pa s, of the gas at held walls.
-        self.viscosity = np.array([sutherland.py_func(one, law) for one in self.temperature])
         self.friction = np.zeros((len(layout.walls), 3))  # Pa, on all walls
         self.heat = np.zeros(len(layout.walls))  # W/m2, into all walls
 
     def hold(self, velocity: Array, primitive: Array) -> None:
         """Give walls their velocity and temperature, at the pressure that they have."""
         rows = self.rows
+        if len(self.insulating):
+            self._level(primitive)
         primitive[rows, 0] = primitive[rows, 4] / (self.law.gas_constant * self.temperature)
         primitive[rows, 1:4] = velocity[self.held]
+
+    def _level(self, primitive: Array) -> None:
+        """Give adiabatic walls the temperature of the parabola that is level there."""
+        near, far = primitive[self.above[self.insulating]].transpose(1, 0, 2)
+        first, second = (one[:, 4] / (one[:, 0] * self.law.gas_constant) for one in (near, far))
+        low, high = self.layout.heights[self.held[self.insulating]].T ** 2
+        level = (first * high - second * low) / (high - low)
+        # Where a shock lies between the two, that of the nearer.
+        self.temperature[self.insulating] = np.where(level > LEAST * first, level, first)
 
     def load(
         self, cloud: Cloud, velocity: Array, spin: Array, primitive: Array, loads: Array
@@ -53,9 +66,12 @@ class Friction:
             self.rows, self.above, cloud.positions, cloud.normals, velocity[held], primitive,
             self.law, friction, heat,
         )  # fmt: skip
-        turning = np.cross(spin[own.body[held]], cloud.normals[self.rows])  # 1/s
-        self.friction[held] = friction - self.viscosity[:, None] * turning
-        self.heat[held] = heat
+        if spin.any():
+            turning = np.cross(spin[own.body[held]], cloud.normals[self.rows])  # 1/s
+            viscosity = [sutherland.py_func(one, self.law) for one in self.temperature]
+            friction -= np.array(viscosity)[:, None] * turning
+        heat[self.insulating] = 0.0
+        self.friction[held], self.heat[held] = friction, heat
         size = np.sqrt((cloud.areas[own.walls] ** 2).sum(axis=1))
         force = size[:, None] * self.friction
         torque, work = np.cross(own.arms, force), (force * velocity).sum(axis=1)

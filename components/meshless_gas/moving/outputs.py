@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array
 
@@ -17,6 +18,7 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
     own, pose, driven = moving.layout, moving.pose, moving.driven
     pressure, force = primitive[own.walls, 4], moving.summed[:, :3]
     bodies, held, count = range(len(moving.radii)), moving.friction, len(own.walls)
+    heat = np.zeros(count) if held is None else held.heat.copy()
     return {
         "bodies.position": pose.centre.copy(),
         "bodies.velocity": pose.velocity.copy(),
@@ -31,7 +33,8 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
         "surface.angle": np.arctan2(own.arms[:, 2], -own.arms[:, 0]),
         "surface.pressure": pressure.copy(),
         "surface.friction": np.zeros((count, 3)) if held is None else held.friction.copy(),
-        "surface.heat_flux": np.zeros(count) if held is None else held.heat.copy(),
+        "surface.heat_flux": heat,
+        "surface.heat_ratio": heat / moving.unit_heat[own.body],
         "load.force": force[driven],
         "load.torque": moving.summed[driven, 3:6],
         "heat.heat_flow": moving.summed[driven, 7],
@@ -48,3 +51,27 @@ def unit_force(params: MeshlessGasParams) -> Array:
     radii = np.array([one.radius for one in bodies])
     area = math.pi * radii**2 if params.moving.axisymmetric else 2.0 * radii
     return np.asarray(0.5 * density * square * area)
+
+
+def unit_heat(params: MeshlessGasParams) -> Array:
+    """Heat flux (b,) W/m2 that a ratio of 1 stands for; infinite where there is no law for it."""
+    assert params.initial is not None and params.moving is not None
+    gas, found = params.gas, []
+    density, *wind, pressure = params.initial.primitive(gas)
+    for one in params.moving.bodies:
+        speed = math.dist(wind, one.velocity)
+        stream = Stream(
+            mach=speed / math.sqrt(gas.gamma * pressure / density),
+            pressure=pressure,
+            temperature=pressure / (gas.gas_constant * density),
+            gamma=gas.gamma,
+            gas_constant=gas.gas_constant,
+            prandtl=gas.prandtl,
+            sutherland=(gas.viscosity, gas.reference_temperature, gas.sutherland),
+        )
+        is_known = params.viscous and params.moving.axisymmetric and stream.mach > 1.0
+        law = math.inf
+        if is_known and one.temperature is not None:
+            law = fay_riddell(stream, one.radius, one.temperature)
+        found.append(law if law > 0.0 else math.inf)
+    return np.array(found)

@@ -46,6 +46,8 @@ class Body:
         grows with (1 - cos θ)², as a boundary layer does about.
     temperature : K
         Of a wall that holds a viscous gas; if not said, the gas slips along it.
+    is_adiabatic
+        Whether the wall, in place of having a temperature, holds a viscous gas and takes no heat.
     weight : 1
         Of the least squares: 0 for a truncated Gaussian over the distance, else the power p of
         1/dᵖ.
@@ -64,10 +66,16 @@ class Body:
     sector: Annotated[float, Field(gt=0, le=math.pi + 1e-9, allow_inf_nan=False)] = math.pi
     first_at_sector: Positive | None = None
     temperature: Positive | None = None
+    is_adiabatic: bool = False
     weight: NotNegative = 0.0
 
     def __post_init__(self) -> None:
-        if self.angular_velocity and self.temperature is None:
+        if self.is_adiabatic and self.temperature is not None:
+            raise ValueError(
+                "an adiabatic wall has the temperature of the gas; found both. Leave out "
+                "temperature or is_adiabatic."
+            )
+        if self.angular_velocity and not self.is_holding:
             raise ValueError(
                 "angular_velocity is of a wall that holds the gas; found one that slips. Give a "
                 "temperature, or leave out angular_velocity."
@@ -97,6 +105,11 @@ class Body:
                 f"{thickest:.4g} m thick in the mean, and the first can be no thicker; found "
                 f"{first:g} m. Lower it, or growth."
             )
+
+    @property
+    def is_holding(self) -> bool:
+        """Whether its wall holds the gas by friction."""
+        return self.is_adiabatic or self.temperature is not None
 
     @property
     def is_cut(self) -> bool:

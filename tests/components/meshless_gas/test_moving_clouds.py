@@ -6,8 +6,10 @@ import sys
 import numpy as np
 import pytest
 
+from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
 from quintet.components.meshless_gas.clouds.grading import capped
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.moving.outputs import unit_heat
 from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.errors import SceneError, StepError
@@ -53,10 +55,14 @@ def scene(share=0.0, way=WAY, gas=None, bodies=None, **keys):
     }
 
 
-def made(settings):
+def params_of(settings):
     params, mistakes = read(MeshlessGasParams, settings, "gas")
     assert not mistakes, mistakes
-    return MeshlessGas(params)
+    return params
+
+
+def made(settings):
+    return MeshlessGas(params_of(settings))
 
 
 def flown(gas, end):
@@ -161,6 +167,17 @@ def test_a_cloud_that_ends_where_its_box_does_not_is_refused():
     settings["box"]["highest"][0] = 0.5
     with pytest.raises(SceneError, match="must end there too"):
         made(settings)
+
+
+def test_heat_is_told_over_that_of_fay_and_riddell_at_a_sphere():
+    warm = in_a_stream(temperature=2.0) | {"viscous": True}
+    warm["gas"] = warm["gas"] | {"viscosity": 1e-3, "reference_temperature": 1.0, "sutherland": 1.0}
+    stream = Stream(MACH, PRESSURE, 1.0, 1.4, PRESSURE, 0.72, (1e-3, 1.0, 1.0))
+    assert unit_heat(params_of(warm))[0] == pytest.approx(fay_riddell(stream, RADIUS, 2.0))
+    flying = about_an_axis(temperature=2.0) | {k: warm[k] for k in ("viscous", "gas")}
+    flying["initial"] = warm["initial"] | {"velocity": [0.0, 0.0, 0.0]}
+    assert unit_heat(params_of(flying))[0] == pytest.approx(fay_riddell(stream, RADIUS, 2.0))
+    assert unit_heat(params_of(in_a_stream()))[0] == np.inf
 
 
 def test_layers_grow_to_the_largest_and_no_further():

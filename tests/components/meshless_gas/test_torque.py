@@ -89,9 +89,33 @@ def test_a_partner_turns_a_cylinder_and_is_told_its_torque():
     assert driven.give(frozenset({"load.torque"}))["load.torque"][0, 1] > -told[0, 1]
 
 
+@pytest.mark.full
+def test_an_adiabatic_wall_takes_no_heat_and_is_warmed_by_friction():
+    cooled = turning(angular_velocity=0.0, temperature=0.9)[0]
+    still, fast = (
+        turning(temperature=None, is_adiabatic=True, angular_velocity=spin)[0]
+        for spin in (0.0, 0.5)
+    )
+    heat, warmth = [], []
+    for gas in (cooled, still, fast):
+        for _ in range(40):
+            gas.step(gas.stable_dt())
+        heat.append(gas.give(frozenset({"bodies.heat"}))["bodies.heat"][0])
+        density, *_, pressure = gas.state.primitive[gas.motion.layout.walls].T
+        warmth.append(pressure / (density * PRESSURE))
+    assert heat[0] > 0.01 and heat[1] == heat[2] == 0.0
+    assert warmth[0] == pytest.approx(0.9) and warmth[1] == pytest.approx(1.0, abs=1e-12)
+    # Of gas that is brought to the wall's velocity, about as much as with a Prandtl number of 1.
+    assert 1.01 < warmth[2].mean() < 1.0 + 0.2 * 0.5**2 * 1.2
+
+
 @pytest.mark.parametrize(
     ("body", "said"),
-    [({"temperature": None}, "found one that slips"), ({"sector": 0.5 * math.pi}, "sector")],
+    [
+        ({"temperature": None}, "found one that slips"),
+        ({"is_adiabatic": True}, "found both"),
+        ({"sector": 0.5 * math.pi}, "sector"),
+    ],
 )
 def test_what_cannot_turn_the_gas_is_refused(body, said):
     _, mistakes = turning(**body)
