@@ -348,6 +348,11 @@ class MeshlessGasParams:
         return self.boundaries[face].kind if face in self.boundaries else "periodic"
 
     @property
+    def has_rings(self) -> bool:
+        """Whether sums are those of whole rings about the axis x."""
+        return self.axisymmetric or (self.moving is not None and self.moving.axisymmetric)
+
+    @property
     def planar(self) -> bool:
         """Whether nothing depends on y, nor moves along it."""
         return self.dimensions == 2 and not self.axisymmetric
