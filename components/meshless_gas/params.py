@@ -243,6 +243,12 @@ class MeshlessGasParams:
                 "probes and fronts are read at nodes that stand still; found moving. Leave out "
                 "probes and fronts."
             )
+        if self.moving is not None and self.initial is None:
+            found.append(
+                "bodies that carry clouds meet the gas of initial, whose pressure and velocity "
+                "their coefficients refer to; found none. Give initial, and zones, in place of "
+                "riemann."
+            )
         layered = self.plate or self.sphere
         if layered is not None and layered.layers.jitter > 0.0 and not self.axisymmetric:
             found.append(

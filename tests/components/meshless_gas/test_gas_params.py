@@ -12,6 +12,7 @@ BODY = {"radius": 0.1, "position": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1
 FORE = BODY | {"sector": 1.5707963267948966, "position": [1.0, 0.0, 0.0]}
 DRIVEN, THICK = {"is_driven": True}, {"first_at_sector": 0.09}
 CUT = {"axisymmetric": True, "bodies": [FORE]}
+TUBE = {"position": 0.5, "left": REST, "right": REST}
 POINTS = {"drag": "stokes"}
 
 
@@ -33,6 +34,10 @@ POINTS = {"drag": "stokes"}
         (
             {"box": BOX, "moving": CUT | {"bodies": [FORE | {"first_at_sector": 0.09}]}},
             "no thicker",
+        ),
+        (
+            {"box": BOX, "moving": {"bodies": [BODY]}, "initial": None, "riemann": TUBE},
+            "in place of riemann",
         ),
         ({}, "found none"),
     ],
