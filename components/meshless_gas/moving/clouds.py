@@ -18,7 +18,12 @@ from quintet.components.meshless_gas.kernels.outflows import uncovered
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
-from quintet.components.meshless_gas.moving.outputs import outputs, unit_force, unit_heat
+from quintet.components.meshless_gas.moving.outputs import (
+    base_force,
+    outputs,
+    unit_force,
+    unit_heat,
+)
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
@@ -66,6 +71,7 @@ class MovingClouds:
         self.gamma, self.unit_force = params.gas.gamma, unit_force(params)
         self.outflows = domain.outflows  # of the box, whether left out or not
         self.unit_heat = unit_heat(params)
+        self.base_force = base_force(params, layout, domain.cloud.areas)  # (b, 3) N
         self.kept = params.neighbours  # of a node across seams
         bodies, cloud = self.params.bodies, domain.cloud
         self.pose = Pose(
@@ -80,6 +86,8 @@ class MovingClouds:
         self.thickness = np.array([one.heights[-1] for one in bodies])
         self.active = np.ones(len(cloud.positions), bool)
         self.seen = self.pose.centre.copy()  # (b, 3) m, when holes were cut last
+        self.placed = self.pose.centre.copy()  # (b, 3) m, where clouds lie now
+        self.fitted = self.pose.centre.copy()  # (b, 3) m, when coefficients were written last
         self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
         self.across = np.zeros(0, np.int64)  # of these, those that reach over a seam
         self.quality = np.ones(len(cloud.positions))
@@ -111,7 +119,10 @@ class MovingClouds:
         if "motion.angular_velocity" in fields:
             self.pose.spin[self.driven] = fields["motion.angular_velocity"] * (1.0 - flat)
         if self.params.axisymmetric:
-            refuse_off_axis(self.given, self.pose.velocity[self.driven], self.driven)
+            refuse_off_axis(
+                self.given, self.pose.velocity[self.driven], self.pose.spin[self.driven],
+                self.driven,
+            )  # fmt: skip
 
     def begin(self, dt: float, primitive: Array, conservative: Array) -> bool:
         """Put clouds where they are at the step's start; cut holes anew where they have moved."""
@@ -208,6 +219,7 @@ class MovingClouds:
     def _place(self, centre: Array) -> None:
         """Move the nodes of all clouds, and their images beyond the axis."""
         positions, own = self.domain.cloud.positions, self.layout
+        self.placed[:] = centre
         positions[own.carried] = own.offsets + centre[own.carrier]
         positions[own.images] = positions[own.imaged] * np.array([1.0, 1.0, -1.0])
 
@@ -317,6 +329,7 @@ class MovingClouds:
         neighbours[back] = own.home[back]
         self.touched, self.across = rows[~(whole & ~other)], rows[other]
         self._fit(np.union1d(before, self.touched))
+        self.fitted[:] = self.placed
 
     def _images(self, near: Flags) -> Flags:
         owner = self.domain.cloud.owner
@@ -338,9 +351,13 @@ class MovingClouds:
             raise StepError(too_few(self.kept, cloud.positions[bad[0]]))
 
     def _refit(self) -> None:
-        """Write the coefficients of what reaches over seams, where clouds have moved apart."""
-        if len(self.across):
-            self._fit(self.across)
+        """Write the coefficients of what reaches over seams of clouds that have moved."""
+        moved = np.append(False, (self.placed != self.fitted).any(axis=1))  # of each region
+        if len(self.across) and moved.any():
+            region, near = self.domain.cloud.region, self.domain.stencils.neighbours[self.across]
+            mixed = moved[region[self.across]] | moved[region[near]].any(axis=1)
+            self._fit(self.across[mixed])
+        self.fitted[:] = self.placed
 
     def _uncover(self, fresh: Rows, primitive: Array, conservative: Array) -> None:
         """Give nodes that came back the state of what is around them."""
@@ -389,5 +406,6 @@ class MovingClouds:
         self.uncovered = int(saved["moving/uncovered"])
         self.given = None
         self._place(self.pose.centre)
+        self.fitted[:] = self.placed
         self._set_frame()
         self._leave_out()

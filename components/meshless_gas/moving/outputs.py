@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
+from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
     """Fields of the ports `bodies`, `surface`, `load` and `heat`."""
     own, pose, driven = moving.layout, moving.pose, moving.driven
-    pressure, force = primitive[own.walls, 4], moving.summed[:, :3]
+    pressure, force = primitive[own.walls, 4], moving.summed[:, :3] + moving.base_force
     bodies, held, count = range(len(moving.radii)), moving.friction, len(own.walls)
     heat = np.zeros(count) if held is None else held.heat.copy()
     return {
@@ -51,6 +52,30 @@ def unit_force(params: MeshlessGasParams) -> Array:
     radii = np.array([one.radius for one in bodies])
     area = math.pi * radii**2 if params.moving.axisymmetric else 2.0 * radii
     return np.asarray(0.5 * density * square * area)
+
+
+def base_force(params: MeshlessGasParams, layout: CloudLayout, areas: Array) -> Array:
+    """Force (b, 3) N of the gas at the start on the back of bodies of which the front is computed.
+
+    Parameters
+    ----------
+    params : MeshlessGasParams
+    layout : CloudLayout
+    areas : (n, 3) m2
+        Of nodes, along normals into the gas.
+
+    Returns
+    -------
+    array
+        0 of bodies whose wall is whole.
+    """
+    assert params.initial is not None
+    found = np.zeros((len(layout.is_cut), 3))
+    np.add.at(found, layout.body, areas[layout.walls])  # of what is computed; the back's is less it
+    if params.has_rings:  # of a whole turn about the axis nothing else is left
+        found[:, 1:] = 0.0
+    found[~layout.is_cut] = 0.0
+    return np.asarray(params.initial.primitive(params.gas)[4] * found)
 
 
 def unit_heat(params: MeshlessGasParams) -> Array:
