@@ -342,7 +342,7 @@ class MeshlessGasParams:
     @property
     def expected_count(self) -> int:
         """About how many nodes there will be."""
-        bodies = self.moving.expected_count if self.moving is not None else 0
+        bodies = self.moving.expected_count(self.dimensions) if self.moving is not None else 0
         return self.cloud.expected_count(self.dimensions) + bodies
 
     @property

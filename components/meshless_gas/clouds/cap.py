@@ -55,8 +55,8 @@ def sphere_cap(
     angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
     kept = angle <= reach.sector
     number = np.where(kept, np.cumsum(kept) - 1, -1)
-    share = _areas(points, triangles)[kept]
-    near, is_edge = _adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
+    share = shares(points, triangles)[kept]
+    near, is_edge = adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
     inside = number[triangles[kept[triangles].all(axis=1)]]
     points, angle = points[kept], angle[kept]
     outer = outer_radius(angle, radius, mach, reach)
@@ -122,7 +122,7 @@ def _rotation() -> Array:
     return matrix
 
 
-def _areas(points: Array, faces: NDArray[np.int64]) -> Array:
+def shares(points: Array, faces: NDArray[np.int64]) -> Array:
     """Share (m,) of the unit sphere of each point: a third of the triangles round it."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -144,7 +144,7 @@ def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
     return found
 
 
-def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
+def adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
     """Neighbours (m, a) by triangles, padded with -1, and which points lie beside none."""
     pairs = np.vstack([faces[:, [k, (k + 1) % 3]] for k in range(3)])
     pairs = np.vstack([pairs, pairs[:, ::-1]])

@@ -3,26 +3,69 @@
 import numpy as np
 
 from quintet.components.meshless_gas.build import domain, transport_of
+from quintet.components.meshless_gas.clouds.cloud import INNER
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.layout import layout, with_bodies
+from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import State
 from quintet.components.meshless_gas.stencils import Stencils, write_coefficients
 from quintet.components.shared.threads import Team
+from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
 BLOCK = 8  # neighbours of a node in rings
+LINES = 6  # neighbours of a node of a lattice in space along its lines
+ACROSS = 14  # neighbours of a node in space over a seam, at least
 
 
 def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
     """Put the clouds of bodies into their background."""
     keys = params.moving
     assert keys is not None
-    if not params.planar or params.neighbours < BLOCK:
+    _refuse(params, keys)
+    assert params.box is not None
+    ground = domain(params, team)
+    planar, nodes, near = params.planar, ground.cloud.nodes, params.neighbours
+    kept = near if planar else max(near, ACROSS)
+    cloud, rings = with_bodies(ground.cloud, keys, 0, planar)
+    whole, many = len(cloud.positions), max([kept, *(one.home.shape[1] for one in rings)])
+    neighbours = np.repeat(np.arange(whole, dtype=np.int32)[:, None], many, axis=1)
+    coefficients = np.zeros((whole, many, 3))
+    found = ground.stencils.neighbours[:nodes]
+    neighbours[:nodes, :near] = np.where(found < nodes, found, found + cloud.nodes - nodes)
+    coefficients[:nodes, :near] = ground.stencils.coefficients[:nodes]
+    if keys.cross:  # of a lattice, the nearest first
+        lines = np.flatnonzero(cloud.kind[:nodes] == INNER)
+        neighbours[lines, LINES:] = lines[:, None]
+    box = np.array([params.box.lowest, params.box.highest])
+    own = layout(cloud, nodes, rings, keys, neighbours, box, params.gas.gamma, planar)
+    rows = np.arange(0 if keys.cross else nodes, cloud.nodes)
+    made = Stencils(neighbours, coefficients)
+    team.run(
+        write_coefficients, len(rows), rows, cloud.positions, neighbours, cloud.weight, planar,
+        coefficients, np.ones(whole),
+    )  # fmt: skip
+    joint = ground._replace(cloud=cloud, stencils=made, weights=_padded(ground.weights, many))
+    moving = MovingClouds(keys, joint, own, kept, team)
+    if params.viscous:
+        # Compiled only where the gas has friction.
+        from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
+
+        law = transport_of(params.gas)
+        moving.friction = Friction(keys, own, law)
+        if keys.axisymmetric:
+            moving.stresses = AxisStresses(whole, law.conduction)
+    return moving
+
+
+def _refuse(params: MeshlessGasParams, keys: Moving) -> None:
+    """Refuse what bodies that carry clouds do not go with."""
+    if params.neighbours < BLOCK:
         raise SceneError(
-            f"bodies that carry clouds need two dimensions and {BLOCK} neighbours at least; found "
-            f"{params.dimensions} and {params.neighbours}. Correct dimensions and neighbours."
+            f"bodies that carry clouds need {BLOCK} neighbours at least; found "
+            f"{params.neighbours}. Correct neighbours."
         )
     if params.box is None:
         raise SceneError("bodies that carry clouds need a box around them. Give a box.")
@@ -37,34 +80,28 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
             f"{params.kind_of('z-')} at {params.box.lowest[2]:g} m. Correct the box, or "
             'boundaries."z-".'
         )
-    ground = domain(params, team)
-    nodes = ground.cloud.nodes
-    cloud, rings = with_bodies(ground.cloud, keys, 0)
-    whole, many = len(cloud.positions), ground.stencils.neighbours.shape[1]
-    neighbours = np.repeat(np.arange(whole, dtype=np.int32)[:, None], many, axis=1)
-    coefficients = np.zeros((whole, many, 3))
-    found = ground.stencils.neighbours[:nodes]
-    neighbours[:nodes] = np.where(found < nodes, found, found + cloud.nodes - nodes)
-    coefficients[:nodes] = ground.stencils.coefficients[:nodes]
-    box = np.array([params.box.lowest, params.box.highest])
-    own = layout(cloud, nodes, rings, keys, neighbours, box, params.gas.gamma)
-    rows = np.arange(nodes, cloud.nodes)
-    made = Stencils(neighbours, coefficients)
-    team.run(
-        write_coefficients, len(rows), rows, cloud.positions, neighbours, cloud.weight, True,
-        coefficients, np.ones(whole),
-    )  # fmt: skip
-    joint = ground._replace(cloud=cloud, stencils=made)
-    moving = MovingClouds(keys, joint, own, params.neighbours, team)
-    if params.viscous:
-        # Compiled only where the gas has friction.
-        from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
+    if keys.axisymmetric and not params.planar:
+        raise SceneError(
+            "bodies on an axis of symmetry need two dimensions; found 3. Leave out axisymmetric, "
+            "or dimensions."
+        )
+    if keys.cross and (params.planar or params.box.jitter > 0.0):
+        raise SceneError(
+            "neighbours along lines alone are for three dimensions and lattices without jitter. "
+            "Leave out cross, or jitter."
+        )
+    for one in keys.bodies:
+        if params.planar and (one.position[1] or one.velocity[1]):
+            raise SceneError(
+                "bodies in two dimensions lie and move in the plane y = 0; found position "
+                f"{list(one.position)} m, velocity {list(one.velocity)} m/s. Leave y at 0."
+            )
 
-        law = transport_of(params.gas)
-        moving.friction = Friction(keys, own, law)
-        if keys.axisymmetric:
-            moving.stresses = AxisStresses(whole, law.conduction)
-    return moving
+
+def _padded(weights: Array, many: int) -> Array:
+    """Weights (b, many) of neighbours, of those that there are not 0."""
+    more = np.zeros((len(weights), many - weights.shape[1]))
+    return np.hstack([weights, more])
 
 
 def soft_start(moving: MovingClouds, state: State, gamma: float) -> None:
@@ -73,7 +110,7 @@ def soft_start(moving: MovingClouds, state: State, gamma: float) -> None:
     for radius, centre, velocity in zip(
         moving.radii, moving.pose.centre, moving.pose.velocity, strict=True
     ):
-        away = np.sqrt(((positions - centre) ** 2)[:, ::2].sum(axis=1)) / radius - 1.0
+        away = np.sqrt(((positions - centre) ** 2).sum(axis=1)) / radius - 1.0
         share = 1.0 - np.clip(away, 0.0, 1.0)[:, None]
         state.primitive[:, 1:4] += share * (velocity - state.primitive[:, 1:4])
     write_conservative(state.primitive, gamma, state.conservative)

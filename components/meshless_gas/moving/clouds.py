@@ -23,7 +23,11 @@ from quintet.components.meshless_gas.moving.refusals import (
     refuse_places,
     too_few,
 )
-from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
+from quintet.components.meshless_gas.moving.seams import (
+    choose,
+    write_uncovered,
+    write_uncovered_in_space,
+)
 from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.stencils import SOUND, write_coefficients
@@ -39,7 +43,7 @@ Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BAND = 3.0  # spacings about a seam within which neighbours are found anew
 NEAR = 3  # times as many nodes are looked at as a node has neighbours
-KNOWN = 8  # nodes that tell the state of one that is uncovered
+KNOWN = 8  # nodes that tell the state of one that is uncovered; in space twice as many
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
 
 
@@ -93,11 +97,14 @@ class MovingClouds:
         """Take the motion of driven bodies: places at the middle of the step, mean velocities."""
         if "motion.position" not in fields:
             return
-        flat = np.array([1.0, 0.0, 1.0])  # nothing leaves the plane
+        # Nothing leaves a plane.
+        flat, across = np.ones(3), np.ones(3)
+        if self.layout.planar:
+            flat, across = np.array([1.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
         self.given = fields["motion.position"] * flat
         self.pose.velocity[self.driven] = fields["motion.velocity"] * flat
         if "motion.angular_velocity" in fields:
-            self.pose.spin[self.driven] = fields["motion.angular_velocity"] * (1.0 - flat)
+            self.pose.spin[self.driven] = fields["motion.angular_velocity"] * across
         if self.params.axisymmetric:
             refuse_off_axis(self.given, self.pose.velocity[self.driven], self.driven)
 
@@ -231,7 +238,7 @@ class MovingClouds:
 
     def _heights(self, places: Array) -> Array:
         """Heights (b, m) m of places above bodies."""
-        apart = places[None, :, ::2] - self.pose.centre[:, None, ::2]
+        apart = places[None] - self.pose.centre[:, None]
         return np.asarray(np.sqrt((apart**2).sum(axis=2)) - self.radii[:, None])
 
     def _part(self, b: int, away: Array, was: Flags, active: Flags, more: float) -> None:
@@ -292,8 +299,8 @@ class MovingClouds:
             weight = weight.copy()
             weight[self.across] = self.least[self.across]
         self.team.run(
-            write_coefficients, len(rows), rows, cloud.positions, made.neighbours, weight, True,
-            made.coefficients, self.quality,
+            write_coefficients, len(rows), rows, cloud.positions, made.neighbours, weight,
+            self.layout.planar, made.coefficients, self.quality,
         )  # fmt: skip
         bad = rows[self.quality[rows] < SOUND]
         if len(bad):
@@ -314,10 +321,10 @@ class MovingClouds:
         near = self._heights(cloud.positions[: cloud.nodes])
         close = (near < (self.thickness + 4.0 * self.spacing)[:, None]).any(axis=0)
         among = np.flatnonzero(known & close)
-        found, _ = nearest(cloud.positions, among, cloud.positions[fresh], KNOWN, self.team)
-        write_uncovered(
-            fresh, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, primitive
-        )
+        planar = self.layout.planar
+        many, write = (KNOWN, write_uncovered) if planar else (2 * KNOWN, write_uncovered_in_space)
+        found, _ = nearest(cloud.positions, among, cloud.positions[fresh], many, self.team)
+        write(fresh, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, primitive)
         part_of = np.empty((len(fresh), 5))
         write_conservative(primitive[fresh], self.layout.gamma, part_of)
         conservative[fresh] = part_of

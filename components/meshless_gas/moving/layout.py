@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.clouds.cloud import Cloud, Whole, joined
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.rings import Ring, ring
+from quintet.components.meshless_gas.moving.shells import shell
 from quintet.interfaces.component import Array
 
 Rows = NDArray[np.int64]
@@ -34,11 +35,19 @@ class Layout(NamedTuple):
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
     gamma: float
+    planar: bool  # whether nothing leaves the plane of x and z
 
 
-def with_bodies(background: Cloud, params: Moving, patch: int) -> tuple[Cloud, list[Ring]]:
+def with_bodies(
+    background: Cloud, params: Moving, patch: int, planar: bool
+) -> tuple[Cloud, list[Ring]]:
     """Join the clouds of bodies, at their first positions, to a background."""
-    rings = [ring(one, 1 + b, patch, params.axisymmetric) for b, one in enumerate(params.bodies)]
+    rings = [
+        ring(one, 1 + b, patch, params.axisymmetric)
+        if planar
+        else shell(one, 1 + b, patch, params.cross)
+        for b, one in enumerate(params.bodies)
+    ]
     moved = [
         one.cloud._replace(positions=one.cloud.positions + np.array(body.position))
         for one, body in zip(rings, params.bodies, strict=True)
@@ -60,6 +69,7 @@ def layout(
     neighbours: Whole,
     box: Array,
     gamma: float,
+    planar: bool,
 ) -> Layout:
     """Say how bodies' clouds lie in the joined cloud.
 
@@ -74,6 +84,7 @@ def layout(
         Of the background; rows of other nodes are written.
     box : (2, 3) m
     gamma : float, 1
+    planar : bool
     """
     count = cloud.nodes
     sizes = [one.cloud.nodes for one in rings]
@@ -100,6 +111,10 @@ def layout(
     ]
     all_images = np.concatenate(images)
     sides = [(0, -1), (0, 1), (2, 1)]
+    if not params.axisymmetric:
+        sides.append((2, -1))
+    if not planar:
+        sides += [(1, -1), (1, 1)]
     return Layout(
         home=neighbours[:count].copy(),
         height=height,
@@ -116,6 +131,7 @@ def layout(
         arms=np.concatenate([one.cloud.positions[: one.rays] for one in rings]),
         second=np.array([level[2] for level in levels]),
         box=box,
-        open_sides=sides if params.axisymmetric else [*sides, (2, -1)],
+        open_sides=sides,
         gamma=gamma,
+        planar=planar,
     )

@@ -24,7 +24,7 @@ def outputs(moving: MovingClouds, primitive: Array, params: MeshlessGasParams) -
         "bodies.uncovered": np.full(len(bodies), float(moving.uncovered)),
         "surface.position": moving.domain.cloud.positions[own.walls],
         "surface.body": own.body.astype(float),
-        "surface.angle": np.arctan2(own.arms[:, 2], -own.arms[:, 0]),
+        "surface.angle": np.arctan2(_aside(own.arms, own.planar), -own.arms[:, 0]),
         "surface.pressure": pressure.copy(),
         "surface.friction": np.zeros((count, 3)) if held is None else held.friction.copy(),
         "surface.heat_flux": np.zeros(count) if held is None else held.heat.copy(),
@@ -34,12 +34,17 @@ def outputs(moving: MovingClouds, primitive: Array, params: MeshlessGasParams) -
     }
 
 
+def _aside(arms: Array, planar: bool) -> Array:
+    """Distance (w,) m from the line along x through the centre; in a plane signed."""
+    return np.asarray(arms[:, 2] if planar else np.hypot(arms[:, 1], arms[:, 2]))
+
+
 def _unit_force(moving: MovingClouds, params: MeshlessGasParams) -> Array:
     """Force (b,) N that a coefficient of 1 stands for."""
     assert params.initial is not None
     density, u, v, w, _ = params.initial.primitive(params.gas)
     speeds = np.array([u, v, w]) - np.array([one.velocity for one in moving.params.bodies])
     square = np.maximum((speeds * speeds).sum(axis=1), 1e-300)
-    axisymmetric = moving.params.axisymmetric
-    area = math.pi * moving.radii**2 if axisymmetric else 2.0 * moving.radii
+    is_sphere = moving.params.axisymmetric or not moving.layout.planar
+    area = math.pi * moving.radii**2 if is_sphere else 2.0 * moving.radii
     return np.asarray(0.5 * density * square * area)

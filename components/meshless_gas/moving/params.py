@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from quintet.components.meshless_gas.clouds.cap import ARC
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
 ROUND = 8  # fewest nodes round a body
@@ -12,7 +13,7 @@ ROUND = 8  # fewest nodes round a body
 
 @parameters
 class Body:
-    """A cylinder across the plane of x and z, or a sphere where x is an axis of symmetry.
+    """A sphere; in the plane of x and z a cylinder across it.
 
     Parameters
     ----------
@@ -25,7 +26,8 @@ class Body:
     is_driven
         Whether a partner moves it: it is then a row of the ports `motion`, `load` and `heat`.
     rays : 1
-        Nodes round the whole circle; of an axisymmetric flow half of them are computed.
+        Nodes round the whole circle; of an axisymmetric flow half of them are computed. In space
+        nodes of a geodesic grid are about as far apart.
     thickness : m
         Of its cloud. The bow shock should lie within it or far beyond it, not at its rim.
     spacing : m
@@ -52,6 +54,11 @@ class Body:
     growth: Annotated[float, Field(ge=1, le=2, allow_inf_nan=False)] = 1.08
     temperature: Positive | None = None
     weight: NotNegative = 0.0
+
+    @property
+    def frequency(self) -> int:
+        """Parts of an icosahedron's edge in space."""
+        return max(2, round(self.rays * ARC / math.tau))
 
     @property
     def heights(self) -> list[float]:
@@ -84,6 +91,9 @@ class Moving:
         Nodes that are nearer than this to one of a body's cloud are left out, in spacings.
     overlap : 1
         By how many spacings clouds overlap.
+    cross
+        In space: whether nodes that reach over no seam have neighbours along lines alone, 6 in a
+        lattice and 8 in shells; else those of a whole block.
     """
 
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
@@ -92,6 +102,7 @@ class Moving:
     hysteresis: NotNegative = 0.3
     seam_distance: NotNegative = 0.5
     overlap: Positive = 0.9
+    cross: bool = False
 
     def __post_init__(self) -> None:
         if self.axisymmetric:
@@ -103,9 +114,10 @@ class Moving:
                         "z at 0."
                     )
 
-    @property
-    def expected_count(self) -> int:
+    def expected_count(self, dimensions: int) -> int:
         """Nodes of all bodies' clouds."""
+        if dimensions == 3:
+            return sum((10 * one.frequency**2 + 2) * len(one.heights) for one in self.bodies)
         whole = sum(one.rays * len(one.heights) for one in self.bodies)
         return whole // 2 if self.axisymmetric else whole
 

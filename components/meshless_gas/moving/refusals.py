@@ -56,7 +56,7 @@ def refuse_jump(moved: Array, centre: Array, spacing: Array, bodies: NDArray[np.
 def too_few(count: int, place: Array) -> str:
     """Say that a node has too few neighbours."""
     return (
-        f"nodes need {count} neighbours in sight that span the plane; that at "
+        f"nodes need {count} neighbours in sight that surround them; that at "
         f"{np.array2string(place, precision=4)} m has not. Make spacings on both sides of the "
         "seam alike, or clouds thicker."
     )

@@ -15,12 +15,14 @@ SAG = 0.3  # of the shorter spacing: how far an arm may dip into a wall that is 
 def is_seen(positions: Any, i: int, j: int, centres: Any, radii: Any, sag: float) -> bool:
     """Whether no body lies between two nodes."""
     x, z = positions[j, 0] - positions[i, 0], positions[j, 2] - positions[i, 2]
-    square = x * x + z * z
+    y = positions[j, 1] - positions[i, 1]
+    square = x * x + y * y + z * z
     for b in range(radii.shape[0]):
         a, c = centres[b, 0] - positions[i, 0], centres[b, 2] - positions[i, 2]
-        share = min(max((a * x + c * z) / square, 0.0), 1.0) if square > 0.0 else 0.0
-        u, w = a - share * x, c - share * z
-        if math.sqrt(u * u + w * w) < radii[b] - sag:
+        e = centres[b, 1] - positions[i, 1]
+        share = min(max((a * x + e * y + c * z) / square, 0.0), 1.0) if square > 0.0 else 0.0
+        u, v, w = a - share * x, e - share * y, c - share * z
+        if math.sqrt(u * u + v * v + w * w) < radii[b] - sag:
             return False
     return True
 
@@ -118,4 +120,59 @@ def write_uncovered(
             value = sums[0, q] / s
             if determinant > 1e-6 * s * xx * zz:
                 value = (a * sums[0, q] + b * sums[1, q] + c * sums[2, q]) / determinant
+            primitive[i, q] = min(max(value, low[q]), high[q])
+
+
+@njit(**EXACT)
+def write_uncovered_in_space(
+    rows: Any, found: Any, positions: Any, spacing: Any, centres: Any, radii: Any, primitive: Any
+) -> None:
+    """Write the states of nodes that come back, as `write_uncovered` does, in three dimensions.
+
+    Fitted about the mean place of the nodes around, where the fit is their mean.
+    """
+    low, high, mean, middle = np.empty(5), np.empty(5), np.empty(5), np.empty(3)
+    weight, arm, sums = np.empty(found.shape[1]), np.empty((found.shape[1], 3)), np.empty((3, 5))
+    for row in range(rows.shape[0]):
+        i = rows[row]
+        low[:], high[:], mean[:], middle[:], sums[:] = math.inf, -math.inf, 0.0, 0.0, 0.0
+        whole = 0.0
+        for k in range(found.shape[1]):
+            j = found[row, k]
+            weight[k], square = 0.0, 1e-9
+            for d in range(3):
+                arm[k, d] = (positions[j, d] - positions[i, d]) / spacing[i]
+                square += arm[k, d] ** 2
+            sag = SAG * min(spacing[i], spacing[j])
+            if is_seen(positions, i, j, centres, radii, sag):
+                weight[k] = 1.0 / square
+            whole += weight[k]
+        xx = xy = xz = yy = yz = zz = 0.0
+        for k in range(found.shape[1]):
+            for d in range(3):
+                middle[d] += weight[k] / whole * arm[k, d]
+            for q in range(5):
+                mean[q] += weight[k] / whole * primitive[found[row, k], q]
+        for k in range(found.shape[1]):
+            if weight[k] == 0.0:
+                continue
+            x, y, z = arm[k, 0] - middle[0], arm[k, 1] - middle[1], arm[k, 2] - middle[2]
+            w = weight[k]
+            xx, xy, xz = xx + w * x * x, xy + w * x * y, xz + w * x * z
+            yy, yz, zz = yy + w * y * y, yz + w * y * z, zz + w * z * z
+            for q in range(5):
+                value = primitive[found[row, k], q]
+                low[q], high[q] = min(low[q], value), max(high[q], value)
+                sums[0, q] += w * x * (value - mean[q])
+                sums[1, q] += w * y * (value - mean[q])
+                sums[2, q] += w * z * (value - mean[q])
+        a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+        e, f, g = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+        determinant = xx * a + xy * b + xz * c
+        u, v, w = middle[0], middle[1], middle[2]
+        for q in range(5):
+            value = mean[q]
+            if determinant > 1e-6 * xx * yy * zz:
+                along = (a * u + b * v + c * w) * sums[0, q] + (b * u + e * v + f * w) * sums[1, q]
+                value -= (along + (c * u + f * v + g * w) * sums[2, q]) / determinant
             primitive[i, q] = min(max(value, low[q]), high[q])
