@@ -1,11 +1,10 @@
 """A gas on a cloud of nodes, stepped by SSP-RK3."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.components.meshless_gas.build import domain, initial_state
+from quintet.components.meshless_gas.build import initial_state
 from quintet.components.meshless_gas.clouds.mirrored import hold_along
 from quintet.components.meshless_gas.diagnostics import (
     balance,
@@ -28,13 +27,14 @@ from quintet.components.meshless_gas.kernels.motion import (
     write_sound,
 )
 from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
+from quintet.components.meshless_gas.node_motion import node_motion
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.steady import Settling
-from quintet.components.meshless_gas.surface import Surface
 from quintet.components.meshless_gas.view import view, walls
+from quintet.components.meshless_gas.wall_loads import WallLoads
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -48,9 +48,6 @@ from quintet.interfaces.component import (
 )
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.manifest import Plan, Ports
-
-if TYPE_CHECKING:
-    from quintet.components.meshless_gas.moving.clouds import MovingClouds
 
 FEWEST = 32  # blocks of nodes that are worth handing to another thread
 
@@ -78,23 +75,15 @@ class MeshlessGas(Component):
     def __init__(self, params: MeshlessGasParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.gamma, self.team = params.gas.gamma, Team(resources.threads, FEWEST)
-        self.moving: MovingClouds | None = None
-        if params.moving is not None:
-            # Scenes without bodies that carry clouds import none of this.
-            from quintet.components.meshless_gas.moving.build import moving_clouds, soft_start
-            from quintet.components.meshless_gas.moving.outputs import outputs
-
-            self.moving, self.moving_outputs = moving_clouds(params, self.team), outputs
-        self.domain = domain(params, self.team) if self.moving is None else self.moving.domain
+        self.motion = node_motion(params, self.team)
+        self.domain = self.motion.domain
         cloud = self.domain.cloud
         self.state = initial_state(params, cloud)
-        if self.moving is not None:
-            soft_start(self.moving, self.state, self.gamma)
+        self.motion.soften_start(self.state)
         self.fluxes = Fluxes.empty(cloud.nodes, len(cloud.owner))
         self.bound = 0.0  # s, step that all nodes bear at a Courant number of 1
-        # (n, 3) m/s, velocities of nodes
-        self.frame: Array | None = None if self.moving is None else self.moving.frame
         # What is None is not compiled.
+        self.frame = self.motion.frame  # None or (n, 3) m/s
         self.planar = True if params.planar else None
         self.sloped = True if params.order == 2 else None
         self.steps = self.fluxes.steps if params.local_steps else None
@@ -104,7 +93,7 @@ class MeshlessGas(Component):
             from quintet.components.meshless_gas.viscous.terms import Viscous
 
             self.viscous = Viscous(params, self.domain, self.team)
-        self.surface = Surface(params, self.domain) if has_walls(params) else None
+        self.wall_loads = WallLoads(params, self.domain) if has_walls(params) else None
         self.settling = Settling(params.steady) if params.steady is not None else None
         self.probed = nearest_nodes(cloud, params.probes, self.team)
         self.lines = [line(cloud, one, self.team) for one in params.fronts]
@@ -145,8 +134,7 @@ class MeshlessGas(Component):
 
     def take(self, fields: Fields) -> None:
         """Take the motion of bodies, if a partner moves some, and of particles."""
-        if self.moving is not None:
-            self.moving.take(fields)
+        self.motion.take(fields)
         if self.particles is not None:
             self.particles.take(fields)
 
@@ -156,8 +144,7 @@ class MeshlessGas(Component):
         if self.settling is not None and self.settling.is_settled:
             state.time += dt
             return
-        if self.moving is not None:
-            self.moving.begin(dt, work.primitive, state.conservative)
+        if self.motion.begin(dt, work.primitive, state.conservative):
             self._follow()
             self._fill()
         own = self.domain
@@ -165,11 +152,9 @@ class MeshlessGas(Component):
         if self.particles is not None:
             self.particles.place()
         for stage, (old, new, share) in enumerate(STAGES):
-            if self.moving is not None:
-                self.moving.place(stage, dt)
+            self.motion.place(stage, dt)
             self._write_rates()
-            if self.moving is not None:
-                self.moving.add_rates(share, work, self.viscous, self.gamma)
+            self.motion.add_rates(share, work, self.viscous)
             if self.particles is not None:
                 self.particles.add(work.primitive, work.residual, dt, (old, new, share))
             state.entered += share * dt * work.flows
@@ -182,8 +167,7 @@ class MeshlessGas(Component):
                 raise StepError(self._failure(max(wrong), dt))
             self._hold_along()
             self._fill()
-        if self.moving is not None:
-            self.moving.end(dt)
+        self.motion.end(dt)
         if self.particles is not None:
             state.entered -= dt * self.particles.given()
         state.time += dt
@@ -200,33 +184,29 @@ class MeshlessGas(Component):
 
     def _follow(self) -> None:
         """Take the nodes that are left after clouds have moved."""
-        assert self.moving is not None
-        self.domain = self.moving.domain
+        self.domain = self.motion.domain
         if self.viscous is not None:
             self.viscous.domain = self.domain
 
     def _outer_power(self) -> float:
         """Energy [W] that comes in now, but for what bodies do that a partner moves."""
-        power = float(self.fluxes.flows[4])
-        if self.moving is not None:
-            power -= float(self.moving.loads[self.moving.driven, 6].sum())
-        return power
+        return float(self.fluxes.flows[4]) - self.motion.power_of_partners()
 
     def _settle(self) -> None:
         """Look whether the flow is steady."""
         assert self.settling is not None
         force, scale = np.zeros(3), 0.0
-        if self.surface is not None:
+        if self.wall_loads is not None:
             self._feel()
-            force = self.surface.force(self.fluxes.primitive)
-            scale = self.surface.scale(self.fluxes.primitive)
+            force = self.wall_loads.force(self.fluxes.primitive)
+            scale = self.wall_loads.scale(self.fluxes.primitive)
         self.settling.look(self.state.change, force, scale, self.state.time)
 
     def _feel(self) -> None:
         """Take friction and heat flux of walls, as the state is."""
-        if self.viscous is not None and self.surface is not None:
+        if self.viscous is not None and self.wall_loads is not None:
             one = self.viscous
-            self.surface.take(one.rows, one.friction, one.heat)
+            self.wall_loads.take(one.rows, one.friction, one.heat)
 
     def _failure(self, row: int, dt: float) -> str:
         place = self.domain.cloud.positions[self.domain.inner[row]]
@@ -250,14 +230,12 @@ class MeshlessGas(Component):
         )  # fmt: skip
         if self.viscous is not None:
             self.viscous.hold(work.primitive)
-        if self.moving is not None:
-            self.moving.hold_walls(work.primitive, self.gamma)
+        self.motion.hold_walls(work.primitive)
         write_ghost_states(cloud.owner, cloud.turn, work.primitive)
         boundary_flows(own.bounding, cloud.areas, work.primitive, self.gamma, work.flows)
         if self.viscous is not None:
             self.viscous.add_flows(work.primitive, work.flows)
-        if self.moving is not None:
-            self.moving.load(work.primitive, work.flows)
+        self.motion.load(work.primitive, work.flows)
 
     def _write_gradients(self) -> None:
         """Gradients of states that are filled."""
@@ -316,26 +294,24 @@ class MeshlessGas(Component):
             given.update(fronts(self.lines, self.state.primitive))
         if self.particles is not None:
             given.update(self.particles.loads())
-        if self.moving is not None:
-            given.update(self.moving_outputs(self.moving, self.state.primitive, self.params))
-        if self.surface is not None and ports_wanted & {"wall", "body"}:
+        given.update(self.motion.outputs(self.state.primitive))
+        if self.wall_loads is not None and ports_wanted & {"wall", "body"}:
             self._feel()
             settled = float(self.settling is not None and self.settling.is_settled)
-            given.update(self.surface.wall(self.fluxes.primitive))
-            given.update(self.surface.body(self.fluxes.primitive, settled))
+            given.update(self.wall_loads.wall(self.fluxes.primitive))
+            given.update(self.wall_loads.body(self.fluxes.primitive, settled))
         return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; boundary nodes and ghosts follow from it."""
         kept = self.state.save() | (self.settling.save() if self.settling is not None else {})
         kept |= self.particles.save() if self.particles is not None else {}
-        return kept | (self.moving.save() if self.moving is not None else {})
+        return kept | self.motion.save()
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
-        if self.moving is not None:
-            self.moving.restore(state)
-            self._follow()
+        self.motion.restore(state)
+        self._follow()
         self.state.load(state)
         if self.settling is not None:
             self.settling.load(state)

@@ -13,7 +13,7 @@ from quintet.interfaces.component import Array, Fields, Totals
 ROUNDING = 1e-12  # of the mass flow at the speed of sound
 
 
-def held(state: State, cloud: Cloud) -> Array:
+def conserved(state: State, cloud: Cloud) -> Array:
     """Mass, momentum and energy (5,) kg, N s, J of all nodes."""
     volumes = cloud.volumes[: cloud.nodes]
     return np.array([(volumes * state.conservative[:, q]).sum() for q in range(5)])
@@ -22,7 +22,7 @@ def held(state: State, cloud: Cloud) -> Array:
 def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Fields:
     """Fields of the port `balance`."""
     cloud, entered = domain.cloud, state.entered
-    now = held(state, cloud)
+    now = conserved(state, cloud)
     mass, energy = state.begun[0], state.begun[4]
     scale = np.array([mass, *[np.sqrt(2.0 * mass * energy)] * 3, energy])
     drift = (now - state.begun - entered) / scale
@@ -91,7 +91,7 @@ def totals(state: State, cloud: Cloud) -> Totals:
     volumes, positions = cloud.volumes[: cloud.nodes], cloud.positions[: cloud.nodes]
     momenta = volumes[:, None] * state.conservative[:, 1:4]
     kinetic = 0.5 * float((momenta * state.primitive[:, 1:4]).sum())
-    now = held(state, cloud)
+    now = conserved(state, cloud)
     return Totals(
         mass=float(now[0]),
         momentum=now[1:4],

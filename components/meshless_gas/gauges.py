@@ -18,7 +18,7 @@ PER_SPACING = 4.0  # places on a line
 Rows = NDArray[np.int64]
 
 
-class Line(NamedTuple):
+class SampledLine(NamedTuple):
     """Places along a line, and the nodes around each."""
 
     distances: Array  # (s,) m, from where it begins
@@ -38,7 +38,7 @@ def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]], team: Team) -
     return nearest(cloud.positions, among, np.array(places, np.float64), 1, team)[0][:, 0]
 
 
-def line(cloud: Cloud, front: Front, team: Team) -> Line:
+def line(cloud: Cloud, front: Front, team: Team) -> SampledLine:
     """Find the nodes around the places of a line."""
     begin, end = np.array(front.begin), np.array(front.end)
     length = float(np.linalg.norm(end - begin))
@@ -52,10 +52,10 @@ def line(cloud: Cloud, front: Front, team: Team) -> Line:
     weights = 1.0 / (squares + 1e-12 * finest**2)
     weights /= weights.sum(axis=1, keepdims=True)
     column = {"density": 0, "pressure": 4}[front.field]
-    return Line(distances, rows, weights, begin, direction, column, front.level)
+    return SampledLine(distances, rows, weights, begin, direction, column, front.level)
 
 
-def crossing(one: Line, primitive: Array) -> tuple[float, bool]:
+def crossing(one: SampledLine, primitive: Array) -> tuple[float, bool]:
     """Distance [m] at which the level is first passed, and whether it is."""
     values = (one.weights * primitive[one.rows, one.column]).sum(axis=1)
     above = values > one.level
@@ -67,7 +67,7 @@ def crossing(one: Line, primitive: Array) -> tuple[float, bool]:
     return float(one.distances[k] + share * (one.distances[k + 1] - one.distances[k])), True
 
 
-def fronts(lines: Sequence[Line], primitive: Array) -> Fields:
+def fronts(lines: Sequence[SampledLine], primitive: Array) -> Fields:
     """Fields of the port `fronts`."""
     found = [crossing(one, primitive) for one in lines]
     places = np.array([a.begin + d * a.direction for a, (d, _) in zip(lines, found, strict=True)])

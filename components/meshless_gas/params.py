@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from quintet.components.meshless_gas.boundaries import HOLDING, Boundary, Gas, GasState
-from quintet.components.meshless_gas.clouds.params import Box, Plate, Sphere
+from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, SphereCloud
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.interfaces.params import (
@@ -183,9 +183,9 @@ class MeshlessGasParams:
     gas: Gas = Gas()
     dimensions: Literal[2, 3] = 2
     axisymmetric: bool = False
-    box: Box | None = None
-    sphere: Sphere | None = None
-    plate: Plate | None = None
+    box: BoxCloud | None = None
+    sphere: SphereCloud | None = None
+    plate: PlateCloud | None = None
     boundaries: dict[str, Boundary] = Field(default_factory=dict)
     initial: GasState | None = None
     zones: tuple[Zone, ...] = ()
@@ -333,7 +333,7 @@ class MeshlessGasParams:
         return self.dimensions == 2 and not self.axisymmetric
 
     @property
-    def cloud(self) -> Box | Sphere | Plate:
+    def cloud(self) -> BoxCloud | SphereCloud | PlateCloud:
         """The table that describes the nodes."""
         found = self.box or self.sphere or self.plate
         assert found is not None

@@ -4,7 +4,7 @@ import numpy as np
 
 from quintet.components.fe_plate.heat.kernels import Matrix, pattern, write_matrix
 from quintet.components.fe_plate.heat.laws import face_shares
-from quintet.components.fe_plate.heat.params import FeHeatParams, Held
+from quintet.components.fe_plate.heat.params import FeHeatParams, FixedTemperature
 from quintet.components.fe_plate.heat.state import Model, State
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, incident, mesh
@@ -48,7 +48,7 @@ def _holders(params: FeHeatParams, made: Mesh) -> Whole:
     return found
 
 
-def _held_by(one: Held, made: Mesh, where: str) -> Array:
+def _held_by(one: FixedTemperature, made: Mesh, where: str) -> Array:
     if one.point is None:
         box = Faces(lowest=one.lowest, highest=one.highest, node_set=one.node_set)
         return np.asarray(chosen(made, box, where))

@@ -74,7 +74,7 @@ class ConductingPart:
 
 
 @parameters
-class Held:
+class FixedTemperature:
     """Nodes that are held at a temperature, whatever heat that takes.
 
     Parameters
@@ -149,7 +149,7 @@ class FeHeatParams:
 
     parts: tuple[ConductingPart, ...]
     node_sets: tuple[NodeSet, ...] = ()
-    held: tuple[Held, ...] = ()
+    held: tuple[FixedTemperature, ...] = ()
     fluxes: tuple[Flux, ...] = ()
     coupled_faces: tuple[Faces, ...] = ()
     node_gauges: tuple[Vector, ...] = ()

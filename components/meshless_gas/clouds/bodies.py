@@ -9,7 +9,7 @@ from quintet.components.meshless_gas.clouds.cap import sphere_cap
 from quintet.components.meshless_gas.clouds.layers import LayeredCloud
 from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
 from quintet.components.meshless_gas.clouds.mirrored import as_slip, mirrored
-from quintet.components.meshless_gas.clouds.params import Layers, Plate, Sphere
+from quintet.components.meshless_gas.clouds.params import Layers, PlateCloud, SphereCloud
 from quintet.components.meshless_gas.clouds.plane import plate
 from quintet.components.meshless_gas.params import MeshlessGasParams
 
@@ -34,11 +34,11 @@ def layered_cloud(
     )
 
 
-def _reach(sphere: Sphere) -> Reach:
+def _reach(sphere: SphereCloud) -> Reach:
     return _of(sphere.layers, sphere.rays, min(sphere.sector, math.pi), sphere.margin, sphere.reach)
 
 
-def _plate(one: Plate, faces: Mapping[str, str], patches: Mapping[str, int]) -> LayeredCloud:
+def _plate(one: PlateCloud, faces: Mapping[str, str], patches: Mapping[str, int]) -> LayeredCloud:
     reach = _of(one.layers, one.rays, 0.0, 1.0, 0.0)
     return plate(
         reach, one.length, one.ahead, one.height, one.finest, faces, patches, one.layers.cross

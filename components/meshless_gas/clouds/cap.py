@@ -11,7 +11,7 @@ from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
     Bounds,
     LayeredCloud,
-    Surface,
+    SurfaceGrid,
     kinds_of,
     layered,
 )
@@ -73,7 +73,7 @@ def sphere_cap(
         reach.weight,
     )
     none = np.zeros(0, np.int32)
-    surface = Surface(near, none, np.zeros((0, 3, 3)), is_edge, _inward(points, is_edge))
+    surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge, _inward(points, is_edge))
     return layered(places, surface, bounds, is_cross)
 
 

@@ -16,7 +16,7 @@ from quintet.interfaces.component import Array
 NONE = -1
 
 
-class Surface(NamedTuple):
+class SurfaceGrid(NamedTuple):
     """Nodes of a surface, and which of them are neighbours.
 
     A neighbour m + g is ghost g; -1 is none.
@@ -51,14 +51,14 @@ class LayeredCloud(NamedTuple):
 
 
 def layered(
-    places: Array, surface: Surface, bounds: Bounds, is_cross: bool = False
+    places: Array, surface: SurfaceGrid, bounds: Bounds, is_cross: bool = False
 ) -> LayeredCloud:
     """Join layers of nodes to a cloud.
 
     Parameters
     ----------
     places : (layers, m, 3) m
-    surface : Surface
+    surface : SurfaceGrid
     bounds : Bounds
     is_cross : bool
         Neighbours on the node's own layer, and the two above and below it, only: in boundary
@@ -126,7 +126,7 @@ def _patches(layers: int, bounds: Bounds) -> Whole:
     return patch.ravel()
 
 
-def _neighbours(layers: int, surface: Surface, is_cross: bool) -> Whole:
+def _neighbours(layers: int, surface: SurfaceGrid, is_cross: bool) -> Whole:
     """Rows (layers · m, K) of neighbours, those that there are first."""
     near = surface.neighbours
     count, ghosts = len(near), len(surface.ghost_source)
@@ -179,7 +179,9 @@ def _volumes(places: Array, areas: Array) -> Array:
     return volumes.ravel()
 
 
-def _faces(places: Array, surface: Surface, bounds: Bounds, volumes: Array) -> tuple[Array, Array]:
+def _faces(
+    places: Array, surface: SurfaceGrid, bounds: Bounds, volumes: Array
+) -> tuple[Array, Array]:
     """Normals (n, 3) into the gas and areas (n, 3) m2 along them, of boundary nodes."""
     layers, count = places.shape[:2]
     normals, areas = np.zeros((2, layers, count, 3))

@@ -12,7 +12,7 @@ from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
     Bounds,
     LayeredCloud,
-    Surface,
+    SurfaceGrid,
     kinds_of,
     layered,
     rotations,
@@ -112,7 +112,7 @@ def outer_radius(angle: Array, radius: float, mach: float, reach: Reach) -> Arra
     return np.minimum(np.maximum(wanted, radius * 1.02), reach.farthest)
 
 
-def _meridian_surface(angle: Array, step: float, is_closed: bool) -> Surface:
+def _meridian_surface(angle: Array, step: float, is_closed: bool) -> SurfaceGrid:
     """Each ray has one before and one after it, and two of its own, turned about the axis."""
     count = len(angle)
     turn = np.minimum(step / np.sin(angle), WIDEST)
@@ -130,7 +130,7 @@ def _meridian_surface(angle: Array, step: float, is_closed: bool) -> Surface:
     is_edge, inward = np.zeros(count, bool), ray.copy()
     if not is_closed:
         is_edge[-1], inward[-1] = True, count - 2
-    return Surface(
+    return SurfaceGrid(
         neighbours.astype(np.int32),
         source.astype(np.int32),
         rotations(turns),

@@ -9,7 +9,7 @@ from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
 
 @parameters
-class Box:
+class BoxCloud:
     """A box of nodes.
 
     Parameters
@@ -79,7 +79,7 @@ class Layers:
 
 
 @parameters
-class Sphere:
+class SphereCloud:
     """Layers of nodes round a sphere that stands in a flow along x, its centre on the axis.
 
     Its boundaries are ``wall``, ``far``, and ``exit`` where gas leaves downstream. The last layer
@@ -131,7 +131,7 @@ class Sphere:
 
 
 @parameters
-class Plate:
+class PlateCloud:
     """Layers of nodes over a flat plate from x = 0 on, and over a stretch of stream before it.
 
     Its boundaries are ``wall``, ``ahead`` (before the plate), ``inlet``, ``far`` (above) and

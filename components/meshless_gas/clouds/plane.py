@@ -11,7 +11,7 @@ from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
     Bounds,
     LayeredCloud,
-    Surface,
+    SurfaceGrid,
     kinds_of,
     layered,
 )
@@ -19,14 +19,14 @@ from quintet.components.meshless_gas.clouds.meridian import Reach
 from quintet.interfaces.component import Array
 
 
-def line(count: int) -> Surface:
+def line(count: int) -> SurfaceGrid:
     """Neighbours on a line of nodes that ends."""
     node = np.arange(count)
     neighbours = np.stack([node - 1, node + 1], axis=1)
     neighbours[-1, 1] = -1
     is_edge = (node == 0) | (node == count - 1)
     inward = np.clip(node, 1, count - 2)
-    return Surface(
+    return SurfaceGrid(
         neighbours.astype(np.int32),
         np.zeros(0, np.int32),
         np.zeros((0, 3, 3)),
@@ -38,7 +38,7 @@ def line(count: int) -> Surface:
 def wall_line(
     foot: Array,
     distance: Array,
-    surface: Surface,
+    surface: SurfaceGrid,
     numbers: tuple[Whole, Whole, Whole],
     kinds: NDArray[np.int8],
     weight: float,
@@ -52,7 +52,7 @@ def wall_line(
         The wall's nodes, the gas on the left of who walks along them.
     distance : (layers,) or (layers, m) m
         Of each layer from the wall, straight up along the normal of the whole line.
-    surface : Surface
+    surface : SurfaceGrid
         Which nodes of the wall are neighbours.
     numbers : three of (m,)
         Of boundaries at the first and last layer, and at edges.

@@ -4,12 +4,10 @@ import numpy as np
 
 from quintet.components.meshless_gas.build import domain, transport_of
 from quintet.components.meshless_gas.clouds.cloud import INNER
-from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.layout import layout, with_bodies
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.state import State
 from quintet.components.meshless_gas.stencils import Stencils, write_coefficients
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
@@ -40,7 +38,7 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         lines = np.flatnonzero(cloud.kind[:nodes] == INNER)
         neighbours[lines, LINES:] = lines[:, None]
     box = np.array([params.box.lowest, params.box.highest])
-    own = layout(cloud, nodes, rings, keys, neighbours, box, params.gas.gamma, planar)
+    own = layout(cloud, nodes, rings, keys, neighbours, box, kept, planar)
     rows = np.arange(0 if keys.cross else nodes, cloud.nodes)
     made = Stencils(neighbours, coefficients)
     team.run(
@@ -48,7 +46,7 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         coefficients, np.ones(whole),
     )  # fmt: skip
     joint = ground._replace(cloud=cloud, stencils=made, weights=_padded(ground.weights, many))
-    moving = MovingClouds(keys, joint, own, kept, team)
+    moving = MovingClouds(params, joint, own, team)
     if params.viscous:
         # Compiled only where the gas has friction.
         from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
@@ -102,16 +100,3 @@ def _padded(weights: Array, many: int) -> Array:
     """Weights (b, many) of neighbours, of those that there are not 0."""
     more = np.zeros((len(weights), many - weights.shape[1]))
     return np.hstack([weights, more])
-
-
-def soft_start(moving: MovingClouds, state: State, gamma: float) -> None:
-    """Let gas near a body begin with the body's velocity, which fades over one radius."""
-    positions = moving.domain.cloud.positions[: len(state.primitive)]
-    for radius, centre, velocity in zip(
-        moving.radii, moving.pose.centre, moving.pose.velocity, strict=True
-    ):
-        away = np.sqrt(((positions - centre) ** 2).sum(axis=1)) / radius - 1.0
-        share = 1.0 - np.clip(away, 0.0, 1.0)[:, None]
-        state.primitive[:, 1:4] += share * (velocity - state.primitive[:, 1:4])
-    write_conservative(state.primitive, gamma, state.conservative)
-    state.begun[:] = moving.domain.cloud.volumes[: len(positions)] @ state.conservative

@@ -15,8 +15,8 @@ from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
-from quintet.components.meshless_gas.moving.layout import Layout
-from quintet.components.meshless_gas.moving.params import Moving
+from quintet.components.meshless_gas.moving.layout import CloudLayout
+from quintet.components.meshless_gas.moving.outputs import outputs, unit_force
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
@@ -28,8 +28,10 @@ from quintet.components.meshless_gas.moving.seams import (
     write_uncovered,
     write_uncovered_in_space,
 )
+from quintet.components.meshless_gas.moving.start import soft_start
 from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
-from quintet.components.meshless_gas.state import Fluxes
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.components.meshless_gas.stencils import SOUND, write_coefficients
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
@@ -59,11 +61,13 @@ class MovingClouds:
     """Bodies, their clouds, and the seams between clouds."""
 
     def __init__(
-        self, params: Moving, domain: Domain, layout: Layout, kept: int, team: Team
+        self, params: MeshlessGasParams, domain: Domain, layout: CloudLayout, team: Team
     ) -> None:
-        self.params, self.domain, self.layout, self.team = params, domain, layout, team
-        self.kept = kept  # neighbours of a node across seams
-        bodies, cloud = params.bodies, domain.cloud
+        assert params.moving is not None
+        self.params, self.domain, self.layout, self.team = params.moving, domain, layout, team
+        self.gamma, self.unit_force = params.gas.gamma, unit_force(params)
+        self.kept = layout.kept  # neighbours of a node across seams
+        bodies, cloud = self.params.bodies, domain.cloud
         self.pose = Pose(
             np.array([one.position for one in bodies]),
             np.array([one.velocity for one in bodies]),
@@ -93,6 +97,10 @@ class MovingClouds:
 
     # Steps
 
+    def soften_start(self, state: State) -> None:
+        """Let gas near a body begin with the body's velocity, which fades over one radius."""
+        soft_start(self, state)
+
     def take(self, fields: Fields) -> None:
         """Take the motion of driven bodies: places at the middle of the step, mean velocities."""
         if "motion.position" not in fields:
@@ -108,7 +116,7 @@ class MovingClouds:
         if self.params.axisymmetric:
             refuse_off_axis(self.given, self.pose.velocity[self.driven], self.driven)
 
-    def begin(self, dt: float, primitive: Array, conservative: Array) -> None:
+    def begin(self, dt: float, primitive: Array, conservative: Array) -> bool:
         """Put clouds where they are at the step's start; cut holes anew where they have moved."""
         if self.given is not None:
             moved = self.given - 0.5 * dt * self.pose.velocity[self.driven]
@@ -132,6 +140,7 @@ class MovingClouds:
             self._uncover(fresh, primitive, conservative)
         else:
             self._refit()
+        return True
 
     def place(self, stage: int, dt: float) -> None:
         """Move clouds to where they are at a stage; coefficients across seams follow."""
@@ -147,12 +156,12 @@ class MovingClouds:
 
     # Stages
 
-    def hold_walls(self, primitive: Array, gamma: float) -> None:
+    def hold_walls(self, primitive: Array) -> None:
         """Write the states of the bodies' walls."""
         own = self.layout
         hold_slip_walls(
             own.walls, own.above, own.heights, self.domain.cloud.normals[own.walls],
-            self.wall_velocity, gamma, primitive,
+            self.wall_velocity, self.gamma, primitive,
         )  # fmt: skip
         if self.friction is not None:
             self.friction.hold(self.wall_velocity, primitive)
@@ -172,21 +181,29 @@ class MovingClouds:
         flows[1:4] -= self.loads[:, :3].sum(axis=0)
         flows[4] += (self.loads[:, 6] - self.loads[:, 7]).sum()
 
-    def add_rates(
-        self, share: float, work: Fluxes, viscous: "Viscous | None", gamma: float
-    ) -> None:
+    def add_rates(self, share: float, work: Fluxes, viscous: "Viscous | None") -> None:
         """Add what symmetry about the axis asks for; sum the loads of a stage."""
         self.summed += share * self.loads
         if not self.params.axisymmetric:
             return
         rows, positions = self.domain.inner, self.domain.cloud.positions
-        self.team.run(add_axis, len(rows), rows, positions, work.primitive, gamma, work.residual)
+        self.team.run(
+            add_axis, len(rows), rows, positions, work.primitive, self.gamma, work.residual
+        )
         if self.stresses is not None and viscous is not None:
             flow = viscous.transported, work.gradients, viscous.gradients
             self.stresses.add(
                 self.team, rows, positions, work.primitive, self.domain.stencils, flow,
                 work.residual,
             )  # fmt: skip
+
+    def power_of_partners(self) -> float:
+        """Energy [W] that the gas gets now from bodies that a partner moves."""
+        return float(self.loads[self.driven, 6].sum())
+
+    def outputs(self, primitive: Array) -> dict[str, Array]:
+        """Fields of the bodies' ports."""
+        return outputs(self, primitive)
 
     # Geometry
 
@@ -326,7 +343,7 @@ class MovingClouds:
         found, _ = nearest(cloud.positions, among, cloud.positions[fresh], many, self.team)
         write(fresh, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, primitive)
         part_of = np.empty((len(fresh), 5))
-        write_conservative(primitive[fresh], self.layout.gamma, part_of)
+        write_conservative(primitive[fresh], self.gamma, part_of)
         conservative[fresh] = part_of
 
     # State

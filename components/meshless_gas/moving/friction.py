@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud
-from quintet.components.meshless_gas.moving.layout import Layout
+from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.stencils import Stencils
 from quintet.components.meshless_gas.transport import Transport
@@ -22,7 +22,7 @@ from quintet.interfaces.component import Array
 class Friction:
     """Friction and heat at the walls of bodies that have a temperature."""
 
-    def __init__(self, params: Moving, layout: Layout, law: Transport) -> None:
+    def __init__(self, params: Moving, layout: CloudLayout, law: Transport) -> None:
         warmth = np.array([one.temperature or 0.0 for one in params.bodies])[layout.body]
         self.held = np.flatnonzero(warmth > 0.0)
         self.law, self.layout, self.temperature = law, layout, warmth[self.held]

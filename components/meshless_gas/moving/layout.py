@@ -15,7 +15,7 @@ from quintet.interfaces.component import Array
 Rows = NDArray[np.int64]
 
 
-class Layout(NamedTuple):
+class CloudLayout(NamedTuple):
     """What of the clouds of bodies never changes; n nodes, w of them of walls."""
 
     home: Whole  # (n, K) neighbours of each node in its own cloud
@@ -34,7 +34,7 @@ class Layout(NamedTuple):
     second: Array  # (b,) m, height of the second layer of each body
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
-    gamma: float
+    kept: int  # neighbours of a node across seams
     planar: bool  # whether nothing leaves the plane of x and z
 
 
@@ -68,9 +68,9 @@ def layout(
     params: Moving,
     neighbours: Whole,
     box: Array,
-    gamma: float,
+    kept: int,
     planar: bool,
-) -> Layout:
+) -> CloudLayout:
     """Say how bodies' clouds lie in the joined cloud.
 
     Parameters
@@ -83,7 +83,8 @@ def layout(
     neighbours : (n, K)
         Of the background; rows of other nodes are written.
     box : (2, 3) m
-    gamma : float, 1
+    kept : int
+        Neighbours of a node across seams.
     planar : bool
     """
     count = cloud.nodes
@@ -115,7 +116,7 @@ def layout(
         sides.append((2, -1))
     if not planar:
         sides += [(1, -1), (1, 1)]
-    return Layout(
+    return CloudLayout(
         home=neighbours[:count].copy(),
         height=height,
         volumes=volumes,
@@ -132,6 +133,6 @@ def layout(
         second=np.array([level[2] for level in levels]),
         box=box,
         open_sides=sides,
-        gamma=gamma,
+        kept=kept,
         planar=planar,
     )

@@ -1,15 +1,18 @@
 """What is given of bodies that carry clouds."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array
 
+if TYPE_CHECKING:
+    from quintet.components.meshless_gas.moving.clouds import MovingClouds
 
-def outputs(moving: MovingClouds, primitive: Array, params: MeshlessGasParams) -> dict[str, Array]:
+
+def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
     """Fields of the ports `bodies`, `surface`, `load` and `heat`."""
     own, pose, driven = moving.layout, moving.pose, moving.driven
     pressure, force = primitive[own.walls, 4], moving.summed[:, :3]
@@ -19,7 +22,7 @@ def outputs(moving: MovingClouds, primitive: Array, params: MeshlessGasParams) -
         "bodies.velocity": pose.velocity.copy(),
         "bodies.force": force.copy(),
         "bodies.heat": moving.summed[:, 7].copy(),
-        "bodies.coefficient": force / _unit_force(moving, params)[:, None],
+        "bodies.coefficient": force / moving.unit_force[:, None],
         "bodies.highest_pressure": np.array([pressure[own.body == b].max() for b in bodies]),
         "bodies.uncovered": np.full(len(bodies), float(moving.uncovered)),
         "surface.position": moving.domain.cloud.positions[own.walls],
@@ -39,12 +42,14 @@ def _aside(arms: Array, planar: bool) -> Array:
     return np.asarray(arms[:, 2] if planar else np.hypot(arms[:, 1], arms[:, 2]))
 
 
-def _unit_force(moving: MovingClouds, params: MeshlessGasParams) -> Array:
-    """Force (b,) N that a coefficient of 1 stands for."""
-    assert params.initial is not None
+def unit_force(params: MeshlessGasParams) -> Array:
+    """Force (b,) N that a coefficient of 1 stands for: of the gas at the start."""
+    assert params.initial is not None and params.moving is not None
+    bodies = params.moving.bodies
     density, u, v, w, _ = params.initial.primitive(params.gas)
-    speeds = np.array([u, v, w]) - np.array([one.velocity for one in moving.params.bodies])
+    speeds = np.array([u, v, w]) - np.array([one.velocity for one in bodies])
     square = np.maximum((speeds * speeds).sum(axis=1), 1e-300)
-    is_sphere = moving.params.axisymmetric or not moving.layout.planar
-    area = math.pi * moving.radii**2 if is_sphere else 2.0 * moving.radii
+    radii = np.array([one.radius for one in bodies])
+    is_sphere = params.moving.axisymmetric or not params.planar
+    area = math.pi * radii**2 if is_sphere else 2.0 * radii
     return np.asarray(0.5 * density * square * area)

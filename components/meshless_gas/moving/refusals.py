@@ -3,19 +3,19 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.moving.layout import Layout
+from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError, StepError
 
 
 def refuse_places(
-    layout: Layout, radii: Array, thickness: Array, spacing: Array, centre: Array
+    layout: CloudLayout, radii: Array, thickness: Array, spacing: Array, centre: Array
 ) -> None:
     """Refuse bodies that touch, or whose cloud would leave the box.
 
     Parameters
     ----------
-    layout : Layout
+    layout : CloudLayout
     radii, thickness, spacing : (b,) m
         Of bodies and their clouds.
     centre : (b, 3) m

@@ -4,7 +4,7 @@ import numpy as np
 
 from quintet.components.meshless_gas.clouds.cap import adjacent, geodesic, shares
 from quintet.components.meshless_gas.clouds.cloud import INNER, SLIP
-from quintet.components.meshless_gas.clouds.layers import Bounds, Surface, layered
+from quintet.components.meshless_gas.clouds.layers import Bounds, SurfaceGrid, layered
 from quintet.components.meshless_gas.moving.params import Body
 from quintet.components.meshless_gas.moving.rings import Ring
 
@@ -40,7 +40,8 @@ def shell(body: Body, region: int, patch: int, is_cross: bool) -> Ring:
         beyond=-points,
         weight=body.weight,
     )
-    grid = Surface(near, none[:0], np.zeros((0, 3, 3)), is_edge, np.arange(count, dtype=np.int32))
+    inward = np.arange(count, dtype=np.int32)
+    grid = SurfaceGrid(near, none[:0], np.zeros((0, 3, 3)), is_edge, inward)
     made = layered(radii[:, None, None] * points, grid, bounds, is_cross)
     wall = made.cloud.kind == SLIP
     cloud = made.cloud._replace(

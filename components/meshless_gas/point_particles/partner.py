@@ -5,7 +5,7 @@ import numpy as np
 from quintet.components.meshless_gas.build import Domain, transport_of
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.point_particles.exchange import Exchange
+from quintet.components.meshless_gas.point_particles.interphase import InterphaseExchange
 from quintet.components.meshless_gas.point_particles.particles import Particles
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import StepError
@@ -32,7 +32,7 @@ class Partner:
     def __init__(self, params: MeshlessGasParams, domain: Domain) -> None:
         assert params.particles is not None
         gas = params.gas
-        self.exchange = Exchange(
+        self.exchange = InterphaseExchange(
             params.particles, domain.cloud, params.planar, transport_of(gas), gas.gamma, gas.prandtl
         )
         # What boundary nodes were given would be lost: their states follow from others.

@@ -20,7 +20,7 @@ EVEN = 1e-9  # of a volume: what differs from it by less is as large
 TOLD = 1e-3  # of a mass: smaller differences are not worth a word
 
 
-class Part(NamedTuple):
+class FluidRegion(NamedTuple):
     """A box or another shape of fluid."""
 
     name: str  # in a scene
@@ -28,13 +28,13 @@ class Part(NamedTuple):
     particles: int
 
 
-def parts(params: "SphFluidParams") -> Iterator[Part]:
-    """All parts of a fluid."""
+def regions(params: "SphFluidParams") -> Iterator[FluidRegion]:
+    """All regions of a fluid."""
     for number, box in enumerate(params.fluid):
         edges = [b - a for a, b in zip(*box, strict=True)]
         if params.dimensions == 2:
             edges[1] = 1.0
-        yield Part(f"fluid[{number}]", math.prod(edges), math.prod(cells(box, params)))
+        yield FluidRegion(f"fluid[{number}]", math.prod(edges), math.prod(cells(box, params)))
     if params.shapes:
         # Left out of scenes whose fluid is in boxes.
         from quintet.components.sph_fluid.setup.shape_filling import particle_count
@@ -44,35 +44,36 @@ def parts(params: "SphFluidParams") -> Iterator[Part]:
             (_, low, _), (_, high, _) = shape.box
             volume = shape.volume / (high - low if planar else 1.0)
             count = particle_count(shape, params.spacing, planar)
-            yield Part(f"shapes[{number}]", volume, count)
+            yield FluidRegion(f"shapes[{number}]", volume, count)
 
 
 def particle_volume(params: "SphFluidParams") -> float:
     """Volume [m3] of a particle at rest; area [m2] in two dimensions."""
     nominal = params.spacing**params.dimensions
-    found = list(parts(params))
+    found = list(regions(params))
     share = sum(one.volume for one in found) / (nominal * sum(one.particles for one in found))
     return nominal if abs(share - 1.0) < EVEN else nominal * share
 
 
 def check_mass(params: "SphFluidParams") -> None:
-    """Refuse fluid of which a part would not hold what it should."""
-    for part, excess in _excesses(params, MOST):
+    """Refuse fluid of which a region would not hold what it should."""
+    for region, excess in _excesses(params, MOST):
         raise ValueError(
-            f"{part.name} must hold its mass of fluid within {100.0 * MOST:g} % of that of all; it "
-            f"would differ by {100.0 * excess / part.volume:+.2g} % of its own in {part.particles} "
-            "particles. Choose a spacing of which its edges are multiples, or a finer one."
+            f"{region.name} must hold its mass of fluid within {100.0 * MOST:g} % of that of all; "
+            f"it would differ by {100.0 * excess / region.volume:+.2g} % of its own in "
+            f"{region.particles} particles. Choose a spacing of which its edges are multiples, or "
+            "a finer one."
         )
 
 
-def _excesses(params: "SphFluidParams", share: float) -> Iterator[tuple[Part, float]]:
+def _excesses(params: "SphFluidParams", share: float) -> Iterator[tuple[FluidRegion, float]]:
     """Parts that hold more or less than they should [m3] by so much of all the fluid."""
-    one_volume, found = particle_volume(params), list(parts(params))
-    whole = sum(part.volume for part in found)
-    for part in found:
-        excess = part.particles * one_volume - part.volume
+    one_volume, found = particle_volume(params), list(regions(params))
+    whole = sum(region.volume for region in found)
+    for region in found:
+        excess = region.particles * one_volume - region.volume
         if abs(excess) > share * whole:
-            yield part, excess
+            yield region, excess
 
 
 def mass_notes(params: "SphFluidParams") -> tuple[str, ...]:
@@ -80,9 +81,9 @@ def mass_notes(params: "SphFluidParams") -> tuple[str, ...]:
     nominal, one_volume = params.spacing**params.dimensions, particle_volume(params)
     change = one_volume / nominal - 1.0
     uneven = tuple(
-        f"{part.name} holds {100.0 * excess / part.volume:+.2g} % of its mass more or less than it "
-        "should, and others the rest: their edges are cut differently"
-        for part, excess in _excesses(params, NOTED)
+        f"{region.name} holds {100.0 * excess / region.volume:+.2g} % of its mass more or less "
+        "than it should, and others the rest: their edges are cut differently"
+        for region, excess in _excesses(params, NOTED)
     )
     if abs(change) < TOLD:
         return uneven

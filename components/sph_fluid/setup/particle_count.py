@@ -11,7 +11,7 @@ from quintet.components.sph_fluid.setup.geometry import (
     tank,
     wall_layers,
 )
-from quintet.components.sph_fluid.setup.mass import parts
+from quintet.components.sph_fluid.setup.mass import regions
 from quintet.interfaces.manifest import Plan
 
 
@@ -27,7 +27,7 @@ def plan(params: SphFluidParams) -> Plan:
 
 def particles(params: SphFluidParams) -> int:
     """Fluid and wall particles, counted without making any."""
-    fluid = sum(part.particles for part in parts(params))
+    fluid = sum(region.particles for region in regions(params))
     fluid += count_obstacle_points(params)
     box = tank(params)
     if box is None:

@@ -11,7 +11,12 @@ from skfem import Basis, ElementHex1, MeshHex, asm, condense, solve
 from skfem.models.poisson import laplace
 
 from quintet.components.fe_plate.heat.component import FeHeat
-from quintet.components.fe_plate.heat.params import ConductingPart, FeHeatParams, Flux, Held
+from quintet.components.fe_plate.heat.params import (
+    ConductingPart,
+    FeHeatParams,
+    FixedTemperature,
+    Flux,
+)
 from quintet.components.fe_plate.meshes.params import Cylinder
 from quintet.components.fe_plate.params import Faces
 from quintet.interfaces.errors import SceneError
@@ -32,12 +37,12 @@ def block(size, elements, temperature=0.0, **given):
 
 def face(at, size, temperature):
     """Nodes across x held at a temperature."""
-    return Held(lowest=(at, 0.0, 0.0), highest=(at, *size[1:]), temperature=temperature)
+    return FixedTemperature(lowest=(at, 0.0, 0.0), highest=(at, *size[1:]), temperature=temperature)
 
 
 def bar_with_points(n):
     points = [(HOT, 500.0), (COLD, 0.0), (BEYOND, 0.0)]
-    held = tuple(Held(point=one, temperature=kelvin) for one, kelvin in points)
+    held = tuple(FixedTemperature(point=one, temperature=kelvin) for one, kelvin in points)
     return block((0.03, 0.01, 0.01), (3 * n, n, n), 170.0, steady=True, held=held)
 
 
@@ -75,7 +80,10 @@ def test_a_linear_temperature_is_exact_in_any_mesh():
     part = ConductingPart(
         cylinder=Cylinder(radius=0.5, length=2.0, elements=(2, 2, 3)), conductivity=K
     )
-    ends = [Held(lowest=(-1, -1, z), highest=(1, 1, z), temperature=t) for z, t in ((0, 9), (2, 5))]
+    ends = [
+        FixedTemperature(lowest=(-1, -1, z), highest=(1, 1, z), temperature=t)
+        for z, t in ((0, 9), (2, 5))
+    ]
     made = FeHeat(FeHeatParams(parts=(part,), held=tuple(ends), steady=True))
     made.step(1.0)
     mesh = made.model.mesh
@@ -211,7 +219,10 @@ def test_conduction_and_mechanics_import_nothing_of_each_other():
     ("given", "words"),
     [
         ({"steady": True}, "must be held at a temperature somewhere"),
-        ({"held": (Held(lowest=(9, 9, 9), highest=(9, 9, 9), temperature=1),)}, "holds none"),
+        (
+            {"held": (FixedTemperature(lowest=(9, 9, 9), highest=(9, 9, 9), temperature=1),)},
+            "holds none",
+        ),
         ({"coupled_faces": (Faces(lowest=(9, 9, 9), highest=(9, 9, 9)),)}, "must hold an outer"),
     ],
 )
@@ -223,8 +234,11 @@ def test_what_cannot_be_built_is_refused(given, words):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: Held(temperature=1.0), "found 0 of these"),
-        (lambda: Held(point=(0, 0, 0), node_set="a", temperature=1.0), "found 2 of these"),
+        (lambda: FixedTemperature(temperature=1.0), "found 0 of these"),
+        (
+            lambda: FixedTemperature(point=(0, 0, 0), node_set="a", temperature=1.0),
+            "found 2 of these",
+        ),
         (lambda: FeHeatParams(parts=()), "at least one"),
         (
             lambda: FeHeatParams(

@@ -87,7 +87,7 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.domain.inner
-    assert gas.moving.uncovered > 20
+    assert gas.motion.uncovered > 20
     assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
@@ -106,7 +106,7 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.domain.inner
-    assert gas.moving.uncovered > 10
+    assert gas.motion.uncovered > 10
     assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
@@ -114,8 +114,8 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
 def test_bodies_off_the_axis_are_refused():
     gas = made(about_an_axis(is_driven=True))
     motion = {
-        "motion.position": gas.moving.pose.centre + np.array([0.0, 0.0, 0.01]),
-        "motion.velocity": gas.moving.pose.velocity,
+        "motion.position": gas.motion.pose.centre + np.array([0.0, 0.0, 0.01]),
+        "motion.velocity": gas.motion.pose.velocity,
     }
     with pytest.raises(SceneError, match="lie and move on the axis"):
         gas.take(motion)
@@ -149,7 +149,7 @@ def test_hysteresis_keeps_nodes_from_coming_and_going():
         gas = made(scene(share=1.0, hysteresis=hysteresis))
         for _ in range(60):
             gas.step(gas.stable_dt())
-        counts.append(gas.moving.uncovered)
+        counts.append(gas.motion.uncovered)
     assert counts[1] < 0.8 * counts[0]
 
 
@@ -215,7 +215,7 @@ def test_bodies_that_come_near_each_other_run_until_they_nearly_touch():
     with pytest.raises(StepError, match="must leave room for two layers"):
         for _ in range(400):
             gas.step(gas.stable_dt())
-    assert gas.moving.pose.centre[1, 0] - 0.5 < 0.2
+    assert gas.motion.pose.centre[1, 0] - 0.5 < 0.2
     assert gas.state.primitive[gas.domain.inner, 4].max() > 1.2 * PRESSURE  # gas between them
 
 

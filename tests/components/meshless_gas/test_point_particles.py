@@ -10,7 +10,7 @@ from quintet.components.meshless_gas.clouds.box import box
 from quintet.components.meshless_gas.kernels.ghosts import write_ghost_states
 from quintet.components.meshless_gas.kernels.motion import STAGES, advance, write_conservative
 from quintet.components.meshless_gas.point_particles import laws
-from quintet.components.meshless_gas.point_particles.exchange import Exchange
+from quintet.components.meshless_gas.point_particles.interphase import InterphaseExchange
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.components.meshless_gas.point_particles.particles import Particles
 from quintet.components.meshless_gas.transport import Transport
@@ -43,7 +43,7 @@ class Gas:
         self.primitive[:, 0], self.primitive[:, 4] = DENSITY, PRESSURE
         self.conservative = np.zeros((count, 5))
         keys = {"drag": "stokes", "heat": "still"} | given
-        self.exchange = Exchange(
+        self.exchange = InterphaseExchange(
             PointParticles(**keys), self.cloud, planar, TRANSPORT, GAMMA, PRANDTL
         )
 

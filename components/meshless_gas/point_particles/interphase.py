@@ -22,7 +22,7 @@ NODES = {2: 16, 3: 32}  # by dimensions
 SHARE = 0.5  # of the time in which particle and gas relax towards each other, that is a step
 
 
-class Exchange:
+class InterphaseExchange:
     """What point particles and nodes give each other in a step.
 
     Parameters

@@ -15,7 +15,7 @@ from quintet.components.meshless_gas.blunt_bodies import (
 from quintet.components.meshless_gas.boundaries import GasState
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import WALLS
-from quintet.components.meshless_gas.clouds.params import Plate
+from quintet.components.meshless_gas.clouds.params import PlateCloud
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array, Fields
 
@@ -23,8 +23,8 @@ SHOCK_RAYS = 0.44  # rad, within which the shock is fitted
 NEAR_AXIS = 0.25  # rad from the direction against the flow, over which values at it are fitted
 
 
-class Surface:
-    """Walls of a gas."""
+class WallLoads:
+    """What the walls of a gas feel."""
 
     def __init__(self, params: MeshlessGasParams, domain: Domain) -> None:
         self.params = params
@@ -94,7 +94,7 @@ class Surface:
         assert stream is not None
         push = 0.5 * stream.gamma * stream.pressure * stream.mach**2
         if params.sphere is None:
-            assert isinstance(params.cloud, Plate)
+            assert isinstance(params.cloud, PlateCloud)
             return [("drag_coefficient", force[0] / (push * params.cloud.length))]
         one = params.sphere
         pressure = self._at_stagnation(primitive[self.rows, 4])
