@@ -73,7 +73,7 @@ def sphere_cap(
         reach.weight,
     )
     none = np.zeros(0, np.int32)
-    surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge, _inward(points, is_edge))
+    surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge, inward_of(points, is_edge))
     return layered(places, surface, bounds, is_cross)
 
 
@@ -122,15 +122,21 @@ def _rotation() -> Array:
     return matrix
 
 
-def shares(points: Array, faces: NDArray[np.int64]) -> Array:
-    """Share (m,) of the unit sphere of each point: a third of the triangles round it."""
+def areas_of(points: Array, faces: NDArray[np.int64]) -> Array:
+    """Areas (m,) of triangles, a third of each for each of its corners."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     flat = 0.5 * np.sqrt((normal**2).sum(axis=1))
     areas = np.zeros(len(points))
     for k in range(3):
         np.add.at(areas, faces[:, k], flat / 3.0)
-    return areas * (4.0 * math.pi / areas.sum())
+    return areas
+
+
+def shares(points: Array, faces: NDArray[np.int64]) -> Array:
+    """Share (m,) of the unit sphere of each point: a third of the triangles round it."""
+    areas = areas_of(points, faces)
+    return np.asarray(areas * (4.0 * math.pi / areas.sum()))
 
 
 def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
@@ -159,7 +165,7 @@ def adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bo
     return near, is_edge
 
 
-def _inward(points: Array, is_edge: NDArray[np.bool_]) -> Whole:
+def inward_of(points: Array, is_edge: NDArray[np.bool_]) -> Whole:
     """Nearest point that is no edge (m,), of those at an edge; itself elsewhere."""
     inner = np.flatnonzero(~is_edge)
     inward = np.arange(len(points), dtype=np.int32)

@@ -7,6 +7,7 @@ from quintet.components.meshless_gas.clouds.cloud import INNER
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.layout import layout, with_bodies
 from quintet.components.meshless_gas.moving.params import Moving
+from quintet.components.meshless_gas.moving.refusals import refuse_sector
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.stencils import Stencils, write_coefficients
 from quintet.components.shared.threads import Team
@@ -45,7 +46,12 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         write_coefficients, len(rows), rows, cloud.positions, neighbours, cloud.weight, planar,
         coefficients, np.ones(whole),
     )  # fmt: skip
-    joint = ground._replace(cloud=cloud, stencils=made, weights=_padded(ground.weights, many))
+    joint = ground._replace(
+        cloud=cloud,
+        stencils=made,
+        bounding=np.concatenate([ground.bounding, own.leaving.astype(np.int32)]),
+        weights=_padded(ground.weights, many),
+    )
     moving = MovingClouds(params, joint, own, team)
     if params.viscous:
         # Compiled only where the gas has friction.
@@ -88,6 +94,12 @@ def _refuse(params: MeshlessGasParams, keys: Moving) -> None:
             "neighbours along lines alone are for three dimensions and lattices without jitter. "
             "Leave out cross, or jitter."
         )
+    if params.planar and not keys.axisymmetric and any(one.is_cut for one in keys.bodies):
+        raise SceneError(
+            "clouds that end at a sector are those of spheres: on an axis of symmetry, or in three "
+            "dimensions. Say axisymmetric = true or dimensions = 3, or leave out sector."
+        )
+    refuse_sector(params)
     for one in keys.bodies:
         if params.planar and (one.position[1] or one.velocity[1]):
             raise SceneError(

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import INNER
+from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW
 from quintet.components.meshless_gas.clouds.nearest import nearest
+from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
-from quintet.components.meshless_gas.moving.layout import CloudLayout
+from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
 from quintet.components.meshless_gas.moving.outputs import outputs, unit_force
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
@@ -159,6 +160,7 @@ class MovingClouds:
     def hold_walls(self, primitive: Array) -> None:
         """Write the states of the bodies' walls."""
         own = self.layout
+        primitive[own.leaving] = primitive[own.before]
         hold_slip_walls(
             own.walls, own.above, own.heights, self.domain.cloud.normals[own.walls],
             self.wall_velocity, self.gamma, primitive,
@@ -247,11 +249,27 @@ class MovingClouds:
         self._join(away)
         self.seen[:] = centre
         self.uncovered += len(fresh)
-        cloud.volumes[:count] = np.where(active, own.volumes, 0.0)
-        inner = np.flatnonzero(active & (cloud.kind[:count] == INNER)).astype(np.int32)
+        self._leave_out()
+        return fresh
+
+    def _leave_out(self) -> None:
+        """Let volumes, boundaries and rows be those of nodes that are not left out."""
+        cloud, own = self.domain.cloud, self.layout
+        active = self.active[: cloud.nodes]
+        cloud.volumes[: cloud.nodes] = np.where(active, own.volumes, 0.0)
+        inner = np.flatnonzero(active & (cloud.kind[: cloud.nodes] == INNER)).astype(np.int32)
         every = np.flatnonzero(active).astype(np.int32)
         self.domain = self.domain._replace(inner=inner, every=every)
-        return fresh
+        if own.is_cut.any():  # a cloud that reaches the box's face covers nodes of it
+            cloud.areas[: cloud.nodes] = np.where(active[:, None], own.areas, 0.0)
+            if own.planar:
+                wall = self.radii[own.is_cut].max()
+                there = own.plane[active[own.plane]]
+                write_plane_areas(there, cloud.positions, wall, cloud.areas)
+            write_weights(
+                self.domain.edges, cloud.kind, cloud.normals, *self.domain.stencils,
+                self.domain.weights,
+            )  # fmt: skip
 
     def _heights(self, places: Array) -> Array:
         """Heights (b, m) m of places above bodies."""
@@ -264,7 +282,7 @@ class MovingClouds:
         h, top = self.spacing[b], self.thickness[b]
         own = np.flatnonzero(active & (region == b + 1))
         rows = np.flatnonzero(active & (region != b + 1) & (away < top + h))
-        rows = rows[self.domain.cloud.kind[rows] == INNER]
+        rows = rows[np.isin(self.domain.cloud.kind[rows], (INNER, OUTFLOW))]
         if len(rows) and len(own):
             positions = self.domain.cloud.positions
             _, squares = nearest(positions, own, positions[rows], 1, self.team)
@@ -362,7 +380,7 @@ class MovingClouds:
 
     def restore(self, saved: Fields) -> None:
         """Come back to a saved state, bit for bit."""
-        cloud, made = self.domain.cloud, self.domain.stencils
+        made = self.domain.stencils
         for name, array in (
             ("centre", self.pose.centre), ("velocity", self.pose.velocity),
             ("spin", self.pose.spin), ("seen", self.seen), ("active", self.active),
@@ -376,9 +394,4 @@ class MovingClouds:
         self.given = None
         self._place(self.pose.centre)
         self._set_frame()
-        active = self.active[: cloud.nodes]
-        cloud.volumes[: cloud.nodes] = np.where(active, self.layout.volumes, 0.0)
-        inner = np.flatnonzero(active & (cloud.kind[: cloud.nodes] == INNER)).astype(np.int32)
-        self.domain = self.domain._replace(
-            inner=inner, every=np.flatnonzero(active).astype(np.int32)
-        )
+        self._leave_out()

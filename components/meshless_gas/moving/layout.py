@@ -21,6 +21,7 @@ class CloudLayout(NamedTuple):
     home: Whole  # (n, K) neighbours of each node in its own cloud
     height: Array  # (n,) m, above the own body; ∞ of the background
     volumes: Array  # (n,) m3, of nodes that are not left out
+    areas: Array  # (n, 3) m2, of boundary nodes, if no cloud reaches them
     carried: Rows  # (c,) nodes of bodies' clouds
     carrier: Rows  # (c,) whose they are
     offsets: Array  # (c, 3) m, from the body's centre
@@ -30,8 +31,12 @@ class CloudLayout(NamedTuple):
     body: Rows  # (w,)
     above: Rows  # (w, 2) the two nodes above each
     heights: Array  # (w, 2) m, of these
+    leaving: Rows  # (o,) nodes of bodies' clouds where gas leaves downstream
+    before: Rows  # (o,) and those beside them, whose states they have
+    plane: Rows  # (l,) nodes of bodies and background where a cloud ends with its box
     arms: Array  # (w, 3) m, of walls from the centre
-    second: Array  # (b,) m, height of the second layer of each body
+    second: Array  # (b,) m, least height of the second layer of each body
+    is_cut: NDArray[np.bool_]  # (b,) whether the cloud ends where the box does
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
     kept: int  # neighbours of a node across seams
@@ -104,7 +109,9 @@ def layout(
         volumes[place] *= one.height <= one.height.max() - (params.overlap + 0.5) * body.spacing
     walls = [first + np.arange(one.rays) for one, first in zip(rings, firsts, strict=True)]
     rays = [one.rays for one in rings]
-    levels = [one.height[:: one.rays] for one in rings]
+    levels = [one.height.reshape(-1, one.rays) for one in rings]
+    leaving = [one.leaving + first for one, first in zip(rings, firsts, strict=True)]
+    before = [one.before + first for one, first in zip(rings, firsts, strict=True)]
     images = [image + np.arange(size) for image, size in zip(beyond, imaged, strict=True)]
     above = [
         np.stack([wall + one.rays, wall + 2 * one.rays], axis=1)
@@ -120,6 +127,7 @@ def layout(
         home=neighbours[:count].copy(),
         height=height,
         volumes=volumes,
+        areas=cloud.areas[:count].copy(),
         carried=np.arange(background, background + sum(sizes)),
         carrier=np.repeat(np.arange(len(rings)), sizes),
         offsets=np.concatenate([one.cloud.positions[: one.cloud.nodes] for one in rings]),
@@ -128,11 +136,43 @@ def layout(
         walls=np.concatenate(walls),
         body=np.repeat(np.arange(len(rings)), rays),
         above=np.concatenate(above),
-        heights=np.repeat([level[1:3] for level in levels], rays, axis=0),
+        heights=np.concatenate([level[1:3].T for level in levels]),
+        leaving=np.concatenate(leaving),
+        before=np.concatenate(before),
+        plane=_plane(cloud, background, np.concatenate(leaving)),
         arms=np.concatenate([one.cloud.positions[: one.rays] for one in rings]),
-        second=np.array([level[2] for level in levels]),
+        second=np.array([level[2].min() for level in levels]),
+        is_cut=np.array([one.is_cut for one in params.bodies]),
         box=box,
         open_sides=sides,
         kept=kept,
         planar=planar,
     )
+
+
+def _plane(cloud: Cloud, background: int, leaving: Rows) -> Rows:
+    """Nodes in the plane across x where gas leaves bodies' clouds."""
+    if not len(leaving):
+        return leaving
+    end = cloud.positions[:background, 0].max()
+    beside = np.flatnonzero(cloud.positions[:background, 0] == end)
+    return np.concatenate([beside, leaving])
+
+
+def write_plane_areas(plane: Rows, positions: Array, wall: float, areas: Array) -> None:
+    """Share a plane across the axis among the circles of nodes in it, each up to half way.
+
+    Parameters
+    ----------
+    plane : (l,)
+        Nodes that are not left out.
+    positions : (n, 3) m
+    wall : float, m
+        Radius at which the plane begins; it ends at its last node.
+    areas : (n, 3) m2
+        Written along -x.
+    """
+    rows = plane[np.argsort(positions[plane, 2])]
+    radius = positions[rows, 2]
+    edges = np.concatenate([[wall], 0.5 * (radius[1:] + radius[:-1]), radius[-1:]])
+    areas[rows, 0] = -math.pi * np.diff(edges**2)

@@ -9,6 +9,7 @@ from quintet.components.meshless_gas.clouds.cap import ARC
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
 ROUND = 8  # fewest nodes round a body
+CLOSE = 1e-6  # rad, within which a sector is what it is meant to be
 
 
 @parameters
@@ -36,6 +37,13 @@ class Body:
         Height of the first layer; if not said, 0.8 of the distance between nodes of the wall.
     growth : 1
         Of one layer over the one below it.
+    sector : rad
+        Widest angle of its cloud from upstream, π for the whole. At π/2, of a body that stands
+        still, the cloud ends in the plane across x through the centre, as the box must: gas leaves
+        there, and what is behind the body is not computed.
+    first_at_sector : m
+        Height of the first layer at the sector's end; if not said, as on the axis. In between it
+        grows with (1 - cos θ)², as a boundary layer does about.
     temperature : K
         Of a wall that holds a viscous gas; if not said, the gas slips along it.
     weight : 1
@@ -52,8 +60,42 @@ class Body:
     spacing: Positive
     first: Positive | None = None
     growth: Annotated[float, Field(ge=1, le=2, allow_inf_nan=False)] = 1.08
+    sector: Annotated[float, Field(gt=0, le=math.pi + 1e-9, allow_inf_nan=False)] = math.pi
+    first_at_sector: Positive | None = None
     temperature: Positive | None = None
     weight: NotNegative = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.is_cut:
+            if self.first_at_sector is not None:
+                raise ValueError(
+                    "first_at_sector is of a cloud that ends at a sector; found none. Give a "
+                    "sector of π/2, or leave out first_at_sector."
+                )
+            return
+        if abs(self.sector - 0.5 * math.pi) > CLOSE:
+            raise ValueError(
+                f"a cloud ends at π/2 = 1.5707963 or is whole, π; found sector = {self.sector:g}. "
+                "Correct sector."
+            )
+        if self.is_driven or any(self.velocity):
+            raise ValueError(
+                "a body whose cloud ends at a sector must stand still, for its box ends there too; "
+                "found one that moves. Leave out sector, or is_driven and velocity."
+            )
+        heights, first = self.heights, self.first_at_sector or 0.0
+        thickest = heights[-1] / (len(heights) - 1)
+        if first > thickest:
+            raise ValueError(
+                f"first_at_sector: {len(heights) - 1} layers over {heights[-1]:g} m are "
+                f"{thickest:.4g} m thick in the mean, and the first can be no thicker; found "
+                f"{first:g} m. Lower it, or growth."
+            )
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether its cloud ends at a sector."""
+        return self.sector < math.pi - CLOSE
 
     @property
     def frequency(self) -> int:
@@ -117,8 +159,13 @@ class Moving:
     def expected_count(self, dimensions: int) -> int:
         """Nodes of all bodies' clouds."""
         if dimensions == 3:
-            return sum((10 * one.frequency**2 + 2) * len(one.heights) for one in self.bodies)
-        whole = sum(one.rays * len(one.heights) for one in self.bodies)
+            return sum(
+                round((5 * one.frequency**2 + 1) * (1.0 - math.cos(one.sector))) * len(one.heights)
+                for one in self.bodies
+            )
+        whole = sum(
+            round(one.rays * one.sector / math.pi) * len(one.heights) for one in self.bodies
+        )
         return whole // 2 if self.axisymmetric else whole
 
     @property

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.moving.layout import CloudLayout
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError, StepError
 
@@ -23,6 +24,8 @@ def refuse_places(
     reach = radii + thickness + 2.0 * spacing
     for b, place in enumerate(centre):
         for d, side in layout.open_sides:
+            if layout.is_cut[b] and (d, side) == (0, 1):  # the cloud ends at this face
+                continue
             beyond = side * (place[d] - layout.box[int(side > 0), d]) + reach[b]
             if beyond > 0.0:
                 raise StepError(
@@ -39,6 +42,19 @@ def refuse_places(
                     f"{least:.3g} m; found {gap:.3g} m between them. Finer first layers let them "
                     "come nearer; contact itself cannot be computed."
                 )
+
+
+def refuse_sector(params: MeshlessGasParams) -> None:
+    """Refuse clouds that end where the box does not, or where no gas leaves."""
+    assert params.moving is not None and params.box is not None
+    end = params.box.highest[0]
+    for b, one in enumerate(params.moving.bodies):
+        if one.is_cut and (one.position[0] != end or params.kind_of("x+") != "outflow"):
+            raise SceneError(
+                f"the cloud of body {b} ends in the plane x = {one.position[0]:g} m, as its sector "
+                f"says; the box must end there too, as an outflow. Found {end:g} m and "
+                f'{params.kind_of("x+")}. Correct box.highest, or boundaries."x+".'
+            )
 
 
 def refuse_jump(moved: Array, centre: Array, spacing: Array, bodies: NDArray[np.int64]) -> None:

@@ -6,7 +6,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.clouds.cloud import INNER, SLIP, Cloud, Whole, with_ghosts
+from quintet.components.meshless_gas.clouds.cloud import (
+    INNER,
+    OUTFLOW,
+    SLIP,
+    Cloud,
+    Whole,
+    with_ghosts,
+)
+from quintet.components.meshless_gas.clouds.grading import capped
 from quintet.components.meshless_gas.moving.params import Body
 from quintet.interfaces.component import Array
 
@@ -20,6 +28,8 @@ class Ring(NamedTuple):
     home: Whole  # (n, 8) neighbours: those in the own and the two layers beside it, itself for none
     height: Array  # (n,) m, above the wall
     rays: int  # nodes of a layer, the first of which is the wall
+    leaving: NDArray[np.int64]  # (o,) nodes where gas leaves downstream
+    before: NDArray[np.int64]  # (o,) and those beside them
 
 
 def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
@@ -37,31 +47,35 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
     -------
     Ring
     """
-    count = max(4, body.rays // 2) if axisymmetric else body.rays
-    angle = (np.arange(count) + 0.5) * (math.pi if axisymmetric else math.tau) / count
-    heights = np.array(body.heights)
+    angle, arc = _angles(body, axisymmetric)
+    count, heights = len(angle), heights_over(body, angle)
     outward = np.stack([-np.cos(angle), np.zeros(count), np.sin(angle)], axis=1)
     radii = body.radius + heights
-    positions = (radii[:, None, None] * outward).reshape(-1, 3)
-    arc = (math.pi if axisymmetric else math.tau) / count
-    edges = np.concatenate([[radii[0]], 0.5 * (radii[1:] + radii[:-1]), [radii[-1]]])
-    area, length = 0.5 * arc * np.diff(edges**2), arc * radii
-    volumes = np.repeat(area, count)
+    positions = (radii[:, :, None] * outward).reshape(-1, 3)
+    edges = np.concatenate([radii[:1], 0.5 * (radii[1:] + radii[:-1]), radii[-1:]])
+    length = arc * radii
+    volumes = (0.5 * arc * np.diff(edges**2, axis=0)).ravel()
     nodes = len(positions)
     normals, areas = np.zeros((nodes, 3)), np.zeros((nodes, 3))
+    kind = np.full(nodes, INNER, np.int8)
+    leaving = np.zeros(0, np.int64)
+    if body.is_cut:
+        leaving = np.arange(2 * count - 1, nodes, count)
+        kind[leaving] = OUTFLOW
+        normals[leaving] = [-math.sin(angle[-1]), 0.0, -math.cos(angle[-1])]
+        areas[leaving] = normals[leaving] * np.diff(edges[:, -1])[1:, None]
+    kind[:count] = SLIP
     normals[:count] = outward
-    areas[:count] = outward * length[0]
+    areas[:count] = outward * length[0][:, None]
     if axisymmetric:
         volumes *= math.tau * positions[:, 2]
-        areas[:count] *= math.tau * positions[:count, 2:]
-    kind = np.full(nodes, INNER, np.int8)
-    kind[:count] = SLIP
-    thickness = np.diff(heights, append=2.0 * heights[-1] - heights[-2])
+        areas *= math.tau * positions[:, 2:]
+    thickness = np.diff(heights, axis=0, append=2.0 * heights[-1:] - heights[-2:-1])
     made = Cloud(
         positions=positions,
         kind=kind,
         normals=normals,
-        spacing=np.repeat(np.minimum(thickness, length), count),
+        spacing=np.minimum(thickness, arc[0] * radii).ravel(),
         region=np.full(nodes, region, np.int32),
         volumes=volumes,
         areas=areas,
@@ -72,15 +86,40 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
     )
     images = np.full(nodes, -1)
     if axisymmetric:
-        owner = np.flatnonzero(positions[:, 2] < CLOSE * max(body.spacing, length[-1]))
+        owner = np.flatnonzero(positions[:, 2] < CLOSE * max(body.spacing, length[-1, 0]))
         mirror = np.diag([1.0, 1.0, -1.0])
         turns = np.repeat(mirror[None], len(owner), axis=0)
         made = with_ghosts(made, owner, positions[owner] @ mirror, turns)
         images[owner] = nodes + np.arange(len(owner))
-    return Ring(made, _home(len(heights), count, images), np.repeat(heights, count), count)
+    home = _home(len(heights), count, images, body.is_cut)
+    return Ring(made, home, heights.ravel(), count, leaving, leaving - 1)
 
 
-def _home(layers: int, count: int, images: NDArray[np.int64]) -> Whole:
+def _angles(body: Body, axisymmetric: bool) -> tuple[Array, Array]:
+    """Angles [rad] of rays from upstream, and of the arc that each stands for."""
+    if body.is_cut:  # the last ray lies at the sector's end, and stands for half as much
+        count = max(4, round(body.rays * body.sector / math.tau))
+        step = body.sector / (count - 0.5)
+        arc = np.full(count, step)
+        arc[-1] *= 0.5
+        return (np.arange(count) + 0.5) * step, arc
+    turn = math.pi if axisymmetric else math.tau
+    count = max(4, body.rays // 2) if axisymmetric else body.rays
+    return (np.arange(count) + 0.5) * turn / count, np.full(count, turn / count)
+
+
+def heights_over(body: Body, angle: Array) -> Array:
+    """Heights (layers, rays) m of nodes above the wall."""
+    heights = np.array(body.heights)
+    if body.first_at_sector is None:
+        return np.repeat(heights[:, None], len(angle), axis=1)
+    # Thickness of a boundary layer at a blunt body: about 1/√p, and p falls with the angle.
+    share = ((1.0 - np.cos(angle)) / (1.0 - math.cos(body.sector))) ** 2
+    first = heights[1] + share * (body.first_at_sector - heights[1])
+    return capped(first, heights[-1], len(heights) - 1, body.spacing)
+
+
+def _home(layers: int, count: int, images: NDArray[np.int64], is_cut: bool) -> Whole:
     """Eight neighbours of each node: those in a block of three layers by three rays."""
     layer, ray = np.divmod(np.arange(layers * count), count)
     columns = []
@@ -95,5 +134,7 @@ def _home(layers: int, count: int, images: NDArray[np.int64]) -> Whole:
                 own = level * count + ray
                 row = np.where(over, images[np.clip(own, 0, len(images) - 1)], row)
             there = (level >= 0) & (level < layers)
+            if is_cut:  # beyond the last ray lies nothing
+                there &= beside < count
             columns.append(np.where(there, row, layer * count + ray))
     return np.stack(columns, axis=1).astype(np.int32)

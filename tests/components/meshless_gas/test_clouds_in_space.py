@@ -140,3 +140,24 @@ def test_what_clouds_in_space_do_not_go_with_is_refused(change, sentence):
             settings["boundaries"].pop(face)
     with pytest.raises(SceneError, match=sentence):
         made(settings)
+
+
+def test_shells_that_end_in_a_plane_fill_half_of_their_space():
+    body = Body(
+        position=(0.0, 0.0, 0.0), radius=1.0, rays=40, thickness=0.5, spacing=0.2, first=0.05,
+        sector=0.5 * math.pi, first_at_sector=0.06,
+    )  # fmt: skip
+    made = shell(body, 1, 0, True)
+    positions, outer = made.cloud.positions, 1.0 + body.heights[-1]
+    assert positions[:, 0].max() < 1e-12
+    assert np.allclose(positions[made.leaving, 0], 0.0, atol=1e-12)
+    assert len(made.leaving) % (len(body.heights) - 1) == 0
+    walls = made.cloud.areas[: made.rays]
+    assert np.allclose(walls.sum(axis=0), [-math.pi, 0.0, 0.0], atol=0.02)
+    whole = 2.0 / 3.0 * math.pi * (outer**3 - 1.0)
+    assert math.isclose(made.cloud.volumes.sum(), whole, rel_tol=0.02)
+    # Beside each lies one that is advanced, nearer to the axis and of the same shell.
+    apart = positions[made.before] - positions[made.leaving]
+    assert (apart[:, 0] < 0.0).all()
+    assert np.isin(made.cloud.kind[made.before], 0).all()
+    assert np.sqrt((apart**2).sum(axis=1)).max() < 0.5

@@ -9,6 +9,9 @@ REST = {"density": 1.0, "pressure": 1.0}
 BOX = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.0, 1.0], "spacing": 0.1}
 PLATE = {"length": 1.0, "ahead": 0.2, "height": 0.5, "rays": 20, "finest": 0.01}
 BODY = {"radius": 0.1, "position": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1, "spacing": 0.05}
+FORE = BODY | {"sector": 1.5707963267948966, "position": [1.0, 0.0, 0.0]}
+DRIVEN, THICK = {"is_driven": True}, {"first_at_sector": 0.09}
+CUT = {"axisymmetric": True, "bodies": [FORE]}
 POINTS = {"drag": "stokes"}
 
 
@@ -22,6 +25,16 @@ POINTS = {"drag": "stokes"}
         ({"box": BOX, "moving": {"bodies": [BODY]}, "particles": POINTS}, "Leave out particles"),
         ({"plate": PLATE | {"layers": {"count": 10}}, "particles": POINTS}, "give a box"),
         ({"plate": PLATE | {"layers": {"count": 10, "jitter": 0.3}}}, "jitter is for an"),
+        ({"box": BOX, "moving": CUT | {"axisymmetric": False}}, "on an axis of symmetry"),
+        (
+            {"box": BOX, "moving": CUT | {"bodies": [FORE | {"is_driven": True}]}},
+            "must stand still",
+        ),
+        ({"box": BOX, "moving": CUT | {"bodies": [FORE | {"sector": 1.0}]}}, "or is whole"),
+        (
+            {"box": BOX, "moving": CUT | {"bodies": [FORE | {"first_at_sector": 0.09}]}},
+            "no thicker",
+        ),
         ({}, "found none"),
     ],
 )

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from quintet.components.meshless_gas.clouds.grading import capped
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -109,6 +110,51 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
     assert gas.motion.uncovered > 10
     assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
+
+
+def in_a_stream(**body):
+    """A sphere about an axis, in a box that ends where its cloud is cut off."""
+    settings = about_an_axis(velocity=[0.0, 0.0, 0.0], position=[0.0, 0.0, 0.0], **body)
+    wind = {"density": 1.0, "pressure": PRESSURE, "velocity": [MACH, 0.0, 0.0]}
+    settings |= {"initial": wind}
+    leave = {"kind": "outflow"}
+    settings["boundaries"] |= {"x-": {"kind": "inflow", "state": wind}, "x+": leave, "z+": leave}
+    settings["box"]["highest"][0] = 0.0 if "sector" in body else 1.7
+    return settings
+
+
+def test_a_cloud_that_ends_at_a_sector_says_what_the_whole_says_upstream():
+    _, whole = flown(made(in_a_stream()), 1.2)
+    gas = made(in_a_stream(sector=0.5 * np.pi))
+    _, cut = flown(gas, 1.2)
+    angle = gas.give(frozenset(["surface.angle"]))["surface.angle"]
+    other = (np.arange(24) + 0.5) * np.pi / 24
+    near = angle < 1.3
+    assert np.abs(cut - np.interp(angle, other, whole))[near].max() < 0.015 * whole.max()
+    imbalance = gas.give(frozenset(["balance.imbalance"]))["balance.imbalance"][0]
+    assert abs(imbalance) < 0.01
+    kept = gas.save()
+    gas.step(1e-3)
+    after = gas.save()
+    gas.load(kept)
+    gas.step(1e-3)
+    assert np.array_equal(gas.state.primitive, after["primitive"])
+
+
+def test_a_cloud_that_ends_where_its_box_does_not_is_refused():
+    settings = in_a_stream(sector=0.5 * np.pi)
+    settings["box"]["highest"][0] = 0.5
+    with pytest.raises(SceneError, match="must end there too"):
+        made(settings)
+
+
+def test_layers_grow_to_the_largest_and_no_further():
+    heights = capped(np.array([0.01, 0.03]), 1.0, 20, 0.07)
+    steps = np.diff(heights, axis=0)
+    assert np.allclose(steps[0], [0.01, 0.03])
+    assert np.allclose(heights[-1], 1.0)
+    assert steps.max() < 0.07 + 1e-12
+    assert (np.diff(steps, axis=0) > -1e-12).all()
 
 
 def test_bodies_off_the_axis_are_refused():
