@@ -302,13 +302,14 @@ class MovingClouds:
             band |= mine & (one > self.thickness[b] - reach)
             near_any |= ~mine & (one < self.thickness[b] + 2.0 * reach) | mine
         band &= active & (own.height > 0.0)
+        if not own.planar:
+            band[own.leaving] = False  # they have the state of the node beside them
         rows = np.flatnonzero(band)
         before = self.touched
         neighbours[before] = own.home[before]
         among = np.flatnonzero(np.concatenate([near_any & active, self._images(near_any)]))
         kept = self.kept
-        many = min(NEAR * kept, len(among))
-        found, _ = nearest(cloud.positions, among, cloud.positions[rows], many, self.team)
+        found = self._around(rows, among)
         lacks = choose(
             rows, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, kept,
             neighbours,
@@ -321,6 +322,17 @@ class MovingClouds:
         neighbours[back] = own.home[back]
         self.touched, self.across = rows[~(whole & ~other)], rows[other]
         self._fit(np.union1d(before, self.touched))
+
+    def _around(self, rows: Rows, among: Rows) -> Rows:
+        """Nodes near to some; in space those within near to one at a face, that they span it."""
+        cloud, many = self.domain.cloud, min(NEAR * self.kept, len(among))
+        found, _ = nearest(cloud.positions, among, cloud.positions[rows], many, self.team)
+        face = cloud.kind[rows] != INNER
+        if not self.layout.planar and face.any():
+            within = among[cloud.kind[among] == INNER]
+            places = cloud.positions[rows[face]]
+            found[face], _ = nearest(cloud.positions, within, places, many, self.team)
+        return found
 
     def _images(self, near: Flags) -> Flags:
         owner = self.domain.cloud.owner
