@@ -16,6 +16,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
     Cloud,
     Whole,
 )
+from quintet.components.meshless_gas.clouds.layers import Sides
 from quintet.components.meshless_gas.clouds.mirrored import is_advanced, is_mirrored
 from quintet.components.meshless_gas.exact import states_at
 from quintet.components.meshless_gas.kernels.boundaries import (
@@ -90,7 +91,7 @@ def _cloud(params: MeshlessGasParams, names: list[str], team: Team) -> tuple[Clo
     faces = {name: params.kind_of(name) for name in params.boundaries}
     patches = {name: 1 + number for number, name in enumerate(names)}
     if params.box is None:
-        made = layered_cloud(params, faces, patches)
+        made = layered_cloud(params, Sides(faces, patches))
         return made.cloud, made.neighbours
     one = params.box
     cloud = box(

@@ -26,11 +26,12 @@ from quintet.components.meshless_gas.kernels.motion import (
     write_bounds,
     write_sound,
 )
-from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
+from quintet.components.meshless_gas.kernels.residuals import write_residuals
 from quintet.components.meshless_gas.node_motion import node_motion
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
+from quintet.components.meshless_gas.shares import FEWEST, LIGHT
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.steady import Settling
 from quintet.components.meshless_gas.view import view, walls
@@ -48,8 +49,6 @@ from quintet.interfaces.component import (
 )
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.manifest import Plan, Ports
-
-FEWEST = 32  # blocks of nodes that are worth handing to another thread
 
 
 class MeshlessGas(Component):
@@ -148,7 +147,6 @@ class MeshlessGas(Component):
             self._follow()
             self._fill()
         own = self.domain
-        work.start[:] = state.conservative
         if self.particles is not None:
             self.particles.place()
         for stage, (old, new, share) in enumerate(STAGES):
@@ -161,7 +159,7 @@ class MeshlessGas(Component):
             state.work += share * dt * self._outer_power()
             wrong = self.team.run(
                 advance, len(own.inner), own.inner, work.start, work.residual, dt, self.steps,
-                old, new, self.gamma, state.conservative, work.primitive,
+                old, new, self.gamma, state.conservative, work.primitive, fewest=LIGHT,
             )  # fmt: skip
             if max(wrong) >= 0:
                 raise StepError(self._failure(max(wrong), dt))
@@ -172,7 +170,7 @@ class MeshlessGas(Component):
             state.entered -= dt * self.particles.given()
         state.time += dt
         self._look_ahead()
-        state.change = density_change(state, self.domain, self.fluxes)
+        state.change = density_change(state, self.domain, self.fluxes, self.team)
         if self.settling is not None and self.settling.is_due():
             self._settle()
 
@@ -231,7 +229,10 @@ class MeshlessGas(Component):
         if self.viscous is not None:
             self.viscous.hold(work.primitive)
         self.motion.hold_walls(work.primitive)
-        write_ghost_states(cloud.owner, cloud.turn, work.primitive)
+        self.team.run(
+            write_ghost_states, len(cloud.owner), cloud.owner, cloud.turn, work.primitive,
+            fewest=LIGHT,
+        )  # fmt: skip
         boundary_flows(own.bounding, cloud.areas, work.primitive, self.gamma, work.flows)
         if self.viscous is not None:
             self.viscous.add_flows(work.primitive, work.flows)
@@ -244,18 +245,20 @@ class MeshlessGas(Component):
             write_gradients, len(own.every), own.every, work.primitive, *own.stencils,
             self.planar, work.gradients, work.lowest,
         )  # fmt: skip
-        write_ghost_gradients(cloud.owner, cloud.turn, work.gradients, work.lowest)
+        self.team.run(
+            write_ghost_gradients, len(cloud.owner), cloud.owner, cloud.turn, work.gradients,
+            work.lowest, fewest=LIGHT,
+        )  # fmt: skip
 
     def _write_rates(self) -> None:
         """Rates of change of density, momentum and energy, of states that are filled."""
         own, work, cloud = self.domain, self.fluxes, self.domain.cloud
         neighbours, coefficients = own.stencils
         self._write_gradients()
-        blocks = -(-len(own.inner) // LANES)
         self.team.run(
-            write_residuals, blocks, own.inner, cloud.positions, work.primitive, work.gradients,
-            work.lowest, neighbours, coefficients, self.frame, self.planar, self.sloped,
-            self.gamma, self.params.limiter_threshold, work.residual,
+            write_residuals, len(own.inner), own.inner, cloud.positions, work.primitive,
+            work.gradients, work.lowest, neighbours, coefficients, self.frame, self.planar,
+            self.sloped, self.gamma, self.params.limiter_threshold, work.residual,
         )  # fmt: skip
         if self.viscous is not None:
             self.viscous.add(work)
@@ -263,7 +266,9 @@ class MeshlessGas(Component):
     def _look_ahead(self) -> None:
         """Find the step that each node bears."""
         own, work = self.domain, self.fluxes
-        write_sound(0, len(work.sound), work.primitive, self.gamma, work.sound)
+        self.team.run(
+            write_sound, len(work.sound), work.primitive, self.gamma, work.sound, fewest=LIGHT
+        )
         least = self.team.run(
             write_bounds, len(own.inner), own.inner, work.primitive, work.sound,
             own.stencils.neighbours, own.stencils.coefficients, self.frame, work.bounds,
@@ -286,7 +291,7 @@ class MeshlessGas(Component):
         if "balance" in ports_wanted:
             given.update(balance(self.state, self.domain, self.fluxes, self.gamma))
         if "error" in ports_wanted:
-            given.update(errors(self.params, self.state, self.domain.cloud))
+            given.update(errors(self.params, self.state, self.domain.cloud, self.team))
         if "probes" in ports_wanted:
             cloud, gas = self.domain.cloud, self.params.gas
             given.update(probes(self.probed, cloud, self.state.primitive, gas))

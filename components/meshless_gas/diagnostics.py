@@ -6,8 +6,12 @@ from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, Cloud
 from quintet.components.meshless_gas.exact import states_at
+from quintet.components.meshless_gas.kernels.motion import write_changes
+from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.shares import LIGHT, WHOLESALE
 from quintet.components.meshless_gas.state import Fluxes, State
+from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields, Totals
 
 ROUNDING = 1e-12  # of the mass flow at the speed of sound
@@ -45,11 +49,14 @@ def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float) -> Field
     }
 
 
-def density_change(state: State, domain: Domain, fluxes: Fluxes) -> float:
+def density_change(state: State, domain: Domain, fluxes: Fluxes, team: Team) -> float:
     """Root mean square of the relative change of densities in the steps that nodes bear."""
-    inner = domain.inner
-    rate = fluxes.residual[inner, 0] * fluxes.bounds[inner] / state.conservative[inner, 0]
-    return float(np.sqrt((rate * rate).mean()))
+    changes = fluxes.changes[: len(domain.inner)]
+    team.run(
+        write_changes, len(changes), domain.inner, fluxes.residual, fluxes.bounds,
+        state.conservative, changes, fewest=LIGHT,
+    )  # fmt: skip
+    return float(np.sqrt(changes.mean()))
 
 
 def _through(domain: Domain, primitive: Array, gamma: float) -> Array:
@@ -60,18 +67,24 @@ def _through(domain: Domain, primitive: Array, gamma: float) -> Array:
     return np.where(np.abs(through) > ROUNDING * sound, through, 0.0)
 
 
-def errors(params: MeshlessGasParams, state: State, cloud: Cloud) -> Fields:
+def errors(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) -> Fields:
     """Fields of the port `error`: over nodes within."""
     inner = np.flatnonzero(cloud.kind[: cloud.nodes] == INNER)
-    exact = states_at(params, cloud.positions[inner], state.time)
-    off = np.abs(state.primitive[inner] - exact)
-    volumes = cloud.volumes[inner]
-    mean = (volumes[:, None] * off).sum(axis=0) / volumes.sum()
+    exact = np.empty((len(inner), 5))
+
+    def write_exact(first: int, last: int) -> None:
+        places = cloud.positions[inner[first:last]]
+        exact[first:last] = states_at(params, places, state.time)
+
+    team.run(write_exact, len(inner), fewest=WHOLESALE)
+    summed, largest = np.zeros(5), np.zeros(5)
+    add_errors(inner, cloud.volumes, state.primitive, exact, summed, largest)
+    mean = summed / cloud.volumes[inner].sum()
     return {
         "error.density": mean[:1],
         "error.velocity": mean[1:2],
         "error.pressure": mean[4:],
-        "error.largest_density": np.array([off[:, 0].max()]),
+        "error.largest_density": largest[:1],
     }
 
 

@@ -14,7 +14,6 @@ INLINED = FAST | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forcein
 SENSED, WIDTH = 0.2, 0.3  # pressure ratio below which slopes vanish, and over which they grow
 COLLIDING = 4.0  # ram pressure over pressure above which streams collide
 LEAST = 0.05  # of the smaller of two densities or pressures: below it slopes are left out
-GATE = 0.5  # Mach number of the flow into a wall above which the wall pushes back
 
 
 @njit(**INLINED)
@@ -113,13 +112,9 @@ def ausmpw(  # type: ignore[no-untyped-def]
 def wall_pressure(pressure, mach, gamma):  # type: ignore[no-untyped-def]
     """Pressure [Pa] at a wall that gas runs into at a Mach number: behind the shock that stops it.
 
-    Below `GATE` it is the pressure of the gas: a settled flow does not run into its walls, and what
-    is left of it in a node beside one must not raise the pressure.
-
     References
     ----------
     Toro, Riemann Solvers and Numerical Methods for Fluid Dynamics (2009), section 6.3.3.
     """
-    normal = mach if mach > GATE else 0.0
-    part = 0.25 * (gamma + 1.0) * normal
-    return pressure * (1.0 + gamma * normal * (part + math.sqrt(part * part + 1.0)))
+    part = 0.25 * (gamma + 1.0) * mach
+    return pressure * (1.0 + gamma * mach * (part + math.sqrt(part * part + 1.0)))

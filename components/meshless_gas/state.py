@@ -45,6 +45,7 @@ class Fluxes:
     sound: Array  # (m,) m/s
     bounds: Array  # (n,) s, steps that nodes bear at a Courant number of 1
     steps: Array  # (n,) 1, steps of nodes over the shortest
+    changes: Array  # (n,) 1, squares of relative changes of densities
     flows: Array  # (5,) kg/s, N, W, through the boundary
 
     @classmethod
@@ -60,5 +61,6 @@ class Fluxes:
             sound=np.ones(whole),
             bounds=np.ones(nodes),
             steps=np.ones(nodes),
+            changes=np.zeros(nodes),
             flows=np.zeros(5),
         )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud, Whole
 from quintet.components.meshless_gas.clouds.nearest import nearest
-from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
@@ -114,34 +114,8 @@ def write_coefficients(
     )
     for row in range(first, last):
         i = rows[row]
-        farthest = 0.0
-        reach[:] = 0.0
-        for k in range(neighbours.shape[1]):
-            square = 0.0
-            for d in range(3):
-                arm[k, d] = positions[neighbours[i, k], d] - positions[i, d]
-                square += arm[k, d] * arm[k, d]
-                reach[d] = max(reach[d], abs(arm[k, d]))
-            omega[k] = math.sqrt(square)
-            farthest = max(farthest, omega[k])
-        for d in range(3):
-            if reach[d] == 0.0:
-                reach[d] = 1.0
-        xx = xy = xz = yy = yz = zz = 0.0
-        for k in range(neighbours.shape[1]):
-            distance = omega[k]
-            if distance == 0.0:
-                continue
-            if weight[i] > 0.0:
-                omega[k] = (farthest / distance) ** weight[i]
-            else:
-                near = math.exp(-((distance / farthest) ** 2)) - FOURTH
-                omega[k] = near / (1.0 - FOURTH) * farthest / distance
-            for d in range(3):
-                arm[k, d] /= reach[d]
-            x, y, z = arm[k, 0], arm[k, 1], arm[k, 2]
-            xx, xy, xz = xx + omega[k] * x * x, xy + omega[k] * x * y, xz + omega[k] * x * z
-            yy, yz, zz = yy + omega[k] * y * y, yz + omega[k] * y * z, zz + omega[k] * z * z
+        weigh_arms(i, positions, neighbours[i], weight[i], arm, omega, reach)
+        xx, xy, xz, yy, yz, zz = moments(arm, omega)
         if planar:
             yy = 1.0
         a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
@@ -157,3 +131,45 @@ def write_coefficients(
             coefficients[i, k, 2] = (c * x + f * y + g * z) * per / reach[2]
         if planar:
             coefficients[i, :, 1] = 0.0
+
+
+@njit(**INNER)
+def weigh_arms(
+    i: int, positions: Any, near: Any, weight: float, arm: Any, omega: Any, reach: Any
+) -> None:
+    """Write a node's arms (K, 3) 1, their weights (K,) and their greatest reach (3,) m."""
+    farthest = 0.0
+    reach[:] = 0.0
+    for k in range(near.shape[0]):
+        square = 0.0
+        for d in range(3):
+            arm[k, d] = positions[near[k], d] - positions[i, d]
+            square += arm[k, d] * arm[k, d]
+            reach[d] = max(reach[d], abs(arm[k, d]))
+        omega[k] = math.sqrt(square)
+        farthest = max(farthest, omega[k])
+    for d in range(3):
+        if reach[d] == 0.0:
+            reach[d] = 1.0
+    for k in range(near.shape[0]):
+        distance = omega[k]
+        if distance == 0.0:
+            continue
+        if weight > 0.0:
+            omega[k] = (farthest / distance) ** weight
+        else:
+            part = math.exp(-((distance / farthest) ** 2)) - FOURTH
+            omega[k] = part / (1.0 - FOURTH) * farthest / distance
+        for d in range(3):
+            arm[k, d] /= reach[d]
+
+
+@njit(**INNER)
+def moments(arm: Any, omega: Any) -> tuple[float, float, float, float, float, float]:
+    """Σ ω r rᵀ: xx xy xz yy yz zz."""
+    xx = xy = xz = yy = yz = zz = 0.0
+    for k in range(omega.shape[0]):
+        x, y, z = arm[k, 0], arm[k, 1], arm[k, 2]
+        xx, xy, xz = xx + omega[k] * x * x, xy + omega[k] * x * y, xz + omega[k] * x * z
+        yy, yz, zz = yy + omega[k] * y * y, yz + omega[k] * y * z, zz + omega[k] * z * z
+    return xx, xy, xz, yy, yz, zz

@@ -5,8 +5,10 @@ number of threads changes no bit. Kernels release Python's lock; unlike numba's 
 components of one process may run at once, and kernels compile in a fraction of the time.
 """
 
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from typing import Any
 
 FEWEST = 1000  # rows that are worth handing to another thread
@@ -20,29 +22,42 @@ class Team:
         self.size, self.fewest, self.shares = size, fewest, shares
         self._pool = ThreadPoolExecutor(size - 1) if size > 1 else None  # and who calls `run`
 
-    def ends(self, rows: int) -> list[int]:
+    def ends(self, rows: int, fewest: int | None = None) -> list[int]:
         """Where the shares of some rows begin and end, from 0 on."""
-        shares = min(self.shares * self.size, rows // self.fewest)
+        shares = min(self.shares * self.size, rows // (fewest or self.fewest))
         if self._pool is None or shares < 2:
             return [0, rows]
         return [rows * share // shares for share in range(shares + 1)]
 
-    def run(self, kernel: Callable[..., Any], rows: int, *arguments: Any) -> list[Any]:
-        """Call ``kernel(first, last, *arguments)`` on shares of the rows; return every result."""
-        ends = self.ends(rows)
+    def run(
+        self, kernel: Callable[..., Any], rows: int, *arguments: Any, fewest: int | None = None
+    ) -> list[Any]:
+        """Call ``kernel(first, last, *arguments)`` on shares of the rows; return every result.
+
+        Kernels that do less or more for a row than others say how many are the fewest themselves.
+        """
+        ends = self.ends(rows, fewest)
         shares = len(ends) - 1
         if self._pool is None or shares < 2:
             return [kernel(0, rows, *arguments)]
         found: list[Any] = [None] * shares
-        left = iter(range(shares))
+        cuts = [shares * thread // self.size for thread in range(self.size + 1)]
+        left = [deque(range(*pair)) for pair in pairwise(cuts)]
 
-        def work() -> None:
-            # Each thread takes the next share when it is done with one.
-            for share in left:
-                found[share] = kernel(ends[share], ends[share + 1], *arguments)
+        def work(thread: int) -> None:
+            # Each begins with shares beside each other, which stay in its caches from one kernel
+            # to the next; then it helps others, from the ends that they come to last.
+            for owner in (thread, *range(thread), *range(thread + 1, self.size)):
+                take = left[owner].popleft if owner == thread else left[owner].pop
+                while left[owner]:
+                    try:
+                        share = take()
+                    except IndexError:  # another was faster
+                        break
+                    found[share] = kernel(ends[share], ends[share + 1], *arguments)
 
-        others = [self._pool.submit(work) for _ in range(self.size - 1)]
-        work()
+        others = [self._pool.submit(work, thread) for thread in range(1, self.size)]
+        work(0)
         for other in others:
             other.result()
         return found

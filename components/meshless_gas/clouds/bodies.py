@@ -1,48 +1,41 @@
 """Clouds round bodies, as a scene describes them."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
 from quintet.components.meshless_gas.clouds.cap import sphere_cap
-from quintet.components.meshless_gas.clouds.layers import LayeredCloud
-from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
+from quintet.components.meshless_gas.clouds.layers import LayeredCloud, Sides
+from quintet.components.meshless_gas.clouds.meridian import Reach, SphereInStream, sphere_meridian
 from quintet.components.meshless_gas.clouds.mirrored import as_slip, mirrored
 from quintet.components.meshless_gas.clouds.params import Layers, PlateCloud, SphereCloud
 from quintet.components.meshless_gas.clouds.plane import plate
 from quintet.components.meshless_gas.params import MeshlessGasParams
 
 
-def layered_cloud(
-    params: MeshlessGasParams, faces: Mapping[str, str], patches: Mapping[str, int]
-) -> LayeredCloud:
+def layered_cloud(params: MeshlessGasParams, sides: Sides) -> LayeredCloud:
     """Nodes in layers over a sphere or a plate."""
-    if faces["wall"] == "symmetry":
-        slipping = layered_cloud(params, as_slip(faces), patches)
-        return mirrored(slipping, patches["wall"])
+    if sides.kinds["wall"] == "symmetry":
+        slipping = layered_cloud(params, sides._replace(kinds=as_slip(sides.kinds)))
+        return mirrored(slipping, sides.patches["wall"])
     if params.plate is not None:
-        return _plate(params.plate, faces, patches)
+        return _plate(params.plate, sides)
     assert params.sphere is not None
     far = params.boundaries["far"].state
     assert far is not None
     make = sphere_cap if params.dimensions == 3 else sphere_meridian
     one = params.sphere
-    mach = far.mach(params.gas)
-    return make(
-        np.array(one.centre), one.radius, mach, _reach(one), faces, patches, one.layers.cross
-    )
+    sphere = SphereInStream(np.array(one.centre), one.radius, far.mach(params.gas))
+    return make(sphere, _reach(one), sides)
 
 
 def _reach(sphere: SphereCloud) -> Reach:
     return _of(sphere.layers, sphere.rays, min(sphere.sector, math.pi), sphere.margin, sphere.reach)
 
 
-def _plate(one: PlateCloud, faces: Mapping[str, str], patches: Mapping[str, int]) -> LayeredCloud:
+def _plate(one: PlateCloud, sides: Sides) -> LayeredCloud:
     reach = _of(one.layers, one.rays, 0.0, 1.0, 0.0)
-    return plate(
-        reach, one.length, one.ahead, one.height, one.finest, faces, patches, one.layers.cross
-    )
+    return plate(reach, one.length, one.ahead, one.height, one.finest, sides)
 
 
 def _of(layers: Layers, rays: int, sector: float, margin: float, farthest: float) -> Reach:
@@ -56,4 +49,5 @@ def _of(layers: Layers, rays: int, sector: float, margin: float, farthest: float
         jitter=layers.jitter,
         seed=layers.seed,
         weight=layers.weight,
+        is_cross=layers.cross,
     )

@@ -1,7 +1,6 @@
 """Nodes over a cap of a sphere in three dimensions: layers over a geodesic grid."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +10,17 @@ from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
     Bounds,
     LayeredCloud,
+    Sides,
     SurfaceGrid,
     kinds_of,
     layered,
 )
-from quintet.components.meshless_gas.clouds.meridian import Reach, last_patch, outer_radius
+from quintet.components.meshless_gas.clouds.meridian import (
+    Reach,
+    SphereInStream,
+    last_patch,
+    outer_radius,
+)
 from quintet.interfaces.component import Array
 
 ARC = math.acos(1.0 / math.sqrt(5.0))  # rad, of an icosahedron's edge
@@ -23,34 +28,22 @@ GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
 TURN = (0.31, 0.73, 1.17)  # rad: no node of the grid lies on the axis or in a plane of symmetry
 
 
-def sphere_cap(
-    centre: Array,
-    radius: float,
-    mach: float,
-    reach: Reach,
-    faces: Mapping[str, str],
-    patches: Mapping[str, int],
-    is_cross: bool = False,
-) -> LayeredCloud:
+def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredCloud:
     """Nodes round the part of a sphere that meets a flow along x.
 
     Parameters
     ----------
-    centre : (3,) m
-    radius : float, m
-    mach : float
-        Above 1 the cloud follows the bow shock, else it is a shell.
+    sphere : SphereInStream
     reach : Reach
         Rays are counted over half a turn: nodes are as far apart as those of a meridian.
-    faces, patches
-        What is at the "wall", at "far" and, where gas leaves, at the "exit"; their numbers.
-    is_cross : bool
-        Fewer neighbours: of other layers only what is straight above and below.
+    sides : Sides
+        The "wall", "far" and, where gas leaves, the "exit".
 
     Returns
     -------
     LayeredCloud
     """
+    centre, radius, mach = sphere
     points, triangles = geodesic(max(1, round(reach.rays * ARC / math.pi)))
     angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
     kept = angle <= reach.sector
@@ -63,10 +56,10 @@ def sphere_cap(
     distance = geometric(reach.first, outer - radius, reach.layers)
     places = centre + points * (radius + distance)[:, :, None]
     bounds = Bounds(
-        np.full(len(points), patches["wall"], np.int32),
-        last_patch(angle, outer, reach, patches),
-        np.where(is_edge, patches["exit"], 0).astype(np.int32),
-        kinds_of(faces, patches),
+        np.full(len(points), sides.patches["wall"], np.int32),
+        last_patch(angle, outer, reach, sides.patches),
+        np.where(is_edge, sides.patches["exit"], 0).astype(np.int32),
+        kinds_of(sides),
         points,
         share * (radius + distance) ** 2,
         _towards(places[-1], inside),
@@ -74,7 +67,7 @@ def sphere_cap(
     )
     none = np.zeros(0, np.int32)
     surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge, inward_of(points, is_edge))
-    return layered(places, surface, bounds, is_cross)
+    return layered(places, surface, bounds, reach.is_cross)
 
 
 def geodesic(frequency: int) -> tuple[Array, NDArray[np.int64]]:

@@ -29,6 +29,13 @@ class SurfaceGrid(NamedTuple):
     inward: Whole  # (m,) the neighbour towards the middle of one at an edge; itself elsewhere
 
 
+class Sides(NamedTuple):
+    """Boundaries of a cloud by their names."""
+
+    kinds: Mapping[str, str]  # what is there
+    patches: Mapping[str, int]  # their numbers
+
+
 class Bounds(NamedTuple):
     """Boundaries by their numbers, 0 is none, and sizes of the surface."""
 
@@ -111,11 +118,11 @@ def rotations(angle: Array) -> Array:
     return turn
 
 
-def kinds_of(faces: Mapping[str, str], patches: Mapping[str, int]) -> Kinds:
+def kinds_of(sides: Sides) -> Kinds:
     """What nodes of each boundary, by its number, are."""
-    kinds = np.zeros(1 + max(patches.values()), np.int8)
-    for name, number in patches.items():
-        kinds[number] = KINDS[faces[name]]
+    kinds = np.zeros(1 + max(sides.patches.values()), np.int8)
+    for name, number in sides.patches.items():
+        kinds[number] = KINDS[sides.kinds[name]]
     return kinds
 
 

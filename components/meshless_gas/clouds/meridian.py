@@ -12,6 +12,7 @@ from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
     Bounds,
     LayeredCloud,
+    Sides,
     SurfaceGrid,
     kinds_of,
     layered,
@@ -34,36 +35,32 @@ class Reach(NamedTuple):
     jitter: float = 0.0  # displacement over the distance of neighbours
     seed: int = 0
     weight: float = 2.0  # of the least squares
+    is_cross: bool = False  # neighbours of other layers: only what is straight above and below
 
 
-def sphere_meridian(
-    centre: Array,
-    radius: float,
-    mach: float,
-    reach: Reach,
-    faces: Mapping[str, str],
-    patches: Mapping[str, int],
-    is_cross: bool = False,
-) -> LayeredCloud:
+class SphereInStream(NamedTuple):
+    """A sphere whose centre lies on the axis of a stream along x."""
+
+    centre: Array  # (3,) m
+    radius: float  # m
+    mach: float  # above 1 a cloud follows the bow shock, else it is a shell
+
+
+def sphere_meridian(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredCloud:
     """Nodes round a sphere in the half-plane z > 0 of a flow along x.
 
     Parameters
     ----------
-    centre : (3,) m
-        On the axis.
-    radius : float, m
-    mach : float
-        Above 1 the cloud follows the bow shock, else it is a ring.
+    sphere : SphereInStream
     reach : Reach
-    faces, patches
-        What is at the "wall", at "far" and, where gas leaves, at the "exit"; their numbers.
-    is_cross : bool
-        Fewer neighbours: of other layers only what is straight above and below.
+    sides : Sides
+        The "wall", "far" and, where gas leaves, the "exit".
 
     Returns
     -------
     LayeredCloud
     """
+    centre, radius, mach = sphere
     is_closed = reach.sector > math.pi - 1e-9
     step = reach.sector / (reach.rays if is_closed else reach.rays - 0.5)
     angle = (np.arange(reach.rays) + 0.5) * step  # the last lies on the edge of an open sector
@@ -76,16 +73,16 @@ def sphere_meridian(
     bound = np.minimum(angle + 0.5 * step, reach.sector)
     ring = 2.0 * math.pi * (np.cos(angle - 0.5 * step) - np.cos(bound))
     bounds = Bounds(
-        np.full(reach.rays, patches["wall"], np.int32),
-        last_patch(angle, outer, reach, patches),
-        np.where(surface.is_edge, patches["exit"], 0).astype(np.int32),
-        kinds_of(faces, patches),
+        np.full(reach.rays, sides.patches["wall"], np.int32),
+        last_patch(angle, outer, reach, sides.patches),
+        np.where(surface.is_edge, sides.patches["exit"], 0).astype(np.int32),
+        kinds_of(sides),
         outward,
         ring * (radius + distance) ** 2,
         _frusta(np.append(angle - 0.5 * step, bound[-1]), radius, mach, reach),
         reach.weight,
     )
-    return layered(places, surface, bounds, is_cross)
+    return layered(places, surface, bounds, reach.is_cross)
 
 
 def _frusta(angle: Array, radius: float, mach: float, reach: Reach) -> Array:

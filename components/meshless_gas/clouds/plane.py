@@ -1,7 +1,6 @@
 """Clouds of one plane: layers over a line of wall."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from quintet.components.meshless_gas.clouds.grading import geometric
 from quintet.components.meshless_gas.clouds.layers import (
     Bounds,
     LayeredCloud,
+    Sides,
     SurfaceGrid,
     kinds_of,
     layered,
@@ -88,9 +88,7 @@ def plate(
     ahead: float,
     height: float,
     finest: float,
-    faces: Mapping[str, str],
-    patches: Mapping[str, int],
-    is_cross: bool = True,
+    sides: Sides,
 ) -> LayeredCloud:
     """Layers over a flat plate from x = 0 on, and over a stretch of free stream ahead of it.
 
@@ -101,12 +99,11 @@ def plate(
     length, ahead, height : float, m
     finest : float, m
         Distance of nodes at the leading edge.
-    faces, patches
-        What is at the plate ("wall"), before it ("ahead"), upstream ("inlet"), above ("far") and
-        downstream ("exit"); their numbers.
-    is_cross : bool
-        Without diagonal neighbours.
+    sides : Sides
+        The plate ("wall") and what is before it ("ahead"), upstream ("inlet"), above ("far") and
+        downstream ("exit").
     """
+    patches = sides.patches
     behind = geometric(finest, length, reach.rays)[:, 0]
     before = -geometric(finest, ahead, max(4, reach.rays // 4))[:0:-1, 0]
     x = np.concatenate([before, behind])
@@ -118,5 +115,5 @@ def plate(
     last = np.full(len(x), patches["far"], np.int32)
     numbers = (first, last, edge)
     return wall_line(
-        foot, distance, line(len(x)), numbers, kinds_of(faces, patches), reach.weight, is_cross
+        foot, distance, line(len(x)), numbers, kinds_of(sides), reach.weight, reach.is_cross
     )

@@ -15,6 +15,7 @@ from quintet.components.shared.numba_options import EXACT, INNER
 
 # Columns of what a scene says of each boundary: 5 of its state, then these.
 BACK_PRESSURE, TOTAL_PRESSURE, TOTAL_TEMPERATURE, PATCH_COLUMNS = 5, 6, 7, 8
+GATE = 0.5  # Mach number of the flow into a wall above which the wall pushes back
 
 
 @njit(**EXACT)
@@ -133,13 +134,14 @@ def leave(near: Any, normal: Any, back: float, gamma: float) -> None:
 def slip(near: Any, normal: Any, u: float, v: float, w: float, gamma: float) -> None:
     """State beside a wall that moves with (u, v, w): nothing goes through; struck hard, it stops.
 
-    Density follows the pressure without losses.
+    A settled flow does not run into its walls, and what is left of it in a node beside one must not
+    raise the pressure. Density follows the pressure without losses.
     """
     into = -((near[1] - u) * normal[0] + (near[2] - v) * normal[1] + (near[3] - w) * normal[2])
     mach = into / math.sqrt(gamma * near[4] / near[0])
     for d in range(3):
         near[1 + d] += into * normal[d]
-    pressure = wall_pressure(near[4], mach, gamma)
+    pressure = wall_pressure(near[4], mach if mach > GATE else 0.0, gamma)
     near[0] *= (pressure / near[4]) ** (1.0 / gamma)
     near[4] = pressure
 

@@ -8,11 +8,13 @@ from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def write_ghost_states(owner: Any, turn: Any, primitive: Any) -> None:
+def write_ghost_states(begin: int, end: int, owner: Any, turn: Any, primitive: Any) -> None:
     """Write the states of ghosts: scalars of the owner, its velocity turned.
 
     Parameters
     ----------
+    begin, end : int
+        Of the ghosts.
     owner : (g,)
         Nodes that they are images of.
     turn : (g, 3, 3) 1
@@ -20,7 +22,7 @@ def write_ghost_states(owner: Any, turn: Any, primitive: Any) -> None:
     primitive : (n, 5)
     """
     first = primitive.shape[0] - owner.shape[0]
-    for g in range(owner.shape[0]):
+    for g in range(begin, end):
         i, o = first + g, owner[g]
         primitive[i, 0], primitive[i, 4] = primitive[o, 0], primitive[o, 4]
         u, v, w = primitive[o, 1], primitive[o, 2], primitive[o, 3]
@@ -29,10 +31,12 @@ def write_ghost_states(owner: Any, turn: Any, primitive: Any) -> None:
 
 
 @njit(**EXACT)
-def write_ghost_gradients(owner: Any, turn: Any, gradients: Any, lowest: Any) -> None:
+def write_ghost_gradients(
+    begin: int, end: int, owner: Any, turn: Any, gradients: Any, lowest: Any
+) -> None:
     """Write the gradients of ghosts: of scalars T g, of the velocity T G Tᵀ."""
     first = lowest.shape[0] - owner.shape[0]
-    for g in range(owner.shape[0]):
+    for g in range(begin, end):
         i, o = first + g, owner[g]
         lowest[i] = lowest[o]
         for q in range(gradients.shape[1]):

@@ -88,6 +88,7 @@ def advance(
     steps : None or (n,) 1
         Steps of the nodes over `step`.
     old, new : float, 1
+        Where `old` is 0, at the first stage, `start` is written.
     gamma : float, 1
     primitive : (n, 5)
         Written.
@@ -98,6 +99,9 @@ def advance(
         dt = step
         if steps is not None:
             dt *= steps[i]
+        if old == 0.0:
+            for q in range(5):
+                start[i, q] = conservative[i, q]
         r0 = old * start[i, 0] + new * (conservative[i, 0] + dt * residual[i, 0])
         r1 = old * start[i, 1] + new * (conservative[i, 1] + dt * residual[i, 1])
         r2 = old * start[i, 2] + new * (conservative[i, 2] + dt * residual[i, 2])
@@ -112,6 +116,17 @@ def advance(
         if not (r0 > 0.0 and p > 0.0 and p < math.inf and r0 < math.inf):
             wrong = row
     return wrong
+
+
+@njit(**EXACT)
+def write_changes(
+    first: int, last: int, rows: Any, residual: Any, bounds: Any, conservative: Any, changes: Any
+) -> None:
+    """Write the squares (m,) of relative changes of densities in the steps that nodes bear."""
+    for row in range(first, last):
+        i = rows[row]
+        rate = residual[i, 0] * bounds[i] / conservative[i, 0]
+        changes[row] = rate * rate
 
 
 @njit(**EXACT)

@@ -52,7 +52,7 @@ def write_residuals(
     Parameters
     ----------
     first, last : int
-        Blocks of LANES nodes of `rows`.
+        Of `rows`; LANES of them go side by side.
     rows : (m,)
         Nodes that are advanced.
     positions : (n, 3) m
@@ -75,9 +75,8 @@ def write_residuals(
         Written.
     """
     work = np.zeros(ROWS * LANES)
-    for block in range(first, last):
-        begin = block * LANES
-        count = min(LANES, rows.shape[0] - begin)
+    for begin in range(first, last, LANES):
+        count = min(LANES, last - begin)
         load_nodes(rows, begin, count, primitive, gradients, lowest, frame, planar, sloped, work)
         for k in range(neighbours.shape[1]):
             if not has_pairs(rows, begin, count, k, neighbours):

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BAND = 3.0  # spacings about a seam within which neighbours are found anew
-NEAR = 3  # times as many nodes are looked at as a node has neighbours
+NEAR = 4  # times as many nodes are looked at as a node has neighbours
 KNOWN = 8  # nodes that tell the state of one that is uncovered; in space twice as many
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
 
@@ -308,11 +308,10 @@ class MovingClouds:
         before = self.touched
         neighbours[before] = own.home[before]
         among = np.flatnonzero(np.concatenate([near_any & active, self._images(near_any)]))
-        kept = self.kept
         found = self._around(rows, among)
         lacks = choose(
-            rows, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, kept,
-            neighbours,
+            rows, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, self.kept,
+            4 if own.planar else 6, neighbours,
         )  # fmt: skip
         if lacks >= 0:
             raise StepError(too_few(self.kept, cloud.positions[lacks]))

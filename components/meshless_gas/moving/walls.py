@@ -6,22 +6,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from quintet.components.meshless_gas.laws import SENSED, WIDTH
-from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.meshless_gas.laws import SENSED, WIDTH, wall_pressure
+from quintet.components.shared.numba_options import EXACT
 
 LEAST = 0.3  # of the first node's density and pressure: what a wall's state must keep
-
-
-@njit(**INNER)
-def stopped(pressure: float, mach: float, gamma: float) -> float:
-    """Pressure at a wall that gas runs into at a Mach number: behind the shock that stops it.
-
-    References
-    ----------
-    Toro, Riemann Solvers and Numerical Methods for Fluid Dynamics (2009), section 6.3.3.
-    """
-    share = 0.25 * (gamma + 1.0) * mach
-    return pressure * (1.0 + gamma * mach * (share + math.sqrt(share * share + 1.0)))
 
 
 @njit(**EXACT)
@@ -64,7 +52,7 @@ def hold_slip_walls(
         for d in range(3):
             state[1 + d] += into * normals[n, d]
         mach = into / math.sqrt(gamma * state[4] / state[0])
-        pressure = stopped(state[4], max(mach, 0.0), gamma)
+        pressure = wall_pressure(state[4], max(mach, 0.0), gamma)
         primitive[i, 0] = state[0] * (pressure / state[4]) ** (1.0 / gamma)
         primitive[i, 1], primitive[i, 2], primitive[i, 3] = state[1], state[2], state[3]
         primitive[i, 4] = pressure

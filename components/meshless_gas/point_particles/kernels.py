@@ -82,15 +82,9 @@ def exchange(
         Taken from, divided by volumes; None where the gas does not feel the particles.
     """
     for i in range(near.shape[0]):
-        density = u = v = w = pressure = inside = 0.0
-        for k in range(near.shape[1] if particles.launched[i] > 0.0 else 0):
-            j, part = near[i, k], weights[i, k]
-            inside += part
-            density += part * primitive[j, 0]
-            u += part * primitive[j, 1]
-            v += part * primitive[j, 2]
-            w += part * primitive[j, 3]
-            pressure += part * primitive[j, 4]
+        inside = density = u = v = w = pressure = 0.0
+        if particles.launched[i] > 0.0:
+            inside, density, u, v, w, pressure = gas_around(near[i], weights[i], primitive)
         fx = fy = fz = heat = drag = warms = 0.0
         vx, vy, vz = loads.velocity[i, 0], loads.velocity[i, 1], loads.velocity[i, 2]
         if inside > 0.0:
@@ -115,6 +109,23 @@ def exchange(
             loads.velocity[i, d] = old * first + new * (now + kick)
         if residual is not None and inside > 0.0:
             react(fx, fy, fz, power, near[i], weights[i], volumes, owner, turn, residual)
+
+
+@njit(**INNER)
+def gas_around(
+    near: Whole, weights: Array, primitive: Array
+) -> tuple[float, float, float, float, float, float]:
+    """Sum of the weights (k,) of nodes (k,), and the state of the gas by them."""
+    inside = density = u = v = w = pressure = 0.0
+    for k in range(near.shape[0]):
+        j, part = near[k], weights[k]
+        inside += part
+        density += part * primitive[j, 0]
+        u += part * primitive[j, 1]
+        v += part * primitive[j, 2]
+        w += part * primitive[j, 3]
+        pressure += part * primitive[j, 4]
+    return inside, density, u, v, w, pressure
 
 
 @njit(**INNER)

@@ -41,10 +41,10 @@ def write_temperature_gradients(  # type: ignore[no-untyped-def]
 
 
 @njit(**FAST)
-def write_ghost_slopes(owner, turn, gradients):  # type: ignore[no-untyped-def]
+def write_ghost_slopes(begin, end, owner, turn, gradients):  # type: ignore[no-untyped-def]
     """Turn gradients (n, 3) of a scalar to the ghosts of their nodes."""
     first = gradients.shape[0] - owner.shape[0]
-    for g in range(owner.shape[0]):
+    for g in range(begin, end):
         x, y, z = gradients[owner[g], 0], gradients[owner[g], 1], gradients[owner[g], 2]
         for a in range(3):
             along = turn[g, a, 0] * x + turn[g, a, 1] * y + turn[g, a, 2] * z
@@ -71,6 +71,13 @@ def corrected(a, b, rise, r, inverse):  # type: ignore[no-untyped-def]
     x, y, z = 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])
     excess = (x * r[0] + y * r[1] + z * r[2] - rise) * inverse
     return x - excess * r[0], y - excess * r[1], z - excess * r[2]
+
+
+@njit(**INNER, fastmath=True)
+def along(tensor, x, y, z):  # type: ignore[no-untyped-def]
+    """A symmetric tensor xx yy zz xy xz yz times a vector."""
+    xx, yy, zz, xy, xz, yz = tensor
+    return xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z
 
 
 @njit(**FAST)
@@ -114,28 +121,19 @@ def add_viscous(  # type: ignore[no-untyped-def]
             a, b, c = primitive[j, 1], primitive[j, 2], primitive[j, 3]
             h, s = gradients[j], temperature_gradients[j]
             mu = 0.5 * (mu_i + transported[j, 1])
-            xx, yy, zz, xy, xz, yz = stress(
+            tensor = stress(
                 corrected(g[1], h[1], a - u, r, inverse),
                 corrected(g[2], h[2], b - v, r, inverse),
                 corrected(g[3], h[3], c - w, r, inverse),
                 mu,
             )
             q = corrected(t, s, transported[j, 0] - own, r, inverse)
-            px = xx * cx + xy * cy + xz * cz
-            py = xy * cx + yy * cy + yz * cz
-            pz = xz * cx + yz * cy + zz * cz
-            fx += px
-            fy += py
-            fz += pz
+            px, py, pz = along(tensor, cx, cy, cz)
+            fx, fy, fz = fx + px, fy + py, fz + pz
             work = px * (u + a) + py * (v + b) + pz * (w + c)
             fe += 0.5 * work + law.conduction * mu * (q[0] * cx + q[1] * cy + q[2] * cz)
-            sx += cx
-            sy += cy
-            sz += cz
-        xx, yy, zz, xy, xz, yz = stress(g[1], g[2], g[3], mu_i)
-        px = xx * sx + xy * sy + xz * sz
-        py = xy * sx + yy * sy + yz * sz
-        pz = xz * sx + yz * sy + zz * sz
+            sx, sy, sz = sx + cx, sy + cy, sz + cz
+        px, py, pz = along(stress(g[1], g[2], g[3], mu_i), sx, sy, sz)
         heat = law.conduction * mu_i * (t[0] * sx + t[1] * sy + t[2] * sz)
         residual[i, 1] += 2.0 * (fx - px)
         residual[i, 2] += 2.0 * (fy - py)

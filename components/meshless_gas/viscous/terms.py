@@ -11,6 +11,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
 )
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.shares import LIGHT
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.viscous.flux import (
     add_viscous,
@@ -82,13 +83,17 @@ class Viscous:
         own, cloud = self.domain, self.domain.cloud
         neighbours, coefficients = own.stencils
         self.team.run(
-            write_transport, len(cloud.positions), work.primitive, self.law, self.transported
-        )
+            write_transport, len(cloud.positions), work.primitive, self.law, self.transported,
+            fewest=LIGHT,
+        )  # fmt: skip
         self.team.run(
             write_temperature_gradients, len(own.every), own.every, neighbours, coefficients,
             self.transported, self.gradients,
         )  # fmt: skip
-        write_ghost_slopes(cloud.owner, cloud.turn, self.gradients)
+        self.team.run(
+            write_ghost_slopes, len(cloud.owner), cloud.owner, cloud.turn, self.gradients,
+            fewest=LIGHT,
+        )  # fmt: skip
         self.team.run(
             add_viscous, len(own.inner), own.inner, cloud.positions, work.primitive,
             self.transported, neighbours, coefficients, work.gradients, self.gradients, self.law,
@@ -99,8 +104,9 @@ class Viscous:
         """Shorten the steps [s] that nodes bear; return the least."""
         own, cloud = self.domain, self.domain.cloud
         self.team.run(
-            write_transport, len(cloud.positions), work.primitive, self.law, self.transported
-        )
+            write_transport, len(cloud.positions), work.primitive, self.law, self.transported,
+            fewest=LIGHT,
+        )  # fmt: skip
         least = self.team.run(
             shorten_bounds, len(own.inner), own.inner, cloud.positions, work.primitive,
             self.transported, *own.stencils, self.gamma, self.law, work.bounds,

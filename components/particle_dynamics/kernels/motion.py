@@ -191,6 +191,49 @@ def furthest(position: Array, listed: Array) -> float:
 
 
 @njit(**EXACT)
+def drift_in_baths(h: float, boltzmann: float, model: Model, state: State) -> None:
+    """Move points for a time [s]; in its middle baths and random collisions change velocities."""
+    position, velocity = state.position, state.velocity
+    if model.bathed.point.shape[0] == 0 and not model.collision_rate > 0.0:
+        drift(h, position, velocity)
+        return
+    drift(0.5 * h, position, velocity)
+    exchange_with_baths(model.bathed, model.mass, boltzmann, h, state)
+    if model.collision_rate > 0.0:
+        expected = model.collision_rate * h * model.bonds.shape[0]
+        collide(model.bonds, expected, velocity, state.generator)
+    drift(0.5 * h, position, velocity)
+
+
+@njit(**EXACT)
+def make_stage(
+    h: float, boltzmann: float, model: Model, state: State, predicted: Array, pairs: Pairs,
+    law: Any, damping: Any, period: Any,
+) -> None:  # fmt: skip
+    """Make a step of velocity Verlet of a time [s]; `predicted` is memory for what damps."""
+    position, velocity, acceleration = state.position, state.velocity, state.acceleration
+    energies, driven = state.energies, model.driven
+    energies[DISSIPATED] += 0.5 * h * energies[LOST]
+    energies[WORK] += 0.5 * h * power_of_drive(driven, velocity, energies)
+    kick(0.5 * h, velocity, acceleration)
+    drift_in_baths(h, boltzmann, model, state)
+    energies[TIME] += h
+    if damping is not None or model.literal_damping > 0.0:
+        # What damps is the velocity at the step's end, to the accuracy of the step.
+        predicted[:] = velocity
+        kick(0.5 * h, predicted, acceleration)
+    if driven.first >= 0:
+        constrain(driven, energies[TIME], position, predicted)
+        constrain(driven, energies[TIME], position, velocity)
+    accelerate(energies[TIME], model, state, predicted, pairs, law, damping, period)
+    kick(0.5 * h, velocity, acceleration)
+    if driven.first >= 0:
+        constrain(driven, energies[TIME], position, velocity)
+    energies[DISSIPATED] += 0.5 * h * energies[LOST]
+    energies[WORK] += 0.5 * h * power_of_drive(driven, velocity, energies)
+
+
+@njit(**EXACT)
 def advance(
     steps: int, dt: float, skin: float, averaged_from: float, boltzmann: float, model: Model,
     state: State, pairs: Pairs, law: Any, damping: Any, period: Any,
@@ -215,43 +258,16 @@ def advance(
         Steps that were made; -1 if points moved further in a step than the lists allow, or if
         their velocities are not finite.
     """
-    position, velocity, acceleration = state.position, state.velocity, state.acceleration
-    energies, stages = state.energies, model.stages
-    predicted = velocity
+    predicted = state.velocity
     if damping is not None or model.literal_damping > 0.0:
-        predicted = np.empty_like(velocity)
+        predicted = np.empty_like(state.velocity)
     for step in range(steps):
-        for s in range(stages.shape[0]):
-            h = stages[s] * dt
-            energies[DISSIPATED] += 0.5 * h * energies[LOST]
-            energies[WORK] += 0.5 * h * power_of_drive(model.driven, velocity, energies)
-            kick(0.5 * h, velocity, acceleration)
-            if model.bathed.point.shape[0] > 0 or model.collision_rate > 0.0:
-                drift(0.5 * h, position, velocity)
-                exchange_with_baths(model.bathed, model.mass, boltzmann, h, state)
-                if model.collision_rate > 0.0:
-                    expected = model.collision_rate * h * model.bonds.shape[0]
-                    collide(model.bonds, expected, velocity, state.generator)
-                drift(0.5 * h, position, velocity)
-            else:
-                drift(h, position, velocity)
-            energies[TIME] += h
-            if damping is not None or model.literal_damping > 0.0:
-                # What damps is the velocity at the step's end, to the accuracy of the step.
-                predicted[:] = velocity
-                kick(0.5 * h, predicted, acceleration)
-            if model.driven.first >= 0:
-                constrain(model.driven, energies[TIME], position, predicted)
-                constrain(model.driven, energies[TIME], position, velocity)
-            accelerate(energies[TIME], model, state, predicted, pairs, law, damping, period)
-            kick(0.5 * h, velocity, acceleration)
-            if model.driven.first >= 0:
-                constrain(model.driven, energies[TIME], position, velocity)
-            energies[DISSIPATED] += 0.5 * h * energies[LOST]
-            energies[WORK] += 0.5 * h * power_of_drive(model.driven, velocity, energies)
-        weight = dt if energies[TIME] > averaged_from else 0.0
-        squares = average(weight, model.mass, velocity, state.kinetic)
-        moved = furthest(position, state.listed)
+        for s in range(model.stages.shape[0]):
+            h = model.stages[s] * dt
+            make_stage(h, boltzmann, model, state, predicted, pairs, law, damping, period)
+        weight = dt if state.energies[TIME] > averaged_from else 0.0
+        squares = average(weight, model.mass, state.velocity, state.kinetic)
+        moved = furthest(state.position, state.listed)
         if not (math.isfinite(squares) and 2.0 * moved < skin):
             return -1
         if 2.0 * moved > EARLY * skin:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.particle_dynamics.spheres.params import Sphere, Wall
+from quintet.components.shared.lattice import lattice_points
 from quintet.interfaces.component import Array
 
 
@@ -39,9 +40,9 @@ def build(given: Sequence[Sphere]) -> Spheres:
     first = 0
     for one in given:
         if one.copies is not None:
-            number, rows = one.copies.number, slice(first, first + one.count)
-            places = np.stack(np.meshgrid(*map(np.arange, number), indexing="ij"), -1)
-            start[rows] += places.reshape(-1, 3) * np.array(one.copies.spacing)
+            rows, axes = slice(first, first + one.count), map(np.arange, one.copies.number)
+            places = lattice_points(list(axes), x_fastest=False)
+            start[rows] += places * np.array(one.copies.spacing)
             launch[rows] += one.copies.interval * np.arange(one.count)
         first += one.count
     return Spheres(

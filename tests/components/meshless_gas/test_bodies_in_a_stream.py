@@ -8,7 +8,7 @@ import pytest
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.params import Steady
 from quintet.components.meshless_gas.steady import Settling
-from quintet.components.meshless_gas.surface import sums
+from quintet.components.meshless_gas.wall_loads import sums
 from quintet.interfaces.component import fields_of
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.params import read

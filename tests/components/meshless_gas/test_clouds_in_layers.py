@@ -8,20 +8,22 @@ import pytest
 from quintet.components.meshless_gas.clouds.cap import geodesic, sphere_cap
 from quintet.components.meshless_gas.clouds.cloud import GHOST, INNER, OUTFLOW, SLIP
 from quintet.components.meshless_gas.clouds.grading import geometric
-from quintet.components.meshless_gas.clouds.layers import LayeredCloud
-from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
+from quintet.components.meshless_gas.clouds.layers import LayeredCloud, Sides
+from quintet.components.meshless_gas.clouds.meridian import Reach, SphereInStream, sphere_meridian
 from quintet.components.meshless_gas.clouds.plane import plate
 from quintet.components.meshless_gas.stencils import stencils
 from quintet.components.shared.threads import Team
 
-FACES = {"wall": "slip", "far": "inflow", "exit": "outflow"}
-PATCHES = {"wall": 1, "far": 2, "exit": 3}
+SIDES = Sides(
+    {"wall": "slip", "far": "inflow", "exit": "outflow"}, {"wall": 1, "far": 2, "exit": 3}
+)
 REACH = Reach(rays=12, layers=10, first=0.01, sector=math.pi, margin=1.4, farthest=4.0)
 
 
 def meridian(reach: Reach = REACH, is_cross: bool = False) -> LayeredCloud:
     """Cloud round a sphere of radius 1 at M = 3."""
-    return sphere_meridian(np.zeros(3), 1.0, 3.0, reach, FACES, PATCHES, is_cross)
+    sphere = SphereInStream(np.zeros(3), 1.0, 3.0)
+    return sphere_meridian(sphere, reach._replace(is_cross=is_cross), SIDES)
 
 
 def test_layers_grow_by_one_factor_from_the_first_to_the_last() -> None:
@@ -89,7 +91,9 @@ def test_a_geodesic_grid_covers_the_sphere() -> None:
 
 
 def test_a_cap_has_the_area_of_its_sector_and_upright_neighbours() -> None:
-    made = sphere_cap(np.zeros(3), 2.0, 6.0, REACH._replace(rays=30, sector=1.2), FACES, PATCHES)
+    made = sphere_cap(
+        SphereInStream(np.zeros(3), 2.0, 6.0), REACH._replace(rays=30, sector=1.2), SIDES
+    )
     cloud = made.cloud
     wall = cloud.kind == SLIP
     area = np.sqrt((cloud.areas[wall] ** 2).sum(axis=1)).sum()
@@ -102,8 +106,8 @@ def test_a_cap_has_the_area_of_its_sector_and_upright_neighbours() -> None:
 def test_a_plate_begins_at_its_leading_edge() -> None:
     faces = {"wall": "adiabatic", "ahead": "slip", "inlet": "inflow", "far": "outflow"}
     patches = {"wall": 1, "ahead": 2, "inlet": 3, "far": 4, "exit": 5}
-    reach = REACH._replace(rays=16, first=0.01)
-    made = plate(reach, 1.0, 0.5, 0.4, 0.02, {**faces, "exit": "outflow"}, patches)
+    reach = REACH._replace(rays=16, first=0.01, is_cross=True)
+    made = plate(reach, 1.0, 0.5, 0.4, 0.02, Sides({**faces, "exit": "outflow"}, patches))
     cloud = made.cloud
     on_plate = cloud.patch == 1
     assert cloud.positions[on_plate, 0].min() == pytest.approx(0.0)

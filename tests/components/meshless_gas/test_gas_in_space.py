@@ -5,7 +5,7 @@ import pytest
 from gases import SOD, gas, given, run, state, tube
 
 from quintet.components.meshless_gas.kernels.gradients import write_gradients
-from quintet.components.meshless_gas.kernels.residuals import LANES, write_residuals
+from quintet.components.meshless_gas.kernels.residuals import write_residuals
 
 pytestmark = pytest.mark.full  # kernels of their own
 
@@ -47,7 +47,7 @@ def rates(made, primitive, frame):
     write_gradients(0, len(rows), rows, primitive, *own.stencils, None, gradients, lowest)
     made_rates = np.zeros((len(primitive), 5))
     write_residuals(
-        0, -(-len(own.inner) // LANES), own.inner, cloud.positions, primitive, gradients, lowest,
+        0, len(own.inner), own.inner, cloud.positions, primitive, gradients, lowest,
         *own.stencils, frame, None, True, made.gamma, 1e-6, made_rates,
     )  # fmt: skip
     return made_rates[own.inner]

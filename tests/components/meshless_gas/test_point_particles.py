@@ -62,7 +62,7 @@ class Gas:
         start = self.conservative.copy()
         self.exchange.place(particles)
         for old, new, share in STAGES:
-            write_ghost_states(cloud.owner, cloud.turn, self.primitive)
+            write_ghost_states(0, len(cloud.owner), cloud.owner, cloud.turn, self.primitive)
             residual = np.zeros_like(start)
             self.exchange.add(self.primitive, residual, dt, (old, new, share))
             advance(

@@ -6,20 +6,26 @@ import numpy as np
 import pytest
 
 from quintet.components.meshless_gas.clouds.cloud import SLIP, SYMMETRY
-from quintet.components.meshless_gas.clouds.meridian import Reach, sphere_meridian
+from quintet.components.meshless_gas.clouds.layers import Sides
+from quintet.components.meshless_gas.clouds.meridian import (
+    Reach,
+    SphereInStream,
+    sphere_meridian,
+)
 from quintet.components.meshless_gas.clouds.mirrored import hold_along, mirrored
 from quintet.components.meshless_gas.stencils import stencils
 from quintet.components.shared.threads import Team
 
-FACES = {"wall": "slip", "far": "inflow", "exit": "outflow"}
-PATCHES = {"wall": 1, "far": 2, "exit": 3}
+SIDES = Sides(
+    {"wall": "slip", "far": "inflow", "exit": "outflow"}, {"wall": 1, "far": 2, "exit": 3}
+)
 REACH = Reach(rays=12, layers=10, first=0.01, sector=math.pi, margin=1.4, farthest=4.0)
 
 
 def both():
     """A cloud round a sphere of radius 1, and the same with images in its wall."""
-    slipping = sphere_meridian(np.zeros(3), 1.0, 3.0, REACH, FACES, PATCHES)
-    return slipping, mirrored(slipping, PATCHES["wall"])
+    slipping = sphere_meridian(SphereInStream(np.zeros(3), 1.0, 3.0), REACH, SIDES)
+    return slipping, mirrored(slipping, SIDES.patches["wall"])
 
 
 def test_images_lie_below_the_wall_as_deep_as_their_owners_are_above_it():
