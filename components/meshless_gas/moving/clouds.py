@@ -25,6 +25,7 @@ from quintet.components.meshless_gas.moving.refusals import (
     too_few,
 )
 from quintet.components.meshless_gas.moving.seams import (
+    around,
     choose,
     write_uncovered,
     write_uncovered_in_space,
@@ -308,7 +309,7 @@ class MovingClouds:
         before = self.touched
         neighbours[before] = own.home[before]
         among = np.flatnonzero(np.concatenate([near_any & active, self._images(near_any)]))
-        found = self._around(rows, among)
+        found = around(rows, among, cloud, NEAR * self.kept, own.planar, self.team)
         lacks = choose(
             rows, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, self.kept,
             4 if own.planar else 6, neighbours,
@@ -321,17 +322,6 @@ class MovingClouds:
         neighbours[back] = own.home[back]
         self.touched, self.across = rows[~(whole & ~other)], rows[other]
         self._fit(np.union1d(before, self.touched))
-
-    def _around(self, rows: Rows, among: Rows) -> Rows:
-        """Nodes near to some; in space those within near to one at a face, that they span it."""
-        cloud, many = self.domain.cloud, min(NEAR * self.kept, len(among))
-        found, _ = nearest(cloud.positions, among, cloud.positions[rows], many, self.team)
-        face = cloud.kind[rows] != INNER
-        if not self.layout.planar and face.any():
-            within = among[cloud.kind[among] == INNER]
-            places = cloud.positions[rows[face]]
-            found[face], _ = nearest(cloud.positions, within, places, many, self.team)
-        return found
 
     def _images(self, near: Flags) -> Flags:
         owner = self.domain.cloud.owner

@@ -5,8 +5,13 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.clouds.cloud import INNER as INNER_NODE
+from quintet.components.meshless_gas.clouds.cloud import Cloud
+from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.shared.threads import Team
 
 SAG = 0.3  # of the shorter spacing: how far an arm may dip into a wall that is curved
 
@@ -81,6 +86,41 @@ def spare(i: int, positions: Any, kept: int, sides: int, neighbours: Any) -> int
         if not needed:
             return slot
     return -1
+
+
+def around(
+    rows: NDArray[np.int64],
+    among: NDArray[np.int64],
+    cloud: Cloud,
+    many: int,
+    planar: bool,
+    team: Team,
+) -> NDArray[np.int64]:
+    """Nodes (m, many) near to each of some, the nearest first.
+
+    In space a node at a face of the box finds those within alone: the nearest all lie in the face,
+    and span none.
+
+    Parameters
+    ----------
+    rows : (m,)
+        Nodes.
+    among : (c,)
+        Which may be found.
+    cloud : Cloud
+    many : int
+        At most.
+    planar : bool
+    team : Team
+        Threads.
+    """
+    many = min(many, len(among))
+    found, _ = nearest(cloud.positions, among, cloud.positions[rows], many, team)
+    face = cloud.kind[rows] != INNER_NODE
+    if not planar and face.any():
+        within = among[cloud.kind[among] == INNER_NODE]
+        found[face], _ = nearest(cloud.positions, within, cloud.positions[rows[face]], many, team)
+    return found
 
 
 @njit(**EXACT)

@@ -83,7 +83,7 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform_in_space(cross):
     for _ in range(8):
         gas.step(gas.stable_dt())
     inner = gas.domain.inner
-    assert gas.moving.uncovered > 20
+    assert gas.motion.uncovered > 20
     same = [1.0, *(-MACH * OBLIQUE), PRESSURE]
     assert np.abs(gas.state.primitive[inner] - same).max() < 1e-12
 
