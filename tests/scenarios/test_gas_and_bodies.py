@@ -8,7 +8,13 @@ Run = Callable[..., dict]
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("preset", ["fixed", "half", "quick", "oblique", "no_slip_fixed"])
+@pytest.mark.parametrize(
+    "preset",
+    [
+        "fixed", "half", "quick", "oblique", "no_slip_fixed",
+        "space_fixed", "space", "space_oblique_fixed", "space_oblique",
+    ],
+)  # fmt: skip
 def test_what_a_body_feels_does_not_depend_on_who_moves(run_scene: Run, preset: str) -> None:
     found = run_scene("moving_sphere", "--preset", preset)
     assert all(one["met"] for one in found["expect"]), found["expect"]

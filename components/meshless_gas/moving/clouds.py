@@ -4,7 +4,7 @@ Velocities are stored in the laboratory's frame, and fluxes computed in that of 
 neither sources of inertia nor a change of variables between clouds is needed.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
-from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
+from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose, write_plane_areas
 from quintet.components.meshless_gas.moving.outputs import outputs, unit_force
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
@@ -49,14 +49,6 @@ BAND = 3.0  # spacings about a seam within which neighbours are found anew
 NEAR = 4  # times as many nodes are looked at as a node has neighbours
 KNOWN = 8  # nodes that tell the state of one that is uncovered; in space twice as many
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
-
-
-class Pose(NamedTuple):
-    """Where bodies are and how they move."""
-
-    centre: Array  # (b, 3) m
-    velocity: Array  # (b, 3) m/s
-    spin: Array  # (b, 3) rad/s
 
 
 class MovingClouds:
@@ -183,6 +175,11 @@ class MovingClouds:
             self.loads[:, 1:6] = 0.0
         flows[1:4] -= self.loads[:, :3].sum(axis=0)
         flows[4] += (self.loads[:, 6] - self.loads[:, 7]).sum()
+
+    def flatten(self, gradients: Array) -> None:
+        """Let states be constant around nodes that reach over a seam, if the scene asks for it."""
+        if self.params.seam_order == 1:
+            gradients[self.across] = 0.0
 
     def add_rates(self, share: float, work: Fluxes, viscous: "Viscous | None") -> None:
         """Add what symmetry about the axis asks for; sum the loads of a stage."""

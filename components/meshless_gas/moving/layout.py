@@ -15,6 +15,14 @@ from quintet.interfaces.component import Array
 Rows = NDArray[np.int64]
 
 
+class Pose(NamedTuple):
+    """Where bodies are and how they move."""
+
+    centre: Array  # (b, 3) m
+    velocity: Array  # (b, 3) m/s
+    spin: Array  # (b, 3) rad/s
+
+
 class CloudLayout(NamedTuple):
     """What of the clouds of bodies never changes; n nodes, w of them of walls."""
 

@@ -1,7 +1,7 @@
 """What a scene says about bodies that carry clouds of nodes."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -141,6 +141,8 @@ class Moving:
         Nodes that are nearer than this to one of a body's cloud are left out, in spacings.
     overlap : 1
         By how many spacings clouds overlap.
+    seam_order
+        Of the scheme at nodes that reach over a seam; 1 where a strong shock crosses it.
     cross
         In space: whether nodes that reach over no seam have neighbours along lines alone, 6 in a
         lattice and 8 in shells; else those of a whole block.
@@ -152,6 +154,7 @@ class Moving:
     hysteresis: NotNegative = 0.3
     seam_distance: NotNegative = 0.5
     overlap: Positive = 0.9
+    seam_order: Literal[1, 2] = 2
     cross: bool = False
 
     def __post_init__(self) -> None:

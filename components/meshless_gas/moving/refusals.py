@@ -72,6 +72,10 @@ def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
             "bodies on an axis of symmetry need two dimensions; found 3. Leave out axisymmetric, "
             "or dimensions."
         )
+    if params.viscous and keys.seam_order == 1:
+        raise SceneError(
+            "friction needs gradients at seams, too; found seam_order = 1. Leave it out."
+        )
     if keys.cross and (params.planar or params.box.jitter > 0.0):
         raise SceneError(
             "neighbours along lines alone are for three dimensions and lattices without jitter. "

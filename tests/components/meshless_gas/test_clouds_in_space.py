@@ -105,6 +105,21 @@ def test_uncovered_nodes_get_linear_fields_exactly_in_space():
 
 
 @pytest.mark.full
+def test_of_first_order_at_seams_states_are_constant_around_nodes_that_reach_over_them():
+    settings = scene()
+    gas = made(settings)
+    settings["moving"]["seam_order"] = 1
+    other = made(settings)
+    gas.step(gas.stable_dt())
+    other.step(other.stable_dt())
+    across = other.motion.across
+    assert len(across) > 100
+    assert not other.fluxes.gradients[across].any()
+    assert gas.fluxes.gradients[across].any()
+    assert other.fluxes.gradients[other.domain.inner].any()
+
+
+@pytest.mark.full
 def test_a_saved_state_goes_on_with_the_same_bits_in_space():
     gas = made(scene(share=1.0, direction=OBLIQUE))
     for _ in range(4):
@@ -125,6 +140,7 @@ def test_a_saved_state_goes_on_with_the_same_bits_in_space():
         ({"moving.axisymmetric": True}, "need two dimensions"),
         ({"dimensions": 2}, "three dimensions and lattices"),
         ({"box.jitter": 0.2}, "lattices without jitter"),
+        ({"viscous": True, "moving.seam_order": 1}, "gradients at seams"),
     ],
 )
 def test_what_clouds_in_space_do_not_go_with_is_refused(change, sentence):
