@@ -48,8 +48,8 @@ def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredClo
     angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
     kept = angle <= reach.sector
     number = np.where(kept, np.cumsum(kept) - 1, -1)
-    share = _areas(points, triangles)[kept]
-    near, is_edge = _adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
+    share = shares(points, triangles)[kept]
+    near, is_edge = adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
     inside = number[triangles[kept[triangles].all(axis=1)]]
     points, angle = points[kept], angle[kept]
     outer = outer_radius(angle, radius, mach, reach)
@@ -66,7 +66,7 @@ def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredClo
         reach.weight,
     )
     none = np.zeros(0, np.int32)
-    surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge, _inward(points, is_edge))
+    surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge, inward_of(points, is_edge))
     return layered(places, surface, bounds, reach.is_cross)
 
 
@@ -115,15 +115,21 @@ def _rotation() -> Array:
     return matrix
 
 
-def _areas(points: Array, faces: NDArray[np.int64]) -> Array:
-    """Share (m,) of the unit sphere of each point: a third of the triangles round it."""
+def areas_of(points: Array, faces: NDArray[np.int64]) -> Array:
+    """Areas (m,) of triangles, a third of each for each of its corners."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     flat = 0.5 * np.sqrt((normal**2).sum(axis=1))
     areas = np.zeros(len(points))
     for k in range(3):
         np.add.at(areas, faces[:, k], flat / 3.0)
-    return areas * (4.0 * math.pi / areas.sum())
+    return areas
+
+
+def shares(points: Array, faces: NDArray[np.int64]) -> Array:
+    """Share (m,) of the unit sphere of each point: a third of the triangles round it."""
+    areas = areas_of(points, faces)
+    return np.asarray(areas * (4.0 * math.pi / areas.sum()))
 
 
 def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
@@ -137,7 +143,7 @@ def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
     return found
 
 
-def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
+def adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
     """Neighbours (m, a) by triangles, padded with -1, and which points lie beside none."""
     pairs = np.vstack([faces[:, [k, (k + 1) % 3]] for k in range(3)])
     pairs = np.vstack([pairs, pairs[:, ::-1]])
@@ -152,7 +158,7 @@ def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.b
     return near, is_edge
 
 
-def _inward(points: Array, is_edge: NDArray[np.bool_]) -> Whole:
+def inward_of(points: Array, is_edge: NDArray[np.bool_]) -> Whole:
     """Nearest point that is no edge (m,), of those at an edge; itself elsewhere."""
     inner = np.flatnonzero(~is_edge)
     inward = np.arange(len(points), dtype=np.int32)
