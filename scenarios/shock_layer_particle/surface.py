@@ -23,6 +23,7 @@ import matplotlib.pyplot as plt
 CURVES = 6  # times of which curves are drawn
 EARLY = 1.6  # exponent that puts more of them early
 OFF = 10.0  # degrees from the axis, beyond which a peak is that of the ring
+STEP = 0.14  # s, between times at which the ring is told
 SETTLED = 0.3  # s after the first launch
 
 
@@ -162,6 +163,14 @@ def tell(run: Run, alone: Run | None) -> str:
             f"t = {run.times[best]:.2f} s, particle at {-run.places[best, 0]:.2f} R; "
             f"outermost at {angle[after].max():.0f} degrees"
         )
+    if run.heat is not None:
+        height, angle = ring(run.angle, run.heat)
+        rows = [run.at(time) for time in np.arange(run.launch + STEP, run.times[-1], STEP)]
+        said += [
+            f"  t = {run.times[k]:.2f} s, particle at {-run.places[k, 0]:.2f} R: ring of "
+            f"{height[k]:.2f} of Fay and Riddell's at {angle[k]:.0f} degrees"
+            for k in rows
+        ]
     return "\n".join(said)
 
 
