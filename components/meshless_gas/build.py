@@ -27,6 +27,7 @@ from quintet.components.meshless_gas.kernels.boundaries import (
     write_weights,
 )
 from quintet.components.meshless_gas.kernels.motion import write_conservative
+from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import State
 from quintet.components.meshless_gas.stencils import (
@@ -52,6 +53,7 @@ class Domain(NamedTuple):
     every: Rows  # (n,) all nodes but ghosts
     edges: Rows  # (b,) inflows, outflows and slip walls
     weights: Array  # (b, K) 1, of their neighbours within
+    outflows: Outflows
     bounding: Rows  # (a,) all boundary nodes
     patches: Array  # (p, PATCH_COLUMNS), what the scene says of each boundary
     mirrored: Rows  # (s,) nodes of walls that are planes of symmetry
@@ -81,6 +83,7 @@ def domain(params: MeshlessGasParams, team: Team) -> Domain:
         every=np.arange(cloud.nodes, dtype=np.int32),
         edges=edges,
         weights=weights,
+        outflows=outflows(cloud, neighbours),
         bounding=_rows(kind != INNER),
         patches=patches,
         mirrored=_rows(is_mirrored(kind)),

@@ -26,6 +26,7 @@ from quintet.components.meshless_gas.kernels.motion import (
     write_bounds,
     write_sound,
 )
+from quintet.components.meshless_gas.kernels.outflows import continue_outflows
 from quintet.components.meshless_gas.kernels.residuals import write_residuals
 from quintet.components.meshless_gas.limiters import limiter_of
 from quintet.components.meshless_gas.node_motion import node_motion
@@ -228,6 +229,11 @@ class MeshlessGas(Component):
             own.weights, own.patches, self.frame, self.gamma, self.params.gas.gas_constant,
             work.primitive,
         )  # fmt: skip
+        if len(own.outflows.rows):
+            continue_outflows(
+                *own.outflows, cloud.positions, cloud.patch, own.patches, cloud.normals,
+                self.gamma, work.primitive,
+            )  # fmt: skip
         if self.viscous is not None:
             self.viscous.hold(work.primitive)
         self.motion.hold_walls(work.primitive)
@@ -293,7 +299,7 @@ class MeshlessGas(Component):
         given: dict[str, Array] = {}
         ports_wanted = {key.partition(".")[0] for key in wanted}
         if "balance" in ports_wanted:
-            given.update(balance(self.state, self.domain, self.fluxes, self.gamma, self.team))
+            given.update(balance(self.params, self.state, self.domain, self.fluxes, self.team))
         if "error" in ports_wanted:
             given.update(errors(self.params, self.state, self.domain.cloud, self.team))
         if "probes" in ports_wanted:
@@ -330,7 +336,7 @@ class MeshlessGas(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""
-        return totals(self.state, self.domain.cloud, self.team)
+        return totals(self.params, self.state, self.domain.cloud, self.team)
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""

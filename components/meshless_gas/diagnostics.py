@@ -29,22 +29,26 @@ def conserved(state: State, cloud: Cloud, team: Team) -> Array:
     return found
 
 
-def balance(state: State, domain: Domain, fluxes: Fluxes, gamma: float, team: Team) -> Fields:
+def balance(
+    params: MeshlessGasParams, state: State, domain: Domain, fluxes: Fluxes, team: Team
+) -> Fields:
     """Fields of the port `balance`."""
-    cloud, entered = domain.cloud, state.entered
-    now = conserved(state, cloud, team)
+    counted = np.ones(5)
+    if params.has_rings:  # across the axis whole rings have no momentum
+        counted[2:4] = 0.0
+    entered, now = counted * state.entered, counted * conserved(state, domain.cloud, team)
     mass, energy = state.begun[0], state.begun[4]
     scale = np.array([mass, *[np.sqrt(2.0 * mass * energy)] * 3, energy])
-    drift = (now - state.begun - entered) / scale
-    through = _through(domain, fluxes.primitive, gamma)
+    drift = (now - counted * state.begun - entered) / scale
+    through = _through(domain, fluxes.primitive, params.gas.gamma)
     inflow, outflow = through[through > 0.0].sum(), -through[through < 0.0].sum()
     return {
         "balance.mass": now[:1],
         "balance.momentum": now[None, 1:4],
         "balance.energy": now[4:],
-        "balance.mass_entered": entered[:1].copy(),
-        "balance.momentum_entered": entered[None, 1:4].copy(),
-        "balance.energy_entered": entered[4:].copy(),
+        "balance.mass_entered": entered[:1],
+        "balance.momentum_entered": entered[None, 1:4],
+        "balance.energy_entered": entered[4:],
         "balance.mass_drift": drift[:1],
         "balance.momentum_drift": drift[None, 1:4],
         "balance.energy_drift": drift[4:],
@@ -105,16 +109,18 @@ def mach(primitive: Array, gas: Gas) -> Array:
     return np.asarray(np.sqrt(square * primitive[:, 0] / (gas.gamma * primitive[:, 4])))
 
 
-def totals(state: State, cloud: Cloud, team: Team) -> Totals:
+def totals(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) -> Totals:
     """Mass, momentum and energies of all nodes."""
     volumes, positions = cloud.volumes[: cloud.nodes], cloud.positions[: cloud.nodes]
     momenta = volumes[:, None] * state.conservative[:, 1:4]
     kinetic = 0.5 * float((momenta * state.primitive[:, 1:4]).sum())
-    now = conserved(state, cloud, team)
+    now, turning = conserved(state, cloud, team), np.cross(positions, momenta).sum(axis=0)
+    if params.has_rings:
+        now[2:4], turning[:] = 0.0, 0.0
     return Totals(
         mass=float(now[0]),
         momentum=now[1:4],
-        angular_momentum=np.cross(positions, momenta).sum(axis=0),
+        angular_momentum=turning,
         kinetic=kinetic,
         internal=float(now[4]) - kinetic,
         work=state.work,

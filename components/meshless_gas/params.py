@@ -238,16 +238,10 @@ class MeshlessGasParams:
                 "local_steps and steady are for a flow round what stands still; found particles "
                 "or moving. Leave out local_steps and steady."
             )
-        if (
-            self.moving is not None
-            and self.planar
-            and not self.moving.axisymmetric
-            and any(one.is_cut for one in self.moving.bodies)
-        ):
+        if self.moving is not None and self.planar and self.moving.is_cut:
             found.append(
                 "moving: clouds that end at a sector are those of spheres: on an axis of symmetry, "
-                "or in three dimensions. Say axisymmetric = true or dimensions = 3, or leave out "
-                "sector."
+                "or in 3 dimensions. Say axisymmetric = true or dimensions = 3, or leave it out."
             )
         if self.moving is not None and (self.probes or self.fronts):
             found.append(
@@ -357,6 +351,11 @@ class MeshlessGasParams:
     def kind_of(self, face: str) -> str:
         """Kind of the boundary at a face of the box."""
         return self.boundaries[face].kind if face in self.boundaries else "periodic"
+
+    @property
+    def has_rings(self) -> bool:
+        """Whether sums are those of whole rings about the axis x."""
+        return self.axisymmetric or (self.moving is not None and self.moving.axisymmetric)
 
     @property
     def planar(self) -> bool:

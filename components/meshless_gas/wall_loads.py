@@ -38,6 +38,9 @@ class WallLoads:
         self.rows = np.flatnonzero(chosen)
         self.places = cloud.positions[self.rows]
         self.areas = cloud.areas[self.rows]
+        if params.box is None:  # where a wall ends its node has a share of what gas leaves through
+            normal = cloud.normals[self.rows]
+            self.areas = (self.areas * normal).sum(axis=1)[:, None] * normal
         self.sizes = np.sqrt((self.areas**2).sum(axis=1))
         self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
         self.stream = free_stream(params)

@@ -24,6 +24,7 @@ CURVES = 6  # times of which curves are drawn
 EARLY = 1.6  # exponent that puts more of them early
 OFF = 10.0  # degrees from the axis, beyond which a peak is that of the ring
 STEP = 0.14  # s, between times at which the ring is told
+BEGUN = 0.1  # s after the last launch
 SETTLED = 0.3  # s after the first launch
 
 
@@ -36,13 +37,14 @@ class Run:
         self.name = folder.name
         self.has_particles = len(bodies) > 1
         launches = [one.get("launch", 0.0) for one in scene["components"]["particle"]["spheres"]]
-        self.launch = min(launches)
+        self.launch, self.last_launch = min(launches), max(launches)
         with Recording(folder) as recording:
             self.times = recording.times("gas")
             pressure = recording.field("gas", "surface.pressure")
             heat = recording.field("gas", "surface.heat_ratio")
             angle = recording.field("gas", "surface.angle")[0]
             self.places = recording.field("gas", "bodies.position")[:, 1:, 0]
+            self.forces = recording.field("gas", "bodies.force")[:, 1:, 0]
         ends = np.flatnonzero(np.diff(angle) < 0.0)
         nodes = int(ends[0]) + 1 if len(ends) else len(angle)  # of the first body
         self.angle = np.degrees(angle[:nodes])
@@ -162,6 +164,14 @@ def tell(run: Run, alone: Run | None) -> str:
             f"  largest {name}: {height[best] / rest:.2f} at {angle[best]:.0f} degrees, "
             f"t = {run.times[best]:.2f} s, particle at {-run.places[best, 0]:.2f} R; "
             f"outermost at {angle[after].max():.0f} degrees"
+        )
+    if run.places.shape[1] > 1:
+        flight = run.times > run.last_launch + BEGUN
+        speeds = np.gradient(run.places, run.times, axis=0)[-3]
+        said.append(
+            f"  at t = {run.times[-1]:.2f} s at {np.round(-run.places[-1], 2).tolist()} R with "
+            f"{np.round(speeds, 3).tolist()} m/s; mean force since both fly "
+            f"{np.round(run.forces[flight].mean(axis=0), 3).tolist()} N"
         )
     if run.heat is not None:
         height, angle = ring(run.angle, run.heat)

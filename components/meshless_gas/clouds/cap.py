@@ -12,6 +12,7 @@ from quintet.components.meshless_gas.clouds.layers import (
     LayeredCloud,
     Sides,
     SurfaceGrid,
+    heights,
     kinds_of,
     layered,
 )
@@ -46,11 +47,13 @@ def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredClo
     centre, radius, mach = sphere
     points, triangles = geodesic(max(1, round(reach.rays * ARC / math.pi)))
     angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
-    kept = angle <= reach.sector
+    whole = _without_ears(triangles[(angle <= reach.sector)[triangles].all(axis=1)])
+    kept = np.zeros(len(points), bool)
+    kept[whole] = True
     number = np.where(kept, np.cumsum(kept) - 1, -1)
-    share = shares(points, triangles)[kept]
+    share = shares(points, triangles, whole)[kept]
     near, is_edge = adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
-    inside = number[triangles[kept[triangles].all(axis=1)]]
+    inside = number[whole]
     points, angle = points[kept], angle[kept]
     outer = outer_radius(angle, radius, mach, reach)
     distance = geometric(reach.first, outer - radius, reach.layers)
@@ -63,10 +66,11 @@ def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredClo
         points,
         share * (radius + distance) ** 2,
         _towards(places[-1], inside),
+        rim(places, inside),
         reach.weight,
     )
     none = np.zeros(0, np.int32)
-    surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge, inward_of(points, is_edge))
+    surface = SurfaceGrid(near, none, np.zeros((0, 3, 3)), is_edge)
     return layered(places, surface, bounds, reach.is_cross)
 
 
@@ -115,21 +119,17 @@ def _rotation() -> Array:
     return matrix
 
 
-def areas_of(points: Array, faces: NDArray[np.int64]) -> Array:
-    """Areas (m,) of triangles, a third of each for each of its corners."""
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    flat = 0.5 * np.sqrt((normal**2).sum(axis=1))
+def shares(points: Array, every: NDArray[np.int64], faces: NDArray[np.int64]) -> Array:
+    """Share (m,) of the unit sphere of each point: a third of those of its triangles in `faces`."""
     areas = np.zeros(len(points))
     for k in range(3):
-        np.add.at(areas, faces[:, k], flat / 3.0)
-    return areas
+        np.add.at(areas, faces[:, k], _flat(points, faces) / 3.0)
+    return areas * (4.0 * math.pi / _flat(points, every).sum())
 
 
-def shares(points: Array, faces: NDArray[np.int64]) -> Array:
-    """Share (m,) of the unit sphere of each point: a third of the triangles round it."""
-    areas = areas_of(points, faces)
-    return np.asarray(areas * (4.0 * math.pi / areas.sum()))
+def _flat(points: Array, faces: NDArray[np.int64]) -> Array:
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    return np.asarray(0.5 * np.sqrt((np.cross(b - a, c - a) ** 2).sum(axis=1)))
 
 
 def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
@@ -158,10 +158,32 @@ def adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bo
     return near, is_edge
 
 
-def inward_of(points: Array, is_edge: NDArray[np.bool_]) -> Whole:
-    """Nearest point that is no edge (m,), of those at an edge; itself elsewhere."""
-    inner = np.flatnonzero(~is_edge)
-    inward = np.arange(len(points), dtype=np.int32)
-    for one in np.flatnonzero(is_edge):
-        inward[one] = inner[((points[inner] - points[one]) ** 2).sum(axis=1).argmin()]
-    return inward
+def _sides(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Sides (s, 3) of one triangle alone, and its third corner."""
+    sides = np.vstack([np.roll(faces, -k, axis=1) for k in range(3)])
+    _, first, often = np.unique(
+        np.sort(sides[:, :2], axis=1), axis=0, return_index=True, return_counts=True
+    )
+    return np.asarray(sides[first[often == 1]])
+
+
+def _without_ears(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Triangles but for those whose three corners lie at the edge: none of them is within."""
+    while True:
+        at_edge = np.isin(faces, _sides(faces)[:, :2]).all(axis=1)
+        if not at_edge.any():
+            return faces
+        faces = faces[~at_edge]
+
+
+def rim(places: Array, faces: NDArray[np.int64]) -> Array:
+    """Areas (layers, m, 3) m2 into the gas over the grid's edge: half of a side to each end."""
+    a, b, c = _sides(faces).T
+    ray = places[-1] - places[0]
+    up = heights(places)[:, :, None] * ray / np.sqrt((ray**2).sum(axis=1))[:, None]
+    found = np.zeros(places.shape).transpose(1, 0, 2)
+    for one in (a, b):
+        area = 0.5 * np.cross(places[:, b] - places[:, a], up[:, one])
+        area *= np.sign((area * (places[:, c] - places[:, a])).sum(axis=2))[:, :, None]
+        np.add.at(found, one, area.transpose(1, 0, 2))
+    return found.transpose(1, 0, 2)

@@ -26,7 +26,6 @@ class SurfaceGrid(NamedTuple):
     ghost_source: Whole  # (g,) node that a ghost copies
     ghost_turn: Array  # (g, 3, 3)
     is_edge: NDArray[np.bool_]  # (m,) whether nothing is beyond it
-    inward: Whole  # (m,) the neighbour towards the middle of one at an edge; itself elsewhere
 
 
 class Sides(NamedTuple):
@@ -46,6 +45,7 @@ class Bounds(NamedTuple):
     normals: Array  # (m, 3) 1, of the first layer, into the gas
     areas: Array  # (layers, m) m2, of each layer; of whole rings where the flow is axisymmetric
     beyond: Array  # (m, 3) m2, of the last layer, into the gas
+    sides: Array  # (layers, m, 3) m2, of what is between them at an edge, into the gas; 0 elsewhere
     weight: float  # of the least squares
 
 
@@ -87,7 +87,7 @@ def layered(
     if is_cross:
         neighbours = _without_diagonals(neighbours, _neighbours(layers, surface, True), kind)
     volumes = _volumes(places, bounds.areas)
-    normals, areas = _faces(places, surface, bounds, volumes)
+    normals, areas = _faces(places, surface, bounds)
     whole = len(positions)
     padded = np.repeat(np.arange(whole, dtype=np.int32)[:, None], neighbours.shape[1], 1)
     padded[:inner] = neighbours
@@ -186,23 +186,27 @@ def _volumes(places: Array, areas: Array) -> Array:
     return volumes.ravel()
 
 
-def _faces(
-    places: Array, surface: SurfaceGrid, bounds: Bounds, volumes: Array
-) -> tuple[Array, Array]:
+def heights(places: Array) -> Array:
+    """Height (layers, m) m of each node's part of its ray: to the middles of the gaps beside it."""
+    gap = np.sqrt((np.diff(places, axis=0) ** 2).sum(axis=2))
+    found = np.zeros(places.shape[:2])
+    found[:-1] += 0.5 * gap
+    found[1:] += 0.5 * gap
+    return found
+
+
+def _faces(places: Array, surface: SurfaceGrid, bounds: Bounds) -> tuple[Array, Array]:
     """Normals (n, 3) into the gas and areas (n, 3) m2 along them, of boundary nodes."""
     layers, count = places.shape[:2]
-    normals, areas = np.zeros((2, layers, count, 3))
+    normals, areas = np.zeros((layers, count, 3)), bounds.sides.copy()
     normals[0] = bounds.normals
-    normals[-1] = bounds.beyond / np.sqrt((bounds.beyond**2).sum(axis=1))[:, None]
-    areas[0] = bounds.normals * bounds.areas[0][:, None]
-    areas[-1] = bounds.beyond
+    normals[-1] = _unit(bounds.beyond)
+    areas[0] += bounds.normals * bounds.areas[0][:, None]
+    areas[-1] += bounds.beyond
     edge = np.flatnonzero(surface.is_edge)
-    beside = places[:, surface.inward[edge]] - places[:, edge]
-    ray = places[-1, edge] - places[0, edge]
-    ray /= np.sqrt((ray**2).sum(axis=1))[:, None]
-    beside -= (beside * ray).sum(axis=2)[:, :, None] * ray  # faces lie along rays
-    gap = np.sqrt((beside**2).sum(axis=2))[:, :, None]
-    beside /= gap
-    normals[1:, edge] = beside[1:]
-    areas[:, edge] += beside * volumes.reshape(layers, count)[:, edge, None] / (0.5 * gap)
+    normals[1:, edge] = _unit(bounds.sides[1:, edge])
     return normals.reshape(-1, 3), areas.reshape(-1, 3)
+
+
+def _unit(vectors: Array) -> Array:
+    return np.asarray(vectors / np.sqrt((vectors**2).sum(axis=-1))[..., None])

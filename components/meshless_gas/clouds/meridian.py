@@ -80,6 +80,7 @@ def sphere_meridian(sphere: SphereInStream, reach: Reach, sides: Sides) -> Layer
         outward,
         ring * (radius + distance) ** 2,
         _frusta(np.append(angle - 0.5 * step, bound[-1]), radius, mach, reach),
+        _cone(angle[-1], radius + distance, surface),
         reach.weight,
     )
     return layered(places, surface, bounds, reach.is_cross)
@@ -92,6 +93,18 @@ def _frusta(angle: Array, radius: float, mach: float, reach: Reach) -> Array:
     along = math.pi * (z[1:] ** 2 - z[:-1] ** 2)
     across = -math.pi * (z[1:] + z[:-1]) * (x[1:] - x[:-1])
     return np.stack([along, np.zeros(len(along)), across], axis=1)
+
+
+def _cone(angle: float, radii: Array, surface: SurfaceGrid) -> Array:
+    """Areas (layers, m, 3) m2 into the gas of the cone that the last ray sweeps, layer by layer."""
+    sides = np.zeros((*radii.shape, 3))
+    if surface.is_edge[-1]:
+        ends = np.concatenate(
+            [radii[:1, -1], 0.5 * (radii[1:, -1] + radii[:-1, -1]), radii[-1:, -1]]
+        )
+        area = math.pi * math.sin(angle) * np.diff(ends**2)
+        sides[:, -1] = area[:, None] * np.array([-math.sin(angle), 0.0, -math.cos(angle)])
+    return sides
 
 
 def last_patch(angle: Array, outer: Array, reach: Reach, patches: Mapping[str, int]) -> Whole:
@@ -124,15 +137,13 @@ def _meridian_surface(angle: Array, step: float, is_closed: bool) -> SurfaceGrid
     else:
         after[-1] = -1
     neighbours = np.stack([before, after, ray + count, ray + 2 * count], axis=1)
-    is_edge, inward = np.zeros(count, bool), ray.copy()
-    if not is_closed:
-        is_edge[-1], inward[-1] = True, count - 2
+    is_edge = np.zeros(count, bool)
+    is_edge[-1] = not is_closed
     return SurfaceGrid(
         neighbours.astype(np.int32),
         source.astype(np.int32),
         rotations(turns),
         is_edge,
-        inward.astype(np.int32),
     )
 
 

@@ -12,6 +12,7 @@ from quintet.components.meshless_gas.clouds.layers import (
     LayeredCloud,
     Sides,
     SurfaceGrid,
+    heights,
     kinds_of,
     layered,
 )
@@ -25,13 +26,11 @@ def line(count: int) -> SurfaceGrid:
     neighbours = np.stack([node - 1, node + 1], axis=1)
     neighbours[-1, 1] = -1
     is_edge = (node == 0) | (node == count - 1)
-    inward = np.clip(node, 1, count - 2)
     return SurfaceGrid(
         neighbours.astype(np.int32),
         np.zeros(0, np.int32),
         np.zeros((0, 3, 3)),
         is_edge,
-        inward.astype(np.int32),
     )
 
 
@@ -78,7 +77,10 @@ def wall_line(
     share[1:] += 0.5 * length
     areas = np.repeat(share[None], len(distance), axis=0)
     normals = np.tile(up, (len(foot), 1))
-    bounds = Bounds(*numbers, kinds, normals, areas, -up * areas[-1][:, None], weight)
+    along = span / math.hypot(span[0], span[2])
+    sides = np.zeros(places.shape)
+    sides[:, [0, -1]] = heights(places[:, [0, -1]])[:, :, None] * np.stack([along, -along])
+    bounds = Bounds(*numbers, kinds, normals, areas, -up * areas[-1][:, None], sides, weight)
     return layered(places, surface, bounds, is_cross)
 
 

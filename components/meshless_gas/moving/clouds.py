@@ -14,6 +14,7 @@ from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW
 from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.kernels.motion import write_conservative
+from quintet.components.meshless_gas.kernels.outflows import uncovered
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose, write_plane_areas
@@ -60,6 +61,7 @@ class MovingClouds:
         assert params.moving is not None
         self.params, self.domain, self.layout, self.team = params.moving, domain, layout, team
         self.gamma, self.unit_force = params.gas.gamma, unit_force(params)
+        self.outflows = domain.outflows  # of the box, whether left out or not
         self.unit_heat = unit_heat(params)
         self.kept = layout.kept  # neighbours of a node across seams
         bodies, cloud = self.params.bodies, domain.cloud
@@ -261,6 +263,7 @@ class MovingClouds:
         self.domain = self.domain._replace(inner=inner, every=every)
         if own.is_cut.any():  # a cloud that reaches the box's face covers nodes of it
             cloud.areas[: cloud.nodes] = np.where(active[:, None], own.areas, 0.0)
+            self.domain = self.domain._replace(outflows=uncovered(self.outflows, active))
             if own.planar:
                 wall = self.radii[own.is_cut].max()
                 there = own.plane[active[own.plane]]

@@ -185,6 +185,11 @@ class Moving:
                         f"{one.angular_velocity:g} rad/s. Leave out angular_velocity."
                     )
 
+    @property
+    def is_cut(self) -> bool:
+        """Whether a cloud ends at a sector, and about no axis of symmetry."""
+        return not self.axisymmetric and any(one.is_cut for one in self.bodies)
+
     def expected_count(self, dimensions: int) -> int:
         """Nodes of all bodies' clouds."""
         if dimensions == 3:

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.clouds.cap import (
     ARC,
     adjacent,
-    areas_of,
     geodesic,
-    inward_of,
+    rim,
+    shares,
 )
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, SLIP
 from quintet.components.meshless_gas.clouds.layers import Bounds, SurfaceGrid, layered
@@ -42,11 +42,11 @@ def shell(body: Body, region: int, patch: int, is_cross: bool) -> Ring:
     near, is_edge = adjacent(faces, count)
     if body.is_cut:
         points = _ended(points, is_edge, body.sector)
-    inward = inward_of(points, is_edge)
     heights = heights_over(body, np.arccos(np.clip(-points[:, 0], -1.0, 1.0)))
     radii = body.radius + heights
-    share = areas_of(points, faces[(faces >= 0).all(axis=1)])
-    share *= 2.0 * math.pi * (1.0 - math.cos(body.sector)) / share.sum()
+    whole = faces[(faces >= 0).all(axis=1)]
+    share = shares(points, whole, whole) * 0.5 * (1.0 - math.cos(body.sector))
+    places = radii[:, :, None] * points
     none = np.zeros(count, np.int32)
     bounds = Bounds(
         first=none + 1,
@@ -56,10 +56,11 @@ def shell(body: Body, region: int, patch: int, is_cross: bool) -> Ring:
         normals=points,
         areas=share * radii**2,
         beyond=-points,
+        sides=rim(places, whole) if body.is_cut else np.zeros(places.shape),
         weight=body.weight,
     )
-    grid = SurfaceGrid(near, none[:0], np.zeros((0, 3, 3)), is_edge, inward)
-    made = layered(radii[:, :, None] * points, grid, bounds, is_cross)
+    grid = SurfaceGrid(near, none[:0], np.zeros((0, 3, 3)), is_edge)
+    made = layered(places, grid, bounds, is_cross)
     kind = made.cloud.kind
     # The last shell is no boundary, and the wall's edge no outflow.
     areas = np.where((kind != INNER)[:, None], made.cloud.areas, 0.0)
@@ -73,7 +74,7 @@ def shell(body: Body, region: int, patch: int, is_cross: bool) -> Ring:
     )
     leaving = np.flatnonzero(kind == OUTFLOW)
     layer, foot = np.divmod(leaving, count)
-    before = layer * count + inward[foot].astype(np.int64)
+    before = layer * count + _inward(points, is_edge)[foot]
     return Ring(cloud, made.neighbours, heights.ravel(), count, leaving, before)
 
 
@@ -93,3 +94,12 @@ def _ended(points: Array, is_edge: NDArray[np.bool_], sector: float) -> Array:
     aside = points[:, 1:] / np.hypot(points[:, 1], points[:, 2])[:, None]
     end = np.column_stack([np.full(len(points), -math.cos(sector)), math.sin(sector) * aside])
     return np.where(is_edge[:, None], end, points)
+
+
+def _inward(points: Array, is_edge: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Nearest point that is no edge (m,), of those at an edge; itself elsewhere."""
+    within = np.flatnonzero(~is_edge)
+    inward = np.arange(len(points))
+    for one in np.flatnonzero(is_edge):
+        inward[one] = within[((points[within] - points[one]) ** 2).sum(axis=1).argmin()]
+    return inward

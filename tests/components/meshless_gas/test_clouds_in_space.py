@@ -177,3 +177,26 @@ def test_shells_that_end_in_a_plane_fill_half_of_their_space():
     assert (apart[:, 0] < 0.0).all()
     assert np.isin(made.cloud.kind[made.before], 0).all()
     assert np.sqrt((apart**2).sum(axis=1)).max() < 0.5
+
+
+def drag(share, direction):
+    """Mean coefficient of drag along a direction over the last two of four radii of relative way."""
+    settings = scene(share=share, direction=direction)
+    body = settings["moving"]["bodies"][0]
+    body |= {"rays": 36, "spacing": 0.2, "thickness": 0.75}
+    body.pop("first")
+    settings["box"]["spacing"] = 0.2
+    gas, end, found = made(settings), 4.0 / MACH, []
+    while gas.state.time < end - 1e-12:
+        gas.step(min(gas.stable_dt(), end - gas.state.time))
+        if gas.state.time > 0.5 * end:
+            found.append(gas.give(frozenset(["bodies.coefficient"]))["bodies.coefficient"][0])
+    return float(np.mean(found, axis=0) @ np.array(direction))
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("direction", [(1.0, 0.0, 0.0), tuple(OBLIQUE)])
+def test_a_sphere_that_flies_in_space_has_the_drag_of_one_in_a_stream(direction):
+    fixed = drag(0.0, direction)
+    assert drag(1.0, direction) == pytest.approx(fixed, rel=0.02)
+    assert drag(0.5, direction) == pytest.approx(fixed, rel=0.02)
