@@ -180,7 +180,7 @@ def test_shells_that_end_in_a_plane_fill_half_of_their_space():
 
 
 def drag(share, direction):
-    """Mean coefficient of drag along a direction over the last two of four radii of relative way."""
+    """Mean coefficient of drag along a direction, over the last two of four radii of way."""
     settings = scene(share=share, direction=direction)
     body = settings["moving"]["bodies"][0]
     body |= {"rays": 36, "spacing": 0.2, "thickness": 0.75}
