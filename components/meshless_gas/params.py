@@ -248,12 +248,6 @@ class MeshlessGasParams:
                 "probes and fronts are read at nodes that stand still; found moving. Leave out "
                 "probes and fronts."
             )
-        if self.moving is not None and self.initial is None:
-            found.append(
-                "bodies that carry clouds meet the gas of initial, whose pressure and velocity "
-                "their coefficients refer to; found none. Give initial, and zones, in place of "
-                "riemann."
-            )
         layered = self.plate or self.sphere
         if layered is not None and layered.layers.jitter > 0.0 and not self.axisymmetric:
             found.append(
@@ -312,8 +306,8 @@ class MeshlessGasParams:
         found = []
         if (self.initial is None) == (self.riemann is None):
             found.append("the gas begins with initial or riemann, one of them. Correct it.")
-        if self.riemann is not None and (self.vortex is not None or self.zones):
-            found.append("riemann is all that the gas begins with: leave out vortex and zones.")
+        if self.riemann is not None and (self.vortex or self.zones or self.moving):
+            found.append("riemann is for a tube alone: leave out vortex, zones and moving.")
         if self.vortex is not None and self.initial is not None:
             share = (self.gas.gamma - 1.0) / (2.0 * self.gas.gamma) * math.e
             density, *_, pressure = self.initial.primitive(self.gas)

@@ -18,7 +18,7 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
     """Fields of the ports `bodies`, `surface`, `load` and `heat`."""
     own, pose, driven = moving.layout, moving.pose, moving.driven
     pressure, force = primitive[own.walls, 4], moving.summed[:, :3] + moving.base_force
-    bodies, held, count = range(len(moving.radii)), moving.friction, len(own.walls)
+    bodies, held, count = range(len(own.radii)), moving.friction, len(own.walls)
     heat = np.zeros(count) if held is None else held.heat.copy()
     return {
         "bodies.position": pose.centre.copy(),
@@ -28,7 +28,7 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
         "bodies.heat": moving.summed[:, 7].copy(),
         "bodies.coefficient": force / moving.unit_force[:, None],
         "bodies.highest_pressure": np.array([pressure[own.body == b].max() for b in bodies]),
-        "bodies.uncovered": np.full(len(bodies), float(moving.uncovered)),
+        "bodies.uncovered": np.full(len(bodies), float(moving.holes.uncovered)),
         "surface.position": moving.domain.cloud.positions[own.walls],
         "surface.body": own.body.astype(float),
         "surface.angle": np.arctan2(_aside(own.arms, own.planar), -own.arms[:, 0]),

@@ -12,19 +12,17 @@ from quintet.interfaces.errors import SceneError, StepError
 BLOCK = 8  # fewest neighbours of a node
 
 
-def refuse_places(
-    layout: CloudLayout, radii: Array, thickness: Array, spacing: Array, centre: Array
-) -> None:
+def refuse_places(layout: CloudLayout, centre: Array) -> None:
     """Refuse bodies that touch, or whose cloud would leave the box.
 
     Parameters
     ----------
     layout : CloudLayout
-    radii, thickness, spacing : (b,) m
-        Of bodies and their clouds.
     centre : (b, 3) m
+        Of bodies.
     """
-    reach = radii + thickness + 2.0 * spacing
+    radii, thickness = layout.radii, layout.thickness
+    reach = radii + thickness + 2.0 * layout.spacing
     for b, place in enumerate(centre):
         for d, side in layout.open_sides:
             if layout.is_cut[b] and (d, side) == (0, 1):  # the cloud ends at this face

@@ -37,7 +37,7 @@ POINTS = {"drag": "stokes"}
         ),
         (
             {"box": BOX, "moving": {"bodies": [BODY]}, "initial": None, "riemann": TUBE},
-            "in place of riemann",
+            "for a tube alone",
         ),
         ({}, "found none"),
     ],

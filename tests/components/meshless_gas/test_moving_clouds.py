@@ -109,7 +109,7 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.domain.inner
-    assert gas.motion.uncovered > 20
+    assert gas.motion.holes.uncovered > 20
     assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
@@ -128,7 +128,7 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.domain.inner
-    assert gas.motion.uncovered > 10
+    assert gas.motion.holes.uncovered > 10
     assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
@@ -254,7 +254,7 @@ def test_hysteresis_keeps_nodes_from_coming_and_going():
         gas = made(scene(share=1.0, hysteresis=hysteresis))
         for _ in range(60):
             gas.step(gas.stable_dt())
-        counts.append(gas.motion.uncovered)
+        counts.append(gas.motion.holes.uncovered)
     assert counts[1] < 0.8 * counts[0]
 
 
@@ -297,15 +297,15 @@ def test_a_body_that_leaves_the_box_is_refused():
 
 def test_coefficients_are_written_anew_only_where_clouds_have_moved(monkeypatch):
     gas = made(scene(bodies=two(0.5), gas=[0.0, 0.0, 0.0]))
-    one, written = gas.motion, []
+    one, seams, written = gas.motion, gas.motion.seams, []
     before, region = one.domain.stencils.coefficients.copy(), one.domain.cloud.region
-    fit = one._fit
-    monkeypatch.setattr(one, "_fit", lambda rows: (written.append(rows), fit(rows)))
+    fit = seams.fit
+    monkeypatch.setattr(seams, "fit", lambda rows: (written.append(rows), fit(rows)))
     one.place(1, 1e-3)
     near = region[one.domain.stencils.neighbours[written[0]]]
-    assert 0 < len(written[0]) < len(one.across)
+    assert 0 < len(written[0]) < len(seams.across)
     assert ((near == 2).any(axis=1) | (region[written[0]] == 2)).all()
-    fit(one.across)
+    fit(seams.across)
     every = one.domain.stencils.coefficients.copy()
     assert not np.array_equal(every, before)
     one.domain.stencils.coefficients[:] = before
