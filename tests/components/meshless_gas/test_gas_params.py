@@ -12,7 +12,20 @@ BODY = {"radius": 0.1, "position": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1
 FORE = BODY | {"sector": 1.5707963267948966, "position": [1.0, 0.0, 0.0]}
 DRIVEN, THICK = {"is_driven": True}, {"first_at_sector": 0.09}
 CUT = {"axisymmetric": True, "bodies": [FORE]}
+ROUND = {"radius": 1.0, "rays": 8, "layers": {"count": 6}}
 POINTS = {"drag": "stokes"}
+
+
+def sphere(velocity, axisymmetric=True, **keys):
+    """A sphere in a stream of a velocity [m/s]."""
+    ends = {"wall": {"kind": "slip"}, "exit": {"kind": "outflow"}}
+    far = {"kind": "inflow", "state": REST | {"velocity": velocity}}
+    return {
+        "dimensions": 2 if axisymmetric else 3,
+        "axisymmetric": axisymmetric,
+        "sphere": ROUND | keys,
+        "boundaries": ends | {"far": far},
+    }
 
 
 @pytest.mark.parametrize(
@@ -34,6 +47,10 @@ POINTS = {"drag": "stokes"}
             {"box": BOX, "moving": CUT | {"bodies": [FORE | {"first_at_sector": 0.09}]}},
             "no thicker",
         ),
+        (sphere([3.0, 0.0, 0.0], centre=[5.0, 0.0, 0.1]), "axis of symmetry, y = z = 0; found"),
+        (sphere([-3.0, 0.0, 1.0]), "must flow along x"),
+        (sphere([-3.0, 0.0, 0.0], axisymmetric=False), "must flow along x"),
+        (sphere([3.0, 0.1, 0.0], axisymmetric=False), "must flow along x"),
         ({}, "found none"),
     ],
 )
@@ -41,3 +58,9 @@ def test_what_does_not_go_together_is_refused(keys, said):
     table = {"gas": {"gas_constant": 1.0}, "initial": REST, **keys}
     _, mistakes = read(MeshlessGasParams, table, "gas")
     assert any(said in one for one in mistakes), mistakes
+
+
+def test_a_sphere_in_space_may_lie_off_the_axis_x():
+    table = sphere([3.0, 0.0, 0.0], axisymmetric=False, centre=[5.0, 1.0, 0.1])
+    _, mistakes = read(MeshlessGasParams, {"initial": REST} | table, "gas")
+    assert not mistakes, mistakes
