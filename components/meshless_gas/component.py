@@ -79,7 +79,7 @@ class MeshlessGas(Component):
         self.motion = node_motion(params, self.team)
         self.domain = self.motion.domain
         cloud = self.domain.cloud
-        self.state = initial_state(params, cloud)
+        self.state = initial_state(params, cloud, self.team)
         self.motion.soften_start(self.state)
         self.fluxes = Fluxes.empty(cloud.nodes, len(cloud.owner))
         self.bound = 0.0  # s, step that all nodes bear at a Courant number of 1
