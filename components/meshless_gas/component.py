@@ -108,7 +108,8 @@ class MeshlessGas(Component):
         self._take_over()
 
     def bind(self, static: Fields, joined: Keys) -> None:
-        """Learn how heavy particles are."""
+        """Learn how heavy particles are, and whether bodies give their heat to a partner."""
+        self.motion.bind(joined)
         if self.particles is not None:
             self.particles.bind(static)
 
@@ -190,7 +191,7 @@ class MeshlessGas(Component):
             self.viscous.domain = self.domain
 
     def _outer_power(self) -> float:
-        """Energy [W] that comes in now, but for what bodies do that a partner moves."""
+        """Energy [W] that comes in now, but for what links bring."""
         return float(self.fluxes.flows[4]) - self.motion.power_of_partners()
 
     def _settle(self) -> None:

@@ -32,7 +32,7 @@ from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.components.meshless_gas.stencils import SOUND, write_coefficients
 from quintet.components.shared.threads import Team
-from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.component import Array, Fields, Keys
 from quintet.interfaces.errors import StepError
 
 if TYPE_CHECKING:
@@ -74,6 +74,7 @@ class MovingClouds:
             np.array([(0.0, one.angular_velocity, 0.0) for one in bodies]),
         )
         self.driven = np.array([k for k, one in enumerate(bodies) if one.is_driven], np.int64)
+        self.heat_is_joined = False  # whether a partner takes the heat of driven bodies
         self.given: Array | None = None  # (driven, 3) m, places at the middle of the coming step
         self.radii = np.array([one.radius for one in bodies])
         self.spacing = np.array([one.spacing for one in bodies])
@@ -96,6 +97,10 @@ class MovingClouds:
         self._cut(is_first=True)
 
     # Steps
+
+    def bind(self, joined: Keys) -> None:
+        """Learn whether a partner takes the heat of driven bodies: it is then in its account."""
+        self.heat_is_joined = "heat" in joined
 
     def soften_start(self, state: State) -> None:
         """Let gas near a body begin with the body's velocity, which fades over one radius."""
@@ -196,8 +201,9 @@ class MovingClouds:
             )  # fmt: skip
 
     def power_of_partners(self) -> float:
-        """Energy [W] that the gas gets now from bodies that a partner moves."""
-        return float(self.loads[self.driven, 6].sum())
+        """Energy [W] that links bring the gas now: from bodies that a partner moves or heats."""
+        loads = self.loads[self.driven]
+        return float((loads[:, 6] - self.heat_is_joined * loads[:, 7]).sum())
 
     def outputs(self, primitive: Array) -> dict[str, Array]:
         """Fields of the bodies' ports."""
