@@ -264,6 +264,7 @@ class MeshlessGas(Component):
         own, work, cloud = self.domain, self.fluxes, self.domain.cloud
         neighbours, coefficients = own.stencils
         self._write_gradients()
+        self.motion.flatten(work.gradients)
         self.team.run(
             write_residuals, len(own.inner), own.inner, cloud.positions, work.primitive,
             work.gradients, work.lowest, neighbours, coefficients, self.frame, self.planar,

@@ -47,6 +47,9 @@ class NodeMotion(Protocol):
     def load(self, primitive: Array, flows: Array) -> None:
         """Add what the gas gets from walls that move to `flows` (5,) kg/s, N, W."""
 
+    def flatten(self, gradients: Array) -> None:
+        """Let states be constant around nodes where the scheme is of first order."""
+
     def add_rates(self, share: float, work: Fluxes, viscous: "Viscous | None") -> None:
         """Add the rates that bodies' clouds have of their own, in a stage of this share."""
 
@@ -95,6 +98,9 @@ class FixedCloud:
 
     def load(self, primitive: Array, flows: Array) -> None:
         """Add nothing."""
+
+    def flatten(self, gradients: Array) -> None:
+        """Leave them as they are."""
 
     def add_rates(self, share: float, work: Fluxes, viscous: "Viscous | None") -> None:
         """Add nothing."""

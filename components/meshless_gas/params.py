@@ -238,6 +238,11 @@ class MeshlessGasParams:
                 "local_steps and steady are for a flow round what stands still; found particles "
                 "or moving. Leave out local_steps and steady."
             )
+        if self.moving is not None and self.planar and self.moving.is_cut:
+            found.append(
+                "moving: clouds that end at a sector are those of spheres: on an axis of symmetry, "
+                "or in 3 dimensions. Say axisymmetric = true or dimensions = 3, or leave it out."
+            )
         if self.moving is not None and (self.probes or self.fronts):
             found.append(
                 "probes and fronts are read at nodes that stand still; found moving. Leave out "
@@ -370,7 +375,7 @@ class MeshlessGasParams:
     @property
     def expected_count(self) -> int:
         """About how many nodes there will be."""
-        bodies = self.moving.expected_count if self.moving is not None else 0
+        bodies = self.moving.expected_count(self.dimensions) if self.moving is not None else 0
         return self.cloud.expected_count(self.dimensions) + bodies
 
     @property

@@ -51,8 +51,8 @@ def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredClo
     kept = np.zeros(len(points), bool)
     kept[whole] = True
     number = np.where(kept, np.cumsum(kept) - 1, -1)
-    share = _areas(points, triangles, whole)[kept]
-    near, is_edge = _adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
+    share = shares(points, triangles, whole)[kept]
+    near, is_edge = adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
     inside = number[whole]
     points, angle = points[kept], angle[kept]
     outer = outer_radius(angle, radius, mach, reach)
@@ -66,7 +66,7 @@ def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredClo
         points,
         share * (radius + distance) ** 2,
         _towards(places[-1], inside),
-        _rim(places, inside),
+        rim(places, inside),
         reach.weight,
     )
     none = np.zeros(0, np.int32)
@@ -119,7 +119,7 @@ def _rotation() -> Array:
     return matrix
 
 
-def _areas(points: Array, every: NDArray[np.int64], faces: NDArray[np.int64]) -> Array:
+def shares(points: Array, every: NDArray[np.int64], faces: NDArray[np.int64]) -> Array:
     """Share (m,) of the unit sphere of each point: a third of those of its triangles in `faces`."""
     areas = np.zeros(len(points))
     for k in range(3):
@@ -143,7 +143,7 @@ def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
     return found
 
 
-def _adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
+def adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
     """Neighbours (m, a) by triangles, padded with -1, and which points lie beside none."""
     pairs = np.vstack([faces[:, [k, (k + 1) % 3]] for k in range(3)])
     pairs = np.vstack([pairs, pairs[:, ::-1]])
@@ -176,7 +176,7 @@ def _without_ears(faces: NDArray[np.int64]) -> NDArray[np.int64]:
         faces = faces[~at_edge]
 
 
-def _rim(places: Array, faces: NDArray[np.int64]) -> Array:
+def rim(places: Array, faces: NDArray[np.int64]) -> Array:
     """Areas (layers, m, 3) m2 into the gas over the grid's edge: half of a side to each end."""
     a, b, c = _sides(faces).T
     ray = places[-1] - places[0]

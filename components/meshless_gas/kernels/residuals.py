@@ -79,6 +79,8 @@ def write_residuals(
         count = min(LANES, last - begin)
         load_nodes(rows, begin, count, primitive, gradients, lowest, frame, planar, sloped, work)
         for k in range(neighbours.shape[1]):
+            if not has_pairs(rows, begin, count, k, neighbours):
+                continue
             load_pairs(
                 rows, begin, count, k, positions, primitive, gradients, lowest, neighbours,
                 coefficients, frame, planar, sloped, work,
@@ -105,6 +107,16 @@ def load_nodes(  # type: ignore[no-untyped-def]
             for q in range(5):
                 for d in range(3):
                     work[(OWN_SLOPE + 3 * q + d) * LANES + lane] = 2.0 * gradients[i, q, d]
+
+
+@njit(**INLINED)
+def has_pairs(rows, begin, count, k, neighbours):  # type: ignore[no-untyped-def]
+    """Whether any node of a block has a k-th neighbour; rows are padded with the node itself."""
+    for lane in range(count):
+        i = np.uintp(rows[begin + lane])
+        if np.uintp(neighbours[i, k]) != i:
+            return True
+    return False
 
 
 @njit(**INLINED)

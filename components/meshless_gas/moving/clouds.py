@@ -4,7 +4,7 @@ Velocities are stored in the laboratory's frame, and fluxes computed in that of 
 neither sources of inertia nor a change of variables between clouds is needed.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.kernels.outflows import uncovered
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
-from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
+from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose, write_plane_areas
 from quintet.components.meshless_gas.moving.outputs import outputs, unit_force, unit_heat
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
@@ -25,7 +25,12 @@ from quintet.components.meshless_gas.moving.refusals import (
     refuse_places,
     too_few,
 )
-from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
+from quintet.components.meshless_gas.moving.seams import (
+    around,
+    choose,
+    write_uncovered,
+    write_uncovered_in_space,
+)
 from quintet.components.meshless_gas.moving.start import soft_start
 from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -43,16 +48,8 @@ Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BAND = 3.0  # spacings about a seam within which neighbours are found anew
 NEAR = 4  # times as many nodes are looked at as a node has neighbours
-KNOWN = 8  # nodes that tell the state of one that is uncovered
+KNOWN = 8  # nodes that tell the state of one that is uncovered; in space twice as many
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
-
-
-class Pose(NamedTuple):
-    """Where bodies are and how they move."""
-
-    centre: Array  # (b, 3) m
-    velocity: Array  # (b, 3) m/s
-    spin: Array  # (b, 3) rad/s
 
 
 class MovingClouds:
@@ -66,7 +63,7 @@ class MovingClouds:
         self.gamma, self.unit_force = params.gas.gamma, unit_force(params)
         self.outflows = domain.outflows  # of the box, whether left out or not
         self.unit_heat = unit_heat(params)
-        self.kept = params.neighbours  # of a node across seams
+        self.kept = layout.kept  # neighbours of a node across seams
         bodies, cloud = self.params.bodies, domain.cloud
         self.pose = Pose(
             np.array([one.position for one in bodies]),
@@ -110,11 +107,14 @@ class MovingClouds:
         """Take the motion of driven bodies: places at the middle of the step, mean velocities."""
         if "motion.position" not in fields:
             return
-        flat = np.array([1.0, 0.0, 1.0])  # nothing leaves the plane
+        # Nothing leaves a plane.
+        flat, across = np.ones(3), np.ones(3)
+        if self.layout.planar:
+            flat, across = np.array([1.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
         self.given = fields["motion.position"] * flat
         self.pose.velocity[self.driven] = fields["motion.velocity"] * flat
         if "motion.angular_velocity" in fields:
-            self.pose.spin[self.driven] = fields["motion.angular_velocity"] * (1.0 - flat)
+            self.pose.spin[self.driven] = fields["motion.angular_velocity"] * across
         if self.params.axisymmetric:
             refuse_off_axis(self.given, self.pose.velocity[self.driven], self.driven)
 
@@ -183,6 +183,11 @@ class MovingClouds:
             self.loads[:, 1:6] = 0.0
         flows[1:4] -= self.loads[:, :3].sum(axis=0)
         flows[4] += (self.loads[:, 6] - self.loads[:, 7]).sum()
+
+    def flatten(self, gradients: Array) -> None:
+        """Let states be constant around nodes that reach over a seam, if the scene asks for it."""
+        if self.params.seam_order == 1:
+            gradients[self.across] = 0.0
 
     def add_rates(self, share: float, work: Fluxes, viscous: "Viscous | None") -> None:
         """Add what symmetry about the axis asks for; sum the loads of a stage."""
@@ -264,10 +269,11 @@ class MovingClouds:
         self.domain = self.domain._replace(inner=inner, every=every)
         if own.is_cut.any():  # a cloud that reaches the box's face covers nodes of it
             cloud.areas[: cloud.nodes] = np.where(active[:, None], own.areas, 0.0)
-            wall = self.radii[own.is_cut].max()
             self.domain = self.domain._replace(outflows=uncovered(self.outflows, active))
-            there = own.plane[active[own.plane]]
-            write_plane_areas(there, cloud.positions, wall, cloud.areas)
+            if own.planar:
+                wall = self.radii[own.is_cut].max()
+                there = own.plane[active[own.plane]]
+                write_plane_areas(there, cloud.positions, wall, cloud.areas)
             write_weights(
                 self.domain.edges, cloud.kind, cloud.normals, *self.domain.stencils,
                 self.domain.weights,
@@ -275,7 +281,7 @@ class MovingClouds:
 
     def _heights(self, places: Array) -> Array:
         """Heights (b, m) m of places above bodies."""
-        apart = places[None, :, ::2] - self.pose.centre[:, None, ::2]
+        apart = places[None] - self.pose.centre[:, None]
         return np.asarray(np.sqrt((apart**2).sum(axis=2)) - self.radii[:, None])
 
     def _part(self, b: int, away: Array, was: Flags, active: Flags, more: float) -> None:
@@ -304,16 +310,16 @@ class MovingClouds:
             band |= mine & (one > self.thickness[b] - reach)
             near_any |= ~mine & (one < self.thickness[b] + 2.0 * reach) | mine
         band &= active & (own.height > 0.0)
+        if not own.planar:
+            band[own.leaving] = False  # they have the state of the node beside them
         rows = np.flatnonzero(band)
         before = self.touched
         neighbours[before] = own.home[before]
         among = np.flatnonzero(np.concatenate([near_any & active, self._images(near_any)]))
-        kept = self.kept
-        many = min(NEAR * kept, len(among))
-        found, _ = nearest(cloud.positions, among, cloud.positions[rows], many, self.team)
+        found = around(rows, among, cloud, NEAR * self.kept, own.planar, self.team)
         lacks = choose(
-            rows, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, kept,
-            neighbours,
+            rows, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, self.kept,
+            4 if own.planar else 6, neighbours,
         )  # fmt: skip
         if lacks >= 0:
             raise StepError(too_few(self.kept, cloud.positions[lacks]))
@@ -336,8 +342,8 @@ class MovingClouds:
             weight = weight.copy()
             weight[self.across] = self.least[self.across]
         self.team.run(
-            write_coefficients, len(rows), rows, cloud.positions, made.neighbours, weight, True,
-            made.coefficients, self.quality,
+            write_coefficients, len(rows), rows, cloud.positions, made.neighbours, weight,
+            self.layout.planar, made.coefficients, self.quality,
         )  # fmt: skip
         bad = rows[self.quality[rows] < SOUND]
         if len(bad):
@@ -358,10 +364,10 @@ class MovingClouds:
         near = self._heights(cloud.positions[: cloud.nodes])
         close = (near < (self.thickness + 4.0 * self.spacing)[:, None]).any(axis=0)
         among = np.flatnonzero(known & close)
-        found, _ = nearest(cloud.positions, among, cloud.positions[fresh], KNOWN, self.team)
-        write_uncovered(
-            fresh, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, primitive
-        )
+        planar = self.layout.planar
+        many, write = (KNOWN, write_uncovered) if planar else (2 * KNOWN, write_uncovered_in_space)
+        found, _ = nearest(cloud.positions, among, cloud.positions[fresh], many, self.team)
+        write(fresh, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, primitive)
         part_of = np.empty((len(fresh), 5))
         write_conservative(primitive[fresh], self.gamma, part_of)
         conservative[fresh] = part_of

@@ -53,8 +53,10 @@ def cut(
         for b in range(radii.shape[0]):
             if region[i] == b + 1:
                 continue
-            x, z = positions[i, 0] - centres[b, 0], positions[i, 2] - centres[b, 2]
-            away = math.sqrt(x * x + z * z) - radii[b]
+            square = 0.0
+            for d in range(3):
+                square += (positions[i, d] - centres[b, d]) ** 2
+            away = math.sqrt(square) - radii[b]
             more = 0.0 if was[i] else margins[b]
             if away <= 0.0 or (away < depths[b] + more and away < height[i] + more):
                 active[i] = False

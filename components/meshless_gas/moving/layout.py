@@ -9,9 +9,18 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.clouds.cloud import Cloud, Whole, joined
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.rings import Ring, ring
+from quintet.components.meshless_gas.moving.shells import shell
 from quintet.interfaces.component import Array
 
 Rows = NDArray[np.int64]
+
+
+class Pose(NamedTuple):
+    """Where bodies are and how they move."""
+
+    centre: Array  # (b, 3) m
+    velocity: Array  # (b, 3) m/s
+    spin: Array  # (b, 3) rad/s
 
 
 class CloudLayout(NamedTuple):
@@ -34,15 +43,24 @@ class CloudLayout(NamedTuple):
     before: Rows  # (o,) and those beside them, whose states they have
     plane: Rows  # (l,) nodes of bodies and background where a cloud ends with its box
     arms: Array  # (w, 3) m, of walls from the centre
-    second: Array  # (b,) m, height of the second layer of each body on the axis
+    second: Array  # (b,) m, least height of the second layer of each body
     is_cut: NDArray[np.bool_]  # (b,) whether the cloud ends where the box does
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
+    kept: int  # neighbours of a node across seams
+    planar: bool  # whether nothing leaves the plane of x and z
 
 
-def with_bodies(background: Cloud, params: Moving, patch: int) -> tuple[Cloud, list[Ring]]:
+def with_bodies(
+    background: Cloud, params: Moving, patch: int, planar: bool
+) -> tuple[Cloud, list[Ring]]:
     """Join the clouds of bodies, at their first positions, to a background."""
-    rings = [ring(one, 1 + b, patch, params.axisymmetric) for b, one in enumerate(params.bodies)]
+    rings = [
+        ring(one, 1 + b, patch, params.axisymmetric)
+        if planar
+        else shell(one, 1 + b, patch, params.cross)
+        for b, one in enumerate(params.bodies)
+    ]
     moved = [
         one.cloud._replace(positions=one.cloud.positions + np.array(body.position))
         for one, body in zip(rings, params.bodies, strict=True)
@@ -63,6 +81,8 @@ def layout(
     params: Moving,
     neighbours: Whole,
     box: Array,
+    kept: int,
+    planar: bool,
 ) -> CloudLayout:
     """Say how bodies' clouds lie in the joined cloud.
 
@@ -76,6 +96,9 @@ def layout(
     neighbours : (n, K)
         Of the background; rows of other nodes are written.
     box : (2, 3) m
+    kept : int
+        Neighbours of a node across seams.
+    planar : bool
     """
     count = cloud.nodes
     sizes = [one.cloud.nodes for one in rings]
@@ -96,6 +119,7 @@ def layout(
     rays = [one.rays for one in rings]
     levels = [one.height.reshape(-1, one.rays) for one in rings]
     leaving = [one.leaving + first for one, first in zip(rings, firsts, strict=True)]
+    before = [one.before + first for one, first in zip(rings, firsts, strict=True)]
     images = [image + np.arange(size) for image, size in zip(beyond, imaged, strict=True)]
     above = [
         np.stack([wall + one.rays, wall + 2 * one.rays], axis=1)
@@ -103,6 +127,10 @@ def layout(
     ]
     all_images = np.concatenate(images)
     sides = [(0, -1), (0, 1), (2, 1)]
+    if not params.axisymmetric:
+        sides.append((2, -1))
+    if not planar:
+        sides += [(1, -1), (1, 1)]
     return CloudLayout(
         home=neighbours[:count].copy(),
         height=height,
@@ -118,13 +146,15 @@ def layout(
         above=np.concatenate(above),
         heights=np.concatenate([level[1:3].T for level in levels]),
         leaving=np.concatenate(leaving),
-        before=np.concatenate(leaving) - 1,
+        before=np.concatenate(before),
         plane=_plane(cloud, background, np.concatenate(leaving)),
         arms=np.concatenate([one.cloud.positions[: one.rays] for one in rings]),
-        second=np.array([level[2, 0] for level in levels]),
+        second=np.array([level[2].min() for level in levels]),
         is_cut=np.array([one.is_cut for one in params.bodies]),
         box=box,
-        open_sides=sides if params.axisymmetric else [*sides, (2, -1)],
+        open_sides=sides,
+        kept=kept,
+        planar=planar,
     )
 
 

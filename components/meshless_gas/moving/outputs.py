@@ -30,7 +30,7 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
         "bodies.uncovered": np.full(len(bodies), float(moving.uncovered)),
         "surface.position": moving.domain.cloud.positions[own.walls],
         "surface.body": own.body.astype(float),
-        "surface.angle": np.arctan2(own.arms[:, 2], -own.arms[:, 0]),
+        "surface.angle": np.arctan2(_aside(own.arms, own.planar), -own.arms[:, 0]),
         "surface.pressure": pressure.copy(),
         "surface.friction": np.zeros((count, 3)) if held is None else held.friction.copy(),
         "surface.heat_flux": heat,
@@ -41,6 +41,11 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
     }
 
 
+def _aside(arms: Array, planar: bool) -> Array:
+    """Distance (w,) m from the line along x through the centre; in a plane signed."""
+    return np.asarray(arms[:, 2] if planar else np.hypot(arms[:, 1], arms[:, 2]))
+
+
 def unit_force(params: MeshlessGasParams) -> Array:
     """Force (b,) N that a coefficient of 1 stands for: of the gas at the start."""
     assert params.initial is not None and params.moving is not None
@@ -49,7 +54,8 @@ def unit_force(params: MeshlessGasParams) -> Array:
     speeds = np.array([u, v, w]) - np.array([one.velocity for one in bodies])
     square = np.maximum((speeds * speeds).sum(axis=1), 1e-300)
     radii = np.array([one.radius for one in bodies])
-    area = math.pi * radii**2 if params.moving.axisymmetric else 2.0 * radii
+    is_sphere = params.moving.axisymmetric or not params.planar
+    area = math.pi * radii**2 if is_sphere else 2.0 * radii
     return np.asarray(0.5 * density * square * area)
 
 

@@ -1,10 +1,11 @@
 """What a scene says about bodies that carry clouds of nodes."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
+from quintet.components.meshless_gas.clouds.cap import ARC
 from quintet.interfaces.params import NotNegative, Number, Positive, Vector, parameters
 
 ROUND = 8  # fewest nodes round a body
@@ -13,7 +14,7 @@ CLOSE = 1e-6  # rad, within which a sector is what it is meant to be
 
 @parameters
 class Body:
-    """A cylinder across the plane of x and z, or a sphere where x is an axis of symmetry.
+    """A sphere; in the plane of x and z a cylinder across it.
 
     Parameters
     ----------
@@ -28,7 +29,8 @@ class Body:
     is_driven
         Whether a partner moves it: it is then a row of the ports `motion`, `load` and `heat`.
     rays : 1
-        Nodes round the whole circle; of an axisymmetric flow half of them are computed.
+        Nodes round the whole circle; of an axisymmetric flow half of them are computed. In space
+        nodes of a geodesic grid are about as far apart.
     thickness : m
         Of its cloud. The bow shock should lie within it or far beyond it, not at its rim.
     spacing : m
@@ -117,6 +119,11 @@ class Body:
         return self.sector < math.pi - CLOSE
 
     @property
+    def frequency(self) -> int:
+        """Parts of an icosahedron's edge in space."""
+        return max(2, round(self.rays * ARC / math.tau))
+
+    @property
     def heights(self) -> list[float]:
         """Heights [m] of its layers above the wall."""
         step = self.first or 0.8 * math.tau * self.radius / self.rays
@@ -147,6 +154,11 @@ class Moving:
         Nodes that are nearer than this to one of a body's cloud are left out, in spacings.
     overlap : 1
         By how many spacings clouds overlap.
+    seam_order
+        Of the scheme at nodes that reach over a seam; 1 where a strong shock crosses it.
+    cross
+        In space: whether nodes that reach over no seam have neighbours along lines alone, 6 in a
+        lattice and 8 in shells; else those of a whole block.
     """
 
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
@@ -155,13 +167,10 @@ class Moving:
     hysteresis: NotNegative = 0.3
     seam_distance: NotNegative = 0.5
     overlap: Positive = 0.9
+    seam_order: Literal[1, 2] = 2
+    cross: bool = False
 
     def __post_init__(self) -> None:
-        if not self.axisymmetric and any(one.is_cut for one in self.bodies):
-            raise ValueError(
-                "clouds that end at a sector are those of spheres on an axis of symmetry. Say "
-                "axisymmetric = true, or leave out sector."
-            )
         if self.axisymmetric:
             for one in self.bodies:
                 if any(one.position[1:]) or any(one.velocity[1:]):
@@ -177,8 +186,17 @@ class Moving:
                     )
 
     @property
-    def expected_count(self) -> int:
+    def is_cut(self) -> bool:
+        """Whether a cloud ends at a sector, and about no axis of symmetry."""
+        return not self.axisymmetric and any(one.is_cut for one in self.bodies)
+
+    def expected_count(self, dimensions: int) -> int:
         """Nodes of all bodies' clouds."""
+        if dimensions == 3:
+            return sum(
+                round((5 * one.frequency**2 + 1) * (1.0 - math.cos(one.sector))) * len(one.heights)
+                for one in self.bodies
+            )
         whole = sum(
             round(one.rays * one.sector / math.pi) * len(one.heights) for one in self.bodies
         )

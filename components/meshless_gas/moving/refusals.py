@@ -4,9 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.moving.layout import CloudLayout
+from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError, StepError
+
+BLOCK = 8  # fewest neighbours of a node
 
 
 def refuse_places(
@@ -44,6 +47,49 @@ def refuse_places(
                 )
 
 
+def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
+    """Refuse what bodies that carry clouds do not go with."""
+    if params.neighbours < BLOCK:
+        raise SceneError(
+            f"bodies that carry clouds need {BLOCK} neighbours at least; found "
+            f"{params.neighbours}. Correct neighbours."
+        )
+    if params.box is None:
+        raise SceneError("bodies that carry clouds need a box around them. Give a box.")
+    if not params.viscous and any(one.is_holding for one in keys.bodies):
+        raise SceneError(
+            "walls of a temperature, or adiabatic ones, hold the gas by friction. Say viscous = "
+            "true, or leave out temperature and is_adiabatic."
+        )
+    if keys.axisymmetric and (params.kind_of("z-") != "symmetry" or params.box.lowest[2] != 0.0):
+        raise SceneError(
+            "an axisymmetric flow needs a box that begins at z = 0 with symmetry there; found "
+            f"{params.kind_of('z-')} at {params.box.lowest[2]:g} m. Correct the box, or "
+            'boundaries."z-".'
+        )
+    if keys.axisymmetric and not params.planar:
+        raise SceneError(
+            "bodies on an axis of symmetry need two dimensions; found 3. Leave out axisymmetric, "
+            "or dimensions."
+        )
+    if params.viscous and keys.seam_order == 1:
+        raise SceneError(
+            "friction needs gradients at seams, too; found seam_order = 1. Leave it out."
+        )
+    if keys.cross and (params.planar or params.box.jitter > 0.0):
+        raise SceneError(
+            "neighbours along lines alone are for three dimensions and lattices without jitter. "
+            "Leave out cross, or jitter."
+        )
+    refuse_sector(params)
+    for one in keys.bodies:
+        if params.planar and (one.position[1] or one.velocity[1]):
+            raise SceneError(
+                "bodies in two dimensions lie and move in the plane y = 0; found position "
+                f"{list(one.position)} m, velocity {list(one.velocity)} m/s. Leave y at 0."
+            )
+
+
 def refuse_sector(params: MeshlessGasParams) -> None:
     """Refuse clouds that end where the box does not, or where no gas leaves."""
     assert params.moving is not None and params.box is not None
@@ -72,7 +118,7 @@ def refuse_jump(moved: Array, centre: Array, spacing: Array, bodies: NDArray[np.
 def too_few(count: int, place: Array) -> str:
     """Say that a node has too few neighbours."""
     return (
-        f"nodes need {count} neighbours in sight that span the plane; that at "
+        f"nodes need {count} neighbours in sight that surround them; that at "
         f"{np.array2string(place, precision=4)} m has not. Make spacings on both sides of the "
         "seam alike, or clouds thicker."
     )

@@ -29,6 +29,7 @@ class Ring(NamedTuple):
     height: Array  # (n,) m, above the wall
     rays: int  # nodes of a layer, the first of which is the wall
     leaving: NDArray[np.int64]  # (o,) nodes where gas leaves downstream
+    before: NDArray[np.int64]  # (o,) and those beside them
 
 
 def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
@@ -47,7 +48,7 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
     Ring
     """
     angle, arc = _angles(body, axisymmetric)
-    count, heights = len(angle), _heights(body, angle)
+    count, heights = len(angle), heights_over(body, angle)
     outward = np.stack([-np.cos(angle), np.zeros(count), np.sin(angle)], axis=1)
     radii = body.radius + heights
     positions = (radii[:, :, None] * outward).reshape(-1, 3)
@@ -91,7 +92,7 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
         made = with_ghosts(made, owner, positions[owner] @ mirror, turns)
         images[owner] = nodes + np.arange(len(owner))
     home = _home(len(heights), count, images, body.is_cut)
-    return Ring(made, home, heights.ravel(), count, leaving)
+    return Ring(made, home, heights.ravel(), count, leaving, leaving - 1)
 
 
 def _angles(body: Body, axisymmetric: bool) -> tuple[Array, Array]:
@@ -107,7 +108,7 @@ def _angles(body: Body, axisymmetric: bool) -> tuple[Array, Array]:
     return (np.arange(count) + 0.5) * turn / count, np.full(count, turn / count)
 
 
-def _heights(body: Body, angle: Array) -> Array:
+def heights_over(body: Body, angle: Array) -> Array:
     """Heights (layers, rays) m of nodes above the wall."""
     heights = np.array(body.heights)
     if body.first_at_sector is None:

@@ -17,7 +17,7 @@ def soft_start(moving: "MovingClouds", state: State) -> None:
     for radius, centre, velocity in zip(
         moving.radii, moving.pose.centre, moving.pose.velocity, strict=True
     ):
-        away = np.sqrt(((positions - centre) ** 2)[:, ::2].sum(axis=1)) / radius - 1.0
+        away = np.sqrt(((positions - centre) ** 2).sum(axis=1)) / radius - 1.0
         share = 1.0 - np.clip(away, 0.0, 1.0)[:, None]
         state.primitive[:, 1:4] += share * (velocity - state.primitive[:, 1:4])
     write_conservative(state.primitive, moving.gamma, state.conservative)

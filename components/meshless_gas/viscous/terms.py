@@ -72,8 +72,8 @@ class Viscous:
     def hold(self, primitive: Array) -> None:
         """Write the states of walls: their velocity and temperature, the gas's pressure."""
         hold_walls(
-            self.rows, self.domain.stencils.neighbours, self.weights, self.velocity,
-            self.temperature, self.law, primitive,
+            self.rows, self.domain.stencils.neighbours, self.weights, self.domain.cloud.normals,
+            self.velocity, self.temperature, self.gamma, self.law, primitive,
         )  # fmt: skip
         if self.rarefied is not None:
             self.rarefied.slide(self.domain, self.velocity, self.temperature, primitive)

@@ -4,14 +4,22 @@ import math
 
 from numba import njit
 
+from quintet.components.meshless_gas.kernels.boundaries import GATE
+from quintet.components.meshless_gas.laws import wall_pressure
 from quintet.components.meshless_gas.transport import sutherland
 from quintet.components.meshless_gas.viscous.laws import wall_slope
 from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def hold_walls(rows, neighbours, weights, velocity, temperature, law, primitive):  # type: ignore[no-untyped-def]
+def hold_walls(  # type: ignore[no-untyped-def]
+    rows, neighbours, weights, normals, velocity, temperature, gamma, law, primitive
+):
     """Give nodes of no-slip walls the wall's velocity and temperature, the gas's pressure.
+
+    Where gas runs into a wall at a Mach number above `GATE`, as after a start from the uniform
+    stream, it has the pressure behind the shock that stops it: otherwise the stream would pass
+    through a first layer that is thick.
 
     Parameters
     ----------
@@ -20,24 +28,32 @@ def hold_walls(rows, neighbours, weights, velocity, temperature, law, primitive)
     neighbours : (n, K)
     weights : (w, K)
         With sum 1: of no slope along the normal.
+    normals : (n, 3) 1
+        Into the gas.
     velocity : (w, 3) m/s
     temperature : (w,) K
         Negative where the wall is adiabatic.
+    gamma : float, 1
     law : Transport
     primitive : (n, 5)
         The rows are written.
     """
     for n in range(rows.shape[0]):
-        pressure, warmth = 0.0, 0.0
+        i = rows[n]
+        pressure, warmth, into = 0.0, 0.0, 0.0
         for k in range(neighbours.shape[1]):
-            j, share = neighbours[rows[n], k], weights[n, k]
+            j, share = neighbours[i, k], weights[n, k]
             if share == 0.0:
                 continue
             pressure += share * primitive[j, 4]
             warmth += share * primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
+            for axis in range(3):
+                into -= share * (primitive[j, 1 + axis] - velocity[n, axis]) * normals[i, axis]
+        mach = into / math.sqrt(gamma * law.gas_constant * warmth)
+        if mach > GATE:
+            pressure = wall_pressure(pressure, mach, gamma)
         if temperature[n] > 0.0:
             warmth = temperature[n]
-        i = rows[n]
         primitive[i, 0] = pressure / (law.gas_constant * warmth)
         primitive[i, 1], primitive[i, 2], primitive[i, 3] = velocity[n]
         primitive[i, 4] = pressure

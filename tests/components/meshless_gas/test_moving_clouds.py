@@ -216,7 +216,7 @@ def test_nodes_behind_a_body_are_no_neighbours():
     positions = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 2.5]])
     body = np.zeros((1, 3)), np.array([0.5])
     near, found = np.zeros((3, 1), np.int32), np.array([[1, 2]])
-    lacks = choose(np.array([0]), found, positions, np.full(3, 0.1), *body, 1, near)
+    lacks = choose(np.array([0]), found, positions, np.full(3, 0.1), *body, 1, 4, near)
     assert lacks == -1
     assert near[0, 0] == 2
 
@@ -228,7 +228,7 @@ def test_nodes_beside_a_coarser_cloud_have_neighbours_on_its_side():
     near = np.zeros((len(positions), 8), np.int32)
     far = np.array([[9.0, 0.0, 9.0]]), np.array([0.1])
     spacing = np.full(len(positions), 0.1)
-    assert choose(np.array([0]), order[None], positions, spacing, *far, 8, near) == -1
+    assert choose(np.array([0]), order[None], positions, spacing, *far, 8, 4, near) == -1
     arms = positions[near[0]]
     assert arms[:, 0].max() == 0.35
     assert arms[:, 2].min() < 0.0 < arms[:, 2].max()

@@ -13,6 +13,7 @@ from quintet.components.meshless_gas.viscous.flux import (
     write_transport,
 )
 from quintet.components.meshless_gas.viscous.laws import wall_slope
+from quintet.components.meshless_gas.viscous.walls import hold_walls
 from quintet.components.shared.threads import Team
 
 # Of a viscosity that hardly changes.
@@ -82,3 +83,21 @@ def test_slope_at_a_wall_is_that_of_a_parabola() -> None:
     assert wall_slope.py_func(2.0, 2.3, 2.3, 0.1, 0.1) == pytest.approx(
         3.0
     )  # one node above it alone
+
+
+@pytest.mark.parametrize(
+    ("mach", "ratio"),
+    [
+        (0.4, 1.0),
+        # Toro (2009), section 6.3.3: the shock that stops a stream of Mach 2, of γ = 1.4.
+        (2.0, 1.0 + 2.8 * (1.2 + np.sqrt(2.44))),
+    ],
+)
+def test_a_wall_without_slip_stops_a_fast_stream_by_a_shock(mach: float, ratio: float) -> None:
+    primitive = np.ones((2, 5))
+    primitive[1, 1:4] = [0.0, 0.0, -mach * np.sqrt(1.4)]
+    hold_walls(
+        np.array([0], np.int32), np.array([[1], [0]], np.int32), np.ones((1, 1)),
+        np.array([[0.0, 0.0, 1.0]] * 2), np.zeros((1, 3)), np.array([2.0]), 1.4, LAW, primitive,
+    )  # fmt: skip
+    assert primitive[0] == pytest.approx([ratio / 2.0, 0.0, 0.0, 0.0, ratio])
