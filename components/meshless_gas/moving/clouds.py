@@ -13,7 +13,6 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW
 from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
-from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.kernels.outflows import uncovered
 from quintet.components.meshless_gas.moving.axis import add_axis
 from quintet.components.meshless_gas.moving.holes import cut, part
@@ -25,13 +24,9 @@ from quintet.components.meshless_gas.moving.refusals import (
     refuse_places,
     too_few,
 )
-from quintet.components.meshless_gas.moving.seams import (
-    around,
-    choose,
-    write_uncovered,
-    write_uncovered_in_space,
-)
+from quintet.components.meshless_gas.moving.seams import around, choose
 from quintet.components.meshless_gas.moving.start import soft_start
+from quintet.components.meshless_gas.moving.uncovered import uncover
 from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
@@ -48,7 +43,6 @@ Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BAND = 3.0  # spacings about a seam within which neighbours are found anew
 NEAR = 4  # times as many nodes are looked at as a node has neighbours
-KNOWN = 8  # nodes that tell the state of one that is uncovered; in space twice as many
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
 
 
@@ -139,7 +133,7 @@ class MovingClouds:
         way = np.abs(self.pose.centre - self.seen).max(axis=1)
         if (way > self.params.threshold * self.spacing).any():
             fresh = self._cut()
-            self._uncover(fresh, primitive, conservative)
+            uncover(self, fresh, primitive, conservative)
         else:
             self._refit()
         return True
@@ -247,7 +241,7 @@ class MovingClouds:
                 f"walls must lie in the gas; that at {positions[covered].tolist()} m lies in "
                 "another body. Move the bodies apart."
             )
-        away = self._heights(positions[:count])
+        away = self.heights(positions[:count])
         for b in range(len(self.radii)):
             self._part(b, away[b], was, active, margins[b])
         self.active[:count] = active
@@ -279,7 +273,7 @@ class MovingClouds:
                 self.domain.weights,
             )  # fmt: skip
 
-    def _heights(self, places: Array) -> Array:
+    def heights(self, places: Array) -> Array:
         """Heights (b, m) m of places above bodies."""
         apart = places[None] - self.pose.centre[:, None]
         return np.asarray(np.sqrt((apart**2).sum(axis=2)) - self.radii[:, None])
@@ -353,24 +347,6 @@ class MovingClouds:
         """Write the coefficients of what reaches over seams, where clouds have moved apart."""
         if len(self.across):
             self._fit(self.across)
-
-    def _uncover(self, fresh: Rows, primitive: Array, conservative: Array) -> None:
-        """Give nodes that came back the state of what is around them."""
-        if not len(fresh):
-            return
-        cloud = self.domain.cloud
-        known = self.active[: cloud.nodes].copy()
-        known[fresh] = False
-        near = self._heights(cloud.positions[: cloud.nodes])
-        close = (near < (self.thickness + 4.0 * self.spacing)[:, None]).any(axis=0)
-        among = np.flatnonzero(known & close)
-        planar = self.layout.planar
-        many, write = (KNOWN, write_uncovered) if planar else (2 * KNOWN, write_uncovered_in_space)
-        found, _ = nearest(cloud.positions, among, cloud.positions[fresh], many, self.team)
-        write(fresh, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, primitive)
-        part_of = np.empty((len(fresh), 5))
-        write_conservative(primitive[fresh], self.gamma, part_of)
-        conservative[fresh] = part_of
 
     # State
 
