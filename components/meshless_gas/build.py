@@ -29,7 +29,7 @@ from quintet.components.meshless_gas.kernels.boundaries import (
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.state import State
+from quintet.components.meshless_gas.state import State, conserved
 from quintet.components.meshless_gas.stencils import (
     Stencils,
     graded_neighbours,
@@ -144,7 +144,7 @@ def patch(boundary: Boundary, gas: Gas) -> Array:
     return row
 
 
-def initial_state(params: MeshlessGasParams, cloud: Cloud) -> State:
+def initial_state(params: MeshlessGasParams, cloud: Cloud, team: Team) -> State:
     """State at the start."""
     positions = cloud.positions[: cloud.nodes]
     if params.riemann is not None or params.vortex is not None:
@@ -161,5 +161,5 @@ def initial_state(params: MeshlessGasParams, cloud: Cloud) -> State:
         primitive[:, 2] = 0.0
     conservative = np.empty_like(primitive)
     write_conservative(primitive, params.gas.gamma, conservative)
-    begun = cloud.volumes[: cloud.nodes] @ conservative
+    begun = conserved(conservative, cloud.volumes, team)
     return State(conservative, primitive, np.zeros(5), begun)

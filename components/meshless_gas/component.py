@@ -79,7 +79,7 @@ class MeshlessGas(Component):
         self.motion = node_motion(params, self.team)
         self.domain = self.motion.domain
         cloud = self.domain.cloud
-        self.state = initial_state(params, cloud)
+        self.state = initial_state(params, cloud, self.team)
         self.motion.soften_start(self.state)
         self.fluxes = Fluxes.empty(cloud.nodes, len(cloud.owner))
         self.bound = 0.0  # s, step that all nodes bear at a Courant number of 1
@@ -108,7 +108,8 @@ class MeshlessGas(Component):
         self._take_over()
 
     def bind(self, static: Fields, joined: Keys) -> None:
-        """Learn how heavy particles are."""
+        """Learn how heavy particles are, and whether bodies give their heat to a partner."""
+        self.motion.bind(joined)
         if self.particles is not None:
             self.particles.bind(static)
 
@@ -190,7 +191,7 @@ class MeshlessGas(Component):
             self.viscous.domain = self.domain
 
     def _outer_power(self) -> float:
-        """Energy [W] that comes in now, but for what bodies do that a partner moves."""
+        """Energy [W] that comes in now, but for what links bring."""
         return float(self.fluxes.flows[4]) - self.motion.power_of_partners()
 
     def _settle(self) -> None:

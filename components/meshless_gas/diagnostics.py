@@ -10,23 +10,11 @@ from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.shares import LIGHT, WHOLESALE
-from quintet.components.meshless_gas.state import Fluxes, State
+from quintet.components.meshless_gas.state import Fluxes, State, conserved
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields, Totals
 
 ROUNDING = 1e-12  # of the mass flow at the speed of sound
-
-
-def conserved(state: State, cloud: Cloud, team: Team) -> Array:
-    """Mass, momentum and energy (5,) kg, N s, J of all nodes."""
-    volumes, found = cloud.volumes[: cloud.nodes], np.empty(5)
-
-    def add(first: int, last: int) -> None:
-        for q in range(first, last):
-            found[q] = (volumes * state.conservative[:, q]).sum()
-
-    team.run(add, 5, fewest=1 if cloud.nodes > WHOLESALE else 5)
-    return found
 
 
 def balance(
@@ -36,7 +24,8 @@ def balance(
     counted = np.ones(5)
     if params.has_rings:  # across the axis whole rings have no momentum
         counted[2:4] = 0.0
-    entered, now = counted * state.entered, counted * conserved(state, domain.cloud, team)
+    entered = counted * state.entered
+    now = counted * conserved(state.conservative, domain.cloud.volumes, team)
     mass, energy = state.begun[0], state.begun[4]
     scale = np.array([mass, *[np.sqrt(2.0 * mass * energy)] * 3, energy])
     drift = (now - counted * state.begun - entered) / scale
@@ -114,7 +103,8 @@ def totals(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) ->
     volumes, positions = cloud.volumes[: cloud.nodes], cloud.positions[: cloud.nodes]
     momenta = volumes[:, None] * state.conservative[:, 1:4]
     kinetic = 0.5 * float((momenta * state.primitive[:, 1:4]).sum())
-    now, turning = conserved(state, cloud, team), np.cross(positions, momenta).sum(axis=0)
+    now = conserved(state.conservative, volumes, team)
+    turning = np.cross(positions, momenta).sum(axis=0)
     if params.has_rings:
         now[2:4], turning[:] = 0.0, 0.0
     return Totals(

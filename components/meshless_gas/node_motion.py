@@ -6,7 +6,7 @@ from quintet.components.meshless_gas.build import Domain, domain
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.components.shared.threads import Team
-from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.component import Array, Fields, Keys
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.viscous.terms import Viscous
@@ -22,6 +22,9 @@ class NodeMotion(Protocol):
     @property
     def frame(self) -> Array | None:
         """Velocities (n, 3) m/s of nodes; None where all stand still, and none is compiled."""
+
+    def bind(self, joined: Keys) -> None:
+        """Learn which ports have a partner."""
 
     def soften_start(self, state: State) -> None:
         """Change the state at the start where bodies would jerk the gas."""
@@ -51,7 +54,7 @@ class NodeMotion(Protocol):
         """Add the rates that bodies' clouds have of their own, in a stage of this share."""
 
     def power_of_partners(self) -> float:
-        """Energy [W] that the gas gets now from bodies that a partner moves."""
+        """Energy [W] that links bring the gas now: from bodies that a partner moves or heats."""
 
     def outputs(self, primitive: Array) -> dict[str, Array]:
         """Fields of the bodies' ports."""
@@ -70,6 +73,9 @@ class FixedCloud:
 
     def __init__(self, made: Domain) -> None:
         self.domain = made
+
+    def bind(self, joined: Keys) -> None:
+        """Need not know."""
 
     def soften_start(self, state: State) -> None:
         """Leave the state as it is."""

@@ -297,8 +297,11 @@ class MeshlessGasParams:
             if one.kind == "periodic"
             or (one.kind == "symmetry" and (name != "wall" or self.sphere is None))
         ]
-        if not found and self.sphere is not None and self.boundaries["far"].state is None:
-            found.append("boundaries.far must be an inflow of a given state round a sphere.")
+        if not found and self.sphere is not None:
+            far = self.boundaries["far"].state
+            if far is None:
+                return ["boundaries.far must be an inflow of a given state round a sphere."]
+            return self.sphere.wrong(far.velocity, self.axisymmetric)
         return found
 
     def _wrong_states(self) -> list[str]:

@@ -56,7 +56,8 @@ ERROR = Port(
 )
 # Of the node nearest to each place.
 PROBES = Port("probes", fields=(POSITION, VELOCITY, DENSITY, PRESSURE, TEMPERATURE, MACH))
-# Nodes of a body's wall, or of walls that hold the gas.
+# Nodes of a body's wall, or of walls that hold the gas; where a wall of a box meets another or an
+# inflow the node may be one of theirs.
 WALL = Port(
     "wall",
     fields=(
@@ -69,7 +70,7 @@ WALL = Port(
 
 
 def body(params: MeshlessGasParams) -> Port:
-    """Sums over walls, less the pressure of the stream; of whole rings where it has an axis."""
+    """Sums over what `wall` has, less the pressure of the stream; of whole rings about an axis."""
     names = ["settled"]  # whether the flow is steady: 1 if it is
     if params.box is None:
         names.append("drag_coefficient")  # by the cross-section of a sphere, the area of a plate

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.shares import WHOLESALE
+from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
 
 
@@ -31,6 +33,21 @@ class State:
             getattr(self, name)[:] = saved[name]
         for name in ("time", "work", "change"):
             setattr(self, name, float(saved[name]))
+
+
+def conserved(conservative: Array, volumes: Array, team: Team) -> Array:
+    """Mass, momentum and energy (5,) kg, N s, J of all nodes, by sums of one order.
+
+    Those of a product of matrices would depend on the threads of the library that computes it.
+    """
+    found = np.empty(5)
+
+    def add(first: int, last: int) -> None:
+        for q in range(first, last):
+            found[q] = (volumes[: len(conservative)] * conservative[:, q]).sum()
+
+    team.run(add, 5, fewest=1 if len(conservative) > WHOLESALE else 5)
+    return found
 
 
 @dataclass(slots=True)

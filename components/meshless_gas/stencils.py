@@ -16,6 +16,7 @@ from quintet.interfaces.errors import SceneError
 
 FOURTH = math.exp(-4.0)
 SOUND = 1e-3  # least determinant of M over the product of its diagonal
+BLOCK = 1 << 16  # nodes whose neighbours are ordered at a time, by what they need of memory
 
 
 class Stencils(NamedTuple):
@@ -45,9 +46,13 @@ def nearest_neighbours(
     kept = found[~own].reshape(len(targets), count).astype(np.int32)
     if rows is not None:
         return kept
-    itself = np.arange(cloud.nodes, len(among), dtype=np.int32)
-    ghosts = np.repeat(itself[:, None], count, axis=1)
-    return np.concatenate([kept, ghosts])
+    return _and_ghosts(cloud, kept)
+
+
+def _and_ghosts(cloud: Cloud, kept: Whole) -> Whole:
+    """Neighbours of nodes, and behind them those of ghosts, themselves."""
+    itself = np.arange(cloud.nodes, len(cloud.positions), dtype=np.int32)
+    return np.concatenate([kept, np.repeat(itself[:, None], kept.shape[1], axis=1)])
 
 
 def graded_neighbours(cloud: Cloud, count: int, team: Team) -> Whole:
@@ -57,12 +62,16 @@ def graded_neighbours(cloud: Cloud, count: int, team: Team) -> Whole:
     """
     axes = int((np.ptp(cloud.positions, axis=0) > 0.0).sum())
     more = min(count * 2**axes, len(cloud.positions) - 1)  # as finer ones crowd out what is beyond
-    near = nearest_neighbours(cloud, more, team)
-    arms = cloud.positions[near] - cloud.positions[:, None]
-    mean = 0.5 * (cloud.spacing[near] + cloud.spacing[:, None])
-    away = np.round(np.sqrt((arms**2).sum(axis=2)) / mean, 9)  # equal ones in order of distance
-    order = np.argsort(away, axis=1, kind="stable")[:, :count]
-    return np.take_along_axis(near, order, axis=1)
+    kept = np.empty((cloud.nodes, count), np.int32)
+    for first in range(0, cloud.nodes, BLOCK):
+        rows = np.arange(first, min(first + BLOCK, cloud.nodes))
+        near = nearest_neighbours(cloud, more, team, rows)
+        arms = cloud.positions[near] - cloud.positions[rows, None]
+        mean = 0.5 * (cloud.spacing[near] + cloud.spacing[rows, None])
+        away = np.round(np.sqrt((arms**2).sum(axis=2)) / mean, 9)  # equal ones by distance
+        order = np.argsort(away, axis=1, kind="stable")[:, :count]
+        kept[rows] = np.take_along_axis(near, order, axis=1)
+    return _and_ghosts(cloud, kept)
 
 
 def stencils(cloud: Cloud, neighbours: Whole, planar: bool, team: Team) -> Stencils:

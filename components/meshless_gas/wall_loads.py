@@ -12,9 +12,9 @@ from quintet.components.meshless_gas.blunt_bodies import (
     normal_shock,
     pitot_pressure,
 )
-from quintet.components.meshless_gas.boundaries import GasState
+from quintet.components.meshless_gas.boundaries import HOLDING, GasState
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import WALLS
+from quintet.components.meshless_gas.clouds.cloud import WALLS, own_areas
 from quintet.components.meshless_gas.clouds.params import PlateCloud
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array, Fields
@@ -29,19 +29,20 @@ class WallLoads:
     def __init__(self, params: MeshlessGasParams, domain: Domain) -> None:
         self.params = params
         cloud = domain.cloud
-        kind = cloud.kind[: cloud.nodes]
+        patch = cloud.patch[: cloud.nodes]
         names = ["", *(n for n in params.boundaries if params.kind_of(n) != "periodic")]
-        # Walls of bodies that carry clouds of their own have no patch of the box.
-        chosen = np.isin(kind, WALLS) & (cloud.patch[: cloud.nodes] > 0)
         if params.box is None:
-            chosen &= cloud.patch[: cloud.nodes] == names.index("wall")
+            chosen = np.isin(cloud.kind[: cloud.nodes], WALLS) & (patch == names.index("wall"))
+        else:  # walls of bodies that carry clouds of their own have no patch of the box
+            holding = [n for n, one in enumerate(names) if n and params.kind_of(one) in HOLDING]
+            chosen = np.isin(patch, holding)
         self.rows = np.flatnonzero(chosen)
         self.places = cloud.positions[self.rows]
-        self.areas = cloud.areas[self.rows]
-        if params.box is None:  # where a wall ends its node has a share of what gas leaves through
-            normal = cloud.normals[self.rows]
-            self.areas = (self.areas * normal).sum(axis=1)[:, None] * normal
+        # Where a wall ends its node has a share of what gas leaves through, or of another wall.
+        self.areas = own_areas(cloud, self.rows)
         self.sizes = np.sqrt((self.areas**2).sum(axis=1))
+        if params.box is not None:
+            self.areas = cloud.areas[self.rows] * holding_faces(params, cloud.areas[self.rows])
         self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
         self.stream = free_stream(params)
         if params.sphere is not None:
@@ -156,6 +157,14 @@ class WallLoads:
         height = self.heights[last, near]
         height = height + share * (self.heights[last + 1, near] - height)
         return float(polyfit(self.angle[near] ** 2, height, 2)[0])
+
+
+def holding_faces(params: MeshlessGasParams, areas: Array) -> NDArray[np.bool_]:
+    """Whether each part (w, 3) of the areas of a box's nodes is of a face that holds the gas."""
+    first, last = (
+        np.array([params.kind_of(axis + side) in HOLDING for axis in "xyz"]) for side in "-+"
+    )
+    return np.asarray(np.where(areas > 0.0, first, last))
 
 
 def free_stream(params: MeshlessGasParams) -> Stream | None:

@@ -1,6 +1,6 @@
 """What a cloud of nodes is, and joining several."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,12 @@ class Cloud(NamedTuple):
     def nodes(self) -> int:
         """Number of nodes that are no ghosts."""
         return len(self.positions) - len(self.owner)
+
+
+def own_areas(cloud: Cloud, rows: NDArray[Any]) -> Array:
+    """Areas (w, 3) m2 of boundary nodes on their own face alone, across their normals."""
+    normals = cloud.normals[rows]
+    return np.asarray((cloud.areas[rows] * normals).sum(axis=1)[:, None] * normals)
 
 
 def joined(clouds: list[Cloud]) -> Cloud:

@@ -163,6 +163,22 @@ class SphereCloud:
         even = 0.15 * self.margin * self.radius / self.layers.count
         return even if self.layers.first is None else self.layers.first
 
+    def wrong(self, stream: Vector, axisymmetric: bool) -> list[str]:
+        """What does not fit between the sphere, the stream [m/s] that it stands in and an axis."""
+        found = []
+        if not stream[0] > 0.0 or any(stream[1:]):
+            found.append(
+                "boundaries.far: the stream round a sphere must flow along x, from where the "
+                f"layers look for its bow shock; found {stream} m/s. Turn the scene so that it "
+                "does."
+            )
+        if axisymmetric and any(self.centre[1:]):
+            found.append(
+                "sphere: its centre must lie on the axis of symmetry, y = z = 0; found "
+                f"{self.centre} m. Move it there."
+            )
+        return found
+
     def expected_count(self, dimensions: int) -> int:
         """About how many nodes there will be."""
         surface = float(self.rays)

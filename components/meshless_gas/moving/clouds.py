@@ -26,11 +26,12 @@ from quintet.components.meshless_gas.moving.refusals import (
 )
 from quintet.components.meshless_gas.moving.seam_stencils import Seams
 from quintet.components.meshless_gas.moving.start import soft_start
+from quintet.components.meshless_gas.moving.uncovered import uncover
 from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.components.shared.threads import Team
-from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.component import Array, Fields, Keys
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
@@ -59,6 +60,7 @@ class MovingClouds:
             np.array([(0.0, one.angular_velocity, 0.0) for one in bodies]),
         )
         self.driven = np.array([k for k, one in enumerate(bodies) if one.is_driven], np.int64)
+        self.heat_is_joined = False  # whether a partner takes the heat of driven bodies
         self.given: Array | None = None  # (driven, 3) m, places at the middle of the coming step
         self.holes = Holes(params.moving, layout, cloud, team)
         self.seams = Seams(layout, cloud, domain.stencils, team)
@@ -73,6 +75,10 @@ class MovingClouds:
         self._cut(is_first=True)
 
     # Steps
+
+    def bind(self, joined: Keys) -> None:
+        """Learn whether a partner takes the heat of driven bodies: it is then in its account."""
+        self.heat_is_joined = "heat" in joined
 
     def soften_start(self, state: State) -> None:
         """Let gas near a body begin with the body's velocity, which fades over one radius."""
@@ -108,8 +114,7 @@ class MovingClouds:
         self._set_frame()
         self.summed[:] = 0.0
         if self.holes.are_old(self.pose.centre):
-            fresh, active = self._cut(), self.holes.active
-            self.seams.fill(fresh, active, self.pose.centre, self.gamma, primitive, conservative)
+            uncover(self, self._cut(), primitive, conservative)
         else:
             self.seams.refit(self.pose.centre)
         return True
@@ -177,8 +182,9 @@ class MovingClouds:
             )  # fmt: skip
 
     def power_of_partners(self) -> float:
-        """Energy [W] that the gas gets now from bodies that a partner moves."""
-        return float(self.loads[self.driven, 6].sum())
+        """Energy [W] that links bring the gas now: from bodies that a partner moves or heats."""
+        loads = self.loads[self.driven]
+        return float((loads[:, 6] - self.heat_is_joined * loads[:, 7]).sum())
 
     def outputs(self, primitive: Array) -> dict[str, Array]:
         """Fields of the bodies' ports."""

@@ -1,19 +1,12 @@
-"""Stencils across the seams of clouds, and the states of nodes that come back there."""
+"""Stencils across the seams of clouds."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud
-from quintet.components.meshless_gas.clouds.nearest import nearest
-from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.refusals import too_few
-from quintet.components.meshless_gas.moving.seams import (
-    around,
-    choose,
-    write_uncovered,
-    write_uncovered_in_space,
-)
+from quintet.components.meshless_gas.moving.seams import around, choose
 from quintet.components.meshless_gas.stencils import SOUND, Stencils, write_coefficients
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
@@ -23,7 +16,6 @@ Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 BAND = 3.0  # spacings about a seam within which neighbours are found anew
 NEAR = 4  # times as many nodes are looked at as a node has neighbours
-KNOWN = 8  # nodes that tell the state of one that is uncovered; in space twice as many
 
 
 class Seams:
@@ -96,38 +88,3 @@ class Seams:
             mixed = moved[region[self.across]] | moved[region[near]].any(axis=1)
             self.fit(self.across[mixed])
         self.fitted[:] = centre
-
-    def fill(
-        self, fresh: Rows, active: Flags, centre: Array, gamma: float, primitive: Array,
-        conservative: Array,
-    ) -> None:  # fmt: skip
-        """Give nodes that came back the state of what is around them.
-
-        Parameters
-        ----------
-        fresh : (f,)
-            These nodes.
-        active : (n + g,)
-            Nodes and ghosts that are not left out.
-        centre : (b, 3) m
-            Of bodies.
-        gamma : float, 1
-        primitive, conservative : (n, 5)
-            Written.
-        """
-        if not len(fresh):
-            return
-        cloud, own = self.cloud, self.layout
-        known = active[: cloud.nodes].copy()
-        known[fresh] = False
-        near = own.heights_of(cloud.positions[: cloud.nodes], centre)
-        close = (near < (own.thickness + 4.0 * own.spacing)[:, None]).any(axis=0)
-        among = np.flatnonzero(known & close)
-        many, write = KNOWN, write_uncovered
-        if not own.planar:
-            many, write = 2 * KNOWN, write_uncovered_in_space
-        found, _ = nearest(cloud.positions, among, cloud.positions[fresh], many, self.team)
-        write(fresh, found, cloud.positions, cloud.spacing, centre, own.radii, primitive)
-        part_of = np.empty((len(fresh), 5))
-        write_conservative(primitive[fresh], gamma, part_of)
-        conservative[fresh] = part_of

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quintet.components.meshless_gas.kernels.motion import write_conservative
-from quintet.components.meshless_gas.state import State
+from quintet.components.meshless_gas.state import State, conserved
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.moving.clouds import MovingClouds
@@ -21,4 +21,4 @@ def soft_start(moving: "MovingClouds", state: State) -> None:
         share = 1.0 - np.clip(away, 0.0, 1.0)[:, None]
         state.primitive[:, 1:4] += share * (velocity - state.primitive[:, 1:4])
     write_conservative(state.primitive, moving.gamma, state.conservative)
-    state.begun[:] = moving.domain.cloud.volumes[: len(positions)] @ state.conservative
+    state.begun[:] = conserved(state.conservative, moving.domain.cloud.volumes, moving.team)

@@ -8,6 +8,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
     NO_SLIP_ADIABATIC,
     NO_SLIP_ISOTHERMAL,
     Whole,
+    own_areas,
 )
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -56,6 +57,7 @@ class Viscous:
         self.velocity = np.array([one.velocity or (0.0, 0.0, 0.0) for one in walls])
         self.velocity = self.velocity.reshape(-1, 3)
         self.temperature = np.array([one.temperature or -1.0 for one in walls])
+        self.areas = own_areas(cloud, self.rows)
         self.above = nodes_above(self.rows, domain)
         self.rarefied = None
         if any(one.accommodation is not None for one in walls):
@@ -88,7 +90,7 @@ class Viscous:
                 self.domain, self.velocity, primitive, self.friction, self.heat
             )
         self.heat[self.temperature < 0.0] = 0.0
-        add_wall_flows(self.rows, cloud.areas, self.velocity, self.friction, self.heat, flows)
+        add_wall_flows(self.areas, self.velocity, self.friction, self.heat, flows)
 
     def add(self, work: Fluxes) -> None:
         """Add rates of momentum and energy, by the gradients of this stage."""

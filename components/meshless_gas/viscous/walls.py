@@ -104,12 +104,15 @@ def write_tractions(  # type: ignore[no-untyped-def]
 
 
 @njit(**EXACT)
-def add_wall_flows(rows, areas, velocity, friction, heat, flows):  # type: ignore[no-untyped-def]
-    """Take what friction and conduction give to walls from what enters: (5,) kg/s, N, W."""
-    for n in range(rows.shape[0]):
+def add_wall_flows(areas, velocity, friction, heat, flows):  # type: ignore[no-untyped-def]
+    """Take what friction and conduction give to walls from what enters: (5,) kg/s, N, W.
+
+    Areas (w, 3) m2 are those of the walls' own faces.
+    """
+    for n in range(areas.shape[0]):
         size = 0.0
         for axis in range(3):
-            size += areas[rows[n], axis] ** 2
+            size += areas[n, axis] ** 2
         size = math.sqrt(size)
         flows[4] -= size * heat[n]
         for axis in range(3):

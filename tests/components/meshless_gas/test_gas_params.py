@@ -13,7 +13,20 @@ FORE = BODY | {"sector": 1.5707963267948966, "position": [1.0, 0.0, 0.0]}
 DRIVEN, THICK = {"is_driven": True}, {"first_at_sector": 0.09}
 CUT = {"axisymmetric": True, "bodies": [FORE]}
 TUBE = {"position": 0.5, "left": REST, "right": REST}
+ROUND = {"radius": 1.0, "rays": 8, "layers": {"count": 6}}
 POINTS = {"drag": "stokes"}
+
+
+def sphere(velocity, axisymmetric=True, **keys):
+    """A sphere in a stream of a velocity [m/s]."""
+    ends = {"wall": {"kind": "slip"}, "exit": {"kind": "outflow"}}
+    far = {"kind": "inflow", "state": REST | {"velocity": velocity}}
+    return {
+        "dimensions": 2 if axisymmetric else 3,
+        "axisymmetric": axisymmetric,
+        "sphere": ROUND | keys,
+        "boundaries": ends | {"far": far},
+    }
 
 
 @pytest.mark.parametrize(
@@ -39,6 +52,10 @@ POINTS = {"drag": "stokes"}
             {"box": BOX, "moving": {"bodies": [BODY]}, "initial": None, "riemann": TUBE},
             "for a tube alone",
         ),
+        (sphere([3.0, 0.0, 0.0], centre=[5.0, 0.0, 0.1]), "axis of symmetry, y = z = 0; found"),
+        (sphere([-3.0, 0.0, 1.0]), "must flow along x"),
+        (sphere([-3.0, 0.0, 0.0], axisymmetric=False), "must flow along x"),
+        (sphere([3.0, 0.1, 0.0], axisymmetric=False), "must flow along x"),
         ({}, "found none"),
     ],
 )
@@ -46,3 +63,9 @@ def test_what_does_not_go_together_is_refused(keys, said):
     table = {"gas": {"gas_constant": 1.0}, "initial": REST, **keys}
     _, mistakes = read(MeshlessGasParams, table, "gas")
     assert any(said in one for one in mistakes), mistakes
+
+
+def test_a_sphere_in_space_may_lie_off_the_axis_x():
+    table = sphere([3.0, 0.0, 0.0], axisymmetric=False, centre=[5.0, 1.0, 0.1])
+    _, mistakes = read(MeshlessGasParams, {"initial": REST} | table, "gas")
+    assert not mistakes, mistakes

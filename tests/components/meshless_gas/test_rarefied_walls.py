@@ -9,15 +9,16 @@ from gases import given
 
 from quintet.components.meshless_gas.boundaries import Boundary
 from quintet.components.meshless_gas.component import MeshlessGas
-from quintet.components.meshless_gas.transport import Transport, sutherland
-from quintet.components.meshless_gas.viscous.laws import jump_length, mean_free_path, slip_length
-from quintet.components.meshless_gas.viscous.slip import write_slip_tractions
+from quintet.components.meshless_gas.transport import Transport
+from quintet.components.meshless_gas.viscous.slip import write_slip_tractions, write_slips
 from quintet.interfaces.params import read
 
 GAMMA, R, PRANDTL, SPEED = 1.4, 1.0 / 1.4, 0.72, 1.0
 WALL = {"kind": "isothermal", "temperature": 1.0}
 SHARES = {"momentum": 0.9, "energy": 0.8}
-VISCOSITY = 0.08  # Knudsen number 0.12 by the gap
+VISCOSITY, SUTHERLAND = 0.08, 0.4  # Pa s, K; Knudsen number 0.12 by the gap
+SLIP = 11.0 / 9.0  # mean free paths, Maxwell's (2 - σ)/σ
+JUMP = 175.0 / 72.0  # mean free paths, Smoluchowski's (2 - α)/α 2γ/(γ + 1)/Pr
 
 
 def between_walls(nodes: int, upper: dict[str, Any], end: float = 35.0) -> MeshlessGas:
@@ -26,7 +27,7 @@ def between_walls(nodes: int, upper: dict[str, Any], end: float = 35.0) -> Meshl
     table = {
         "viscous": True,
         "gas": {"gas_constant": R, "viscosity": VISCOSITY, "reference_temperature": 1.0,
-                "sutherland": 0.4, "prandtl": PRANDTL},
+                "sutherland": SUTHERLAND, "prandtl": PRANDTL},
         "initial": {"density": 1.0, "pressure": R, "velocity": [0.5, 0.0, 0.0]},
         "neighbours": 8,
         "limiter_threshold": 1e-2,
@@ -46,15 +47,13 @@ def between_walls(nodes: int, upper: dict[str, Any], end: float = 35.0) -> Meshl
 UPPER = {"isothermal": WALL, "adiabatic": {"kind": "adiabatic"}}
 
 
-def exact(gas: MeshlessGas, adiabatic: bool, pressure: float) -> dict[str, float]:
+def exact(adiabatic: bool, pressure: float) -> dict[str, float]:
     """Slip, temperature at the lower wall and friction of the flow, at the pressure that it has.
 
     c μ dT/dy + τ u = E all through, c = c_p/Pr, τ = μ du/dy; E = τU if the upper wall takes no
     heat, τU/2 if both walls are alike. Thus T(u) is a parabola, and τ h = ∫ μ(T(u)) du.
     """
-    law, c = gas.viscous.law, GAMMA / (GAMMA - 1.0) * R / PRANDTL
-    slip = slip_length(SHARES["momentum"])
-    jump = jump_length(SHARES["energy"], GAMMA, PRANDTL)
+    c = GAMMA / (GAMMA - 1.0) * R / PRANDTL
     u0, u1, t0, tau = 0.1, 0.9, 1.0, 0.05
     energy = SPEED if adiabatic else 0.5 * SPEED  # E/τ
 
@@ -62,17 +61,18 @@ def exact(gas: MeshlessGas, adiabatic: bool, pressure: float) -> dict[str, float
         return t0 + (energy * (u - u0) - 0.5 * (u * u - u0 * u0)) / c
 
     def viscosity(u: Any) -> Any:
-        return np.vectorize(lambda one: sutherland.py_func(one, law))(temperature(u))
+        t = temperature(u)
+        return VISCOSITY * t**1.5 * (1.0 + SUTHERLAND) / (t + SUTHERLAND)
 
-    def free_path(u: float) -> float:
-        return mean_free_path.py_func(viscosity(u), pressure, temperature(u), R) / viscosity(u)
+    def free_path(u: float) -> float:  # over the viscosity
+        return math.sqrt(0.5 * math.pi * R * temperature(u)) / pressure
 
     for _ in range(200):
         u = np.linspace(u0, u1, 2001)
         tau = float(np.trapezoid(viscosity(u), u))
-        new0 = slip * free_path(u0) * tau
-        new1 = SPEED - slip * free_path(u1) * tau
-        t0 = 1.0 + jump * free_path(u0) * tau * (energy - u0) / c
+        new0 = SLIP * free_path(u0) * tau
+        new1 = SPEED - SLIP * free_path(u1) * tau
+        t0 = 1.0 + JUMP * free_path(u0) * tau * (energy - u0) / c
         u0, u1 = 0.5 * (u0 + new0), 0.5 * (u1 + new1)
     return {"slip": u0, "temperature": t0, "friction": tau}
 
@@ -81,7 +81,7 @@ def errors(kind: str, nodes: int) -> dict[str, float]:
     """Relative errors at the lower wall."""
     gas = between_walls(nodes, UPPER[kind])
     adiabatic = kind == "adiabatic"
-    found = exact(gas, adiabatic, float(given(gas, "wall.pressure").mean()))
+    found = exact(adiabatic, float(given(gas, "wall.pressure").mean()))
     lower = given(gas, "wall.position")[:, 2] < 0.5
     friction, heat = given(gas, "wall.friction")[lower, 0], given(gas, "wall.heat_flux")[lower]
     density, speed, *_, pressure = gas.state.primitive[np.flatnonzero(at_bottom(gas))].T
@@ -141,6 +141,64 @@ def test_gas_that_turns_with_a_sphere_as_a_whole_has_no_shear() -> None:
     )  # fmt: skip
     assert friction == pytest.approx(0.0, abs=1e-12)
     assert heat == pytest.approx(0.0, abs=1e-12)
+
+
+def slipped(
+    along: list[float], heights: list[float], warmer: float, curvature: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Velocity and friction along x at a wall z = 0, under nodes that flow along it [m/s].
+
+    Two more nodes lie on the wall, warmer and colder by `warmer` at 0.1 m along x.
+    """
+    places = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]] + [
+        [0.0, 0.0, z] for z in heights
+    ])  # fmt: skip
+    normals = np.tile([0.0, 0.0, 1.0], (5, 1))
+    temperature = np.array([1.0, 1.0 + warmer, 1.0 - warmer, 1.0, 1.0])
+    primitive = np.zeros((5, 5))
+    primitive[:, 0], primitive[:, 4] = 1.0 / temperature, R
+    primitive[3:, 1] = along
+    rows, above = np.array([0], np.int32), np.array([[3, 4]], np.int32)
+    near = np.array([[1, 2]] + 4 * [[0, 0]], np.int32)
+    coefficients = np.zeros((5, 2, 3))
+    coefficients[0, :, 0] = 5.0, -5.0  # 1/m
+    law = Transport(VISCOSITY, 1.0, SUTHERLAND, 3.5 * R / PRANDTL, R)
+    write_slips(
+        rows, above, places, normals, near, coefficients, np.empty(0, np.int32), np.zeros((1, 3)),
+        np.array([[SLIP, JUMP]]), curvature, law, primitive,
+    )  # fmt: skip
+    wall, friction, heat = primitive[0, 1:4].copy(), np.empty((1, 3)), np.empty(1)
+    write_slip_tractions(
+        rows, above, places, normals, near, np.zeros((5, 2, 3)), np.zeros((1, 3)), curvature, law,
+        primitive, friction, heat,
+    )  # fmt: skip
+    return wall, friction[0]
+
+
+def test_gas_creeps_along_a_wall_to_where_it_is_warmer() -> None:
+    creep = 0.75 * VISCOSITY * 0.3  # m/s, 3/4 μ/(ρT) ∂T/∂x with ρT = 1, 0.3 K/m
+    free, friction = slipped([creep, creep], [0.05, 0.1], 0.03, 0.0)
+    np.testing.assert_allclose(free, [creep, 0.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(friction, 0.0, atol=1e-13)
+    # Gas at rest above holds it back: the parabola's slope at the wall is -3/2 u/h.
+    length = SLIP * VISCOSITY / R * math.sqrt(0.5 * math.pi * R)
+    held, _ = slipped([0.0, 0.0], [0.05, 0.1], 0.03, 0.0)
+    assert held[0] == pytest.approx(creep / (1.0 + length * 1.5 / 0.05))
+
+
+def test_gas_slips_round_a_sphere_as_basset_says() -> None:
+    # Basset, Hydrodynamics II (1888), art. 497: creeping flow U round a sphere of radius a along
+    # which it slips by L. At its equator u/U = 1 + C a/r - D a³/r³, D = -(1 + 2 C)/2 and
+    # C = -3/4 (1 + 2 L/a)/(1 + 3 L/a): at the wall 3/2 (L/a)/(1 + 3 L/a).
+    length = SLIP * VISCOSITY / R * math.sqrt(0.5 * math.pi * R)  # m, a = 1 m
+    c = -0.75 * (1.0 + 2.0 * length) / (1.0 + 3.0 * length)
+    d = -0.5 * (1.0 + 2.0 * c)
+    heights = [0.001, 0.002]
+    r = 1.0 + np.array(heights)
+    wall, friction = slipped(list(1.0 + c / r - d / r**3), heights, 0.0, 1.0)
+    slip = 1.5 * length / (1.0 + 3.0 * length)
+    assert wall[0] == pytest.approx(slip, rel=1e-4)
+    assert friction[0] == pytest.approx(VISCOSITY * slip / length, rel=1e-4)
 
 
 def test_only_a_wall_that_holds_a_gas_has_accommodation_coefficients() -> None:

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from gases import SOD, gas, given, run, state, tube
 
+from quintet.components.meshless_gas import stencils
 from quintet.components.meshless_gas.bench import vortex
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.stencils import graded_neighbours
+from quintet.components.shared.threads import Team
 from quintet.interfaces.params import read
 
 FINER = ((0.4, 0.62), (0.72, 0.78))  # m
@@ -53,6 +56,15 @@ def test_nodes_beside_finer_ones_are_surrounded():
     for axis in (0, 2):
         for sign in (-1.0, 1.0):
             assert ((sign * arms[:, :, axis] > 0.0).sum(axis=1) >= 2).all()
+
+
+def test_neighbours_are_those_of_the_whole_cloud_however_many_are_ordered_at_a_time(monkeypatch):
+    cloud = gas(initial=AIR, box={"refinements": [part(0.3, 0.7)]}).domain.cloud
+    assert len(cloud.owner) > 0
+    whole = graded_neighbours(cloud, 9, Team(1))
+    monkeypatch.setattr(stencils, "BLOCK", 37)
+    assert np.array_equal(graded_neighbours(cloud, 9, Team(1)), whole)
+    assert (whole[cloud.nodes :] == np.arange(cloud.nodes, len(whole))[:, None]).all()
 
 
 def test_a_vortex_into_a_finer_part_gains_by_it():

@@ -109,6 +109,21 @@ def test_an_adiabatic_wall_takes_no_heat_and_is_warmed_by_friction():
     assert 1.01 < warmth[2].mean() < 1.0 + 0.2 * 0.5**2 * 1.2
 
 
+@pytest.mark.full
+def test_heat_that_a_partner_takes_is_not_in_the_gas_account_of_work():
+    alone, joined = (turning(is_driven=True, temperature=0.9)[0] for _ in range(2))
+    joined.bind({}, frozenset({"motion", "load", "heat"}))
+    given = 0.0  # J, to the body
+    for _ in range(5):
+        dt = alone.stable_dt()
+        for gas in (alone, joined):
+            gas.step(dt)
+        given += dt * joined.give(frozenset({"heat.heat_flow"}))["heat.heat_flow"][0]
+    assert given > 1e-3
+    assert alone.totals().work == pytest.approx(-given, rel=1e-9)  # nothing else comes in
+    assert joined.totals().work == pytest.approx(0.0, abs=1e-9 * given)
+
+
 @pytest.mark.parametrize(
     ("body", "said"),
     [
