@@ -214,7 +214,7 @@ class MovingClouds:
 
     def _leave_out(self) -> None:
         """Let the domain be that of nodes that are not left out."""
-        self.domain = without_holes(self.domain, self.layout, self.holes.active, self.outflows)
+        self.domain = without_holes(self.domain, self.holes, self.outflows)
 
     # State
 
@@ -226,7 +226,7 @@ class MovingClouds:
             "seen": self.holes.seen, "active": self.holes.active, "touched": self.seams.touched,
             "across": self.seams.across, "neighbours": made.neighbours,
             "coefficients": made.coefficients, "summed": self.summed,
-            "uncovered": np.array(self.holes.uncovered),
+            "volumes": self.holes.volumes, "uncovered": np.array(self.holes.uncovered),
         }  # fmt: skip
         return {f"moving/{name}": np.array(one) for name, one in kept.items()}
 
@@ -237,7 +237,7 @@ class MovingClouds:
             ("centre", self.pose.centre), ("velocity", self.pose.velocity),
             ("spin", self.pose.spin), ("seen", self.holes.seen), ("active", self.holes.active),
             ("neighbours", made.neighbours), ("coefficients", made.coefficients),
-            ("summed", self.summed),
+            ("summed", self.summed), ("volumes", self.holes.volumes),
         ):  # fmt: skip
             array[:] = saved[f"moving/{name}"]
         self.seams.touched = np.array(saved["moving/touched"], np.int64)

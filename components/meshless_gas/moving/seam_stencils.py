@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.clouds.cloud import Cloud
+from quintet.components.meshless_gas.clouds.cloud import INNER, Cloud
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.refusals import too_few
 from quintet.components.meshless_gas.moving.seams import around, choose
@@ -26,6 +26,9 @@ class Seams:
         self.fitted = np.zeros((len(layout.radii), 3))  # m, centres when coefficients were written
         self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
         self.across = np.zeros(0, np.int64)  # of these, those that reach over a seam
+        # Nodes at faces of the box that no cloud reaches; their weights are those of the box.
+        self.faces = (cloud.kind[: cloud.nodes] != INNER) & (cloud.region[: cloud.nodes] == 0)
+        self.faces[layout.plane] = False
         self.quality = np.ones(len(cloud.positions))
         self.least = np.zeros(len(cloud.positions))  # weight of least squares across seams
 
@@ -45,7 +48,8 @@ class Seams:
         band &= active[:count] & (own.height > 0.0)
         if not own.planar:
             band[own.leaving] = False  # they have the state of the node beside them
-        rows = np.flatnonzero(band)
+        self._refuse_faces(band & self.faces, active)
+        rows = np.flatnonzero(band & ~self.faces)
         before = self.touched
         neighbours[before] = own.home[before]
         images = near_any[cloud.owner] & active[cloud.owner]
@@ -64,6 +68,17 @@ class Seams:
         self.touched, self.across = rows[~(whole & ~other)], rows[other]
         self.fit(np.union1d(before, self.touched))
         self.fitted[:] = centre
+
+    def _refuse_faces(self, close: Flags, active: Flags) -> None:
+        """Refuse clouds that cover neighbours of nodes at faces of the box."""
+        rows = np.flatnonzero(close)
+        lacks = rows[~active[self.layout.home[rows]].all(axis=1)]
+        if len(lacks):
+            raise StepError(
+                "clouds of bodies must leave the nodes beside a face of the box free; that at "
+                f"{np.array2string(self.cloud.positions[lacks[0]], precision=4)} m has neighbours "
+                "that are left out. End the run before, or make the box larger or finer."
+            )
 
     def fit(self, rows: Rows) -> None:
         """Write the coefficients of nodes."""
