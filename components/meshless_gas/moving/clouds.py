@@ -63,7 +63,7 @@ class MovingClouds:
         self.heat_is_joined = False  # whether a partner takes the heat of driven bodies
         self.given: Array | None = None  # (driven, 3) m, places at the middle of the coming step
         self.holes = Holes(params.moving, layout, cloud, team)
-        self.seams = Seams(layout, cloud, domain.stencils, team)
+        self.seams = Seams(layout, domain, team)
         self.frame = np.zeros((len(cloud.positions), 3))
         self.wall_velocity = np.zeros((len(layout.walls), 3))
         self.loads = np.zeros((len(bodies), 8))  # N, N m, W of walls on gas, W of heat: now
@@ -246,5 +246,6 @@ class MovingClouds:
         self.given = None
         self._place(self.pose.centre)
         self.seams.fitted[:] = self.pose.centre
+        self.seams.weigh(self.domain.edges.astype(np.int64))
         self._set_frame()
         self._leave_out()

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, Cloud
 from quintet.components.meshless_gas.clouds.nearest import nearest
-from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.kernels.outflows import Outflows, uncovered
 from quintet.components.meshless_gas.moving.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
@@ -86,7 +85,7 @@ def without_holes(domain: Domain, holes: Holes, outflows: Outflows) -> Domain:
     Parameters
     ----------
     domain : Domain
-        Whose volumes, areas and weights are written.
+        Whose volumes and areas are written.
     holes : Holes
     outflows : Outflows
         Of the box, whether left out or not.
@@ -105,13 +104,4 @@ def without_holes(domain: Domain, holes: Holes, outflows: Outflows) -> Domain:
             wall = layout.radii[layout.is_cut].max()
             there = layout.plane[active[layout.plane]]
             write_plane_areas(there, cloud.positions, wall, cloud.areas)
-        edges, weights = domain.edges, domain.weights
-        write_weights(edges, cloud.kind, cloud.normals, *domain.stencils, weights)
-        lacks = edges[~np.isfinite(weights).all(axis=1) & active[edges]]
-        if len(lacks):
-            raise StepError(
-                f"nodes of the box beside a seam must have a neighbour within; that at "
-                f"{np.array2string(cloud.positions[lacks[0]], precision=4)} m has none. Make the "
-                "cloud of the body thicker, or the box finer."
-            )
     return domain
