@@ -309,8 +309,8 @@ class MeshlessGasParams:
         found = []
         if (self.initial is None) == (self.riemann is None):
             found.append("the gas begins with initial or riemann, one of them. Correct it.")
-        if self.riemann is not None and (self.vortex is not None or self.zones):
-            found.append("riemann is all that the gas begins with: leave out vortex and zones.")
+        if self.riemann is not None and (self.vortex or self.zones or self.moving):
+            found.append("riemann is for a tube alone: leave out vortex, zones and moving.")
         if self.vortex is not None and self.initial is not None:
             share = (self.gas.gamma - 1.0) / (2.0 * self.gas.gamma) * math.e
             density, *_, pressure = self.initial.primitive(self.gas)

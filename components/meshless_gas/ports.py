@@ -101,7 +101,8 @@ FRONTS = Port(
     ),
 )
 
-# Of bodies that carry clouds, all of them; forces are means over the step.
+# Of bodies that carry clouds, all of them; forces are means over the step. Where a sector ends at a
+# body's shoulder, the pressure of the gas at the start is taken to be on the back.
 BODIES = Port(
     "bodies",
     fields=(

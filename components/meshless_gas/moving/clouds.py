@@ -10,39 +10,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW
-from quintet.components.meshless_gas.clouds.nearest import nearest
-from quintet.components.meshless_gas.kernels.boundaries import write_weights
-from quintet.components.meshless_gas.kernels.outflows import uncovered
 from quintet.components.meshless_gas.moving.axis import add_axis
-from quintet.components.meshless_gas.moving.holes import cut, part
-from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose, write_plane_areas
-from quintet.components.meshless_gas.moving.outputs import outputs, unit_force, unit_heat
+from quintet.components.meshless_gas.moving.hole_cutting import Holes, without_holes
+from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose
+from quintet.components.meshless_gas.moving.outputs import (
+    base_force,
+    outputs,
+    unit_force,
+    unit_heat,
+)
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
     refuse_places,
-    too_few,
 )
-from quintet.components.meshless_gas.moving.seams import around, choose
+from quintet.components.meshless_gas.moving.seam_stencils import Seams
 from quintet.components.meshless_gas.moving.start import soft_start
 from quintet.components.meshless_gas.moving.uncovered import uncover
 from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
-from quintet.components.meshless_gas.stencils import SOUND, write_coefficients
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields, Keys
-from quintet.interfaces.errors import StepError
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
     from quintet.components.meshless_gas.viscous.terms import Viscous
 
 Rows = NDArray[np.int64]
-Flags = NDArray[np.bool_]
-BAND = 3.0  # spacings about a seam within which neighbours are found anew
-NEAR = 4  # times as many nodes are looked at as a node has neighbours
 STAGE_TIMES = (0.0, 1.0, 0.5)  # of SSP-RK3, in steps
 
 
@@ -57,7 +52,7 @@ class MovingClouds:
         self.gamma, self.unit_force = params.gas.gamma, unit_force(params)
         self.outflows = domain.outflows  # of the box, whether left out or not
         self.unit_heat = unit_heat(params)
-        self.kept = layout.kept  # neighbours of a node across seams
+        self.base_force = base_force(params, layout, domain.cloud.areas)  # (b, 3) N
         bodies, cloud = self.params.bodies, domain.cloud
         self.pose = Pose(
             np.array([one.position for one in bodies]),
@@ -67,22 +62,14 @@ class MovingClouds:
         self.driven = np.array([k for k, one in enumerate(bodies) if one.is_driven], np.int64)
         self.heat_is_joined = False  # whether a partner takes the heat of driven bodies
         self.given: Array | None = None  # (driven, 3) m, places at the middle of the coming step
-        self.radii = np.array([one.radius for one in bodies])
-        self.spacing = np.array([one.spacing for one in bodies])
-        self.thickness = np.array([one.heights[-1] for one in bodies])
-        self.active = np.ones(len(cloud.positions), bool)
-        self.seen = self.pose.centre.copy()  # (b, 3) m, when holes were cut last
-        self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
-        self.across = np.zeros(0, np.int64)  # of these, those that reach over a seam
-        self.quality = np.ones(len(cloud.positions))
-        self.least = np.zeros(len(cloud.positions))  # weight of least squares across seams
+        self.holes = Holes(params.moving, layout, cloud, team)
+        self.seams = Seams(layout, cloud, domain.stencils, team)
         self.frame = np.zeros((len(cloud.positions), 3))
         self.wall_velocity = np.zeros((len(layout.walls), 3))
         self.loads = np.zeros((len(bodies), 8))  # N, N m, W of walls on gas, W of heat: now
         self.summed = np.zeros((len(bodies), 8))  # in the mean over the last step
         self.friction: Friction | None = None  # of walls that hold the gas
         self.stresses: AxisStresses | None = None  # of a viscous gas about an axis
-        self.uncovered = 0  # nodes that came back since the start
         self._place(self.pose.centre)
         self._set_frame()
         self._cut(is_first=True)
@@ -110,45 +97,40 @@ class MovingClouds:
         if "motion.angular_velocity" in fields:
             self.pose.spin[self.driven] = fields["motion.angular_velocity"] * across
         if self.params.axisymmetric:
-            refuse_off_axis(self.given, self.pose.velocity[self.driven], self.driven)
+            refuse_off_axis(
+                self.given, self.pose.velocity[self.driven], self.pose.spin[self.driven],
+                self.driven,
+            )  # fmt: skip
 
     def begin(self, dt: float, primitive: Array, conservative: Array) -> bool:
         """Put clouds where they are at the step's start; cut holes anew where they have moved."""
         if self.given is not None:
             moved = self.given - 0.5 * dt * self.pose.velocity[self.driven]
-            refuse_jump(
-                moved, self.pose.centre[self.driven], self.spacing[self.driven], self.driven
-            )
+            near = self.layout.spacing[self.driven]
+            refuse_jump(moved, self.pose.centre[self.driven], near, self.driven)
             self.pose.centre[self.driven] = moved
-        refuse_places(
-            self.layout,
-            self.radii,
-            self.thickness,
-            self.spacing,
-            self.pose.centre + dt * self.pose.velocity,
-        )
+        refuse_places(self.layout, self.pose.centre + dt * self.pose.velocity)
         self._place(self.pose.centre)
         self._set_frame()
         self.summed[:] = 0.0
-        way = np.abs(self.pose.centre - self.seen).max(axis=1)
-        if (way > self.params.threshold * self.spacing).any():
-            fresh = self._cut()
-            uncover(self, fresh, primitive, conservative)
+        if self.holes.are_old(self.pose.centre):
+            uncover(self, self._cut(), primitive, conservative)
         else:
-            self._refit()
+            self.seams.refit(self.pose.centre)
         return True
 
     def place(self, stage: int, dt: float) -> None:
         """Move clouds to where they are at a stage; coefficients across seams follow."""
         if stage > 0:
-            self._place(self.pose.centre + STAGE_TIMES[stage] * dt * self.pose.velocity)
-            self._refit()
+            centre = self.pose.centre + STAGE_TIMES[stage] * dt * self.pose.velocity
+            self._place(centre)
+            self.seams.refit(centre)
 
     def end(self, dt: float) -> None:
         """Move clouds to the step's end."""
         self.pose.centre[:] += dt * self.pose.velocity
         self._place(self.pose.centre)
-        self._refit()
+        self.seams.refit(self.pose.centre)
 
     # Stages
 
@@ -181,7 +163,7 @@ class MovingClouds:
     def flatten(self, gradients: Array) -> None:
         """Let states be constant around nodes that reach over a seam, if the scene asks for it."""
         if self.params.seam_order == 1:
-            gradients[self.across] = 0.0
+            gradients[self.seams.across] = 0.0
 
     def add_rates(self, share: float, work: Fluxes, viscous: "Viscous | None") -> None:
         """Add what symmetry about the axis asks for; sum the loads of a stage."""
@@ -225,128 +207,14 @@ class MovingClouds:
 
     def _cut(self, is_first: bool = False) -> Rows:
         """Cut holes, find neighbours anew; return the nodes that came back."""
-        cloud, own, keys = self.domain.cloud, self.layout, self.params
-        count, positions, centre = cloud.nodes, cloud.positions, self.pose.centre
-        refuse_places(self.layout, self.radii, self.thickness, self.spacing, centre)
-        was = self.active[:count].copy()
-        active = np.empty(count, bool)
-        margins = np.where(is_first, 0.0, keys.hysteresis) * self.spacing
-        depths = self.thickness - keys.overlap * self.spacing
-        covered = cut(
-            positions, cloud.region[:count], own.height, centre, self.radii, depths, margins, was,
-            active,
-        )  # fmt: skip
-        if covered >= 0:
-            raise StepError(
-                f"walls must lie in the gas; that at {positions[covered].tolist()} m lies in "
-                "another body. Move the bodies apart."
-            )
-        away = self.heights(positions[:count])
-        for b in range(len(self.radii)):
-            self._part(b, away[b], was, active, margins[b])
-        self.active[:count] = active
-        self.active[count:] = active[cloud.owner]
-        fresh = np.flatnonzero(active & ~was)
-        self._join(away)
-        self.seen[:] = centre
-        self.uncovered += len(fresh)
+        fresh = self.holes.cut(self.pose.centre, is_first)
+        self.seams.join(self.holes.active, self.pose.centre)
         self._leave_out()
         return fresh
 
     def _leave_out(self) -> None:
-        """Let volumes, boundaries and rows be those of nodes that are not left out."""
-        cloud, own = self.domain.cloud, self.layout
-        active = self.active[: cloud.nodes]
-        cloud.volumes[: cloud.nodes] = np.where(active, own.volumes, 0.0)
-        inner = np.flatnonzero(active & (cloud.kind[: cloud.nodes] == INNER)).astype(np.int32)
-        every = np.flatnonzero(active).astype(np.int32)
-        self.domain = self.domain._replace(inner=inner, every=every)
-        if own.is_cut.any():  # a cloud that reaches the box's face covers nodes of it
-            cloud.areas[: cloud.nodes] = np.where(active[:, None], own.areas, 0.0)
-            self.domain = self.domain._replace(outflows=uncovered(self.outflows, active))
-            if own.planar:
-                wall = self.radii[own.is_cut].max()
-                there = own.plane[active[own.plane]]
-                write_plane_areas(there, cloud.positions, wall, cloud.areas)
-            write_weights(
-                self.domain.edges, cloud.kind, cloud.normals, *self.domain.stencils,
-                self.domain.weights,
-            )  # fmt: skip
-
-    def heights(self, places: Array) -> Array:
-        """Heights (b, m) m of places above bodies."""
-        apart = places[None] - self.pose.centre[:, None]
-        return np.asarray(np.sqrt((apart**2).sum(axis=2)) - self.radii[:, None])
-
-    def _part(self, b: int, away: Array, was: Flags, active: Flags, more: float) -> None:
-        """Leave out nodes of other clouds that lie too near to nodes of a body's cloud."""
-        region = self.domain.cloud.region[: len(active)]
-        h, top = self.spacing[b], self.thickness[b]
-        own = np.flatnonzero(active & (region == b + 1))
-        rows = np.flatnonzero(active & (region != b + 1) & (away < top + h))
-        rows = rows[np.isin(self.domain.cloud.kind[rows], (INNER, OUTFLOW))]
-        if len(rows) and len(own):
-            positions = self.domain.cloud.positions
-            _, squares = nearest(positions, own, positions[rows], 1, self.team)
-            part(rows, squares, self.params.seam_distance * h, more, was, active)
-
-    def _join(self, away: Array) -> None:
-        """Find neighbours across seams, and coefficients of all nodes that they changed for."""
-        cloud, own = self.domain.cloud, self.layout
-        count, neighbours = cloud.nodes, self.domain.stencils.neighbours
-        region, active = cloud.region[:count], self.active[:count]
-        band = np.zeros(count, bool)
-        near_any = np.zeros(count, bool)
-        for b, one in enumerate(away):
-            reach = BAND * self.spacing[b]
-            mine = region == b + 1
-            band |= ~mine & (one < self.thickness[b] + reach)
-            band |= mine & (one > self.thickness[b] - reach)
-            near_any |= ~mine & (one < self.thickness[b] + 2.0 * reach) | mine
-        band &= active & (own.height > 0.0)
-        if not own.planar:
-            band[own.leaving] = False  # they have the state of the node beside them
-        rows = np.flatnonzero(band)
-        before = self.touched
-        neighbours[before] = own.home[before]
-        among = np.flatnonzero(np.concatenate([near_any & active, self._images(near_any)]))
-        found = around(rows, among, cloud, NEAR * self.kept, own.planar, self.team)
-        lacks = choose(
-            rows, found, cloud.positions, cloud.spacing, self.pose.centre, self.radii, self.kept,
-            4 if own.planar else 6, neighbours,
-        )  # fmt: skip
-        if lacks >= 0:
-            raise StepError(too_few(self.kept, cloud.positions[lacks]))
-        other = (cloud.region[neighbours[rows]] != region[rows][:, None]).any(axis=1)
-        whole = self.active[own.home[rows]].all(axis=1)
-        back = rows[whole & ~other]
-        neighbours[back] = own.home[back]
-        self.touched, self.across = rows[~(whole & ~other)], rows[other]
-        self._fit(np.union1d(before, self.touched))
-
-    def _images(self, near: Flags) -> Flags:
-        owner = self.domain.cloud.owner
-        return np.asarray(near[owner] & self.active[owner])
-
-    def _fit(self, rows: Rows) -> None:
-        """Write the coefficients of nodes."""
-        cloud, made = self.domain.cloud, self.domain.stencils
-        weight = cloud.weight
-        if len(self.across):
-            weight = weight.copy()
-            weight[self.across] = self.least[self.across]
-        self.team.run(
-            write_coefficients, len(rows), rows, cloud.positions, made.neighbours, weight,
-            self.layout.planar, made.coefficients, self.quality,
-        )  # fmt: skip
-        bad = rows[self.quality[rows] < SOUND]
-        if len(bad):
-            raise StepError(too_few(self.kept, cloud.positions[bad[0]]))
-
-    def _refit(self) -> None:
-        """Write the coefficients of what reaches over seams, where clouds have moved apart."""
-        if len(self.across):
-            self._fit(self.across)
+        """Let the domain be that of nodes that are not left out."""
+        self.domain = without_holes(self.domain, self.layout, self.holes.active, self.outflows)
 
     # State
 
@@ -355,10 +223,10 @@ class MovingClouds:
         made = self.domain.stencils
         kept = {
             "centre": self.pose.centre, "velocity": self.pose.velocity, "spin": self.pose.spin,
-            "seen": self.seen, "active": self.active, "touched": self.touched,
-            "across": self.across, "neighbours": made.neighbours,
+            "seen": self.holes.seen, "active": self.holes.active, "touched": self.seams.touched,
+            "across": self.seams.across, "neighbours": made.neighbours,
             "coefficients": made.coefficients, "summed": self.summed,
-            "uncovered": np.array(self.uncovered),
+            "uncovered": np.array(self.holes.uncovered),
         }  # fmt: skip
         return {f"moving/{name}": np.array(one) for name, one in kept.items()}
 
@@ -367,15 +235,16 @@ class MovingClouds:
         made = self.domain.stencils
         for name, array in (
             ("centre", self.pose.centre), ("velocity", self.pose.velocity),
-            ("spin", self.pose.spin), ("seen", self.seen), ("active", self.active),
+            ("spin", self.pose.spin), ("seen", self.holes.seen), ("active", self.holes.active),
             ("neighbours", made.neighbours), ("coefficients", made.coefficients),
             ("summed", self.summed),
         ):  # fmt: skip
             array[:] = saved[f"moving/{name}"]
-        self.touched = np.array(saved["moving/touched"], np.int64)
-        self.across = np.array(saved["moving/across"], np.int64)
-        self.uncovered = int(saved["moving/uncovered"])
+        self.seams.touched = np.array(saved["moving/touched"], np.int64)
+        self.seams.across = np.array(saved["moving/across"], np.int64)
+        self.holes.uncovered = int(saved["moving/uncovered"])
         self.given = None
         self._place(self.pose.centre)
+        self.seams.fitted[:] = self.pose.centre
         self._set_frame()
         self._leave_out()

@@ -43,12 +43,20 @@ class CloudLayout(NamedTuple):
     before: Rows  # (o,) and those beside them, whose states they have
     plane: Rows  # (l,) nodes of bodies and background where a cloud ends with its box
     arms: Array  # (w, 3) m, of walls from the centre
+    radii: Array  # (b,) m, of bodies
+    thickness: Array  # (b,) m, of their clouds
+    spacing: Array  # (b,) m, of nodes at the rims of clouds
     second: Array  # (b,) m, least height of the second layer of each body
     is_cut: NDArray[np.bool_]  # (b,) whether the cloud ends where the box does
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
     kept: int  # neighbours of a node across seams
     planar: bool  # whether nothing leaves the plane of x and z
+
+    def heights_of(self, places: Array, centre: Array) -> Array:
+        """Heights (b, m) m of places above bodies with these centres."""
+        apart = places[None] - centre[:, None]
+        return np.asarray(np.sqrt((apart**2).sum(axis=2)) - self.radii[:, None])
 
 
 def with_bodies(
@@ -149,6 +157,9 @@ def layout(
         before=np.concatenate(before),
         plane=_plane(cloud, background, np.concatenate(leaving)),
         arms=np.concatenate([one.cloud.positions[: one.rays] for one in rings]),
+        radii=np.array([one.radius for one in params.bodies]),
+        thickness=np.array([one.heights[-1] for one in params.bodies]),
+        spacing=np.array([one.spacing for one in params.bodies]),
         second=np.array([level[2].min() for level in levels]),
         is_cut=np.array([one.is_cut for one in params.bodies]),
         box=box,

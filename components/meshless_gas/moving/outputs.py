@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
+from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array
 
@@ -16,8 +17,8 @@ if TYPE_CHECKING:
 def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
     """Fields of the ports `bodies`, `surface`, `load` and `heat`."""
     own, pose, driven = moving.layout, moving.pose, moving.driven
-    pressure, force = primitive[own.walls, 4], moving.summed[:, :3]
-    bodies, held, count = range(len(moving.radii)), moving.friction, len(own.walls)
+    pressure, force = primitive[own.walls, 4], moving.summed[:, :3] + moving.base_force
+    bodies, held, count = range(len(own.radii)), moving.friction, len(own.walls)
     heat = np.zeros(count) if held is None else held.heat.copy()
     return {
         "bodies.position": pose.centre.copy(),
@@ -27,7 +28,7 @@ def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
         "bodies.heat": moving.summed[:, 7].copy(),
         "bodies.coefficient": force / moving.unit_force[:, None],
         "bodies.highest_pressure": np.array([pressure[own.body == b].max() for b in bodies]),
-        "bodies.uncovered": np.full(len(bodies), float(moving.uncovered)),
+        "bodies.uncovered": np.full(len(bodies), float(moving.holes.uncovered)),
         "surface.position": moving.domain.cloud.positions[own.walls],
         "surface.body": own.body.astype(float),
         "surface.angle": np.arctan2(_aside(own.arms, own.planar), -own.arms[:, 0]),
@@ -57,6 +58,30 @@ def unit_force(params: MeshlessGasParams) -> Array:
     is_sphere = params.moving.axisymmetric or not params.planar
     area = math.pi * radii**2 if is_sphere else 2.0 * radii
     return np.asarray(0.5 * density * square * area)
+
+
+def base_force(params: MeshlessGasParams, layout: CloudLayout, areas: Array) -> Array:
+    """Force (b, 3) N of the gas at the start on the back of bodies of which the front is computed.
+
+    Parameters
+    ----------
+    params : MeshlessGasParams
+    layout : CloudLayout
+    areas : (n, 3) m2
+        Of nodes, along normals into the gas.
+
+    Returns
+    -------
+    array
+        0 of bodies whose wall is whole.
+    """
+    assert params.initial is not None
+    found = np.zeros((len(layout.is_cut), 3))
+    np.add.at(found, layout.body, areas[layout.walls])  # of what is computed; the back's is less it
+    if params.has_rings:  # of a whole turn about the axis nothing else is left
+        found[:, 1:] = 0.0
+    found[~layout.is_cut] = 0.0
+    return np.asarray(params.initial.primitive(params.gas)[4] * found)
 
 
 def unit_heat(params: MeshlessGasParams) -> Array:

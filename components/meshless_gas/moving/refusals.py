@@ -12,19 +12,17 @@ from quintet.interfaces.errors import SceneError, StepError
 BLOCK = 8  # fewest neighbours of a node
 
 
-def refuse_places(
-    layout: CloudLayout, radii: Array, thickness: Array, spacing: Array, centre: Array
-) -> None:
+def refuse_places(layout: CloudLayout, centre: Array) -> None:
     """Refuse bodies that touch, or whose cloud would leave the box.
 
     Parameters
     ----------
     layout : CloudLayout
-    radii, thickness, spacing : (b,) m
-        Of bodies and their clouds.
     centre : (b, 3) m
+        Of bodies.
     """
-    reach = radii + thickness + 2.0 * spacing
+    radii, thickness = layout.radii, layout.thickness
+    reach = radii + thickness + 2.0 * layout.spacing
     for b, place in enumerate(centre):
         for d, side in layout.open_sides:
             if layout.is_cut[b] and (d, side) == (0, 1):  # the cloud ends at this face
@@ -124,12 +122,19 @@ def too_few(count: int, place: Array) -> str:
     )
 
 
-def refuse_off_axis(centre: Array, velocity: Array, bodies: NDArray[np.int64]) -> None:
-    """Refuse bodies that leave the axis of symmetry."""
+def refuse_off_axis(centre: Array, velocity: Array, spin: Array, bodies: NDArray[np.int64]) -> None:
+    """Refuse bodies that leave the axis of symmetry, or turn across it."""
     wrong = np.flatnonzero((np.abs(centre[:, 2]) > 0.0) | (np.abs(velocity[:, 2]) > 0.0))
     if len(wrong):
         k = wrong[0]
         raise SceneError(
             f"bodies of an axisymmetric flow lie and move on the axis; body {bodies[k]} is at "
             f"{centre[k].tolist()} m with {velocity[k].tolist()} m/s. Launch it along x."
+        )
+    turning = np.flatnonzero(np.abs(spin).max(axis=1) > 0.0)
+    if len(turning):
+        k = turning[0]
+        raise SceneError(
+            f"spheres of an axisymmetric flow do not turn about y; body {bodies[k]} turns with "
+            f"{spin[k].tolist()} rad/s. Launch it without angular velocity."
         )

@@ -15,7 +15,7 @@ def soft_start(moving: "MovingClouds", state: State) -> None:
     """Let gas near a body begin with the body's velocity, which fades over one radius."""
     positions = moving.domain.cloud.positions[: len(state.primitive)]
     for radius, centre, velocity in zip(
-        moving.radii, moving.pose.centre, moving.pose.velocity, strict=True
+        moving.layout.radii, moving.pose.centre, moving.pose.velocity, strict=True
     ):
         away = np.sqrt(((positions - centre) ** 2).sum(axis=1)) / radius - 1.0
         share = 1.0 - np.clip(away, 0.0, 1.0)[:, None]

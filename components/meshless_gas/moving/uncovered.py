@@ -22,16 +22,15 @@ def uncover(
     """Give nodes that came back the state of what is around them."""
     if not len(fresh):
         return
-    cloud = moving.domain.cloud
-    known = moving.active[: cloud.nodes].copy()
+    cloud, own, centre = moving.domain.cloud, moving.layout, moving.pose.centre
+    known = moving.holes.active[: cloud.nodes].copy()
     known[fresh] = False
-    near = moving.heights(cloud.positions[: cloud.nodes])
-    close = (near < (moving.thickness + 4.0 * moving.spacing)[:, None]).any(axis=0)
+    near = own.heights_of(cloud.positions[: cloud.nodes], centre)
+    close = (near < (own.thickness + 4.0 * own.spacing)[:, None]).any(axis=0)
     among = np.flatnonzero(known & close)
-    planar = moving.layout.planar
-    many, write = (KNOWN, write_uncovered) if planar else (2 * KNOWN, write_uncovered_in_space)
+    many, write = (KNOWN, write_uncovered) if own.planar else (2 * KNOWN, write_uncovered_in_space)
     found, _ = nearest(cloud.positions, among, cloud.positions[fresh], many, moving.team)
-    write(fresh, found, cloud.positions, cloud.spacing, moving.pose.centre, moving.radii, primitive)
+    write(fresh, found, cloud.positions, cloud.spacing, centre, own.radii, primitive)
     part_of = np.empty((len(fresh), 5))
     write_conservative(primitive[fresh], moving.gamma, part_of)
     conservative[fresh] = part_of

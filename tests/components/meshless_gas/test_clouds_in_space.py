@@ -83,7 +83,7 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform_in_space(cross):
     for _ in range(8):
         gas.step(gas.stable_dt())
     inner = gas.domain.inner
-    assert gas.motion.uncovered > 20
+    assert gas.motion.holes.uncovered > 20
     same = [1.0, *(-MACH * OBLIQUE), PRESSURE]
     assert np.abs(gas.state.primitive[inner] - same).max() < 1e-12
 
@@ -112,7 +112,7 @@ def test_of_first_order_at_seams_states_are_constant_around_nodes_that_reach_ove
     other = made(settings)
     gas.step(gas.stable_dt())
     other.step(other.stable_dt())
-    across = other.motion.across
+    across = other.motion.seams.across
     assert len(across) > 100
     assert not other.fluxes.gradients[across].any()
     assert gas.fluxes.gradients[across].any()

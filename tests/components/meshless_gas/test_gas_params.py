@@ -12,6 +12,7 @@ BODY = {"radius": 0.1, "position": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1
 FORE = BODY | {"sector": 1.5707963267948966, "position": [1.0, 0.0, 0.0]}
 DRIVEN, THICK = {"is_driven": True}, {"first_at_sector": 0.09}
 CUT = {"axisymmetric": True, "bodies": [FORE]}
+TUBE = {"position": 0.5, "left": REST, "right": REST}
 ROUND = {"radius": 1.0, "rays": 8, "layers": {"count": 6}}
 POINTS = {"drag": "stokes"}
 
@@ -46,6 +47,10 @@ def sphere(velocity, axisymmetric=True, **keys):
         (
             {"box": BOX, "moving": CUT | {"bodies": [FORE | {"first_at_sector": 0.09}]}},
             "no thicker",
+        ),
+        (
+            {"box": BOX, "moving": {"bodies": [BODY]}, "initial": None, "riemann": TUBE},
+            "for a tube alone",
         ),
         (sphere([3.0, 0.0, 0.0], centre=[5.0, 0.0, 0.1]), "axis of symmetry, y = z = 0; found"),
         (sphere([-3.0, 0.0, 1.0]), "must flow along x"),
