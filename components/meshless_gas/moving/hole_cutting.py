@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, Cloud
 from quintet.components.meshless_gas.clouds.nearest import nearest
-from quintet.components.meshless_gas.kernels.outflows import Outflows, uncovered
+from quintet.components.meshless_gas.kernels.outflows import Outflows, clear_of_holes
 from quintet.components.meshless_gas.moving.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
 from quintet.components.meshless_gas.moving.params import Moving
@@ -27,9 +27,7 @@ class Holes:
         self.params, self.layout, self.cloud, self.team = params, layout, cloud, team
         self.active = np.ones(len(cloud.positions), bool)
         self.seen = np.zeros((len(layout.radii), 3))  # m, centres when holes were cut last
-        self.volumes = (
-            layout.volumes.copy()
-        )  # (n,) m3, what of a node's counts where clouds overlap
+        self.volumes = layout.volumes.copy()  # (n,) m3, those of overlaps counted once
         self.uncovered = 0  # nodes that came back since the start
 
     def are_old(self, centre: Array) -> bool:
@@ -96,7 +94,7 @@ def without_holes(domain: Domain, holes: Holes, outflows: Outflows) -> Domain:
     domain = domain._replace(
         inner=np.flatnonzero(active & (cloud.kind[: cloud.nodes] == INNER)).astype(np.int32),
         every=np.flatnonzero(active).astype(np.int32),
-        outflows=uncovered(outflows, active),
+        outflows=clear_of_holes(outflows, active),
     )
     if layout.is_cut.any():  # a cloud that reaches the box's face covers nodes of it
         cloud.areas[: cloud.nodes] = np.where(active[:, None], layout.areas, 0.0)

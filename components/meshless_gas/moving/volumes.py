@@ -38,15 +38,14 @@ def partitioned(
     near = np.zeros(count, bool)
     for b, one in enumerate(away):
         beyond = (one - layout.thickness[b]) / width
-        nearer = (
-            0.5 * (one - layout.height) / width
-        )  # than to the own body, of which some have none
+        # Nearer to the own body than to this one; the background has none, its height is ∞.
+        nearer = 0.5 * (one - layout.height) / width
         share = np.clip(np.maximum(beyond, nearer) + 0.5, 0.0, 1.0)
         volumes *= np.where(region == b + 1, 1.0, share)
         near |= one < layout.thickness[b] + 3.0 * layout.spacing[b]
-    lost = np.flatnonzero(~active & (volumes > 0.0))
-    heirs = np.flatnonzero(active & near)
-    if len(lost) and len(heirs):
-        found, _ = nearest(cloud.positions, heirs, cloud.positions[lost], 1, team)
-        np.add.at(volumes, found[:, 0], volumes[lost])
+    omitted = np.flatnonzero(~active & (volumes > 0.0))
+    receiving = np.flatnonzero(active & near)
+    if len(omitted) and len(receiving):
+        found, _ = nearest(cloud.positions, receiving, cloud.positions[omitted], 1, team)
+        np.add.at(volumes, found[:, 0], volumes[omitted])
     return np.where(active, volumes, 0.0)
