@@ -268,5 +268,10 @@ def conclude(made: Running) -> int:
         results.draw(scene, folder, found)
     except DiskError as error:
         print(f"quintet: {error}", file=sys.stderr, flush=True)
+    except KeyboardInterrupt:  # the run is over, and its results are written
+        print(
+            "\nquintet: interrupted after the run: pictures left out", file=sys.stderr, flush=True
+        )
+        return results.INTERRUPTED
     sound = all(one.met or not one.required for one in found) and not outcome["unstable"]
     return results.DONE if sound else results.UNMET

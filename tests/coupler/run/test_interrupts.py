@@ -10,7 +10,9 @@ import time
 import pytest
 from started import Started, write_scene
 
+from quintet.coupler.cli import main
 from quintet.coupler.files.recording import Recording
+from quintet.coupler.run import results
 from quintet.coupler.run.snapshots import snapshots
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
@@ -56,6 +58,24 @@ def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
     assert f"{number.name}: ending after this window" in run.err
     if transport != "memory":
         assert "finished" in (run.folder / "log" / "pong.log").read_text()
+
+
+def test_an_interruption_while_pictures_are_drawn_keeps_the_results(tmp_path, monkeypatch, capsys):
+    def interrupted(*_):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(10.0)
+
+    monkeypatch.setattr(results, "side_views", interrupted)
+    monkeypatch.setattr(results, "view_files", lambda _: [tmp_path])
+    path = write_scene(tmp_path, end=0.01)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(path), "--set", "output.pictures=[0.01]", "--out", str(tmp_path / "out")])
+    told = capsys.readouterr()
+    assert ended.value.code == 130, "the exit status must be that of an interruption"
+    assert "pictures left out" in told.err and "Traceback" not in told.err
+    assert "toy: done, 10 windows" in told.out
+    found = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert found["status"] == "done" and found["windows"] == 10
 
 
 @pytest.mark.zenoh
