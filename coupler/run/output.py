@@ -70,7 +70,9 @@ class OutputWriter:
         )
         # Rows of the ledger come at the windows' ends: to watch a run must not change its steps.
         windows.stops = [one for one in (self._views, self._snapshots) if one]
-        windows.marks = tuple(in_ticks(one, tick) for one in output.pictures if one)
+        # A picture of a time beyond the run's end shows its last state.
+        marks = (min(in_ticks(one, tick), windows.end) for one in output.pictures if one)
+        windows.marks = tuple(dict.fromkeys(marks))
         self._windows = windows
 
     def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:

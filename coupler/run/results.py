@@ -14,7 +14,7 @@ from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.files.disk import told, write_at_last
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.run_files import PICTURES, RESULTS
-from quintet.coupler.measures.expectation import Expectation, Outcome, evaluate
+from quintet.coupler.measures.expectation import ROUNDING, Expectation, Outcome, evaluate
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.side_views import side_views
 from quintet.coupler.report.view_steps import view_files
@@ -51,6 +51,11 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
     output, title = scene.file.output, scene.headline
     if output.pictures and view_files(folder):
         out, scale = folder / PICTURES[0], output.displacement_scale
+        end = scene.file.end
+        if late := [f"{one:g}" for one in output.pictures if one > end * (1.0 + ROUNDING)]:
+            beyond = f"pictures at t = {', '.join(late)} s lie beyond the run's end"
+            instead = f"its last state, at {end:g} s, is drawn in their place"
+            print(f"quintet: {beyond}: {instead}", file=sys.stderr, flush=True)
         with told(out):
             side_views(folder, out, output.pictures, title, output.colours, output.region, scale)
     if found:

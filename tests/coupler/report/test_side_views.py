@@ -7,11 +7,14 @@ import time
 
 import numpy as np
 import pytest
+from started import write_scene
 
+from quintet.coupler.cli import main
 from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.report import side_views as drawing
 from quintet.coupler.report.side_views import side_views
 from quintet.coupler.report.view_steps import Quantity, moments, read, view_files
+from quintet.coupler.run import results
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.faces import CLAMPED, CORNERS, FACES, SYMMETRY, box, polygons
 
@@ -225,6 +228,31 @@ def test_snapshots_show_particles_and_bodies_in_each_panel(tmp_path):
     assert solid.sum() > 1000  # the box, in its own colour
     assert np.count_nonzero(np.diff(columns) > 50) >= 1  # in several panels
     assert (image.max(axis=2) - image.min(axis=2) > 0.2).sum() > 2000
+
+
+def test_a_picture_of_a_time_beyond_the_end_shows_the_last_state(tmp_path, monkeypatch, capsys):
+    path = write_scene(tmp_path, end=0.01, ping="seen = true")
+    drawn = []
+    monkeypatch.setattr(
+        results, "side_views", lambda run, _, times, *__: drawn.append((run, times))
+    )
+    with pytest.raises(SystemExit) as ended:
+        main(
+            [
+                "run",
+                str(path),
+                "--set",
+                "output.pictures=[0.0, 2.8, 3.0]",
+                "--out",
+                f"{tmp_path}/out",
+            ]
+        )
+    assert ended.value.code == 0
+    ((run, times),) = drawn
+    assert moments(view_files(run), times) == [0.0, 0.01], "the start, and the last state once"
+    told = [line for line in capsys.readouterr().err.splitlines() if "pictures" in line]
+    assert len(told) == 1, "it is told in one line"
+    assert "t = 2.8, 3 s lie beyond the run's end: its last state, at 0.01 s," in told[0]
 
 
 @pytest.mark.parametrize("only", ["cloud", "box", "point"])
