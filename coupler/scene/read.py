@@ -61,6 +61,7 @@ def load(
     settings: Iterable[str] = (),
     swaps: Iterable[str] = (),
     transport: str = "",
+    for_variants: bool = False,
 ) -> Scene:
     """Read a scene and check all of it; nothing is started.
 
@@ -72,13 +73,15 @@ def load(
         Set on top of the preset; values are TOML.
     swaps : iterable of ``NAME=KIND``
         Components to be replaced by another kind.
+    for_variants : bool
+        Whether refinements and stability limits will be run, and must suit the settings.
 
     Raises
     ------
     SceneError
         With every mistake found.
     """
-    path = locate(scene)
+    path, settings = locate(scene), list(settings)
     table = parse(path)
     mistakes = put_preset(table, preset) if preset else []
     for swap in swaps:
@@ -90,8 +93,10 @@ def load(
     if mistakes := mistakes or list(islice(extremes(table, ""), MOST_TOLD)):
         raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
     # Variants were told for the components of the file: each is checked when it is run instead.
-    made = _check(path, table, preset, try_variants=not swaps)
-    asked = {"preset": preset, "settings": list(settings), "swaps": list(swaps)}
+    # They need not suit what is set for a run that none of them belongs to.
+    asked_for = for_variants or not settings
+    made = _check(path, table, preset, try_variants=not swaps, read_variants=asked_for)
+    asked = {"preset": preset, "settings": settings, "swaps": list(swaps)}
     made.asked = {"scene": str(path.resolve()), "transport": transport, **asked}
     return made
 
@@ -110,7 +115,13 @@ def parse(path: Path) -> dict[str, Any]:
         ) from error
 
 
-def _check(path: Path, table: dict[str, Any], preset: str, try_variants: bool = True) -> Scene:
+def _check(
+    path: Path,
+    table: dict[str, Any],
+    preset: str,
+    try_variants: bool = True,
+    read_variants: bool = True,
+) -> Scene:
     look_in(import_folders(path, table.get("components")))
     own = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, own, "scene")
@@ -137,6 +148,7 @@ def _check(path: Path, table: dict[str, Any], preset: str, try_variants: bool = 
             )
         mistakes += _reachable(file) + wrong_name(file.name)
     series = [_tables(table, key, mistakes) for key in variants.TABLES]
+    series = series if read_variants else [[], []]
     scope, check = None, None
     if file is not None and not mistakes:
         gives = {name: one.gives for name, one in components.items()}

@@ -72,7 +72,8 @@ class Search:
 
 def run_stability(given: argparse.Namespace) -> int:
     """Find every limit of the scene; print them, and write them as JSON."""
-    scene = load(given.scene, given.preset, given.settings, given.swap, given.transport)
+    asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
+    scene = load(*asked, for_variants=True)
     wanted = JsonFile(given.json, ("scene", "limits"))
     if not scene.stability:
         raise SceneError(

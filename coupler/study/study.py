@@ -30,7 +30,8 @@ Row = dict[str, Any]
 
 def run_study(given: argparse.Namespace) -> int:
     """Run all refinements, compare them, and recommend the cheapest that meets all expectations."""
-    scene = load(given.scene, given.preset, given.settings, given.swap, given.transport)
+    asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
+    scene = load(*asked, for_variants=True)
     wanted = JsonFile(given.json, ("scene", "rows"))
     if not scene.study:
         raise SceneError(f"{scene.path.name}: there is no [[study]]. Add one for every refinement.")

@@ -236,3 +236,14 @@ def test_work_from_outside_is_no_rise_of_the_energy(tmp_path):
         0.0: 1.0,
         1.0: 1.0,
     }
+
+
+def test_what_is_set_need_not_suit_limits_that_are_not_looked_for(tmp_path, capsys):
+    far = 'parameter = "window"\nfrom = 0.005\nto = 0.05\n' + ENERGY
+    path, out = write(tmp_path, limits(far)), tmp_path / "out"
+    assert command("check", path) == 0, "the scene as it stands must suit its limits"
+    assert command("check", path, "--set", "end=0.5") == 0, "check looks for no limit"
+    assert command("run", path, "--set", "end=0.5", "--out", out) == 1, "the run looks for none"
+    assert "spring: done" in capsys.readouterr().out
+    assert command("stability", path, "--set", "end=0.5") == 2, "what looks for it must refuse"
+    assert "stability.0: end must be 20 windows or more" in capsys.readouterr().err
