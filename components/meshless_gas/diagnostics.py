@@ -49,7 +49,7 @@ def balance(
 
 
 def density_change(state: State, domain: Domain, fluxes: Fluxes, team: Team) -> float:
-    """Root mean square of the relative change of densities in the steps that nodes bear."""
+    """Root mean square of the relative change of densities in the nodes' own steps."""
     changes = fluxes.changes[: len(domain.inner)]
     team.run(
         write_changes, len(changes), domain.inner, fluxes.residual, fluxes.bounds,

@@ -17,6 +17,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 SPEED, VISCOSITY = 0.3, 3e-5  # m/s, m2/s
+DRAG = 0.01328  # 1, of Blasius, 1.328/√Re
 PLACES = (0.1, 0.15, 0.25, 0.51, 0.69, 0.8)  # m
 
 
@@ -25,25 +26,26 @@ def blasius(x: Array) -> Array:
     return np.asarray(0.332 * SPEED**2 / np.sqrt(SPEED * x / VISCOSITY))
 
 
-def friction(run: Path) -> tuple[Array, Array]:
-    """Places [m] along the plate, and the friction [Pa] there at the end."""
+def friction(run: Path) -> tuple[Array, Array, float]:
+    """Places [m] along the plate, and the friction [Pa] there at the end; coefficient of drag."""
     with Recording(run) as recording:
         x = recording.field("gas", "wall.position")[-1, :, 0]
         found = recording.field("gas", "wall.friction")[-1, :, 0]
+        drag = float(recording.field("gas", "body.drag_coefficient")[-1, 0])
     kept = x > 0.0
     order = np.argsort(x[kept])
-    return x[kept][order], found[kept][order]
+    return x[kept][order], found[kept][order], drag
 
 
 def main(folders: list[str]) -> None:
     """Draw, and print."""
     figure, panel = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
     for folder in map(Path, folders):
-        x, found = friction(folder)
+        x, found, drag = friction(folder)
         panel.plot(x, found / blasius(x), "o-", markersize=3, label=folder.name)
         near = [int(np.abs(x - place).argmin()) for place in PLACES]
         told = ", ".join(f"{x[k]:.2f}: {found[k] / blasius(x[k]):.3f}" for k in near)
-        print(f"{folder.name}: {told}")
+        print(f"{folder.name}: {told}, whole plate: {drag / DRAG:.3f}")
     panel.axhline(1.0, color="k", linewidth=0.8)
     panel.set(xlim=(0.0, 1.0), ylim=(0.85, 1.15), xlabel="x [m]", ylabel="friction over Blasius'")
     panel.legend()

@@ -1,7 +1,7 @@
 """Pressure and heat flux on the sphere, over those without a particle, and the particle's way.
 
 ``python -m quintet.scenarios.shock_layer_oblique.surface RUN ALONE``, folders of a run of this
-scene and of one of preset `alone`, with friction or without as the first. Draws `surface.png`
+scene and of one of `alone.toml`, with friction or without as the first. Draws `surface.png`
 beside the first: the sphere as the stream sees it at several times, the meridian that the particle
 flies over, and the largest values over time.
 """

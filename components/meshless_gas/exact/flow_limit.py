@@ -43,7 +43,7 @@ def flow_limit(gas: MeshlessGas) -> tuple[float, int]:
         rows = rows[bounds[rows] < SPREAD * least]
     rows = rows[is_disturbed(gas, rows)]
     rows = rows[:: -(-len(rows) // NODES)]
-    found = np.array([bearable(gas, int(row)) for row in rows])
+    found = np.array([longest_step(gas, int(row)) for row in rows])
     found /= bounds[rows] if gas.params.local_steps else least
     return float(found.min()), int(rows[found.argmin()])
 
@@ -56,8 +56,8 @@ def is_disturbed(gas: MeshlessGas, rows: Rows) -> Flags:
     return np.asarray(np.abs(gas.fluxes.primitive[rows, 0] / before - 1.0) > STILL)
 
 
-def bearable(gas: MeshlessGas, row: int) -> float:
-    """Return the largest step [s] that a node bears, were all as it is."""
+def longest_step(gas: MeshlessGas, row: int) -> float:
+    """Return the longest stable step [s] of a lattice whose nodes are all as this one."""
     state, gamma = gas.fluxes.primitive[row], gas.gamma
     sound = float(np.sqrt(gamma * state[4] / state[0]))
     speed = state[1:4] - (0.0 if gas.frame is None else gas.frame[row])

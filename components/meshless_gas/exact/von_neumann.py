@@ -4,7 +4,9 @@
 
 The Euler equations are linearised about a uniform stream, with the fluxes' derivatives by either
 side; a stage of SSP-RK3 multiplies waves of the rate λ by 1 + z + z²/2 + z³/6, z = λ Δt. On its own
-that holds to 1.73 of an imaginary λ Δt, and to 2.51 of a real one.
+that holds to 1.73 of an imaginary λ Δt, and to 2.51 of a real one. A wave counts as one that grows
+if a step makes it more than 1 % larger: with neighbours along lines alone, near the speed of sound,
+some grow by less in steps of any length, and are swept out.
 """
 
 import argparse
@@ -19,7 +21,7 @@ from quintet.interfaces.component import Array
 
 TINY = 1e-6  # over what the fluxes' derivatives are taken
 PHASES = 13  # between 0 and π, of each axis
-GROWTH = 1e-2  # of a wave in a step that leaves before it matters
+GROWTH = 1e-2  # of a wave in a step; one that grows by less is swept out
 TOP = 4.0  # step times the fastest rate, beyond which SSP-RK3 holds nowhere
 
 
@@ -31,7 +33,7 @@ class Lattice(NamedTuple):
 
 
 class Fluid(NamedTuple):
-    """Of what is linearised; the speed of sound and the density are 1."""
+    """Properties of the gas that is linearised; the speed of sound and the density are 1."""
 
     gamma: float = 1.4
     viscosity: float = 0.0  # Pa s, times 1 m/s and over 1 kg/m3: 1 over the Reynolds number of 1 m

@@ -53,7 +53,7 @@ def outflows(cloud: Cloud, neighbours: Whole) -> Outflows:
     return Outflows(rows, near.astype(np.int32), weights)
 
 
-def uncovered(one: Outflows, active: NDArray[np.bool_]) -> Outflows:
+def clear_of_holes(one: Outflows, active: NDArray[np.bool_]) -> Outflows:
     """Those of them near to which no node is left out."""
     kept = active[one.rows] & active[one.near].all(axis=1)
     return Outflows(one.rows[kept], one.near[kept], one.weights[kept])

@@ -63,7 +63,7 @@ class MovingClouds:
         self.heat_is_joined = False  # whether a partner takes the heat of driven bodies
         self.given: Array | None = None  # (driven, 3) m, places at the middle of the coming step
         self.holes = Holes(params.moving, layout, cloud, team)
-        self.seams = Seams(layout, cloud, domain.stencils, team)
+        self.seams = Seams(layout, domain, team)
         self.frame = np.zeros((len(cloud.positions), 3))
         self.wall_velocity = np.zeros((len(layout.walls), 3))
         self.loads = np.zeros((len(bodies), 8))  # N, N m, W of walls on gas, W of heat: now
@@ -214,7 +214,7 @@ class MovingClouds:
 
     def _leave_out(self) -> None:
         """Let the domain be that of nodes that are not left out."""
-        self.domain = without_holes(self.domain, self.layout, self.holes.active, self.outflows)
+        self.domain = without_holes(self.domain, self.holes, self.outflows)
 
     # State
 
@@ -226,7 +226,7 @@ class MovingClouds:
             "seen": self.holes.seen, "active": self.holes.active, "touched": self.seams.touched,
             "across": self.seams.across, "neighbours": made.neighbours,
             "coefficients": made.coefficients, "summed": self.summed,
-            "uncovered": np.array(self.holes.uncovered),
+            "volumes": self.holes.volumes, "uncovered": np.array(self.holes.uncovered),
         }  # fmt: skip
         return {f"moving/{name}": np.array(one) for name, one in kept.items()}
 
@@ -237,7 +237,7 @@ class MovingClouds:
             ("centre", self.pose.centre), ("velocity", self.pose.velocity),
             ("spin", self.pose.spin), ("seen", self.holes.seen), ("active", self.holes.active),
             ("neighbours", made.neighbours), ("coefficients", made.coefficients),
-            ("summed", self.summed),
+            ("summed", self.summed), ("volumes", self.holes.volumes),
         ):  # fmt: skip
             array[:] = saved[f"moving/{name}"]
         self.seams.touched = np.array(saved["moving/touched"], np.int64)
@@ -246,5 +246,6 @@ class MovingClouds:
         self.given = None
         self._place(self.pose.centre)
         self.seams.fitted[:] = self.pose.centre
+        self.seams.weigh(self.domain.edges.astype(np.int64))
         self._set_frame()
         self._leave_out()

@@ -6,12 +6,12 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, Cloud
 from quintet.components.meshless_gas.clouds.nearest import nearest
-from quintet.components.meshless_gas.kernels.boundaries import write_weights
-from quintet.components.meshless_gas.kernels.outflows import Outflows, uncovered
+from quintet.components.meshless_gas.kernels.outflows import Outflows, clear_of_holes
 from quintet.components.meshless_gas.moving.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.refusals import refuse_places
+from quintet.components.meshless_gas.moving.volumes import partitioned
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
@@ -27,6 +27,7 @@ class Holes:
         self.params, self.layout, self.cloud, self.team = params, layout, cloud, team
         self.active = np.ones(len(cloud.positions), bool)
         self.seen = np.zeros((len(layout.radii), 3))  # m, centres when holes were cut last
+        self.volumes = layout.volumes.copy()  # (n,) m3, those of overlaps counted once
         self.uncovered = 0  # nodes that came back since the start
 
     def are_old(self, centre: Array) -> bool:
@@ -59,6 +60,7 @@ class Holes:
         self.active[count:] = active[cloud.owner]
         fresh = np.flatnonzero(active & ~was)
         self.seen[:] = centre
+        self.volumes[:] = partitioned(own, cloud, active, away, self.team)
         self.uncovered += len(fresh)
         return fresh
 
@@ -75,33 +77,29 @@ class Holes:
             part(rows, squares, self.params.seam_distance * h, more, was, active)
 
 
-def without_holes(
-    domain: Domain, layout: CloudLayout, every_active: Flags, outflows: Outflows
-) -> Domain:
+def without_holes(domain: Domain, holes: Holes, outflows: Outflows) -> Domain:
     """Let volumes, boundaries and rows be those of nodes that are not left out.
 
     Parameters
     ----------
     domain : Domain
-        Whose volumes, areas and weights are written.
-    layout : CloudLayout
-    every_active : (n + g,)
-        Of nodes and ghosts.
+        Whose volumes and areas are written.
+    holes : Holes
     outflows : Outflows
         Of the box, whether left out or not.
     """
-    cloud, active = domain.cloud, every_active[: domain.cloud.nodes]
-    cloud.volumes[: cloud.nodes] = np.where(active, layout.volumes, 0.0)
+    cloud, layout = domain.cloud, holes.layout
+    active = holes.active[: cloud.nodes]
+    cloud.volumes[: cloud.nodes] = holes.volumes
     domain = domain._replace(
         inner=np.flatnonzero(active & (cloud.kind[: cloud.nodes] == INNER)).astype(np.int32),
         every=np.flatnonzero(active).astype(np.int32),
+        outflows=clear_of_holes(outflows, active),
     )
     if layout.is_cut.any():  # a cloud that reaches the box's face covers nodes of it
         cloud.areas[: cloud.nodes] = np.where(active[:, None], layout.areas, 0.0)
-        domain = domain._replace(outflows=uncovered(outflows, active))
         if layout.planar:
             wall = layout.radii[layout.is_cut].max()
             there = layout.plane[active[layout.plane]]
             write_plane_areas(there, cloud.positions, wall, cloud.areas)
-        write_weights(domain.edges, cloud.kind, cloud.normals, *domain.stencils, domain.weights)
     return domain

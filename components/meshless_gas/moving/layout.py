@@ -28,7 +28,7 @@ class CloudLayout(NamedTuple):
 
     home: Whole  # (n, K) neighbours of each node in its own cloud
     height: Array  # (n,) m, above the own body; ∞ of the background
-    volumes: Array  # (n,) m3, of nodes that are not left out
+    volumes: Array  # (n,) m3, of each cloud alone
     areas: Array  # (n, 3) m2, of boundary nodes, if no cloud reaches them
     carried: Rows  # (c,) nodes of bodies' clouds
     carrier: Rows  # (c,) whose they are
@@ -113,16 +113,14 @@ def layout(
     imaged = [len(one.cloud.owner) for one in rings]
     firsts = background + np.cumsum([0, *sizes[:-1]])  # rows of each body's cloud begin here
     beyond = count + len(cloud.owner) - sum(imaged) + np.cumsum([0, *imaged[:-1]])  # its images
-    height, volumes = np.full(count, np.inf), cloud.volumes[:count].copy()
-    for one, body, first, image in zip(rings, params.bodies, firsts, beyond, strict=True):
+    height = np.full(count, np.inf)
+    for one, first, image in zip(rings, firsts, beyond, strict=True):
         place = np.arange(first, first + one.cloud.nodes)
         own = one.home
         own = np.where(own < len(place), own + first, own - len(place) + image)
         neighbours[place] = place[:, None]
         neighbours[place, : own.shape[1]] = own
         height[place] = one.height
-        # Nodes beyond what the background leaves free count no volume twice.
-        volumes[place] *= one.height <= one.height.max() - (params.overlap + 0.5) * body.spacing
     walls = [first + np.arange(one.rays) for one, first in zip(rings, firsts, strict=True)]
     rays = [one.rays for one in rings]
     levels = [one.height.reshape(-1, one.rays) for one in rings]
@@ -142,7 +140,7 @@ def layout(
     return CloudLayout(
         home=neighbours[:count].copy(),
         height=height,
-        volumes=volumes,
+        volumes=cloud.volumes[:count].copy(),
         areas=cloud.areas[:count].copy(),
         carried=np.arange(background, background + sum(sizes)),
         carrier=np.repeat(np.arange(len(rings)), sizes),

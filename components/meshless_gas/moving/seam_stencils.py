@@ -3,11 +3,16 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.clouds.cloud import Cloud
+from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.clouds.cloud import (
+    NO_SLIP_ADIABATIC,
+    NO_SLIP_ISOTHERMAL,
+)
+from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.refusals import too_few
 from quintet.components.meshless_gas.moving.seams import around, choose
-from quintet.components.meshless_gas.stencils import SOUND, Stencils, write_coefficients
+from quintet.components.meshless_gas.stencils import SOUND, write_coefficients
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
@@ -21,11 +26,16 @@ NEAR = 4  # times as many nodes are looked at as a node has neighbours
 class Seams:
     """Which nodes have neighbours in other clouds, and where bodies were when they were fitted."""
 
-    def __init__(self, layout: CloudLayout, cloud: Cloud, made: Stencils, team: Team) -> None:
-        self.layout, self.cloud, self.stencils, self.team = layout, cloud, made, team
+    def __init__(self, layout: CloudLayout, domain: Domain, team: Team) -> None:
+        cloud = domain.cloud
+        self.layout, self.cloud, self.stencils, self.team = layout, cloud, domain.stencils, team
         self.fitted = np.zeros((len(layout.radii), 3))  # m, centres when coefficients were written
         self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
         self.across = np.zeros(0, np.int64)  # of these, those that reach over a seam
+        self.holding = np.isin(cloud.kind[: cloud.nodes], (NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC))
+        self.edges, self.weights = domain.edges, domain.weights  # of boundary nodes of the box
+        self.place = np.full(len(cloud.positions), -1)  # of nodes among these
+        self.place[domain.edges] = np.arange(len(domain.edges))
         self.quality = np.ones(len(cloud.positions))
         self.least = np.zeros(len(cloud.positions))  # weight of least squares across seams
 
@@ -43,9 +53,15 @@ class Seams:
             band |= mine & (one > own.thickness[b] - reach)
             near_any |= ~mine & (one < own.thickness[b] + 2.0 * reach) | mine
         band &= active[:count] & (own.height > 0.0)
+        # Of a box that is coarser than the cloud some reach farther.
+        far = np.flatnonzero(active[:count] & ~band & ~active[own.home].all(axis=1))
+        band[far[own.height[far] > 0.0]] = True
+        reached = own.home[far]
+        near_any[reached[reached < count]] = True
         if not own.planar:
             band[own.leaving] = False  # they have the state of the node beside them
-        rows = np.flatnonzero(band)
+        self._refuse_walls(band & self.holding, active)
+        rows = np.flatnonzero(band & ~self.holding)
         before = self.touched
         neighbours[before] = own.home[before]
         images = near_any[cloud.owner] & active[cloud.owner]
@@ -65,6 +81,17 @@ class Seams:
         self.fit(np.union1d(before, self.touched))
         self.fitted[:] = centre
 
+    def _refuse_walls(self, close: Flags, active: Flags) -> None:
+        """Refuse clouds that cover neighbours of walls of the box that hold the gas."""
+        rows = np.flatnonzero(close)
+        lacks = rows[~active[self.layout.home[rows]].all(axis=1)]
+        if len(lacks):
+            raise StepError(
+                "clouds of bodies must leave what is beside a wall of the box free; that at "
+                f"{np.array2string(self.cloud.positions[lacks[0]], precision=4)} m has neighbours "
+                "that are left out. End the run before, or make the box larger or finer."
+            )
+
     def fit(self, rows: Rows) -> None:
         """Write the coefficients of nodes."""
         cloud, made = self.cloud, self.stencils
@@ -79,6 +106,20 @@ class Seams:
         bad = rows[self.quality[rows] < SOUND]
         if len(bad):
             raise StepError(too_few(self.layout.kept, cloud.positions[bad[0]]))
+        self.weigh(rows)
+
+    def weigh(self, rows: Rows) -> None:
+        """Write the weights of neighbours within of those of some nodes that are at boundaries."""
+        places = self.place[rows]
+        places = places[places >= 0]
+        if not len(places):
+            return
+        edges, cloud = self.edges[places], self.cloud
+        weights = np.empty((len(places), self.weights.shape[1]))
+        lacks = write_weights(edges, cloud.kind, cloud.normals, *self.stencils, weights)
+        if lacks >= 0:
+            raise StepError(too_few(self.layout.kept, cloud.positions[edges[lacks]]))
+        self.weights[places] = weights
 
     def refit(self, centre: Array) -> None:
         """Write the coefficients of what reaches over seams of clouds that have moved."""

@@ -9,8 +9,8 @@ import numpy as np
 from quintet.interfaces.component import Array
 
 
-def turns(position: Array, axis: Array) -> Array:
-    """Cosine and sine (p, 2) of the angle about x from the half-plane z > 0, y = 0.
+def azimuths_of(position: Array, axis: Array) -> Array:
+    """Cosine and sine (p, 2) of the azimuth about x, from the half-plane z > 0, y = 0.
 
     Parameters
     ----------
@@ -25,13 +25,13 @@ def turns(position: Array, axis: Array) -> Array:
     return np.stack([np.where(apart, z / safe, 1.0), np.where(apart, y / safe, 0.0)], axis=1)
 
 
-def into(turned: Array, vectors: Array) -> Array:
+def to_half_plane(azimuths: Array, vectors: Array) -> Array:
     """Vectors (p, 3) as they are seen from the half-plane."""
-    cosine, sine = turned.T
+    cosine, sine = azimuths.T
     x, y, z = vectors.T
     return np.stack([x, cosine * y - sine * z, sine * y + cosine * z], axis=1)
 
 
-def out_of(turned: Array, vectors: Array) -> Array:
+def from_half_plane(azimuths: Array, vectors: Array) -> Array:
     """Vectors (p, 3) of the half-plane where the particles are."""
-    return into(turned * np.array([1.0, -1.0]), vectors)
+    return to_half_plane(azimuths * np.array([1.0, -1.0]), vectors)

@@ -5,7 +5,11 @@ import numpy as np
 from quintet.components.meshless_gas.build import Domain, transport_of
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.point_particles.half_plane import into, out_of, turns
+from quintet.components.meshless_gas.point_particles.half_plane import (
+    azimuths_of,
+    from_half_plane,
+    to_half_plane,
+)
 from quintet.components.meshless_gas.point_particles.interphase import InterphaseExchange
 from quintet.components.meshless_gas.point_particles.kernels import OUTSIDE
 from quintet.components.meshless_gas.point_particles.particles import Particles
@@ -57,7 +61,7 @@ class Partner:
         """Make room for so many particles, of which nothing is known."""
         self.exchange.resize(count)
         self.particles = self.exchange.particles
-        self.turned = np.tile([1.0, 0.0], (count, 1))  # out of the half-plane of an axis
+        self.azimuths = np.tile([1.0, 0.0], (count, 1))  # (p, 2) 1, cosines and sines
 
     def bind(self, static: Fields) -> None:
         """Learn how heavy they are, how much heat they hold, and how many each stands for."""
@@ -102,9 +106,12 @@ class Partner:
         for axis, low, length in self.periods:
             x[:, axis] = low + np.mod(x[:, axis] - low, length)
         if self.axis is not None:
-            turned = self.turned = turns(x, self.axis)
-            x = self.axis + into(turned, x - self.axis)
-            velocity, acceleration = into(turned, one.velocity), into(turned, one.acceleration)
+            azimuths = self.azimuths = azimuths_of(x, self.axis)
+            x = self.axis + to_half_plane(azimuths, x - self.axis)
+            velocity, acceleration = (
+                to_half_plane(azimuths, one.velocity),
+                to_half_plane(azimuths, one.acceleration),
+            )
             one = one._replace(velocity=velocity, acceleration=acceleration)
         self.exchange.place(one._replace(position=x))
 
@@ -123,7 +130,7 @@ class Partner:
 
     def loads(self) -> Fields:
         """Mean force [N] and heat [W] on each in the last step."""
-        force = out_of(self.turned, self.exchange.loads.force)
+        force = from_half_plane(self.azimuths, self.exchange.loads.force)
         return {
             "particle_load.force": force,
             "particle_load.torque": np.zeros_like(force),
@@ -138,7 +145,7 @@ class Partner:
         """Copy out what was told, and the last loads; they stand where they were placed."""
         kept = {f"particles.{name}": getattr(self.particles, name).copy() for name in TOLD + STATIC}
         kept["particles.placed"] = self.exchange.particles.position.copy()
-        kept["particles.turned"] = self.turned.copy()
+        kept["particles.azimuths"] = self.azimuths.copy()
         for name in SUMS:
             kept[f"particles.{name}"] = getattr(self.exchange.loads, name).copy()
         return kept
@@ -148,7 +155,7 @@ class Partner:
         told = {name: np.array(state[f"particles.{name}"]) for name in TOLD + STATIC}
         self.particles = Particles(**told)
         placed = self.particles._replace(position=np.array(state["particles.placed"]))
-        self.turned = np.array(state["particles.turned"])
+        self.azimuths = np.array(state["particles.azimuths"])
         self.exchange.place(placed)
         for name in SUMS:
             getattr(self.exchange.loads, name)[:] = state[f"particles.{name}"]

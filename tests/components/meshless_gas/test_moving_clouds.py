@@ -295,27 +295,6 @@ def test_a_body_that_leaves_the_box_is_refused():
             gas.step(gas.stable_dt())
 
 
-def test_coefficients_are_written_anew_only_where_clouds_have_moved(monkeypatch):
-    gas = made(scene(bodies=two(0.5), gas=[0.0, 0.0, 0.0]))
-    one, seams, written = gas.motion, gas.motion.seams, []
-    before, region = one.domain.stencils.coefficients.copy(), one.domain.cloud.region
-    fit = seams.fit
-    monkeypatch.setattr(seams, "fit", lambda rows: (written.append(rows), fit(rows)))
-    one.place(1, 1e-3)
-    near = region[one.domain.stencils.neighbours[written[0]]]
-    assert 0 < len(written[0]) < len(seams.across)
-    assert ((near == 2).any(axis=1) | (region[written[0]] == 2)).all()
-    fit(seams.across)
-    every = one.domain.stencils.coefficients.copy()
-    assert not np.array_equal(every, before)
-    one.domain.stencils.coefficients[:] = before
-    fit(written[0])
-    assert np.array_equal(one.domain.stencils.coefficients, every)
-    written.clear()
-    one.place(1, 1e-3)
-    assert not written
-
-
 def two(gap):
     return [
         {

@@ -5,7 +5,11 @@ import pytest
 
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.point_particles.half_plane import into, out_of, turns
+from quintet.components.meshless_gas.point_particles.half_plane import (
+    azimuths_of,
+    from_half_plane,
+    to_half_plane,
+)
 from quintet.interfaces.params import read
 
 WIND = {"density": 1.0, "pressure": 1.0 / 1.4, "velocity": [3.0, 0.0, 0.0]}
@@ -66,11 +70,11 @@ def test_turned_vectors_come_back():
     rng = np.random.default_rng(2)
     places, vectors = rng.normal(size=(2, 6, 3))
     places[0, 1:] = 0.0  # on the axis
-    turned = turns(places, np.zeros(3))
-    seen = into(turned, places)
+    azimuths = azimuths_of(places, np.zeros(3))
+    seen = to_half_plane(azimuths, places)
     assert seen[:, 1] == pytest.approx(0.0, abs=1e-15)
     assert seen[:, 2] == pytest.approx(np.hypot(places[:, 1], places[:, 2]))
-    assert out_of(turned, into(turned, vectors)) == pytest.approx(vectors)
+    assert from_half_plane(azimuths, to_half_plane(azimuths, vectors)) == pytest.approx(vectors)
 
 
 @pytest.mark.full  # kernels in space

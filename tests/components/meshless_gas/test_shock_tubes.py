@@ -77,11 +77,20 @@ def test_two_threads_give_the_bits_of_one(monkeypatch):
         monkeypatch.setattr(shared_out, "LIGHT", 20)  # also what is too little to be worth it
     monkeypatch.setattr(component, "SUMS", 20)
     monkeypatch.setattr(diagnostics, "WHOLESALE", 20)
+    monkeypatch.setattr("quintet.components.meshless_gas.state.WHOLESALE", 20)
     one, two = (
         run(tube(200, *SOD, resources=Resources(threads=threads)), 0.02) for threads in (1, 2)
     )
     assert np.array_equal(one.state.conservative, two.state.conservative)
     assert given(one, "error.density") == given(two, "error.density")
+    assert np.array_equal(one.state.begun, two.state.begun)
+    assert given(one, "balance.energy") == given(two, "balance.energy")
+
+
+def test_nothing_is_gained_nor_lost_before_the_first_step():
+    made = tube(31, *SOD)
+    drifts = [given(made, f"balance.{one}_drift") for one in ("mass", "momentum", "energy")]
+    assert all((one == 0.0).all() for one in drifts)  # summed in one order, now and at the start
 
 
 def test_a_picture_after_load_is_that_before_save():
