@@ -22,6 +22,7 @@ from quintet.components.meshless_gas.moving.outputs import (
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
+    refuse_off_plane,
     refuse_places,
 )
 from quintet.components.meshless_gas.moving.seam_stencils import Seams
@@ -88,9 +89,10 @@ class MovingClouds:
         """Take the motion of driven bodies: places at the middle of the step, mean velocities."""
         if "motion.position" not in fields:
             return
-        # Nothing leaves a plane.
+        # Nothing leaves a plane, not by rounding either.
         flat, across = np.ones(3), np.ones(3)
         if self.layout.planar:
+            refuse_off_plane(fields["motion.position"], fields["motion.velocity"], self.driven)
             flat, across = np.array([1.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
         self.given = fields["motion.position"] * flat
         self.pose.velocity[self.driven] = fields["motion.velocity"] * flat
