@@ -23,6 +23,7 @@ from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
     refuse_off_plane,
+    refuse_partner,
     refuse_places,
 )
 from quintet.components.meshless_gas.moving.seam_stencils import Seams
@@ -77,8 +78,9 @@ class MovingClouds:
 
     # Steps
 
-    def bind(self, joined: Keys) -> None:
-        """Learn whether a partner takes the heat of driven bodies: it is then in its account."""
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Learn how large a partner's bodies are, and whether it takes the heat of driven ones."""
+        refuse_partner(static, self.layout.radii, self.driven)
         self.heat_is_joined = "heat" in joined
 
     def soften_start(self, state: State) -> None:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.interfaces.component import Array
+from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import QuintetError, SceneError, StepError
 
 BLOCK = 8  # fewest neighbours of a node
@@ -128,6 +128,38 @@ def too_few(count: int, place: Array) -> str:
         f"{np.array2string(place, precision=4)} m has not. Make spacings on both sides of the "
         "seam alike, or clouds thicker."
     )
+
+
+def refuse_partner(static: Fields, radii: Array, bodies: NDArray[np.int64]) -> None:
+    """Refuse partners that have other bodies than the gas, or smaller ones.
+
+    Parameters
+    ----------
+    static : mapping of arrays
+        What is known of the partner's bodies as they are joined.
+    radii : (b,) m
+        Of all bodies of the gas.
+    bodies : (d,) int array
+        Those that are driven.
+    """
+    if "motion.size" not in static:
+        return
+    sizes = np.asarray(static["motion.size"]).min(axis=1)  # m
+    if len(sizes) != len(bodies):
+        raise SceneError(
+            f"each driven body needs a partner; found {len(bodies)} driven bodies and "
+            f"{len(sizes)} of the partner. Give both as many."
+        )
+    own = 2.0 * radii[bodies]
+    wrong = np.flatnonzero(sizes < own * (1.0 - ROUNDING))
+    if len(wrong):
+        k = wrong[0]
+        raise SceneError(
+            f"moving.bodies.{bodies[k]}: the partner's body must be at least as large as that in "
+            f"the gas, {own[k]:.6g} m across, as they would overlap in contact; found "
+            f"{sizes[k]:.6g} m. Give both the same diameter; the partner's may be larger, that "
+            "layers of nodes fit between bodies that strike each other."
+        )
 
 
 def refuse_off_plane(centre: Array, velocity: Array, bodies: NDArray[np.int64]) -> None:
