@@ -61,7 +61,7 @@ class ConformCase:
     rest : mapping of arrays
         Inputs under which nothing happens. Ports that it takes are joined if their fields stand
         here or in `static`.
-    scale : mapping of float
+    scale : mapping of float, or of one for each component
         How far each of these fields is moved from rest, at random, in its unit; of a rotation in
         rad.
     dt : float, s
@@ -84,7 +84,7 @@ class ConformCase:
     params: dict[str, Any] | Callable[[Path], dict[str, Any]]
     static: Fields = field(default_factory=dict)
     rest: Fields = field(default_factory=dict)
-    scale: Mapping[str, float] = field(default_factory=dict)
+    scale: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     dt: float = 1e-3
     still: bool = True
     smooth: bool = True

@@ -108,8 +108,8 @@ class MeshlessGas(Component):
         self._take_over()
 
     def bind(self, static: Fields, joined: Keys) -> None:
-        """Learn how heavy particles are, and whether bodies give their heat to a partner."""
-        self.motion.bind(joined)
+        """Learn what a partner's particles and bodies are like, and whether it takes their heat."""
+        self.motion.bind(static, joined)
         if self.particles is not None:
             self.particles.bind(static)
 

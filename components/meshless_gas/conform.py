@@ -121,8 +121,8 @@ def _body() -> ConformCase:
             "motion.angular_velocity": np.zeros((1, 3)),
         },
         scale={
-            "motion.position": 0.01,
-            "motion.velocity": 0.1,
+            "motion.position": (0.01, 0.0, 0.01),  # in the plane
+            "motion.velocity": (0.1, 0.0, 0.1),
             "motion.angular_velocity": 0.1,
         },
         dt=0.2 * STEP,

@@ -23,8 +23,8 @@ class NodeMotion(Protocol):
     def frame(self) -> Array | None:
         """Velocities (n, 3) m/s of nodes; None where all stand still, and none is compiled."""
 
-    def bind(self, joined: Keys) -> None:
-        """Learn which ports have a partner."""
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Learn what partners state, and which ports have one."""
 
     def soften_start(self, state: State) -> None:
         """Change the state at the start where bodies would jerk the gas."""
@@ -74,7 +74,7 @@ class FixedCloud:
     def __init__(self, made: Domain) -> None:
         self.domain = made
 
-    def bind(self, joined: Keys) -> None:
+    def bind(self, static: Fields, joined: Keys) -> None:
         """Need not know."""
 
     def soften_start(self, state: State) -> None:

@@ -119,15 +119,17 @@ class Trial:
             fields[key] = self.moved(key, fields[key], scale, random)
         return self.received(_of_others(fields, without))
 
-    def moved(self, key: str, array: Array, scale: float, random: np.random.Generator) -> Array:
+    def moved(
+        self, key: str, array: Array, scale: float | tuple[float, ...], random: np.random.Generator
+    ) -> Array:
         """An input moved away at random, but never out of its kind."""
         kind = self.inputs_known[key].kind
         if kind == "flag":
             return array
         if kind == "rotation":
-            turn = scale * random.normal(size=(len(array), 3))
+            turn = np.asarray(scale) * random.normal(size=(len(array), 3))
             return rotation.product(rotation.exponential(turn), array)
-        return np.asarray(array + scale * random.normal(size=array.shape))
+        return np.asarray(array + np.asarray(scale) * random.normal(size=array.shape))
 
     def received(self, fields: Fields) -> dict[str, Array]:
         """Copies of some arrays as they come over a line: they cannot be written to."""

@@ -22,6 +22,8 @@ from quintet.components.meshless_gas.moving.outputs import (
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
+    refuse_off_plane,
+    refuse_partner,
     refuse_places,
 )
 from quintet.components.meshless_gas.moving.seam_stencils import Seams
@@ -76,8 +78,9 @@ class MovingClouds:
 
     # Steps
 
-    def bind(self, joined: Keys) -> None:
-        """Learn whether a partner takes the heat of driven bodies: it is then in its account."""
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Learn how large a partner's bodies are, and whether it takes the heat of driven ones."""
+        refuse_partner(static, self.layout.radii, self.driven)
         self.heat_is_joined = "heat" in joined
 
     def soften_start(self, state: State) -> None:
@@ -88,9 +91,10 @@ class MovingClouds:
         """Take the motion of driven bodies: places at the middle of the step, mean velocities."""
         if "motion.position" not in fields:
             return
-        # Nothing leaves a plane.
+        # Nothing leaves a plane, not by rounding either.
         flat, across = np.ones(3), np.ones(3)
         if self.layout.planar:
+            refuse_off_plane(fields["motion.position"], fields["motion.velocity"], self.driven)
             flat, across = np.array([1.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
         self.given = fields["motion.position"] * flat
         self.pose.velocity[self.driven] = fields["motion.velocity"] * flat

@@ -14,7 +14,7 @@ from quintet.components.meshless_gas.moving.refusals import refuse_places
 from quintet.components.meshless_gas.moving.volumes import partitioned
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.errors import QuintetError, SceneError, StepError
 
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -39,7 +39,7 @@ class Holes:
         """Leave out what clouds with these centres cover; return the nodes that came back."""
         cloud, own, keys = self.cloud, self.layout, self.params
         count, positions = cloud.nodes, cloud.positions
-        refuse_places(own, centre)
+        refuse_places(own, centre, is_first)
         was = self.active[:count].copy()
         active = np.empty(count, bool)
         margins = np.where(is_first, 0.0, keys.hysteresis) * own.spacing
@@ -49,7 +49,8 @@ class Holes:
             active,
         )  # fmt: skip
         if covered >= 0:
-            raise StepError(
+            error: type[QuintetError] = SceneError if is_first else StepError
+            raise error(
                 f"walls must lie in the gas; that at {positions[covered].tolist()} m lies in "
                 "another body. Move the bodies apart."
             )

@@ -27,7 +27,11 @@ class Body:
     angular_velocity : rad/s
         About y, of a cylinder that holds the gas and is not driven; of one that is, at the start.
     is_driven
-        Whether a partner moves it: it is then a row of the ports `motion`, `load` and `heat`.
+        Whether a partner moves it: it is then a row of the ports `motion`, `load` and `heat`. The
+        partner's body is no smaller, and larger where bodies strike each other: contact cannot be
+        computed, two layers of nodes on each must fit between. Its mass is the partner's as it is;
+        loads are those on 1 m of a cylinder, whose mass a sphere has at 1.5 m over its diameter
+        times the density.
     rays : 1
         Nodes round the whole circle; of an axisymmetric flow half of them are computed. In space
         nodes of a geodesic grid are about as far apart.

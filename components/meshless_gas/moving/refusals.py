@@ -6,13 +6,14 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.interfaces.component import Array
-from quintet.interfaces.errors import SceneError, StepError
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import QuintetError, SceneError, StepError
 
 BLOCK = 8  # fewest neighbours of a node
+ROUNDING = 1e-9  # of a length or a speed, which is taken for none
 
 
-def refuse_places(layout: CloudLayout, centre: Array) -> None:
+def refuse_places(layout: CloudLayout, centre: Array, is_first: bool = False) -> None:
     """Refuse bodies that touch, or whose cloud would leave the box.
 
     Parameters
@@ -20,7 +21,11 @@ def refuse_places(layout: CloudLayout, centre: Array) -> None:
     layout : CloudLayout
     centre : (b, 3) m
         Of bodies.
+    is_first
+        Whether this is where the scene puts them: it is then the scene that is wrong.
     """
+    error: type[QuintetError] = SceneError if is_first else StepError
+    farther = "Make" if is_first else "End the run before, or make"
     radii, thickness = layout.radii, layout.thickness
     reach = radii + thickness + 2.0 * layout.spacing
     for b, place in enumerate(centre):
@@ -29,17 +34,20 @@ def refuse_places(layout: CloudLayout, centre: Array) -> None:
                 continue
             beyond = side * (place[d] - layout.box[int(side > 0), d]) + reach[b]
             if beyond > 0.0:
-                raise StepError(
-                    f"body {b} with its cloud of {radii[b] + thickness[b]:.4g} m must stay within "
-                    f"the box; it is at {np.round(place, 6).tolist()} m, {beyond:.3g} m too near "
-                    f"to its face across {'xyz'[d]}. End the run before, or make the box longer."
+                where = f"moving.bodies.{b}: " if is_first else ""
+                raise error(
+                    f"{where}body {b} with its cloud of {radii[b] + thickness[b]:.4g} m must "
+                    f"stay within the box; it is at {np.round(place, 6).tolist()} m, "
+                    f"{beyond:.3g} m too near to its face across {'xyz'[d]}. {farther} the box "
+                    "longer."
                 )
         for c in range(b):
             gap = float(np.sqrt(((place - centre[c]) ** 2).sum())) - radii[b] - radii[c]
             least = 2.0 * (layout.second[b] + layout.second[c])
             if gap < least:
-                raise StepError(
-                    f"bodies {c} and {b} must leave room for two layers of nodes on each, "
+                where = f"moving.bodies.{b}: " if is_first else ""
+                raise error(
+                    f"{where}bodies {c} and {b} must leave room for two layers of nodes on each, "
                     f"{least:.3g} m; found {gap:.3g} m between them. Finer first layers let them "
                     "come nearer; contact itself cannot be computed."
                 )
@@ -120,6 +128,52 @@ def too_few(count: int, place: Array) -> str:
         f"{np.array2string(place, precision=4)} m has not. Make spacings on both sides of the "
         "seam alike, or clouds thicker."
     )
+
+
+def refuse_partner(static: Fields, radii: Array, bodies: NDArray[np.int64]) -> None:
+    """Refuse partners that have other bodies than the gas, or smaller ones.
+
+    Parameters
+    ----------
+    static : mapping of arrays
+        What is known of the partner's bodies as they are joined.
+    radii : (b,) m
+        Of all bodies of the gas.
+    bodies : (d,) int array
+        Those that are driven.
+    """
+    if "motion.size" not in static:
+        return
+    sizes = np.asarray(static["motion.size"]).min(axis=1)  # m
+    if len(sizes) != len(bodies):
+        raise SceneError(
+            f"each driven body needs a partner; found {len(bodies)} driven bodies and "
+            f"{len(sizes)} of the partner. Give both as many."
+        )
+    own = 2.0 * radii[bodies]
+    wrong = np.flatnonzero(sizes < own * (1.0 - ROUNDING))
+    if len(wrong):
+        k = wrong[0]
+        raise SceneError(
+            f"moving.bodies.{bodies[k]}: the partner's body must be at least as large as that in "
+            f"the gas, {own[k]:.6g} m across, as they would overlap in contact; found "
+            f"{sizes[k]:.6g} m. Give both the same diameter; the partner's may be larger, that "
+            "layers of nodes fit between bodies that strike each other."
+        )
+
+
+def refuse_off_plane(centre: Array, velocity: Array, bodies: NDArray[np.int64]) -> None:
+    """Refuse bodies that leave the plane of a gas in two dimensions."""
+    away = np.abs(centre[:, 1]) > ROUNDING * np.abs(centre).max(axis=1)
+    leaving = np.abs(velocity[:, 1]) > ROUNDING * np.abs(velocity).max(axis=1)
+    wrong = np.flatnonzero(away | leaving)
+    if len(wrong):
+        k = wrong[0]
+        raise SceneError(
+            "bodies in two dimensions lie and move in the plane y = 0; the partner of body "
+            f"{bodies[k]} is at {centre[k].tolist()} m with {velocity[k].tolist()} m/s. Launch it "
+            "in this plane, or compute the gas in three dimensions."
+        )
 
 
 def refuse_off_axis(centre: Array, velocity: Array, spin: Array, bodies: NDArray[np.int64]) -> None:

@@ -15,7 +15,7 @@ from quintet.components.meshless_gas.point_particles.kernels import OUTSIDE
 from quintet.components.meshless_gas.point_particles.particles import Particles
 from quintet.components.meshless_gas.view import reaches
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.errors import SceneError, StepError
 
 TOLD = ("position", "velocity", "acceleration", "temperature", "diameter", "launched")
 SUMS = ("force", "heat", "power", "rates")
@@ -47,6 +47,7 @@ class Partner:
         self.exchange = InterphaseExchange(
             params.particles, cloud, params.planar, transport_of(gas), gas.gamma, gas.prandtl
         )
+        self.coarsest = float(cloud.spacing.max())  # m
         # What boundary nodes were given would be lost: their states follow from others.
         advanced = np.zeros(domain.cloud.nodes, bool)
         advanced[domain.inner] = True
@@ -74,8 +75,20 @@ class Partner:
     def prime(self, fields: Fields, primitive: Array) -> None:
         """Learn where they are at the start, and how stiffly they are held there."""
         self.take(fields)
+        self._refuse_resolved()
         self.place()
         self._find_rates(primitive)
+
+    def _refuse_resolved(self) -> None:
+        """Refuse particles that are larger than the spacing of nodes: they are no points."""
+        largest = float(self.particles.diameter.max(initial=0.0))
+        if largest > self.coarsest:
+            raise SceneError(
+                "particles: a point particle must be smaller than the spacing of nodes, "
+                f"{self.coarsest:.4g} m where they are coarsest; found particle "
+                f"{int(self.particles.diameter.argmax())} of {largest:.4g} m. Make nodes coarser, "
+                "or let the particle be a body with nodes of its own, moving.bodies."
+            )
 
     def _find_rates(self, primitive: Array) -> None:
         """Find how stiff the exchange is, without any exchange."""

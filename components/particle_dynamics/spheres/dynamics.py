@@ -12,6 +12,10 @@ from quintet.components.particle_dynamics.spheres.build import build, planes
 from quintet.components.particle_dynamics.spheres.collisions import bounce, bounce_from_walls
 from quintet.components.particle_dynamics.spheres.kernels import fly
 from quintet.components.particle_dynamics.spheres.pairs import NearPairs
+from quintet.components.particle_dynamics.spheres.refusals import (
+    refuse_behind_walls,
+    refuse_overlaps,
+)
 from quintet.interfaces.component import Array, Component, Fields, Keys, Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import SPHERE
@@ -32,6 +36,9 @@ class SphereDynamics(Component):
         count = len(self.spheres.mass)
         collide = params.collisions and count > 1
         self.near = NearPairs(self.spheres.radius) if collide else None
+        refuse_behind_walls(self.spheres, self.planes)
+        if self.near is not None:
+            refuse_overlaps(self.spheres, self.near.at(self.spheres.start))
         self.position = self.spheres.start.copy()  # (n, 3) m
         self.velocity = np.zeros((count, 3))  # m/s
         self.spin = np.zeros((count, 3))  # rad/s

@@ -39,9 +39,13 @@ class Sphere:
     position : m
         Of its centre at the start.
     diameter : m
-        Of the sphere: what it strikes with, and what loads and heat act on.
+        Of the sphere: what it strikes with, and what loads and heat act on. That of a body with
+        nodes in a gas is no smaller than the body, and larger if it strikes others: two layers of
+        nodes on each must fit between.
     density : kg/m3
-        Of its material.
+        Of its material. The mass is that of a sphere, also where it moves a cylinder 1 m long in a
+        gas of two dimensions: 1.5 m/d of the cylinder's density, d the diameter of both, makes it
+        the cylinder's.
     velocity : m/s
         With which it is launched.
     angular_velocity : rad/s

@@ -106,7 +106,7 @@ def _live(trial: Trial, key: str, spoilt: list[str] | None = None) -> tuple[Comp
         if key in fields:
             fields[key] = active
         for name in spoilt or ():
-            scale = FAR * max(trial.case.scale.get(name, 0.0), 1.0)
+            scale = FAR * max(float(np.max(trial.case.scale.get(name, 0.0))), 1.0)
             dead = (active == 0.0).reshape(-1, *([1] * (fields[name].ndim - 1)))
             fields[name] = np.where(
                 dead, trial.moved(name, fields[name], scale, random), fields[name]

@@ -310,9 +310,44 @@ def two(gap):
     ]
 
 
-def test_bodies_that_touch_are_refused():
-    with pytest.raises(StepError, match="must leave room for two layers"):
+def test_bodies_that_touch_at_the_start_are_a_mistake_of_the_scene():
+    said = r"moving.bodies.1: bodies 0 and 1 must leave room for two layers .* found 0 m between"
+    with pytest.raises(SceneError, match=said):
         made(scene(bodies=two(0.0), gas=[0.0, 0.0, 0.0]))
+
+
+def test_a_body_whose_cloud_does_not_fit_into_the_box_is_a_mistake_of_the_scene():
+    high = scene()
+    high["moving"]["bodies"][0]["position"][2] = 1.0
+    with pytest.raises(SceneError, match=r"moving.bodies.0: .* across z. Make the box longer"):
+        made(high)
+
+
+def test_partners_whose_bodies_are_smaller_or_fewer_are_refused():
+    gas = made(scene(bodies=[two(0.5)[0] | {"is_driven": True}], gas=[0.0, 0.0, 0.0]))
+    for size in (0.5, 0.75):  # larger ones keep others at a distance
+        gas.bind({"motion.size": np.full((1, 3), size)}, frozenset())
+    said = r"moving.bodies.0: .* at least as large as that in the gas, 0.5 m across, .* 0.4 m. Give"
+    with pytest.raises(SceneError, match=said):
+        gas.bind({"motion.size": np.full((1, 3), 0.4)}, frozenset())
+    with pytest.raises(SceneError, match=r"found 1 driven bodies and 2 of the partner"):
+        gas.bind({"motion.size": np.full((2, 3), 0.5)}, frozenset())
+
+
+@pytest.mark.parametrize(("position", "velocity"), [(0.01, 0.0), (0.0, 0.3)])
+def test_driven_bodies_that_leave_the_plane_are_refused(position, velocity):
+    bodies = [two(0.5)[0] | {"is_driven": True}]
+    gas = made(scene(bodies=bodies, gas=[0.0, 0.0, 0.0]))
+    away = {
+        "motion.position": gas.motion.pose.centre + np.array([0.0, position, 0.0]),
+        "motion.velocity": gas.motion.pose.velocity + np.array([0.0, velocity, 0.0]),
+    }
+    with pytest.raises(SceneError, match=r"the plane y = 0; the partner of body 0 is at"):
+        gas.take(away)
+    away["motion.velocity"] = np.array([[1.0, 1e-17, 0.0]])
+    away["motion.position"] = np.array([[0.001, -1e-17, 0.0]])
+    gas.take(away)
+    assert gas.motion.pose.velocity[0].tolist() == [1.0, 0.0, 0.0]
 
 
 def test_bodies_that_come_near_each_other_run_until_they_nearly_touch():

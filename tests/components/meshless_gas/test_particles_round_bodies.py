@@ -10,6 +10,7 @@ from quintet.components.meshless_gas.point_particles.half_plane import (
     from_half_plane,
     to_half_plane,
 )
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 
 WIND = {"density": 1.0, "pressure": 1.0 / 1.4, "velocity": [3.0, 0.0, 0.0]}
@@ -121,3 +122,10 @@ def test_a_ring_of_grains_is_the_same_at_every_angle():
     made.step(dt)
     made.load(kept)
     assert np.array_equal(loads(made)[0], after)
+
+
+def test_particles_larger_than_the_spacing_are_refused():
+    size = {"diameter": np.array([1e-3, 3.0])}
+    said = r"smaller than the spacing of nodes, .* found particle 1 of 3 m. Make nodes coarser"
+    with pytest.raises(SceneError, match=said):
+        gas_of("axis", [PLACES["axis"]] * 2, **size)

@@ -13,6 +13,7 @@ from quintet.components.particle_dynamics.plan import LIMIT
 from quintet.components.particle_dynamics.spheres.pairs import NearPairs
 from quintet.components.particle_dynamics.spheres.params import Copies, Sphere, Wall
 from quintet.interfaces import rotation
+from quintet.interfaces.errors import SceneError
 
 G = (0.0, 0.0, -9.81)  # m/s2
 
@@ -87,6 +88,27 @@ def test_a_sphere_bounces_from_a_wall():
     for _ in range(1000):
         made.step(2e-4)
     assert made.give({"motion.velocity"})["motion.velocity"][0] == pytest.approx([0.5, 0.0, 0.6])
+
+
+def test_spheres_that_begin_within_another_are_refused():
+    places = [(0.1, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.017)]
+    given = [{"position": one, "launch": 0.1 * k} for k, one in enumerate(places)]
+    said = r"centres of 1 and 2 must be 0.018 m apart .* found 0.017 m. Move them apart"
+    with pytest.raises(SceneError, match=said):
+        spheres(*given)
+    spheres(*given, collisions=False)
+    spheres(given[1], given[2] | {"position": (0.0, 0.0, 0.0181)})  # a tenth may overlap
+    twice = {"position": (0.0, 0.0, 0.0), "copies": Copies(number=(2, 1, 1), spacing=(0.01,) * 3)}
+    with pytest.raises(SceneError, match=r"0 and 1 must be 0.018 m apart .* found 0.01 m"):
+        spheres(twice)
+
+
+@pytest.mark.parametrize(("height", "found"), [(-0.2, "-0.7 m"), (0.505, "0.005 m")])
+def test_spheres_that_begin_behind_a_wall_are_refused(height, found):
+    walls = Wall(normal=(1.0, 0.0, 0.0), offset=-1.0), Wall(normal=(0.0, 0.0, 2.0), offset=0.5)
+    said = rf"walls.1: the centre of sphere 1 must be 0.009 m in front .* found {found}. Move"
+    with pytest.raises(SceneError, match=said):
+        spheres({"position": (0.0, 0.0, 1.0)}, {"position": (0.0, 0.0, height)}, walls=walls)
 
 
 def test_parameters_are_of_a_lattice_or_of_spheres():
