@@ -8,8 +8,8 @@
     position = run.fields["cubes.motion.position"]
     position.values, position.times, position.unit      # (rows, items, 3), (rows,) s, "m"
 
-The functions are those of the command line. Mistakes in a scene are raised as `SceneError` of
-`quintet.interfaces.errors`, failures of a run as `RunError`.
+The functions are those of the command line. Mistakes in a scene are raised as `SceneError`,
+failures of a run as `RunError`; both are `QuintetError`, as all that quintet raises on purpose.
 """
 
 from collections.abc import Mapping
@@ -21,11 +21,32 @@ if TYPE_CHECKING:
     from quintet.coupler.report.run import Run
     from quintet.coupler.scene.listing import Plan
     from quintet.coupler.scene.scene import Scene
+    from quintet.interfaces.errors import QuintetError, RunError, SceneError
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "check", "load", "resume", "run"]
+__all__ = [
+    "QuintetError",
+    "RunError",
+    "SceneError",
+    "__version__",
+    "check",
+    "load",
+    "resume",
+    "run",
+]
+ERRORS = ("QuintetError", "RunError", "SceneError")
 
 Overrides = Mapping[str, Any] | None  # dotted path -> value
+
+
+def __getattr__(name: str) -> Any:
+    """Load the errors that are raised, once one of them is named."""
+    if name not in ERRORS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    # Components import this package: it loads nothing until it is used.
+    from quintet.interfaces import errors
+
+    return getattr(errors, name)
 
 
 def run(

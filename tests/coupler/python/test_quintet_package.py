@@ -16,6 +16,7 @@ from started import write_scene
 import quintet
 from quintet.coupler.report.diff import compare
 from quintet.coupler.run import progress
+from quintet.interfaces import errors
 from quintet.interfaces.errors import RunError, SceneError
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
@@ -63,6 +64,16 @@ def test_importing_the_package_loads_nothing_else():
     names = found.stdout.split()
     assert {name for name in names if name.startswith("quintet")} == {"quintet"}
     assert not {"numpy", "h5py", "numba", "rich", "importlib.metadata"} & set(names)
+
+
+@pytest.mark.parametrize("name", ["QuintetError", "RunError", "SceneError"])
+def test_the_errors_that_are_raised_are_of_the_package(name):
+    assert getattr(quintet, name) is getattr(errors, name), "one class, by either name"
+    assert name in quintet.__all__
+    with pytest.raises(quintet.SceneError, match="scene nowhere is not known"):
+        quintet.check("nowhere")
+    with pytest.raises(AttributeError, match="has no attribute 'NoSuchError'"):
+        quintet.NoSuchError  # noqa: B018
 
 
 def test_the_version_is_that_of_the_installed_package():
