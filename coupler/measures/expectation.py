@@ -156,7 +156,10 @@ class Expectation:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Comparison of a run with an expectation; ``value`` is None where the run has none."""
+    """Comparison of a run with an expectation; ``value`` is None where the run has none.
+
+    Where it has none because it ended before, ``not_reached`` is the time that it lacks, s.
+    """
 
     name: str
     value: float | None
@@ -166,6 +169,7 @@ class Outcome:
     met: bool
     source: str
     required: bool = True
+    not_reached: float | None = None
 
 
 def check(
@@ -334,7 +338,7 @@ def reference_value(expectation: Expectation, folder: Path) -> float:
 def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> Outcome:
     """Compare a run with an expectation; a run that ended too early does not meet it."""
     reference = reference_value(expectation, folder)
-    value = _value(expectation, recording, folder)
+    value, not_reached = _value(expectation, recording, folder)
     return Outcome(
         expectation.name,
         value if math.isfinite(value) else None,
@@ -344,29 +348,33 @@ def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> 
         abs(value - reference) <= expectation.within,  # not so of nan
         expectation.source,
         expectation.required,
+        not_reached,
     )
 
 
-def _value(expectation: Expectation, recording: "Recording", folder: Path) -> float:
+def _value(
+    expectation: Expectation, recording: "Recording", folder: Path
+) -> tuple[float, float | None]:
+    """Measured value, nan if there is none, and the time [s] that the run did not reach."""
     if len(recording.times(expectation.component)) < 2:  # no window was finished
-        return math.nan
+        return math.nan, None
     computed = curve(expectation, recording)
-    last = float(recording.times(expectation.component)[-1])  # s
+    run_end = last = float(recording.times(expectation.component)[-1])  # s
     if expectation.from_level is not None:
         last = float(computed.times[-1])
         if math.isnan(last):
-            return math.nan
+            return math.nan, None
     wanted, target = expectation.end, reference_curve(expectation, folder)
     if expectation.measure == "at":
         wanted = expectation.begin
     elif wanted is None and target is not None and expectation.measure != "crossing":
         wanted = float(target.times[-1])
     end = last if wanted is None else wanted
-    if max(end, expectation.begin) > last * (1.0 + ROUNDING):
-        return math.nan
+    if (needed := max(end, expectation.begin)) > last * (1.0 + ROUNDING):
+        return math.nan, needed + run_end - last
     if expectation.measure not in DISTANCES:
-        return _measured(expectation, computed, end)
+        return _measured(expectation, computed, end), None
     assert target is not None
     inside = (target.times >= expectation.begin) & (target.times <= end)
     part = Curve(target.times[inside], target.values[inside])
-    return time_series.distance(computed, part, expectation.measure == "relative_rms")
+    return time_series.distance(computed, part, expectation.measure == "relative_rms"), None

@@ -229,6 +229,8 @@ def _verdict(one: Expectation, outcome: Outcome | None) -> str:
     elif one.level is not None:
         what = f"passes {one.level:g} at"
     what = "" if what == one.name else f": {what}"
+    if outcome is not None and outcome.not_reached is not None:
+        return f"{one.name}{what}: not reached (t = {outcome.not_reached:.4g} s)"
     if outcome is None or outcome.value is None:
         return f"{one.name}{what}: no value: NOT met"
     expected = f"at most {outcome.within:.3g}"

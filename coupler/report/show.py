@@ -102,7 +102,7 @@ def _table(title: str, names: list[str], left: int, rows: list[Row]) -> Table | 
 def _expectations(found: Mapping[str, Any]) -> Table | None:
     rows = [
         [
-            _met(one.get("met"), one.get("required", True)),
+            _met(one.get("met"), one.get("required", True), one.get("not_reached")),
             one.get("name", "?"),
             one.get("unit", ""),
             _number(one.get("value")),
@@ -115,8 +115,10 @@ def _expectations(found: Mapping[str, Any]) -> Table | None:
     return _table("Expectations", names, 3, rows)
 
 
-def _met(met: Any, required: Any) -> Text:
+def _met(met: Any, required: Any, not_reached: Any = None) -> Text:
     text = "met" if met else "not met"
+    if not_reached is not None:
+        text = f"not reached (t = {_number(not_reached)} s)"
     if not required:
         return Text(f"{text}, not required")
     return Text(text, style="green" if met else "red")

@@ -98,7 +98,9 @@ def test_times_count_from_a_level_in_the_run_and_in_the_reference(tmp_path, reco
     never = _expectation(measure="mean", value=1.0, from_level=9.0)
     assert evaluate(never, recording, tmp_path).value is None
     late = _expectation(measure="mean", value=1.0, from_level=1.5, end=1.6)
-    assert evaluate(late, recording, tmp_path).value is None  # the run ends 1.5 s after
+    outcome = evaluate(late, recording, tmp_path)
+    assert outcome.value is None  # the run ends 1.5 s after
+    assert outcome.not_reached == pytest.approx(0.5 + 1.6), "a time of the run, not since the level"
     with pytest.raises(SceneError, match=r"must pass from_level 9.0; it does not"):
         evaluate(_expectation(measure="mean", csv="ref.csv", from_level=9.0), recording, tmp_path)
 
@@ -156,6 +158,10 @@ def test_a_run_that_ends_too_early_has_no_value_and_does_not_meet(tmp_path, reco
     _write(tmp_path, "t,x\n0,1\n2.5,3.5\n")
     outcome = evaluate(_expectation(**settings), recording, tmp_path)
     assert asdict(outcome)["value"] is None and not outcome.met
+    if settings.get("level") == 7.0:  # its time is any
+        assert outcome.not_reached is None, "a level may be missed before the run ends"
+    else:
+        assert outcome.not_reached > 2.0, "the time that was needed lies beyond the run's 2 s"
 
 
 @pytest.mark.parametrize("rows", [0, 1])

@@ -112,7 +112,7 @@ def test_a_curve_with_a_reference_file_and_a_value_has_both(figure):
     assert labels == ["computed", "s", "expected: s"]
 
 
-def test_a_run_that_ended_early_says_that_it_has_no_value(figure):
+def test_a_run_that_ended_early_says_which_time_it_did_not_reach(figure):
     late = Expectation(name="late", measure="at", begin=3.0, value=1.0, within=0.1, **COMMON)
     (panel,) = figure(late, values=True).axes
-    assert panel.get_title() == "late: at 3 s: no value: NOT met"
+    assert panel.get_title() == "late: at 3 s: not reached (t = 3 s)"

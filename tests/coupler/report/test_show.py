@@ -51,6 +51,15 @@ def test_show_tells_expectations_ledger_and_timing(tmp_path, capsys):
     assert "energy drift 0.01" in text and "exchange 0.4 s" in text
 
 
+def test_show_tells_which_time_a_run_did_not_reach(tmp_path, capsys):
+    beyond = RESULTS["expect"][1] | {"not_reached": 0.2}
+    said = _shown(tmp_path, RESULTS | {"expect": [beyond]}, capsys)
+    assert "not reached (t = 0.2 s)  late" in said, "it is told what the run lacks"
+    assert "not met" not in said, "what was not measured is not told as missed"
+    beyond |= {"required": False}
+    assert "(t = 0.2 s), not required" in _shown(tmp_path, RESULTS | {"expect": [beyond]}, capsys)
+
+
 def test_show_tells_that_a_coupling_is_unstable(tmp_path, capsys):
     text = "link water-cube is unstable: by t = 0.1 s its sides took 2 J more work than they gave"
     found = RESULTS | {"unstable": [{"link": "water-cube", "text": text}]}
