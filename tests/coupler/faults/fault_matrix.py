@@ -105,7 +105,7 @@ class Reader:
             status = self.run.process.wait(seconds)
         finally:
             ended = time.time()
-            left = [*self.run.processes(), *self.run.left_in_shared_memory()]
+            left = [*self.run.left_processes(), *self.run.left_in_shared_memory()]
             self.run.end()
             for one in self.threads:
                 one.join(5.0)

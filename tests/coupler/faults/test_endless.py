@@ -41,7 +41,7 @@ def end(run, *numbers):
     assert run.results["status"] == "interrupted" and run.results["windows"] == 60
     assert "fault" not in run.results
     assert f"{numbers[0]}: ending after this window" in run.err
-    assert not run.processes() and not run.left_in_shared_memory()
+    assert not run.left_processes() and not run.left_in_shared_memory()
     return took
 
 

@@ -28,7 +28,7 @@ def check_waiting(run, by, seconds):
     if by != "disk":  # there the system does not let it answer
         assert "toy_faults.py" in said
     assert "quintet: pong goes on after " in said
-    assert not run.processes() and not run.left_in_shared_memory()
+    assert not run.left_processes() and not run.left_in_shared_memory()
 
 
 @pytest.mark.zenoh

@@ -101,6 +101,13 @@ class Started:
                 found.append(int(entry.name))
         return found
 
+    def left_processes(self, seconds=2.0):
+        """Processes that the run has left: the one beside it, which must outlive it, ends after."""
+        limit = time.monotonic() + seconds
+        while (found := self.processes()) and time.monotonic() < limit:
+            time.sleep(0.01)
+        return found
+
     def _is_mine(self, entry):
         try:
             marked = self.mark.encode() in (entry / "environ").read_bytes().split(b"\0")
