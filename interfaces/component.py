@@ -237,6 +237,15 @@ class Component(ABC):
         """Sentences that the user should read: all so far, in the order in which they came up."""
         return ()
 
+    def warnings(self) -> Mapping[str, str]:
+        """Reasons why the results may be wrong, by subject: ``{"energy": "the energy rose ..."}``.
+
+        Judged from the present state alone: after `load` it is that of the loaded state. Asked at
+        the end of every window. The run goes on, and ends with status 1. Each text says what is
+        wrong, the value found and what to do. `notes` are for what the component corrected.
+        """
+        return {}
+
     def items(self) -> int:
         """How many particles, bodies or elements it advances per step."""
         return 1

@@ -60,6 +60,10 @@ def _are_totals(value: Any) -> bool:
     )
 
 
+def _are_texts(value: Any) -> bool:
+    return isinstance(value, dict) and is_names([*value, *value.values()])
+
+
 COUNT: Rule = is_count, "a whole number from 0"
 NUMBER: Rule = _is_number, "a number"
 TIME: Rule = _is_time, "a time in s"
@@ -94,6 +98,9 @@ def check_answer(order: str, answer: Message) -> None:
     notes = header.get("notes")
     if notes is not None and not is_names(notes):
         raise MessageError(f"the answer to {order}: notes must be a list of texts.")
+    warnings = header.get("warnings")
+    if warnings is not None and not _are_texts(warnings):
+        raise MessageError(f"the answer to {order}: warnings must be texts by subject.")
     for key, (is_right, words) in ANSWERS.get(order, NONE).items():
         value = header.get(key)
         if not is_right(value):

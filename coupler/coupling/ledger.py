@@ -18,6 +18,7 @@ from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
+from quintet.coupler.coupling.run_warnings import RunWarnings
 from quintet.coupler.coupling.stability_watch import StabilityWatch
 from quintet.coupler.files.table_file import TableFile
 from quintet.interfaces.component import Array, Fields
@@ -80,6 +81,7 @@ class Ledger:
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy = EnergyBalance()
         self.watch = StabilityWatch(self.accounts)
+        self.warnings = RunWarnings()
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
         self._table = TableFile(path, size)
@@ -227,6 +229,7 @@ class Ledger:
             "totals": self.totals,
             "energy": self.energy.save(),
             "watch": self.watch.save(),
+            "warnings": self.warnings.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
             "size": self._table.flush(),
@@ -239,6 +242,7 @@ class Ledger:
         self.totals = dict(state["totals"])
         self.energy.load(state["energy"])
         self.watch.load(state["watch"])
+        self.warnings.load(state["warnings"])
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])
 

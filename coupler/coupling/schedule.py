@@ -331,6 +331,8 @@ class Single:
             ledger.moved(self.name, self._inputs, answer.header["inputs"], window.dt)
         if answer.header.get("totals"):
             ledger.totals[self.name] = answer.header["totals"]
+        if warnings := answer.header.get("warnings"):
+            ledger.warnings.note(f"component {self.name}", warnings)
 
     def keep(self, depth: int) -> None:
         """See `Member.keep`."""

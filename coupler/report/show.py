@@ -56,6 +56,9 @@ def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | No
     screen.print(_headline(found))
     for one in found.get("unstable") or []:
         screen.print(Text(f"Doubtful: {one.get('text', one)}", style="red"))
+    for warning in found.get("warnings") or []:
+        said = f"Warning of {warning.get('source', '?')}: {warning.get('text', warning)}"
+        screen.print(Text(said, style="red"))
     for table in (_expectations(found), _ledger(found), _timing(found)):
         if table is not None:
             table.box = frame

@@ -70,10 +70,10 @@ def run(
     while not windows.finished and not observer.wants_end():
         advance(coupling, lambda now: watch.asks or observer.due(now))
         coupling.ledger.close_window(coupling.all_late(), coupling.all_in_transit())
-        found = watch.look(coupling)
+        doubts = [*watch.look(coupling), *coupling.ledger.warnings.close_window(windows.time)]
         observer.end_window(coupling)
-        for one in found:
-            observer.warn(str(one))
+        for doubt in doubts:
+            observer.warn(str(doubt))
     if not windows.finished:
         observer.ends_early(coupling)
     return RunEnd(windows.finished, windows.done, windows.time)

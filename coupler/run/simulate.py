@@ -134,7 +134,7 @@ class Running:
         """Write down a failure, from the guard's process."""
         self.writer.done, self.writer.time = windows, reached
         self.outcome |= failed(error, self.scene, self.folder, self.writer)
-        self.outcome["unstable"] = self.ledger.watch.summary()
+        self.outcome |= doubts(self.ledger)
         conclude(self)
 
     def end(self, error: BaseException | None) -> int:
@@ -162,7 +162,7 @@ class Running:
                     one.close()
             if self.stop.asked and self.outcome["status"] != "done" and not lost:
                 self.outcome["status"] = "interrupted"
-            self.outcome["unstable"] = self.ledger.watch.summary()
+            self.outcome |= doubts(self.ledger)
             return conclude(self)
 
     def leave(self) -> None:
@@ -195,6 +195,11 @@ def outcome_of(end: RunEnd) -> dict[str, Any]:
     """Status of a run, complete or interrupted."""
     status = "done" if end.finished else "interrupted"
     return {"status": status, "windows": end.windows, "time": end.time}
+
+
+def doubts(ledger: Ledger) -> dict[str, Any]:
+    """What makes the results of a run doubtful: unstable links, and warnings."""
+    return {"unstable": ledger.watch.summary(), "warnings": ledger.warnings.summary()}
 
 
 def refused(error: Exception, writer: OutputWriter) -> dict[str, Any]:
@@ -273,5 +278,6 @@ def conclude(made: Running) -> int:
             "\nquintet: interrupted after the run: pictures left out", file=sys.stderr, flush=True
         )
         return results.INTERRUPTED
-    sound = all(one.met or not one.required for one in found) and not outcome["unstable"]
+    met = all(one.met or not one.required for one in found)
+    sound = met and not any(doubts(made.ledger).values())
     return results.DONE if sound else results.UNMET

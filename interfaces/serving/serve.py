@@ -139,6 +139,8 @@ class Server:
         }
         if notes := self._notes():
             answer["notes"] = notes
+        if warnings := self.component.warnings():
+            answer["warnings"] = {str(key): str(text) for key, text in warnings.items()}
         return answer, fields
 
     def _notes(self) -> list[str]:

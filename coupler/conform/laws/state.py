@@ -1,7 +1,7 @@
 """Laws of state: all of it is saved, none of it is shared."""
 
 from quintet.coupler.conform.trial import Trial, copies
-from quintet.coupler.conform.verdict import require_same_bits
+from quintet.coupler.conform.verdict import require, require_same_bits
 from quintet.interfaces.component import Component, Fields
 from quintet.interfaces.lines.message import decode, encode
 
@@ -91,6 +91,27 @@ def what_is_loaded_is_neither_written_to_nor_kept(trial: Trial) -> None:
             require_same_bits(state, saved, rule, "Copy it.")
     rule = "load: what is loaded must not be kept, as its memory is used again"
     require_same_bits(runs[1], runs[0], rule, "Keep copies: np.array(state[key]).")
+
+
+def warnings_are_those_of_the_state(trial: Trial) -> None:
+    """Warnings come back with the state to which they belong, and texts they are."""
+    component, other = trial.build(), trial.build()
+    early = dict(component.warnings()), trial.received(component.save())
+    trial.move(component)
+    late = dict(component.warnings()), trial.received(component.save())
+    for warnings, state in (late, early):
+        other.load(state)
+        texts = [*warnings, *warnings.values()]
+        require(
+            all(isinstance(text, str) for text in texts),
+            f"warnings: must be texts by subject; found {warnings!r}. Return a dict of texts.",
+        )
+        require(
+            dict(other.warnings()) == warnings,
+            f"warnings: after load they must be those of the saved state, {warnings!r}; found "
+            f"{dict(other.warnings())!r}. Judge them from what is saved.",
+        )
+        trial.move(other)
 
 
 def _views(state: Fields) -> Fields:

@@ -157,6 +157,18 @@ class WritesIntoWhatItLoads(Sound):
         super().load(state)
 
 
+@breaks(state.warnings_are_those_of_the_state)
+class WarnsOfStepsThatItDoesNotSave(Sound):
+    steps = 0
+
+    def step(self, dt):
+        super().step(dt)
+        self.steps += 1
+
+    def warnings(self):
+        return {"steps": f"it made {self.steps} steps"} if self.steps else {}
+
+
 @breaks(accounts.it_counts_what_it_advances_and_what_it_holds)
 class CountsNothing(Sound):
     def items(self):
