@@ -117,7 +117,10 @@ def _gap(trial: Trial, dt: float) -> dict[str, float]:
         sums.append(total)
     gaps = {}
     for key in trial.outputs:
-        one, other = sums if key in trial.impulses and trial.case.any_time else ends
-        size = max(1.0, float(np.abs(one[key]).max(initial=0.0)))
-        gaps[key] = float(np.abs(one[key] - other[key]).max(initial=0.0)) / size
+        summed = key in trial.impulses and trial.case.any_time
+        whole, halves = sums if summed else ends
+        # The scale must not change with dt: that of an impulse is its mean rate.
+        largest = float(np.abs(whole[key]).max(initial=0.0)) / (dt if summed else 1.0)
+        gap = float(np.abs(whole[key] - halves[key]).max(initial=0.0))
+        gaps[key] = gap / max(1.0, largest)
     return gaps
