@@ -94,6 +94,10 @@ def initial_state(params: SphSolidParams, laws: list[Solid], numbers: list[int])
         pulled=velocity[hangs],
         active=np.ones(int(hangs.sum())),
         force=np.zeros((int(hangs.sum()), 3)),
+        ranges=np.zeros((3, 2)),
+        sums=np.zeros(3),
+        viscous=np.zeros(2),
+        torn=np.zeros(5),
     )
 
 

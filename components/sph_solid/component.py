@@ -1,6 +1,7 @@
 """Elastic-plastic bodies of particles, stepped by velocity Verlet."""
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -8,6 +9,15 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
 from quintet.components.sph_solid.build import initial_state, materials, nearest, pair_law
 from quintet.components.sph_solid.diagnostics import bodies, failure, gauges, levels, totals, view
+from quintet.components.sph_solid.judgement import (
+    BONDS_EVERY,
+    ENERGY_EVERY,
+    bonds,
+    note_energies,
+    note_torn,
+    note_viscous,
+    warnings,
+)
 from quintet.components.sph_solid.kernels.material import (
     Points,
     advance,
@@ -57,6 +67,7 @@ class SphSolid(Component):
         self.laws, numbers = materials(params)
         self.density = np.array([one.density for one in self.laws])
         self.state = initial_state(params, self.laws, numbers)
+        self.bonds = bonds(self.state, params)
         self.gauged = nearest(self.state.position, params)
         self.lists = SolidLists(params, self.team)
         self.sums = pair_sums(params, self.team)
@@ -93,14 +104,22 @@ class SphSolid(Component):
         """Set velocities of glued particles in the coming step, and which are still glued."""
         state = self.state
         if "glue_activity.active" in fields:
-            state.active[:] = fields["glue_activity.active"]
+            active = np.asarray(fields["glue_activity.active"])
+            if len(freed := np.flatnonzero(active < state.active)):
+                rows = self._glued_rows()[freed]  # they bring their motion with them
+                squares = (state.velocity[rows] ** 2).sum(axis=1)
+                state.work += 0.5 * float(self._masses()[rows] @ squares)
+            state.active[:] = active
         if "glued.velocity" in fields:
             state.pulled[:] = fields["glued.velocity"] * state.active[:, None]
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; stresses follow the motion in the step's middle."""
         state, rows = self.state, self.rows
+        if state.steps % ENERGY_EVERY == 0:
+            self._judge()
         self._pull()
+        self._work_on_glued(dt)
         displaced = self.team.run(
             kick_and_drift_half, state.particles, dt, state.position, state.velocity,
             state.acceleration, state.failed, state.volume, state.reference, rows.place,
@@ -123,8 +142,29 @@ class SphSolid(Component):
             state.energy,
         )  # fmt: skip
         state.time += dt
+        state.steps += 1
+        self._work_on_glued(dt)
         if not math.isfinite(sum(squares)):
             raise StepError(failure(state, self.params, dt))
+
+    def _work_on_glued(self, dt: float) -> None:
+        """Add the work of half a step of dt [s] that what they hang on does on glued particles."""
+        state = self.state
+        if len(state.active):
+            state.work -= 0.5 * dt * float((state.force * state.pulled).sum())
+
+    def _judge(self) -> None:
+        """Take down energies and lost bonds: at steps of certain numbers, so that runs repeat."""
+        state = self.state
+        found = totals(state, self._masses(), self._glued_rows()[state.active > 0.0])
+        note_energies(state, found.kinetic, found.potential, found.internal)
+        note_viscous(state, self.of_material, self.laws)
+        if state.steps % BONDS_EVERY == 0 and not self.params.total_lagrangian:
+            note_torn(state, self.bonds, self.laws, self.params)
+
+    def warnings(self) -> Mapping[str, str]:
+        """Reasons why the results may be wrong: energy from nowhere, numerical fracture."""
+        return warnings(self.state, self.params, len(self.bonds))
 
     def _begin(self) -> None:
         """Find what acts at the start, where nothing is strained."""

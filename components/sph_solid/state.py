@@ -39,9 +39,15 @@ class State:
     pulled: Array  # (glued, 3) m/s, of glued particles
     active: Array  # (glued,) 1, 0 once it is free
     force: Array  # (glued, 3) N, on glued particles now
+    ranges: Array  # (3, 2) J, least and greatest kinetic, potential and internal energy so far
+    sums: Array  # (3,) J, sum of energies less work from outside: first, least, greatest
+    viscous: Array  # (2,) J, heat of viscosity in elastic bodies: now, and least so far
+    torn: Array  # (5,) 1, s, m, m, m: most bonds lost at a time; when and where the first was lost
     reach: float = 0.0  # m, of the neighbour list
     bound: float = 0.0  # s, step that all bear
     time: float = 0.0  # s
+    steps: int = 0
+    work: float = 0.0  # J, done on glued particles by what they hang on
 
     @property
     def particles(self) -> int:
@@ -65,11 +71,11 @@ class State:
         return cls(**own)
 
 
-OF_PARTICLES = tuple(
-    part.name
-    for part in fields(State)
-    if part.name not in ("pulled", "active", "force", "reach", "bound", "time")
-)
+OF_ALL = (
+    "pulled", "active", "force", "ranges", "sums", "viscous", "torn", "reach", "bound", "time",
+    "steps", "work",
+)  # fmt: skip
+OF_PARTICLES = tuple(part.name for part in fields(State) if part.name not in OF_ALL)
 
 
 @dataclass(slots=True)
