@@ -1,0 +1,1 @@
+../../coupler/python/__init__.py

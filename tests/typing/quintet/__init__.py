@@ -1,1 +1,0 @@
-../../../coupler/python/__init__.py
