@@ -31,6 +31,7 @@ class Plan:
     rate: float = 1e6  # items stepped per second and thread
     bytes_per_item: float = 0.0
     times: Array | None = None  # (n,) s, the only ones at which it can give; None: at any
+    notes: tuple[str, ...] = ()  # sentences that `check` prints
 
 
 @dataclass(frozen=True, slots=True)

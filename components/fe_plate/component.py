@@ -314,6 +314,10 @@ class FePlate(Component):
             work=self.accumulated.outside + float(s.wall_work.sum()),
         )
 
+    def notes(self) -> tuple[str, ...]:
+        """Sizes of meshes from files, and what of them is left out."""
+        return self.mesh.notes
+
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""
         return view(self.mesh, self.places, self.state)

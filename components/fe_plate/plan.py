@@ -1,5 +1,6 @@
-"""What a run of a structure will need: elements, step and time, estimated without a mesh."""
+"""What a run of a structure will need: elements, step and time, estimated without building it."""
 
+from quintet.components.fe_plate.meshes.params import mesh_notes
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.interfaces.manifest import Plan
 
@@ -10,4 +11,5 @@ BYTES = 1000.0  # of an element
 def plan(params: FePlateParams) -> Plan:
     """What a run will need."""
     count = sum(one.count for one in params.parts)
-    return Plan(count, min(one.expected_step for one in params.parts), RATE, BYTES)
+    notes = mesh_notes(params.parts)
+    return Plan(count, min(one.expected_step for one in params.parts), RATE, BYTES, notes=notes)

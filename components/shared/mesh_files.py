@@ -4,6 +4,7 @@ Surfaces are read by trimesh (STL, OBJ, PLY and others); voxels are an array in 
 axes x, y, z, what is not zero being solid. Nothing is imported unless a scene names a file.
 """
 
+import itertools
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +13,8 @@ import numpy as np
 from quintet.interfaces.component import Array
 
 AWRY = 1e-8  # of a shape's size
+RAYS = 32  # along either axis across those that look for overlapping shells
+MOST_WRONG = 1e-3  # of the length within a surface that is not enclosed once
 PAIRS = ((1, 2), (2, 0), (0, 1))  # the corners opposite each corner
 
 
@@ -54,12 +57,63 @@ def surface(path: Path, scale: float) -> Shape:
     if mesh.volume < 0.0:
         mesh.invert()
     corners = np.asarray(mesh.triangles, np.float64)
+    _require_simple(path.name, corners)
     return Shape(
         scale * corners,
         scale**3 * float(mesh.volume),
         scale * np.asarray(mesh.center_mass),
         scale**5 * np.asarray(mesh.moment_inertia),
     )
+
+
+def _require_simple(name: str, triangles: Array) -> None:
+    """Refuse shells that overlap or are flipped: their volume and inertia would be wrong."""
+    lengths = winding_lengths(triangles)
+    enclosed = sum(lengths.values())
+    twice = sum(length for number, length in lengths.items() if number > 1)
+    reverse = sum(length for number, length in lengths.items() if number < 0)
+    if not enclosed > 0.0:
+        raise ValueError(f"file {name} must enclose a volume; it encloses none. Correct it.")
+    if max(twice, reverse) > MOST_WRONG * enclosed:
+        raise ValueError(
+            f"file {name} must enclose each part of its volume once; found {twice / enclosed:.1%} "
+            f"of it in several shells that overlap, and {reverse / enclosed:.1%} in shells that "
+            "are inside out. Unite solids that overlap, let the triangles of solids look outwards, "
+            "and those of cavities into the cavity."
+        )
+
+
+def winding_lengths(triangles: Array) -> dict[int, float]:
+    """Length within a closed surface (t, 3, 3), by how often it is enclosed, along some rays.
+
+    What is enclosed once lies in one shell whose triangles look outwards, more often where shells
+    overlap, and a negative number of times in a shell that is inside out.
+    """
+    low, high = triangles[:, :, 1:].min(axis=1), triangles[:, :, 1:].max(axis=1)
+    lowest, highest = low.min(axis=0), high.max(axis=0)
+    # Irrational offsets, so that no ray meets an edge of a regular mesh.
+    lines = (np.arange(RAYS)[:, None] + np.sqrt([0.2, 0.3])) / RAYS * (highest - lowest) + lowest
+    lengths: dict[int, float] = {}
+    for y, z in itertools.product(*lines.T):
+        place = np.array([y, z])
+        met = triangles[((low <= place) & (place <= high)).all(axis=1)]
+        part, whole = _areas(met, place)
+        through = np.flatnonzero((part * whole[:, None] > 0.0).all(axis=1))
+        x = (met[through, :, 0] * part[through]).sum(axis=1) / whole[through]
+        order = np.argsort(x)
+        # Along x a ray enters where triangles look against it.
+        depth = np.cumsum(-np.sign(whole[through][order]))[:-1]
+        for number, length in zip(depth.tolist(), np.diff(x[order]).tolist(), strict=True):
+            if number:
+                lengths[int(number)] = lengths.get(int(number), 0.0) + length
+    return lengths
+
+
+def _areas(triangles: Array, place: Array) -> tuple[Array, Array]:
+    """Twice the areas, across x, of a place with each pair of corners (t, 3), and their sums."""
+    y, z = (triangles[:, :, 1:] - place).transpose(2, 0, 1)
+    part = np.column_stack([y[:, i] * z[:, j] - z[:, i] * y[:, j] for i, j in PAIRS])
+    return part, part.sum(axis=1)
 
 
 def open_edges(mesh: object) -> int:
@@ -116,10 +170,7 @@ def inside(points: Array, triangles: Array) -> Array:
     for k, point in enumerate(points):
         place = point[1:] + aside
         met = triangles[((low <= place) & (place <= high)).all(axis=1)]
-        y, z = (met[:, :, 1:] - place).transpose(2, 0, 1)
-        # Twice the area, across x, of the place with each pair of corners: opposite a, b, c.
-        part = np.column_stack([y[:, i] * z[:, j] - z[:, i] * y[:, j] for i, j in PAIRS])
-        whole = part.sum(axis=1)
+        part, whole = _areas(met, place)
         through = (part * whole[:, None] > 0.0).all(axis=1)
         beyond = ((met[:, :, 0] - point[0]) * part).sum(axis=1) * whole > 0.0
         found[k] = np.sign(whole[through & beyond]).sum() > 0.0

@@ -80,6 +80,8 @@ def print_plan(scene: Scene, console: Console) -> None:
     console.print(table)
     for one in scene.components.values():
         console.print(f"{one.name} takes {_names(one.takes)}; gives {_names(one.gives)}")
+        for note in one.planned.notes if one.planned else ():
+            console.print(f"note of {one.name}: {note}")
     for link in scene.links:
         for one_way in link.transfers:
             console.print(f"link {link.name}: {one_way.giver} -> {one_way.taker}")

@@ -168,6 +168,10 @@ class FeHeat(Component):
         heat = float(self.model.capacity @ self.state.temperature)
         return Totals(mass=mass, internal=heat, work=float(self.state.outside[0]))
 
+    def notes(self) -> tuple[str, ...]:
+        """Sizes of meshes from files, and what of them is left out."""
+        return self.model.mesh.notes
+
     def view(self) -> Fields:
         """Outer faces with their temperatures."""
         return view(self.model.mesh, self.state.temperature)

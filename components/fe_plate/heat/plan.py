@@ -1,8 +1,9 @@
-"""What a run of conduction will need, estimated without a mesh."""
+"""What a run of conduction will need, estimated without building it."""
 
 import math
 
 from quintet.components.fe_plate.heat.params import FeHeatParams
+from quintet.components.fe_plate.meshes.params import mesh_notes
 from quintet.interfaces.manifest import Plan
 
 RATE = 2e5  # elements stepped per second and thread
@@ -12,4 +13,5 @@ BYTES = 700.0  # of an element
 def plan(params: FeHeatParams) -> Plan:
     """What a run will need."""
     count = sum(one.count for one in params.parts)
-    return Plan(count, params.longest_step or math.inf, RATE, BYTES)
+    notes = mesh_notes(params.parts)
+    return Plan(count, params.longest_step or math.inf, RATE, BYTES, notes=notes)

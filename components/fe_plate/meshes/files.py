@@ -1,82 +1,178 @@
-"""Meshes from files, in any format that meshio reads: 8-node solids, or quadrilaterals in a plane.
+"""Meshes of 8-node solids from files, in any format that meshio reads.
 
 Nothing is imported unless a scene names a file.
 """
 
+from collections import Counter
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from quintet.interfaces.component import Array
+from quintet.components.fe_plate.meshes.abaqus import require_readable
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.components.fe_plate.meshes.coincidence import first_at_place, pieces
 from quintet.interfaces.errors import SceneError
 
-SOLID, FLAT = "hexahedron", "quad"
+SOLID = "hexahedron"
 
 
 class FileMesh(NamedTuple):
     """What is used of a file: nodes of its elements alone."""
 
     node: Array  # (n, 3), in units of the file
-    corner: Array  # (e, 8 or 4) whole numbers
-    sets: dict[str, Array]  # nodes (k,) of each named set
-    groups: dict[str, Array]  # elements (k,) of each named set
+    corner: Whole  # (e, 8) nodes
+    sets: dict[str, Whole]  # nodes (k,) of each named set
+    groups: dict[str, Whole]  # elements (k,) of each named set
+    notes: tuple[str, ...]  # of what is left out
 
 
 @cache
-def read(file: str, kind: str = SOLID) -> FileMesh:
-    """Read the elements of a kind, their nodes, and the sets of both that the file names."""
+def read(file: str, coincident: str = "refuse") -> FileMesh:
+    """Read the 8-node solids, their nodes, and the sets of both that the file names.
+
+    Parameters
+    ----------
+    file
+    coincident
+        Whether nodes of different elements at the same place are refused ("refuse"), joined
+        ("join"), or left apart ("keep").
+    """
+    name, found = Path(file).name, _parsed(file)
+    corner = _solids(name, found)
+    given = np.asarray(found.points, np.float64)
+    points = np.zeros((len(given), 3))
+    points[:, : given.shape[1]] = given
+    notes = _left_out(name, found, np.unique(corner))
+    same = np.arange(len(points))
+    if coincident != "keep":
+        same = _same_places(name, points, corner, coincident)
+        corner = same[corner]
+    used, number = np.unique(corner, return_inverse=True)
+    corner = number.reshape(corner.shape)
+    if (count := pieces(corner, len(used))) > 1:
+        notes.append(
+            f"mesh {name}: it is in {count} pieces that share no node; they do not feel each other."
+        )
+    sets = {}
+    for key, nodes in found.point_sets.items():
+        members = np.unique(same[np.asarray(nodes, np.int64)])
+        sets[key] = np.flatnonzero(np.isin(used, members))
+        if lost := len(members) - len(sets[key]):
+            notes.append(f"mesh {name}: {lost} nodes of its set {key} belong to no solid.")
+    return FileMesh(points[used], corner, sets, _groups(name, found, notes), tuple(notes))
+
+
+def _parsed(file: str) -> Any:
+    """Read a file by meshio."""
+    path = Path(file)
     try:
         # Scenes without mesh files do not need it, nor have it installed.
         import meshio
     except ImportError as error:
         raise SceneError(
-            f"file {Path(file).name}: meshes are read by meshio, which is not installed. "
+            f"file {path.name}: meshes are read by meshio, which is not installed. "
             "pip install quintet[meshes]."
         ) from error
+    if path.suffix == ".inp" and path.is_file():
+        require_readable(path)
     try:
-        found = meshio.read(file)
+        return meshio.read(file)
     except (Exception, SystemExit) as error:  # of any kind: each format has its own
         raise SceneError(
-            f"file {Path(file).name} must be a mesh that meshio reads; reading it found "
+            f"file {path.name} must be a mesh that meshio reads; reading it found "
             f"{type(error).__name__}: {error}. Convert it."
         ) from error
-    cells = [np.asarray(block.data, np.int64) for block in found.cells if block.type == kind]
-    if not cells:
-        kinds = sorted({block.type for block in found.cells})
+
+
+def _solids(name: str, found: Any) -> Whole:
+    """Corners (e, 8) of all blocks of 8-node solids; other solids are refused."""
+    kinds, others = Counter[str](), Counter[str]()
+    for block in found.cells:
+        kinds[block.type] += len(block.data)
+        if block.dim == 3 and block.type != SOLID:
+            others[block.type] += len(block.data)
+    if not kinds[SOLID]:
         raise SceneError(
-            f"file {Path(file).name} must have elements of kind {kind}; found "
-            f"{', '.join(kinds) or 'none'}. Mesh it with 8-node solids."
+            f"file {name} must have elements of kind {SOLID}; found "
+            f"{_listed(kinds) or 'none'}. Mesh it with 8-node solids."
         )
-    corner = np.concatenate(cells)
+    if others:
+        raise SceneError(
+            f"file {name} must have no other solids than {SOLID}, for they would be holes; found "
+            f"{_listed(others)} beside {kinds[SOLID]} {SOLID}. Mesh it with 8-node solids alone."
+        )
+    cells = [np.asarray(block.data, np.int64) for block in found.cells if block.type == SOLID]
+    return np.concatenate(cells)
+
+
+def _left_out(name: str, found: Any, used: Whole) -> list[str]:
+    """Notes of faces, edges and points beside the solids; shells and beams are refused."""
+    marks, lost = Counter[str](), Counter[str]()
+    for block in found.cells:
+        if block.type == SOLID or not len(block.data):
+            continue
+        data = np.asarray(block.data)
+        beside = np.isin(data, used).all(axis=1) if block.dim else np.ones(len(data), bool)
+        marks[block.type] += int(beside.sum())
+        lost[block.type] += int((~beside).sum())
+    if lost := +lost:
+        raise SceneError(
+            f"file {name} must have no shells or beams, for they would be left out; found "
+            f"{_listed(lost)} with nodes that belong to no {SOLID}. Remove them, or mesh them with "
+            "8-node solids."
+        )
+    if not +marks:
+        return []
+    return [f"mesh {name}: {_listed(+marks)} are left out; they lie on its solids, and mark them."]
+
+
+def _listed(kinds: Counter[str]) -> str:
+    return ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+
+
+def _same_places(name: str, points: Array, corner: Whole, coincident: str) -> Whole:
+    """Node (p,) that stands for each point of the file: the first of those at its place."""
     used, number = np.unique(corner, return_inverse=True)
-    points = np.zeros((len(used), 3))
-    given = np.asarray(found.points, np.float64)[used]
-    points[:, : given.shape[1]] = given
-    sets = {
-        name: np.flatnonzero(np.isin(used, np.asarray(nodes, np.int64)))
-        for name, nodes in found.point_sets.items()
-    }
-    return FileMesh(points, number.reshape(corner.shape), sets, _groups(found, kind))
+    shortest = least_edge(points[used], number.reshape(corner.shape))
+    if not (np.isfinite(points[used]).all() and shortest > 0.0):  # which is refused elsewhere
+        return np.arange(len(points))
+    first = used[first_at_place(points[used], shortest)]
+    doubled = int((first != used).sum())
+    if doubled and coincident == "refuse":
+        where = np.array2string(points[used[np.argmax(first != used)]], precision=4)
+        raise SceneError(
+            f"file {name} must not have two nodes at one place, for elements are joined by the "
+            f"nodes they share; found {doubled} such nodes, one at {where} in units of the file. "
+            'Set coincident_nodes = "join" of the mesh, or "keep" if they shall part (a crack).'
+        )
+    same = np.arange(len(points))
+    same[used] = first
+    return same
 
 
-def _groups(found: Any, kind: str) -> dict[str, Array]:
-    """Elements of a kind of each named set, counted through all blocks of that kind."""
+def _groups(name: str, found: Any, notes: list[str]) -> dict[str, Whole]:
+    """Solids of each named set of elements, counted through all blocks of solids."""
     groups = {}
-    for name, blocks in found.cell_sets.items():
-        rows, first = [np.zeros(0, np.int64)], 0
+    for key, blocks in found.cell_sets.items():
+        rows, first, lost = [np.zeros(0, np.int64)], 0, 0
         for block, chosen in zip(found.cells, blocks, strict=True):
-            if block.type == kind:
-                rows.append(first + np.asarray([] if chosen is None else chosen, np.int64))
+            members = np.asarray([] if chosen is None else chosen, np.int64)
+            if block.type == SOLID:
+                rows.append(first + members)
                 first += len(block.data)
-        groups[name] = np.concatenate(rows)
+            else:
+                lost += len(members)
+        groups[key] = np.concatenate(rows)
+        if lost:
+            notes.append(f"mesh {name}: {lost} members of its set {key} are no solids.")
     return groups
 
 
-def least_edge(mesh: FileMesh) -> float:
-    """Shortest edge of its elements, in units of the file."""
-    x = mesh.node[mesh.corner]
+def least_edge(node: Array, corner: Whole) -> float:
+    """Shortest edge of some elements (e, 8), or of quadrilaterals (e, 4)."""
+    x = node[corner]
     if x.shape[1] == 4:
         return float(np.linalg.norm(x - np.roll(x, 1, axis=1), axis=2).min())
     rings = [x[:, :4], x[:, 4:]]

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.box import box, rectangle
+from quintet.components.fe_plate.meshes.coincidence import first_at_place
 from quintet.components.fe_plate.meshes.cylinder import cylinder
-from quintet.components.fe_plate.meshes.files import read
+from quintet.components.fe_plate.meshes.files import least_edge
 from quintet.components.fe_plate.meshes.params import Shape
 from quintet.components.fe_plate.params import Elements, Faces, Fixed, NodeSet
 from quintet.interfaces.errors import SceneError
@@ -37,6 +38,7 @@ class Mesh(NamedTuple):
     owner: Whole  # (f,) element of each
     sets: dict[str, Whole]  # nodes of each named set, of files and of the scene
     groups: dict[str, Whole]  # elements of each named set of files
+    notes: tuple[str, ...] = ()  # of meshes from files
 
 
 def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
@@ -44,14 +46,16 @@ def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = 
     nodes, corners, first, count = [], [], 0, 0
     named: dict[str, Whole] = {}
     groups: dict[str, Whole] = {}
+    notes: list[str] = []
     for part in parts:
         if dimensions == 2:
             node, corner = rectangle(part)
         elif part.cylinder is not None:
             node, corner = cylinder(part.cylinder)
         elif part.mesh is not None:
-            found = read(part.mesh.file)
-            node, corner = part.mesh.scale * found.node + part.mesh.move, found.corner
+            found = part.mesh.placed()
+            node, corner = found.node, found.corner
+            notes += found.notes
             for name, rows in found.sets.items():
                 named[name] = np.append(named.get(name, rows[:0]), first + rows)
             for name, rows in found.groups.items():
@@ -65,9 +69,37 @@ def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = 
     corner = np.concatenate(corners)
     outer = outer_sides(corner) if dimensions == 3 else outer_edges(corner)
     node = np.concatenate(nodes)
-    for one in sets:
+    _require_apart(node, corner, number, outer[0])
+    for place, one in enumerate(sets):
+        if one.name in named:
+            raise SceneError(
+                f"node_sets.{place}: names must differ; {one.name} is the name of another set, of "
+                "the scene or of a mesh's file. Rename it."
+            )
         named[one.name] = np.flatnonzero(inside(node, one))
-    return Mesh(node, corner, number, *outer, named, groups)
+    return Mesh(node, corner, number, *outer, named, groups, tuple(notes))
+
+
+def _require_apart(node: Array, corner: Whole, part: Whole, side: Whole) -> None:
+    """Refuse parts that seem to be joined: their nodes lie at the same places."""
+    if not part[-1]:
+        return
+    outer = np.unique(side[side >= 0])
+    part_of = np.zeros(len(node), np.int64)
+    part_of[corner] = part[:, None]
+    planar = bool((corner[0, :4] == corner[0, 4:]).all())
+    shortest = least_edge(node, corner[:, :4] if planar else corner)
+    first = outer[first_at_place(node[outer], shortest)]
+    shared = np.flatnonzero(part_of[first] != part_of[outer])
+    if len(shared):
+        one = shared[0]
+        pair = sorted((part_of[first[one]], part_of[outer[one]]))
+        raise SceneError(
+            f"parts.{pair[0]} and parts.{pair[1]}: parts must not touch, for they are not joined "
+            f"and do not feel each other; {len(shared)} of their nodes lie at the same places, one "
+            f"at {np.array2string(node[outer[one]], precision=4)} m. Make them one mesh, or leave "
+            "a gap between them."
+        )
 
 
 def outer_sides(corner: Whole) -> tuple[Whole, Whole]:

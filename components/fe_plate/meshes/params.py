@@ -1,16 +1,20 @@
 """What a scene says about the parts of a structure: their shapes, meshes, materials."""
 
 import math
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.fe_plate.meshes.files import least_edge, read
+from quintet.components.fe_plate.meshes.elements import require_sound
+from quintet.components.fe_plate.meshes.files import FileMesh, least_edge, read
 from quintet.components.shared.materials.params import Material, MaterialName, material
 from quintet.interfaces.params import Count, DataFile, Positive, Vector, parameters
 
 Flags = NDArray[np.bool_]
+SMALL, LARGE = 1e-4, 5.0  # m: meshes beyond are asked whether their unit is right
 Direction = Literal["x", "y", "z"]
 
 
@@ -70,7 +74,7 @@ class Cutout:
 
 @parameters
 class MeshFile:
-    """A mesh of 8-node solids from a file; others of its elements are left out.
+    """A mesh of 8-node solids from a file; other solids, shells and beams are refused.
 
     Parameters
     ----------
@@ -80,16 +84,41 @@ class MeshFile:
         That one unit of length in the file stands for.
     move : m
         By which the mesh is then moved.
+    coincident_nodes
+        Nodes of different elements at the same place: "refuse" them, "join" them to one, or "keep"
+        them apart, as at a crack.
     """
 
     file: DataFile
     scale: Positive = 1.0
     move: Vector = (0.0, 0.0, 0.0)
+    coincident_nodes: Literal["refuse", "join", "keep"] = "refuse"
 
     @property
     def count(self) -> int:
-        """Number of its elements."""
-        return len(read(self.file).corner)
+        """Number of its elements, which are checked."""
+        return len(self.placed().corner)
+
+    def placed(self) -> FileMesh:
+        """Nodes where they are [m], and elements, which are checked; with notes of both."""
+        found, name = read(self.file, self.coincident_nodes), Path(self.file).name
+        node = self.scale * found.node + self.move
+        notes = [_size(name, node, len(found.corner), self.scale), *found.notes]
+        notes += require_sound(f"mesh {name}", node, found.corner)
+        return found._replace(node=node, notes=tuple(notes))
+
+
+def _size(name: str, node: NDArray[np.float64], elements: int, scale: float) -> str:
+    """How large a mesh is, and whether its unit of length may be another one."""
+    extent = np.ptp(node, axis=0)
+    x, y, z = extent.tolist()
+    text = f"mesh {name}: {elements} elements, {len(node)} nodes, {x:.4g} x {y:.4g} x {z:.4g} m."
+    if not SMALL < extent.max() < LARGE:
+        text += (
+            f" Is that meant? One unit of length in the file is taken for {scale:g} m; of a mesh "
+            "in millimetres scale is 0.001."
+        )
+    return text
 
 
 class Shape(Protocol):
@@ -141,6 +170,12 @@ def require_shape(part: Shape) -> None:
         )
     if count_elements(part) == 0:
         raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
+
+
+def mesh_notes(parts: Sequence[Shape]) -> tuple[str, ...]:
+    """Sizes of meshes from files, and what of them is left out."""
+    meshes = [part.mesh.placed() for part in parts if part.mesh is not None]
+    return tuple(note for mesh in meshes for note in mesh.notes)
 
 
 def cut_out(part: Shape) -> tuple[Flags, Flags, Flags]:
@@ -237,7 +272,8 @@ class Part:
         if self.cylinder is not None:
             return self.cylinder.edges
         if self.mesh is not None:
-            return (self.mesh.scale * least_edge(read(self.mesh.file)),) * 3
+            made = self.mesh.placed()
+            return (least_edge(made.node, made.corner),) * 3
         assert self.lowest is not None and self.highest is not None and self.elements is not None
         sides = zip(self.lowest, self.highest, self.elements, strict=True)
         return tuple((b - a) / n for a, b, n in sides)
