@@ -19,6 +19,8 @@ def vortex(nodes: int, **keys: Any) -> dict[str, Any]:
         "gas": {"gas_constant": 1.0},
         "initial": {"density": 1.0, "velocity": [1.0, 0.0, 1.0], "pressure": 1.0},
         "vortex": {"centre": [5.0, 0.0, 5.0], "strength": 5.0},
+        "neighbours": 9,
+        "limiter": "van_albada",
         "limiter_threshold": 1e-2,
         **keys,
     }

@@ -14,7 +14,6 @@ from quintet.components.meshless_gas.clouds.cloud import (
     OUTFLOW,
     SLIP,
     Cloud,
-    Whole,
 )
 from quintet.components.meshless_gas.clouds.layers import Sides
 from quintet.components.meshless_gas.clouds.mirrored import is_advanced, is_mirrored
@@ -29,6 +28,7 @@ from quintet.components.meshless_gas.kernels.boundaries import (
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.sidedness import EVEN, UNEVEN, doubts_of, notes_of, surround
 from quintet.components.meshless_gas.state import State, conserved
 from quintet.components.meshless_gas.stencils import (
     Stencils,
@@ -57,14 +57,15 @@ class Domain(NamedTuple):
     bounding: Rows  # (a,) all boundary nodes
     patches: Array  # (p, PATCH_COLUMNS), what the scene says of each boundary
     mirrored: Rows  # (s,) nodes of walls that are planes of symmetry
+    notes: tuple[str, ...] = ()  # what was changed about the neighbours that the scene asks for
+    doubts: tuple[str, ...] = ()  # why no result on this cloud is to be trusted
 
 
 def domain(params: MeshlessGasParams, team: Team) -> Domain:
     """Build the cloud, and the coefficients of its derivatives."""
     names = [name for name in params.boundaries if params.kind_of(name) not in ("periodic",)]
-    cloud, neighbours = _cloud(params, names, team)
-    made = stencils(cloud, neighbours, params.planar, team)
-    kind = cloud.kind[: cloud.nodes]
+    cloud, made, notes, doubts = _cloud(params, names, team)
+    neighbours, kind = made.neighbours, cloud.kind[: cloud.nodes]
     edges = _rows(np.isin(kind, (INFLOW, OUTFLOW, SLIP)))
     weights = np.empty((len(edges), neighbours.shape[1]))
     lacks = write_weights(edges, cloud.kind, cloud.normals, neighbours, made.coefficients, weights)
@@ -87,6 +88,8 @@ def domain(params: MeshlessGasParams, team: Team) -> Domain:
         bounding=_rows(kind != INNER),
         patches=patches,
         mirrored=_rows(is_mirrored(kind)),
+        notes=notes,
+        doubts=doubts,
     )
 
 
@@ -94,14 +97,20 @@ def _rows(chosen: NDArray[np.bool_]) -> Rows:
     return np.flatnonzero(chosen).astype(np.int32)
 
 
-def _cloud(params: MeshlessGasParams, names: list[str], team: Team) -> tuple[Cloud, Whole]:
-    """Nodes, and neighbours of each."""
+def _cloud(
+    params: MeshlessGasParams, names: list[str], team: Team
+) -> tuple[Cloud, Stencils, tuple[str, ...], tuple[str, ...]]:
+    """Nodes, the stencil of each, what was changed about the neighbours, and doubts about them."""
     faces = {name: params.kind_of(name) for name in params.boundaries}
     patches = {name: 1 + number for number, name in enumerate(names)}
     if params.box is None:
-        made = layered_cloud(params, Sides(faces, patches))
-        return made.cloud, made.neighbours
-    one = params.box
+        layers = layered_cloud(params, Sides(faces, patches))
+        made = stencils(layers.cloud, layers.neighbours, params.planar, team)
+        keys = params.plate or params.sphere
+        is_moved = keys is not None and keys.layers.jitter > 0.0
+        doubts = doubts_of(layers.cloud, made, params.planar, team) if is_moved else ()
+        return layers.cloud, made, (), doubts
+    one, count = params.box, params.neighbour_count
     cloud = box(
         one.lowest,
         one.highest,
@@ -111,12 +120,16 @@ def _cloud(params: MeshlessGasParams, names: list[str], team: Team) -> tuple[Clo
         jitter=one.jitter,
         seed=one.seed,
         weight=one.weight,
-        neighbours=params.neighbours,
+        neighbours=count,
         planar=params.planar,
         parts=[part.part for part in one.refinements],
     )
     find = graded_neighbours if one.refinements else nearest_neighbours
-    return cloud, find(cloud, params.neighbours, team)
+    limit = EVEN if params.neighbours is None else UNEVEN
+    cure = surround(cloud, find, count, one.jitter == 0.0, limit, params.planar, team)
+    is_asked = params.neighbours is not None
+    notes = notes_of(cure, count, cloud.nodes, params.planar) if is_asked else ()
+    return cloud, cure.stencils, notes, ()
 
 
 def transport_of(gas: Gas) -> Transport:

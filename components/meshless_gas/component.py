@@ -34,6 +34,7 @@ from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
 from quintet.components.meshless_gas.shares import FEWEST, LIGHT, SUMS
+from quintet.components.meshless_gas.sidedness import sidedness
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.steady import Settling
 from quintet.components.meshless_gas.view import view, walls
@@ -211,9 +212,10 @@ class MeshlessGas(Component):
             self.wall_loads.take(one.rows, one.friction, one.heat)
 
     def _failure(self, row: int, dt: float) -> str:
-        place = self.domain.cloud.positions[self.domain.inner[row]]
-        found = self.fluxes.primitive[self.domain.inner[row]]
-        return failure(place, found, self.state.time, dt, self.bound)
+        own, node = self.domain, self.domain.inner[row]
+        sided = sidedness(own.cloud, own.stencils, np.array([node]), self.params.planar, self.team)
+        place, found = own.cloud.positions[node], self.fluxes.primitive[node]
+        return failure(place, found, self.state.time, dt / self.bound, float(sided[0]))
 
     def _take_over(self) -> None:
         """Go on from the state, as it is at the start or was saved."""
@@ -334,6 +336,15 @@ class MeshlessGas(Component):
         if self.particles is not None:
             self.particles.load(state)
         self._take_over()
+
+    def notes(self) -> tuple[str, ...]:
+        """What was changed about the neighbours that the scene asks for."""
+        return self.domain.notes
+
+    def warnings(self) -> dict[str, str]:
+        """Doubts about the cloud."""
+        doubts = self.domain.doubts
+        return {"neighbours": " ".join(doubts)} if doubts else {}
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""

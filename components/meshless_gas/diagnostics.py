@@ -10,10 +10,12 @@ from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.shares import LIGHT, WHOLESALE
+from quintet.components.meshless_gas.sidedness import UNEVEN
 from quintet.components.meshless_gas.state import Fluxes, State, conserved
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields, Totals
 
+SAFE = 0.8  # share of 1/Σ(|v·c| + a|c|) that steps may take in every flow that was tried
 ROUNDING = 1e-12  # of the mass flow at the speed of sound
 
 
@@ -117,11 +119,33 @@ def totals(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) ->
     )
 
 
-def failure(place: Array, found: Array, time: float, dt: float, bound: float) -> str:
-    """Say that a state is none."""
+def failure(place: Array, found: Array, time: float, share: float, sided: float) -> str:
+    """Say that a state is none, and what is likely to help.
+
+    Parameters
+    ----------
+    place : (3,) m
+        Of the node.
+    found : (5,) kg/m3, m/s, Pa
+        Its state.
+    time : float, s
+        When the step began.
+    share : float, 1
+        The step over 1/Σ(|v·c| + a|c|).
+    sided : float, 1
+        Sidedness of its neighbours.
+    """
     where = np.array2string(place, precision=4)
-    return (
+    said = (
         f"density and pressure must stay above 0; the node at {where} m has {found[0]:.3g} kg/m3 "
-        f"and {found[4]:.3g} Pa in the step from t = {time:.6g} s by {dt:.3g} s, "
-        f"{dt / bound:.2f} of 1/Σ(|v·c| + a|c|). Lower courant, or refine the cloud there."
+        f"and {found[4]:.3g} Pa in the step from t = {time:.6g} s, of {share:.2f} of "
+        "1/Σ(|v·c| + a|c|). "
     )
+    if sided > UNEVEN:
+        return said + (
+            f"Its neighbours lie mostly on one side (sidedness {sided:.2f}, at most {UNEVEN:g}). "
+            "Leave neighbours out, or lower jitter."
+        )
+    if share > SAFE:
+        return said + f"Lower courant to {SAFE:g} or less."
+    return said + 'Refine the cloud there, say limiter = "minmod" or "van_albada", or order = 1.'

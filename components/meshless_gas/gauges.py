@@ -6,10 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.diagnostics import mach, temperature
-from quintet.components.meshless_gas.params import Front, Gas
+from quintet.components.meshless_gas.readings import Front
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
 

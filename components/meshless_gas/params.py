@@ -11,120 +11,15 @@ from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, 
 from quintet.components.meshless_gas.clouds.refinement import wrong_part
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.point_particles.params import PointParticles
-from quintet.interfaces.params import (
-    NotNegative,
-    Number,
-    Positive,
-    Vector,
-    parameters,
-)
+from quintet.components.meshless_gas.readings import Front, Steady
+from quintet.components.meshless_gas.starts import Riemann, Vortex, Zone
+from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
 # Boundaries of clouds in layers.
 NAMES = {
     "sphere": ("wall", "far", "exit"),
     "plate": ("wall", "ahead", "inlet", "far", "exit"),
 }
-
-
-@parameters
-class Zone:
-    """A box in which the gas begins otherwise.
-
-    Parameters
-    ----------
-    lowest, highest : m
-        Its corners.
-    state
-        At the start.
-    """
-
-    lowest: Vector
-    highest: Vector
-    state: GasState
-
-
-@parameters
-class Riemann:
-    """Two states on either side of a diaphragm across x that is taken away at the start.
-
-    Its exact solution is known: the component then gives its error.
-
-    Parameters
-    ----------
-    position : m
-        Of the diaphragm.
-    left, right
-        States; their velocities are along x.
-    """
-
-    position: Number
-    left: GasState
-    right: GasState
-
-
-@parameters
-class Vortex:
-    """An isentropic vortex about y that drifts with the initial state of the gas.
-
-    Its exact solution is known: the component then gives its error. Shu, ICASE 97-65 (1997).
-
-    Parameters
-    ----------
-    centre : m
-        At the start; images are as far away as the box is wide.
-    strength : m/s
-        β: its greatest speed is β/2π, at one radius.
-    radius : m
-        Over which it fades as exp((1 - r²)/2).
-    """
-
-    centre: Vector
-    strength: Positive
-    radius: Positive = 1.0
-
-
-@parameters
-class Steady:
-    """When a flow counts as settled: from then on the gas is left as it is.
-
-    Parameters
-    ----------
-    steps : 1
-        Between two looks.
-    change : 1
-        Largest root mean square of the densities' relative change in a step.
-    force : 1
-        Largest change of the force on walls from look to look, over the sum of what acts on their
-        nodes.
-    """
-
-    steps: Annotated[int, Field(ge=1)] = 200
-    change: Positive = 1e-5
-    force: Positive = 1e-4
-
-
-@parameters
-class Front:
-    """A straight line on which a front is looked for.
-
-    Parameters
-    ----------
-    begin, end : m
-        Of the line.
-    field
-        What the front is a jump of.
-    level : of the field
-        The front is where it is first passed, from the line's begin on.
-    """
-
-    begin: Vector
-    end: Vector
-    field: Literal["density", "pressure"] = "density"
-    level: Positive
-
-    def __post_init__(self) -> None:
-        if self.begin == self.end:
-            raise ValueError("fronts: a line must end elsewhere than it begins. Correct it.")
 
 
 @parameters
@@ -160,16 +55,18 @@ class MeshlessGasParams:
     vortex
         In the initial state.
     neighbours : 1
-        Of each node of a box; the nearest.
+        Of each node of a box; the nearest. If not given, 8 (in 3 dimensions 18), and more of nodes
+        that these do not surround evenly. If given, more of nodes of which all neighbours lie on
+        one side, and all of one distance where nodes are not moved at random.
     order
         Of the scheme in space.
     limiter
-        Of the slopes of density, velocity and pressure. Superbee keeps contacts sharp, and turns
-        smooth slopes into steps.
+        Of the slopes of density, velocity and pressure. Koren's serves shocks and smooth flows.
+        Superbee keeps contacts sharp, and turns smooth slopes into steps.
     limiter_threshold : 1
-        Of van Albada's limiter, 1e-6 if not given: squares of differences below this share of the
-        square of what they are differences of are not limited. Smooth flows are computed best with
-        1e-2.
+        Of van Albada's limiter alone, 1e-6 if not given: squares of differences below this share of
+        the square of what they are differences of are not limited. Smooth flows are computed best
+        with 1e-2.
     courant : 1
         Share of 1/Σ_j (|v·c_ij| + a |c_ij|) that a step takes.
     local_steps
@@ -199,9 +96,9 @@ class MeshlessGasParams:
     riemann: Riemann | None = None
     vortex: Vortex | None = None
     viscous: bool = False
-    neighbours: Annotated[int, Field(ge=2, le=64)] = 9
+    neighbours: Annotated[int, Field(ge=2, le=64)] | None = None
     order: Literal[1, 2] = 2
-    limiter: Literal["van_albada", "minmod", "van_leer", "koren", "superbee"] = "van_albada"
+    limiter: Literal["van_albada", "minmod", "van_leer", "koren", "superbee"] = "koren"
     limiter_threshold: NotNegative | None = None
     courant: Positive = 0.7
     local_steps: bool = False
@@ -254,6 +151,11 @@ class MeshlessGasParams:
                 f"layers: jitter is for an axisymmetric sphere; found {layered.layers.jitter:g}. "
                 "Leave it out."
             )
+        if layered is not None and layered.layers.jitter > 0.0 and layered.layers.cross:
+            found.append(
+                "layers: jitter moves nodes off the lines along which cross takes derivatives; "
+                f"found {layered.layers.jitter:g}. Leave it out, or say cross = false."
+            )
         if self.axisymmetric and (self.dimensions == 3 or self.sphere is None):
             found.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")
         if self.sphere is not None and self.dimensions == 2 and not self.axisymmetric:
@@ -264,8 +166,8 @@ class MeshlessGasParams:
             found.append("limiter_threshold must be above 0 with van Albada's limiter. Raise it.")
         if self.limiter != "van_albada" and self.limiter_threshold:
             found.append(
-                f"limiter_threshold is of van Albada's limiter; found {self.limiter}. Leave it out "
-                "or say 0."
+                f"limiter_threshold is of van Albada's limiter; found {self.limiter}. Leave it "
+                'out, or say limiter = "van_albada".'
             )
         if self.plate is not None and self.dimensions == 3:
             found.append("a plate is of 2 dimensions. Leave dimensions out.")
@@ -354,6 +256,11 @@ class MeshlessGasParams:
     def kind_of(self, face: str) -> str:
         """Kind of the boundary at a face of the box."""
         return self.boundaries[face].kind if face in self.boundaries else "periodic"
+
+    @property
+    def neighbour_count(self) -> int:
+        """Neighbours of most nodes of a box; by default those of a whole block of a lattice."""
+        return self.neighbours or (8 if self.dimensions == 2 else 18)
 
     @property
     def has_rings(self) -> bool:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.components.meshless_gas.params import Steady
+from quintet.components.meshless_gas.readings import Steady
 from quintet.interfaces.component import Array, Fields
 
 STEPS, SETTLED, SINCE, FORCE = 0, 1, 2, 3  # in the memory; the last has three numbers

@@ -55,23 +55,27 @@ def _and_ghosts(cloud: Cloud, kept: Whole) -> Whole:
     return np.concatenate([kept, np.repeat(itself[:, None], kept.shape[1], axis=1)])
 
 
-def graded_neighbours(cloud: Cloud, count: int, team: Team) -> Whole:
+def graded_neighbours(
+    cloud: Cloud, count: int, team: Team, rows: NDArray[np.int64] | None = None
+) -> Whole:
     """Neighbours (n, count) of nodes where spacings double: the nearest in the pair's mean spacing.
 
     By the distance alone a node beside finer ones would have them for neighbours, on one side.
+    With `rows` (m,) those of these nodes alone, (m, count).
     """
+    targets = np.arange(cloud.nodes) if rows is None else rows
     axes = int((np.ptp(cloud.positions, axis=0) > 0.0).sum())
     more = min(count * 2**axes, len(cloud.positions) - 1)  # as finer ones crowd out what is beyond
-    kept = np.empty((cloud.nodes, count), np.int32)
-    for first in range(0, cloud.nodes, BLOCK):
-        rows = np.arange(first, min(first + BLOCK, cloud.nodes))
-        near = nearest_neighbours(cloud, more, team, rows)
-        arms = cloud.positions[near] - cloud.positions[rows, None]
-        mean = 0.5 * (cloud.spacing[near] + cloud.spacing[rows, None])
+    kept = np.empty((len(targets), count), np.int32)
+    for first in range(0, len(targets), BLOCK):
+        block = targets[first : first + BLOCK]
+        near = nearest_neighbours(cloud, more, team, block)
+        arms = cloud.positions[near] - cloud.positions[block, None]
+        mean = 0.5 * (cloud.spacing[near] + cloud.spacing[block, None])
         away = np.round(np.sqrt((arms**2).sum(axis=2)) / mean, 9)  # equal ones by distance
         order = np.argsort(away, axis=1, kind="stable")[:, :count]
-        kept[rows] = np.take_along_axis(near, order, axis=1)
-    return _and_ghosts(cloud, kept)
+        kept[first : first + len(block)] = np.take_along_axis(near, order, axis=1)
+    return kept if rows is not None else _and_ghosts(cloud, kept)
 
 
 def stencils(cloud: Cloud, neighbours: Whole, planar: bool, team: Team) -> Stencils:

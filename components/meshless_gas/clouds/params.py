@@ -104,7 +104,8 @@ class Layers:
         1/dᵖ, of flat and curved layers 2.
     cross
         Whether derivatives are taken along lines of nodes alone: 4 neighbours in the plane, 6 round
-        an axis, 8 in space. With 8, 14 and 20 that along a wall is a mean over three layers.
+        an axis, 8 in space. Without it, with 8, 14 and 20, that along a wall is a mean over three
+        layers, which smears boundary layers; jitter needs it.
     jitter : 1
         By how much nodes are moved at random, over the distance of their neighbours.
     seed : 1
@@ -114,7 +115,7 @@ class Layers:
     count: Annotated[int, Field(ge=3)]
     first: Positive | None = None
     weight: NotNegative = 2.0
-    cross: bool = False
+    cross: bool = True
     jitter: Annotated[float, Field(ge=0, le=0.9, allow_inf_nan=False)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 1
 

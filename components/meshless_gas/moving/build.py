@@ -23,10 +23,10 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
     refuse_scene(params, keys)
     assert params.box is not None
     ground = domain(params, team)
-    planar, nodes, near = params.planar, ground.cloud.nodes, params.neighbours
-    kept = near if planar else max(near, ACROSS)
+    planar, nodes, near = params.planar, ground.cloud.nodes, ground.stencils.neighbours.shape[1]
+    kept = params.neighbour_count if planar else max(params.neighbour_count, ACROSS)
     cloud, rings = with_bodies(ground.cloud, keys, 0, planar)
-    whole, many = len(cloud.positions), max([kept, *(one.home.shape[1] for one in rings)])
+    whole, many = len(cloud.positions), max([near, kept, *(one.home.shape[1] for one in rings)])
     neighbours = np.repeat(np.arange(whole, dtype=np.int32)[:, None], many, axis=1)
     coefficients = np.zeros((whole, many, 3))
     found = ground.stencils.neighbours[:nodes]

@@ -55,10 +55,10 @@ def refuse_places(layout: CloudLayout, centre: Array, is_first: bool = False) ->
 
 def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
     """Refuse what bodies that carry clouds do not go with."""
-    if params.neighbours < BLOCK:
+    if params.neighbour_count < BLOCK:
         raise SceneError(
             f"bodies that carry clouds need {BLOCK} neighbours at least; found "
-            f"{params.neighbours}. Correct neighbours."
+            f"{params.neighbour_count}. Correct neighbours."
         )
     if params.box is None:
         raise SceneError("bodies that carry clouds need a box around them. Give a box.")

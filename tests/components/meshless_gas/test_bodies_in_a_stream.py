@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from quintet.components.meshless_gas.component import MeshlessGas
-from quintet.components.meshless_gas.params import Steady
+from quintet.components.meshless_gas.readings import Steady
 from quintet.components.meshless_gas.steady import Settling
 from quintet.components.meshless_gas.wall_loads import sums
 from quintet.interfaces.component import fields_of

@@ -7,7 +7,7 @@ PROGRAM = """
 import sys
 from quintet.components.meshless_gas.component import MeshlessGas, MeshlessGasParams
 from quintet.components.meshless_gas.clouds.params import BoxCloud
-from quintet.components.meshless_gas.params import GasState
+from quintet.components.meshless_gas.boundaries import GasState
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 box = BoxCloud(lowest=(0.0, 0.0, 0.0), highest=(1.0, 0.0, 1.0), spacing=0.2)
 air = GasState(temperature=300.0, pressure=1e5)

@@ -38,14 +38,18 @@ def test_limiters_are_as_steep_as_their_papers_say():
     assert change("koren", 1.0, 1.25) == pytest.approx(3.5 / 6.0)  # (r + 2)/3
 
 
+VAN_ALBADA = {"limiter": "van_albada"}
+
+
 @pytest.mark.parametrize(
     ("keys", "said"),
     [
         ({"limiter": "superbee", "limiter_threshold": 1e-3}, "is of van Albada's limiter"),
         ({"limiter": "superbee", "limiter_threshold": 0.0}, None),
         ({"limiter": "superbee"}, None),
-        ({"limiter_threshold": 0.0}, "above 0 with van Albada's"),  # it divides nothing by nothing
-        ({"limiter_threshold": 1e-3}, None),
+        (VAN_ALBADA | {"limiter_threshold": 0.0}, "above 0 with"),  # it divides nothing by nothing
+        (VAN_ALBADA | {"limiter_threshold": 1e-3}, None),
+        ({"limiter_threshold": 1e-3}, 'say limiter = "van_albada"'),
     ],
 )
 def test_a_threshold_is_van_albadas(keys, said):

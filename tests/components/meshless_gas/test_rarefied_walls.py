@@ -30,6 +30,7 @@ def between_walls(nodes: int, upper: dict[str, Any], end: float = 35.0) -> Meshl
                 "sutherland": SUTHERLAND, "prandtl": PRANDTL},
         "initial": {"density": 1.0, "pressure": R, "velocity": [0.5, 0.0, 0.0]},
         "neighbours": 8,
+        "limiter": "van_albada",
         "limiter_threshold": 1e-2,
         "local_steps": True,
         "box": {"lowest": [0.0, 0.0, 0.0], "highest": [4.0 * h, 0.0, 1.0], "spacing": h},

@@ -1,0 +1,51 @@
+"""What a scene says about what is read of a gas: when it has settled, and where fronts are."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from quintet.interfaces.params import Positive, Vector, parameters
+
+
+@parameters
+class Steady:
+    """When a flow counts as settled: from then on the gas is left as it is.
+
+    Parameters
+    ----------
+    steps : 1
+        Between two looks.
+    change : 1
+        Largest root mean square of the densities' relative change in a step.
+    force : 1
+        Largest change of the force on walls from look to look, over the sum of what acts on their
+        nodes.
+    """
+
+    steps: Annotated[int, Field(ge=1)] = 200
+    change: Positive = 1e-5
+    force: Positive = 1e-4
+
+
+@parameters
+class Front:
+    """A straight line on which a front is looked for.
+
+    Parameters
+    ----------
+    begin, end : m
+        Of the line.
+    field
+        What the front is a jump of.
+    level : of the field
+        The front is where it is first passed, from the line's begin on.
+    """
+
+    begin: Vector
+    end: Vector
+    field: Literal["density", "pressure"] = "density"
+    level: Positive
+
+    def __post_init__(self) -> None:
+        if self.begin == self.end:
+            raise ValueError("fronts: a line must end elsewhere than it begins. Correct it.")

@@ -1,0 +1,61 @@
+"""What a scene says about the gas at the start."""
+
+from quintet.components.meshless_gas.boundaries import GasState
+from quintet.interfaces.params import Number, Positive, Vector, parameters
+
+
+@parameters
+class Zone:
+    """A box in which the gas begins otherwise.
+
+    Parameters
+    ----------
+    lowest, highest : m
+        Its corners.
+    state
+        At the start.
+    """
+
+    lowest: Vector
+    highest: Vector
+    state: GasState
+
+
+@parameters
+class Riemann:
+    """Two states on either side of a diaphragm across x that is taken away at the start.
+
+    Its exact solution is known: the component then gives its error.
+
+    Parameters
+    ----------
+    position : m
+        Of the diaphragm.
+    left, right
+        States; their velocities are along x.
+    """
+
+    position: Number
+    left: GasState
+    right: GasState
+
+
+@parameters
+class Vortex:
+    """An isentropic vortex about y that drifts with the initial state of the gas.
+
+    Its exact solution is known: the component then gives its error. Shu, ICASE 97-65 (1997).
+
+    Parameters
+    ----------
+    centre : m
+        At the start; images are as far away as the box is wide.
+    strength : m/s
+        β: its greatest speed is β/2π, at one radius.
+    radius : m
+        Over which it fades as exp((1 - r²)/2).
+    """
+
+    centre: Vector
+    strength: Positive
+    radius: Positive = 1.0

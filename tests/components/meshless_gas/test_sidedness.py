@@ -1,0 +1,133 @@
+"""Neighbours that lie on one side are seen, and more are taken; what cannot be cured is refused."""
+
+import numpy as np
+import pytest
+from gases import GAMMA, SOD, gas, given, run, state, tube
+
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.sidedness import EVEN, UNEVEN, sidedness
+from quintet.components.shared.threads import Team
+from quintet.interfaces.errors import SceneError, StepError
+from quintet.interfaces.params import read
+
+AIR = {"density": 1.0, "pressure": 1.0}
+MACH_3 = {"density": 1.0, "velocity": [2.8977775, 0.0, -0.7764571], "pressure": 1.0 / GAMMA}
+
+
+def worst(made):
+    own = made.domain
+    return sidedness(own.cloud, own.stencils, own.inner, made.params.planar, Team(1)).max()
+
+
+def periodic(**keys):
+    return gas(initial=AIR, **keys)
+
+
+def stream_over_a_wedge(**keys):
+    """Mach 3 meets a wedge of 15 degrees; pressure behind the shock is 2.8216 of that ahead."""
+    wind = {"kind": "inflow", "state": MACH_3}
+    box = {"highest": [1.0, 0.0, 0.5], "spacing": 0.05} | keys.pop("box")
+    ends = {"x-": wind, "z+": wind, "x+": {"kind": "outflow"}, "z-": {"kind": "symmetry"}}
+    return gas(initial=MACH_3, boundaries=ends, box=box, probes=[[0.8, 0.0, 0.07]], **keys)
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "neighbours"), [(2, 4), (2, 8), (2, 12), (2, 20), (3, 6), (3, 18), (3, 26)]
+)
+def test_whole_shells_of_a_lattice_are_not_one_sided(dimensions, neighbours):
+    made = periodic(
+        dimensions=dimensions, neighbours=neighbours, box={"jitter": 0.0, "spacing": 0.2}
+    )
+    assert worst(made) == pytest.approx(0.0, abs=1e-9)
+    assert made.domain.stencils.neighbours.shape[1] == neighbours and made.notes() == ()
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "neighbours", "whole"), [(2, 3, 4), (2, 9, 12), (3, 9, 18), (3, 14, 18)]
+)
+def test_a_shell_of_a_lattice_that_is_cut_is_completed_and_told(dimensions, neighbours, whole):
+    made = periodic(
+        dimensions=dimensions, neighbours=neighbours, box={"jitter": 0.0, "spacing": 0.2}
+    )
+    assert made.domain.stencils.neighbours.shape[1] == whole
+    assert worst(made) == pytest.approx(0.0, abs=1e-9)
+    (note,) = made.notes()
+    assert f"the {neighbours} nearest" in note and "Leave neighbours out" in note
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.3, 0.6, 0.9])
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_neighbours_that_are_not_asked_for_surround_each_node(dimensions, jitter):
+    made = periodic(
+        dimensions=dimensions, box={"jitter": jitter, "spacing": 0.1 * (dimensions - 1)}
+    )
+    near = made.domain.stencils.neighbours
+    assert worst(made) <= EVEN
+    count = (near[: made.items()] != np.arange(made.items())[:, None]).sum(axis=1)
+    assert np.median(count) <= (12 if dimensions == 2 else 30) and made.notes() == ()
+
+
+@pytest.mark.parametrize("neighbours", [3, 4, 8, 9])
+def test_one_sided_nodes_take_more_neighbours_and_are_counted(neighbours):
+    made = periodic(neighbours=neighbours, box={"jitter": 0.9, "spacing": 0.05})
+    assert worst(made) <= UNEVEN
+    (note,) = made.notes()
+    assert "of 400 nodes lie mostly on one side" in note and "lower jitter" in note
+
+
+def test_a_stream_through_nodes_moved_at_random_meets_the_exact_shock():
+    made = run(stream_over_a_wedge(neighbours=8, box={"jitter": 0.9}), 0.8)
+    assert given(made, "probes.pressure")[0] * GAMMA == pytest.approx(2.8216, rel=0.06)
+
+
+def test_many_neighbours_do_not_change_what_surrounds_nodes_evenly():
+    made = periodic(neighbours=9, box={"jitter": 0.3})
+    assert made.domain.stencils.neighbours.shape[1] == 9 and made.notes() == ()
+
+
+def test_neighbours_are_told_of_a_resumed_gas_too():
+    made, other = (periodic(neighbours=9, box={"jitter": 0.0}) for _ in range(2))
+    other.load(made.save())
+    assert other.notes() == made.notes() != ()
+
+
+def test_a_failed_step_below_the_limit_does_not_advise_a_lower_courant_number():
+    made = tube(50, *SOD)
+    made.fluxes.primitive[made.domain.inner[0], 4] = 1e-300
+    with pytest.raises(StepError) as error:
+        made._write_rates()
+        made.state.conservative[:, 4] = 0.0
+        made.step(0.5 * made.bound)
+    assert "courant" not in str(error.value) and "order = 1" in str(error.value)
+
+
+ROUND = {
+    "axisymmetric": True,
+    "sphere": {"radius": 1.0, "rays": 16, "layers": {"count": 12, "cross": False}},
+    "initial": state(1.0, 6.0, 1.0 / GAMMA),
+    "boundaries": {
+        "wall": {"kind": "symmetry"},
+        "far": {"kind": "inflow", "state": state(1.0, 6.0, 1.0 / GAMMA)},
+        "exit": {"kind": "outflow"},
+    },
+}
+
+
+def layers(**keys):
+    sphere = ROUND["sphere"] | {"layers": ROUND["sphere"]["layers"] | keys}
+    params, mistakes = read(MeshlessGasParams, ROUND | {"sphere": sphere}, "gas")
+    if mistakes:
+        raise SceneError(mistakes[0])
+    from quintet.components.meshless_gas.component import MeshlessGas
+
+    return MeshlessGas(params)
+
+
+def test_layers_moved_far_at_random_are_warned_of():
+    assert layers().warnings() == {} == layers(jitter=0.1).warnings()
+    assert "Lower layers.jitter" in layers(jitter=0.6).warnings()["neighbours"]
+
+
+def test_derivatives_along_lines_of_nodes_go_with_nodes_on_these_lines():
+    with pytest.raises(SceneError, match="say cross = false"):
+        layers(cross=True, jitter=0.1)
