@@ -5,8 +5,9 @@ import numpy as np
 from quintet.components.shared.materials.params import Material, material
 from quintet.components.shared.materials.solid import Solid, solid
 from quintet.components.shared.smoothing.smoothing import kernel, smoothing
-from quintet.components.sph_solid.filling import filling
+from quintet.components.sph_solid.filling import filling, starting_velocity
 from quintet.components.sph_solid.laws import PairLaw
+from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.errors import SceneError
@@ -28,14 +29,15 @@ def materials(params: SphSolidParams) -> tuple[list[Solid], list[int]]:
 def pair_law(params: SphSolidParams) -> PairLaw:
     """Numbers of pairs."""
     is_plane = params.dimensions == 2 and not params.axisymmetric
+    way = method(params)
     smooth = smoothing("cubic", 2 if is_plane else 3, params.length)
     return PairLaw(
         smoothing=smooth,
         softening=0.01 * params.length**2,
-        linear=params.viscosity_linear,
-        quadratic=params.viscosity_quadratic,
+        linear=way.linear,
+        quadratic=way.quadratic,
         plane=1.0 if is_plane else 0.0,
-        corrected=True if params.kernel_correction else None,
+        corrected=True if way.kernel_correction else None,
         artificial=params.artificial_stress or None,
         per_spacing=1.0 / kernel(params.spacing**2, smooth),
     )
@@ -63,7 +65,10 @@ def initial_state(params: SphSolidParams, laws: list[Solid], numbers: list[int])
         _require(found.any(), f"glued.{number}: its box must hold a particle; it holds none.")
         hangs |= found
     glue: Whole = np.where(hangs, np.cumsum(hangs) - 1, -1)
-    velocity = np.array([one.velocity for one in params.bodies], dtype=np.float64)[body]
+    velocity = np.concatenate([
+        starting_velocity(one, filled_body.points)
+        for one, filled_body in zip(params.bodies, filled, strict=True)
+    ])  # fmt: skip
     if params.dimensions == 2:
         velocity[:, 1] = 0.0
     for k in range(3):

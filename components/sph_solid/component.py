@@ -136,7 +136,12 @@ class SphSolid(Component):
             drift_half, state.particles, dt, state.position, state.velocity, state.acceleration,
             state.sound, rows.place, rows.motion,
         )  # fmt: skip
+        before = None if self.sums.heats is None else state.acceleration.copy()
         self._write_accelerations()
+        if before is not None and self.sums.heats is not None:
+            # Heat was that of velocities which the acceleration before it predicted.
+            change = state.acceleration - before
+            state.heating -= 0.5 * dt * (self.sums.heats * change).sum(axis=1)
         squares = self.team.run(
             kick_and_heat, state.particles, dt, state.velocity, state.acceleration, state.heating,
             state.energy,
@@ -156,15 +161,16 @@ class SphSolid(Component):
     def _judge(self) -> None:
         """Take down energies and lost bonds: at steps of certain numbers, so that runs repeat."""
         state = self.state
-        found = totals(state, self._masses(), self._glued_rows()[state.active > 0.0])
+        glued = self._glued_rows()[state.active > 0.0]
+        found = totals(state, self._masses(), glued, self.params.gravity)
         note_energies(state, found.kinetic, found.potential, found.internal)
         note_viscous(state, self.of_material, self.laws)
-        if state.steps % BONDS_EVERY == 0 and not self.params.total_lagrangian:
+        if state.steps % BONDS_EVERY == 0 and not self.lists.are_for_good:
             note_torn(state, self.bonds, self.laws, self.params)
 
     def warnings(self) -> Mapping[str, str]:
         """Reasons why the results may be wrong: energy from nowhere, numerical fracture."""
-        return warnings(self.state, self.params, len(self.bonds))
+        return warnings(self.state, self.density, self.params, len(self.bonds))
 
     def _begin(self) -> None:
         """Find what acts at the start, where nothing is strained."""
@@ -268,6 +274,10 @@ class SphSolid(Component):
             mine = self._glued_rows()
             force = self._masses()[mine, None] * state.acceleration[mine]
             state.force[:] = force * state.active[:, None]
+        if any(self.params.gravity):
+            state.acceleration += self.params.gravity
+            state.acceleration[self.held] *= self.moves
+        if len(state.active):
             state.acceleration[mine[state.active > 0.0]] = 0.0
 
     def give(self, wanted: Keys) -> Fields:
@@ -304,7 +314,7 @@ class SphSolid(Component):
         carried = np.zeros(0, np.int64)
         if self.is_carried and len(self.state.active):
             carried = self._glued_rows()[self.state.active > 0.0]
-        found = totals(self.state, self._masses(), carried)
+        found = totals(self.state, self._masses(), carried, self.params.gravity)
         if self.params.axisymmetric:  # the rest of a ring moves the other way
             found.momentum[:2], found.angular_momentum[:] = 0.0, 0.0
         return found

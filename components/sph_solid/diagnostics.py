@@ -5,6 +5,7 @@ import numpy as np
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.component import Fields, Totals
+from quintet.interfaces.params import Vector
 
 
 def von_mises(deviator: Array) -> Array:
@@ -14,7 +15,7 @@ def von_mises(deviator: Array) -> Array:
     return np.asarray(np.sqrt(squares))
 
 
-def totals(state: State, mass: Array, carried: Whole) -> Totals:
+def totals(state: State, mass: Array, carried: Whole, gravity: Vector) -> Totals:
     """Mass, momentum and energies; not of motion of glued particles, which a mesh carries.
 
     Parameters
@@ -23,6 +24,7 @@ def totals(state: State, mass: Array, carried: Whole) -> Totals:
     mass : (n,) float array, kg
     carried : (k,) int array
         Rows of glued particles.
+    gravity : Vector, m/s2
     """
     own = mass.copy()
     own[carried] = 0.0
@@ -32,6 +34,7 @@ def totals(state: State, mass: Array, carried: Whole) -> Totals:
         momentum=momentum.sum(axis=0),
         angular_momentum=np.cross(state.position, momentum).sum(axis=0),
         kinetic=0.5 * float((momentum * state.velocity).sum()),
+        potential=-float(own @ (state.position @ np.array(gravity))),
         internal=float((mass * state.energy).sum()),
     )
 

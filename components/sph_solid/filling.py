@@ -1,12 +1,14 @@
 """Bodies filled with lattices of particles."""
 
+import itertools
 import math
 from typing import NamedTuple
 
 import numpy as np
 
 from quintet.components.shared.lattice import cell_centres, lattice_points
-from quintet.components.sph_solid.params import Body, SphSolidParams
+from quintet.components.sph_solid.body import Body
+from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array
 
 
@@ -22,8 +24,7 @@ def filling(body: Body, params: SphSolidParams) -> Filling:
 
     Particles share the body's volume, what planes of symmetry cut off included.
     """
-    points = _box(body, params) if body.shape == "box" else _round(body, params)
-    share: Array = np.ones(len(points))
+    points, share = FILLINGS[body.shape](body, params)
     if params.axisymmetric:
         points = points[points[:, 0] > 0.0]
         share = points[:, 0]  # of a ring, by its circumference
@@ -35,17 +36,18 @@ def filling(body: Body, params: SphSolidParams) -> Filling:
     return Filling(points, volume)
 
 
-def _box(body: Body, params: SphSolidParams) -> Array:
+def _box(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     axes = [
         cell_centres(low, high, max(1, round((high - low) / params.spacing)))
         for low, high in zip(*body.box, strict=True)
     ]
     if params.dimensions == 2:
         axes[1] = np.zeros(1)
-    return lattice_points(axes)
+    points = lattice_points(axes)
+    return points, np.ones(len(points))
 
 
-def _round(body: Body, params: SphSolidParams) -> Array:
+def _round(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     """Points of a lattice about the centre that are in a sphere or cylinder."""
     low, high = body.box
     radius, along = 0.5 * (body.diameter or 0.0), "xyz".index(body.axis)
@@ -64,4 +66,55 @@ def _round(body: Body, params: SphSolidParams) -> Array:
     squares = points**2
     if body.shape == "cylinder":
         squares[:, along] = 0.0
-    return points[squares.sum(axis=1) <= radius * radius] + centre
+    points = points[squares.sum(axis=1) <= radius * radius] + centre
+    return points, np.ones(len(points))
+
+
+def _tube(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
+    """Points on circles, alike before the two planes through the axis, and volumes of each."""
+    assert body.diameter is not None and body.inner_diameter is not None
+    low, high = body.box
+    along = "xyz".index(body.axis)
+    inner, outer = 0.5 * body.inner_diameter, 0.5 * body.diameter
+    layers = max(1, round((outer - inner) / params.spacing))
+    edges = np.linspace(inner, outer, layers + 1)
+    circles, shares = [], []
+    for a, b in itertools.pairwise(edges):
+        radius = 0.5 * (a + b)
+        count = 4 * max(1, round(0.5 * math.pi * radius / params.spacing))
+        angle = 2.0 * math.pi * (np.arange(count) + 0.5) / count
+        circles.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+        shares.append(np.full(count, (b * b - a * a) / count))
+    circle, share = np.concatenate(circles), np.concatenate(shares)
+    edge = high[along] - low[along]
+    heights = cell_centres(low[along], high[along], max(1, round(edge / params.spacing)))
+    if params.dimensions == 2:
+        heights = np.zeros(1)
+    points = np.empty((len(heights), len(circle), 3))
+    points[:, :, along] = heights[:, None]
+    for column, axis in enumerate(axis for axis in range(3) if axis != along):
+        points[:, :, axis] = circle[:, column] + 0.5 * (low[axis] + high[axis])
+    return points.reshape(-1, 3), np.tile(share, len(heights))
+
+
+def _mesh(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
+    """Points of a lattice in a closed surface."""
+    # Scenes without meshes do not import the reader of meshes.
+    from quintet.components.shared.mesh_files import inside, read
+
+    assert body.file is not None
+    points, share = _box(body, params)
+    triangles = read(body.file, body.scale or 1.0).triangles + np.array(body.position or (0.0,) * 3)
+    within = inside(points, triangles)
+    return points[within], share[within]
+
+
+FILLINGS = {"box": _box, "sphere": _round, "cylinder": _round, "tube": _tube, "mesh": _mesh}
+
+
+def starting_velocity(body: Body, points: Array) -> Array:
+    """Velocity (n, 3) m/s at points (n, 3) m: of the middle, of rotation and of strain about it."""
+    low, high = body.box
+    arms = points - 0.5 * (np.array(low) + np.array(high))
+    strain = arms @ np.array(body.velocity_gradient).T
+    return np.array(body.velocity) + np.cross(np.array(body.angular_velocity), arms) + strain

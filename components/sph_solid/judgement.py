@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 
 from quintet.components.shared.materials.solid import NEVER, Solid
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, State, Whole
 
@@ -23,6 +24,7 @@ ENERGY_EVERY, BONDS_EVERY = 16, 64  # steps
 NEAREST = 1.2  # spacings: bonds at the start are no longer
 EMPTY = 0.95  # spacings around the middle of a lost bond, where no particle is
 NEGLIGIBLE = 1e-6  # of the largest energy: smaller changes are rounding
+STILL = 1e-14  # of V ρc²: strains of 1e-7 are rounding too
 MOST_GAINED = 0.03  # of the energy turned over
 MOST_HEATED = 0.15  # of the energy turned over, in elastic bodies, by the artificial viscosity
 FEWEST_LOST = 1e-3  # of all bonds
@@ -100,11 +102,14 @@ def note_torn(state: State, pairs: Whole, laws: list[Solid], params: SphSolidPar
     state.torn[0] = max(state.torn[0], float(len(lost)))
 
 
-def warnings(state: State, params: SphSolidParams, bond_count: int) -> dict[str, str]:
-    """Reasons why the results may be wrong, by subject."""
+def warnings(
+    state: State, density: Array, params: SphSolidParams, bond_count: int
+) -> dict[str, str]:
+    """Reasons why the results may be wrong, by subject; of densities (materials,) kg/m3."""
     texts: dict[str, str] = {}
     turned = float((state.ranges[:, 1] - state.ranges[:, 0]).max())
-    if turned > NEGLIGIBLE * float(np.abs(state.ranges).max()):
+    least = STILL * float((state.volume * state.sound**2 * density[state.material]).sum())
+    if turned > max(least, NEGLIGIBLE * float(np.abs(state.ranges).max())):
         texts |= _of_energy(state, turned, params)
     if state.torn[0] > FEWEST_LOST * bond_count:
         texts["fracture"] = _of_fracture(state, params)
@@ -127,8 +132,8 @@ def _of_energy(state: State, turned: float, params: SphSolidParams) -> dict[str,
         return {
             "viscosity": f"elastic bodies must lose no motion; the artificial viscosity turned "
             f"{heated:.0%} of {turned:.3g} J that were turned over into heat. Lower "
-            f"viscosity_linear (now {params.viscosity_linear:g}) and viscosity_quadratic (now "
-            f"{params.viscosity_quadratic:g}), or the spacing; total_lagrangian needs neither."
+            f"viscosity_linear (now {method(params).linear:g}) and viscosity_quadratic (now "
+            f"{method(params).quadratic:g}), or the spacing; total_lagrangian needs neither."
         }
     return {}
 

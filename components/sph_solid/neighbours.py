@@ -20,8 +20,9 @@ from quintet.components.shared.symmetry import (
 )
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.kernels.motion import meets_unlisted
+from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
-from quintet.components.sph_solid.state import Array, Rows, State
+from quintet.components.sph_solid.state import Array, Rows, State, Whole
 
 # The cost of a step is least with a skin of about this times the root of what particles approach
 # each other by in it, both over the support: a search costs half as much as the sums over pairs.
@@ -37,10 +38,11 @@ class SolidLists:
     def __init__(self, params: SphSolidParams, team: Team) -> None:
         self.support = SUPPORT * params.length
         self.team = team
-        self.are_for_good = params.total_lagrangian
-        self.corrected = params.kernel_correction or params.total_lagrangian
+        way = method(params)
+        self.are_for_good = way.total_lagrangian
+        self.corrected = way.kernel_correction or way.total_lagrangian
         # Of rows of stress: a tensor of six or nine numbers, two densities, an artificial tensor.
-        self.width = 16 if params.artificial_stress > 0.0 else 12 if params.kernel_correction else 8
+        self.width = 16 if params.artificial_stress > 0.0 else 12 if way.kernel_correction else 8
         planes = [
             Plane(one.axis + ("-" if one.side == "+" else "+"), "xyz".index(one.axis),
                   one.position, 1.0 if one.side == "+" else -1.0)
@@ -50,6 +52,7 @@ class SolidLists:
         axis = [Plane("x-", 0, 0.0, 1.0)] if params.axisymmetric else []
         self.mirrors = [*planes, *axis]  # what moves towards one meets what moves the other way
         self.is_axisymmetric = params.axisymmetric
+        self.joined = joined(params)
         self.near = NeighbourLists()
         self.points: Array = np.zeros((0, 3))  # (n + images, 3) m, references
 
@@ -137,4 +140,29 @@ class SolidLists:
             self.near = neighbours_and_images(
                 points, all_alike, count, count, state.reach, self.team, None, buffer
             )
+        if self.are_for_good and self.joined.any():
+            self._part(state)
         return Rows.empty(count, len(points) - count, self.corrected, self.width)
+
+    def group(self, state: State) -> Whole:
+        """Number (n,) of the bodies that are one with that of each particle."""
+        return self.joined[state.body]
+
+    def _part(self, state: State) -> None:
+        """Let particles of bodies that are not one be no neighbours: each is its own instead."""
+        group = np.zeros(len(self.points), np.int64)
+        group[: state.particles] = self.group(state)
+        self.images.write_values(group, state.particles)
+        counts = self.near.end - self.near.begin
+        row = np.repeat(np.arange(len(counts)), counts)
+        entry = np.arange(len(row)) + np.repeat(
+            self.near.begin - np.cumsum(counts) + counts, counts
+        )
+        other = group[self.near.list[entry]] != group[row]
+        self.near.list[entry[other]] = row[other]
+
+
+def joined(params: SphSolidParams) -> Whole:
+    """Number (bodies,) of the bodies that move alike at the start: they are one where they meet."""
+    motions = [one.motion for one in params.bodies]
+    return np.array([motions.index(one) for one in motions])

@@ -5,15 +5,21 @@ from typing import Protocol
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.kernels.pairs import Forces, accelerations, velocity_gradients
 from quintet.components.sph_solid.laws import PairLaw
+from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.params import SphSolidParams
-from quintet.components.sph_solid.state import Rows, State
+from quintet.components.sph_solid.state import Array, Rows, State
 
 PENALTY = 1.0  # α of Ganzenmüller's force against motion that no deformation sees
 
 
 class PairSums(Protocol):
-    """What a step asks of pairs: of particles, or of rings about an axis."""
+    """What a step asks of pairs: of particles, or of rings about an axis.
+
+    `heats` (n, 3) m/s2 is what conservative forces beside stresses accelerate by; None without.
+    """
+
+    heats: Array | None
 
     def make(self, state: State, lists: SolidLists) -> None:
         """Take lists that were just made."""
@@ -27,6 +33,8 @@ class PairSums(Protocol):
 
 class ParticleSums:
     """Sums over pairs of particles, and of their images."""
+
+    heats: Array | None = None
 
     def __init__(self, team: Team) -> None:
         self.team = team
@@ -58,9 +66,9 @@ def pair_sums(params: SphSolidParams, team: Team) -> PairSums:
         from quintet.components.sph_solid.rings import Rings
 
         return Rings(params.length, team)
-    if params.total_lagrangian:
+    if method(params).total_lagrangian:
         # So are sums over the neighbours of the start.
         from quintet.components.sph_solid.reference_sums import ReferenceSums
 
-        return ReferenceSums(PENALTY, team)
+        return ReferenceSums(PENALTY, params.spacing, team)
     return ParticleSums(team)

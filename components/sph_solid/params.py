@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from quintet.components.shared.materials.params import Material, MaterialName, material
+from quintet.components.shared.materials.params import material
+from quintet.components.sph_solid.body import Axis, Body
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -14,88 +15,8 @@ from quintet.interfaces.params import (
     parameters,
 )
 
-Axis = Literal["x", "y", "z"]
+ROUND = ("cylinder", "tube")
 NARROW = 2.4  # smoothing lengths between planes: nothing is as near to the images of images
-NEEDS = {
-    "box": ("lowest", "highest"),
-    "sphere": ("centre", "diameter"),
-    "cylinder": ("centre", "diameter", "height"),
-}
-OWN = sorted({name for names in NEEDS.values() for name in names})
-
-
-@parameters
-class Body:
-    """A body, filled with a lattice of particles.
-
-    Parameters
-    ----------
-    shape
-        In two dimensions a box, or a cylinder along y.
-    lowest, highest : m
-        Corners of a box.
-    centre : m
-        Of a sphere or cylinder.
-    diameter : m
-        Of a sphere or cylinder.
-    height : m
-        Of a cylinder, along its axis.
-    axis
-        Of a cylinder.
-    material
-        Name of a material of the library, or its table.
-    velocity : m/s
-        At the start.
-    """
-
-    shape: Literal["box", "sphere", "cylinder"] = "box"
-    lowest: Vector | None = None
-    highest: Vector | None = None
-    centre: Vector | None = None
-    diameter: Positive | None = None
-    height: Positive | None = None
-    axis: Axis = "z"
-    material: MaterialName | Material
-    velocity: Vector = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        needed = NEEDS[self.shape]
-        said = [name for name in OWN if getattr(self, name) is not None]
-        if sorted(needed) != said:
-            raise ValueError(
-                f"bodies: a {self.shape} needs {' and '.join(needed)}; found "
-                f"{', '.join(said) or 'none of them'}. Correct it."
-            )
-        low, high = self.box
-        if not all(a < b for a, b in zip(low, high, strict=True)):
-            raise ValueError(
-                f"bodies: highest must be beyond lowest along every axis; found {low} and {high} m."
-            )
-
-    @property
-    def box(self) -> tuple[Vector, Vector]:
-        """Lowest and highest corner [m] of what it reaches over."""
-        if self.lowest is not None and self.highest is not None:
-            return self.lowest, self.highest
-        assert self.centre is not None and self.diameter is not None
-        half = [0.5 * self.diameter] * 3
-        if self.height is not None:
-            half["xyz".index(self.axis)] = 0.5 * self.height
-        (x, y, z), (a, b, c) = self.centre, half
-        return (x - a, y - b, z - c), (x + a, y + b, z + c)
-
-    def volume(self, dimensions: int, axisymmetric: bool = False) -> float:
-        """Volume [m3]; in two dimensions of a slice 1 m deep, or of what is turned about z."""
-        if axisymmetric and self.shape == "box":
-            (low, _, bottom), (high, _, top) = self.box
-            return math.pi * (high**2 - max(low, 0.0) ** 2) * (top - bottom)
-        if axisymmetric:
-            dimensions = 3
-        edges = [b - a for a, b in zip(*self.box, strict=True)]
-        if dimensions == 2:
-            edges[1] = 1.0
-        share = {"box": 1.0, "sphere": math.pi / 6.0, "cylinder": 0.25 * math.pi}[self.shape]
-        return share * math.prod(edges)
 
 
 @parameters
@@ -186,6 +107,8 @@ class SphSolidParams:
         Particles that are held.
     glued
         Particles that hang on a partner's mesh: they move with it, and it bears their mass.
+    gravity : m/s2
+        Of particles that are not glued; the mesh bears the weight of those that are.
     gauges : m
         Places; of the particle that is nearest to each at the start, motion and stress are given.
     levels
@@ -193,18 +116,23 @@ class SphSolidParams:
     courant : 1
         Share of h/(c + 1.2 (α c + β max|μ|)) that a step takes.
     viscosity_linear, viscosity_quadratic : 1
-        α and β of Monaghan's artificial viscosity.
+        α and β of Monaghan's artificial viscosity. If not given: 1 and 2; 0.1 and 0.5 of
+        materials without equation of state and failure that meet below a tenth of the speed of
+        sound; 0 of elastic bodies with the neighbours of the start.
     kernel_correction
         Whether gradients are corrected to be exact for linear fields; not at failed particles nor
-        their neighbours.
+        their neighbours. If not given: as with viscosities of 0.1 and 0.5.
     artificial_stress : 1
         ε of the pressure, as a share of tension, by which near particles repel each other where
         the material is stretched, so that they form no clumps; 0.3 is usual, 0 has none.
     total_lagrangian
         Whether pairs are those of the start for good, and gradients those with respect to places
-        there (Ganzenmüller): what is stretched forms no clumps, but bodies do not touch as they
-        come near, bodies that are neighbours at the start are one, and fragments hold together by
-        what they bear in compression.
+        there (Ganzenmüller): stretched bodies form no clumps and cannot tear. Particles that were
+        no neighbours at the start push each other off at a spacing, without friction or
+        viscosity. Bodies that are neighbours at the start are one if their velocities are the
+        same. Fragments hold together by what they bear in compression. If not given: where all
+        materials are elastic and neither kernel_correction, artificial_stress nor axisymmetric
+        is.
     """
 
     spacing: Positive
@@ -215,14 +143,15 @@ class SphSolidParams:
     symmetry: tuple[SymmetryPlane, ...] = ()
     fixed: tuple[Fixed, ...] = ()
     glued: tuple[Region, ...] = ()
+    gravity: Vector = (0.0, 0.0, 0.0)
     gauges: tuple[Vector, ...] = ()
     levels: tuple[Level, ...] = ()
     courant: Positive = 0.5
-    viscosity_linear: NotNegative = 1.0
-    viscosity_quadratic: NotNegative = 2.0
-    kernel_correction: bool = False
+    viscosity_linear: NotNegative | None = None
+    viscosity_quadratic: NotNegative | None = None
+    kernel_correction: bool | None = None
     artificial_stress: NotNegative = 0.0
-    total_lagrangian: bool = False
+    total_lagrangian: bool | None = None
 
     def __post_init__(self) -> None:
         axes = [one.axis for one in self.symmetry]
@@ -250,11 +179,11 @@ class SphSolidParams:
                 self.dimensions == 2
                 and not self.axisymmetric
                 and any(
-                    one.shape == "sphere" or (one.shape == "cylinder" and one.axis != "y")
+                    one.shape in ("sphere", "mesh") or (one.shape in ROUND and one.axis != "y")
                     for one in self.bodies
                 ),
-                "bodies: in two dimensions they must be boxes or cylinders along y; axisymmetric "
-                "ones boxes or spheres.",
+                "bodies: in two dimensions they must be boxes, or cylinders or tubes along y; "
+                "axisymmetric ones boxes or spheres.",
             ),
             (
                 self.total_lagrangian
@@ -275,16 +204,32 @@ class SphSolidParams:
             (
                 self.axisymmetric
                 and any(
-                    one.shape == "cylinder"
+                    one.shape in (*ROUND, "mesh")
                     or (one.shape == "sphere" and one.centre is not None and any(one.centre[:2]))
                     for one in self.bodies
                 ),
                 "bodies: axisymmetric ones must be boxes, or spheres with their centre on the "
                 "axis z.",
             ),
+            (
+                self.dimensions == 2 and any(map(self._leaves_the_plane, self.bodies)),
+                "bodies: in two dimensions angular_velocity is about y alone, and 0 of "
+                "axisymmetric ones; velocity_gradient has nothing along y. Correct it.",
+            ),
+            (
+                (self.dimensions == 2 and self.gravity[1] != 0.0)
+                or (self.axisymmetric and self.gravity[0] != 0.0),
+                "gravity must lie in the plane of two dimensions, and along z of axisymmetric "
+                f"bodies; found {self.gravity} m/s2. Correct it.",
+            ),
         ):
             if is_wrong:
                 raise ValueError(sentence)
+
+    def _leaves_the_plane(self, body: Body) -> bool:
+        turn, (along_x, along_y, along_z) = body.angular_velocity, body.velocity_gradient
+        turns = turn[0] != 0.0 or turn[2] != 0.0 or (self.axisymmetric and turn[1] != 0.0)
+        return turns or any((along_x[1], *along_y, along_z[1]))
 
     @property
     def _narrowest(self) -> float:
@@ -322,7 +267,8 @@ class SphSolidParams:
         for one in self.bodies:
             made = material(one.material)
             speeds.append(math.sqrt((made.bulk + 4.0 / 3.0 * made.shear) / made.density))
-        return self.courant * self.length / ((1.0 + 1.2 * self.viscosity_linear) * max(speeds))
+        drag = 1.0 if self.viscosity_linear is None else self.viscosity_linear
+        return self.courant * self.length / ((1.0 + 1.2 * drag) * max(speeds))
 
 
 def _computed_volume(body: Body, params: SphSolidParams) -> float:

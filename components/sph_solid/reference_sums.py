@@ -12,6 +12,7 @@ from quintet.components.sph_solid.kernels.reference import (
 from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.state import Array, Rows, State
+from quintet.components.sph_solid.touching import Touching
 
 
 class ReferenceSums:
@@ -21,11 +22,15 @@ class ReferenceSums:
     ----------
     penalty : float
         α of the force against motion that the deformation of neither particle sees.
+    spacing : float, m
+        At which particles touch that are no neighbours.
     team : Team
     """
 
-    def __init__(self, penalty: float, team: Team) -> None:
+    def __init__(self, penalty: float, spacing: float, team: Team) -> None:
         self.penalty, self.team = penalty, team
+        self.touching = Touching(spacing)
+        self.heats: Array | None = np.zeros((0, 3))
         self.nominal: Array = np.zeros((0, 12))
         self.deformed: Array = np.zeros((0, 12))
 
@@ -34,6 +39,8 @@ class ReferenceSums:
         self.lists, self.start, self.images = lists.arrays, lists.points, lists.images
         self.nominal = np.zeros((len(self.start), 12))
         self.deformed = np.zeros((len(self.start), 12))
+        self.heats = np.zeros((state.particles, 3))
+        self.touching.make(state, lists)
 
     def write_gradients(self, rows: Rows, law: PairLaw) -> None:
         """Gradients of velocity."""
@@ -53,6 +60,10 @@ class ReferenceSums:
         self.images.write_tensors(self.deformed, count)
         found = self.team.run(
             reference_accelerations, count, self.start, rows.place, rows.motion, self.nominal,
-            self.deformed, self.lists, law, self.penalty, forces,
+            self.deformed, self.lists, law, self.penalty, forces, self.heats,
         )  # fmt: skip
+        assert self.heats is not None
+        touch = Forces(self.heats, forces.heating)
+        self.touching.add(rows, self.nominal[:, 10], touch)
+        np.add(forces.acceleration, self.heats, out=forces.acceleration)
         return min(slowest for slowest, _ in found)

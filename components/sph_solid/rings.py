@@ -15,13 +15,15 @@ from quintet.components.sph_solid.kernels.rotated import (
 )
 from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.neighbours import SolidLists
-from quintet.components.sph_solid.state import Rows, State
+from quintet.components.sph_solid.state import Array, Rows, State
 
 ROOM = 80  # cuts that there is room for near each ring, at first
 
 
 class Rings:
     """Sums over pairs of rings."""
+
+    heats: Array | None = None
 
     def __init__(self, length: float, team: Team) -> None:
         self.length, self.team = length, team

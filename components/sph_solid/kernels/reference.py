@@ -181,7 +181,7 @@ def write_nominal_stresses(
 @njit(**FAST)
 def reference_accelerations(
     first: int, last: int, start: Array, place: Array, motion: Array, nominal: Array,
-    deformed: Array, lists: Lists, law: PairLaw, penalty: float, forces: Forces,
+    deformed: Array, lists: Lists, law: PairLaw, penalty: float, forces: Forces, heats: Array,
 ) -> tuple[float, float]:  # fmt: skip
     """Write accelerations and heating from neighbours of the start.
 
@@ -193,12 +193,14 @@ def reference_accelerations(
     penalty : float
         α of the force against what F does not see.
     forces : Forces
-        Written.
+        Written; accelerations by stresses alone.
+    heats : (n, 3) float array, m/s2
+        Written: accelerations by the viscosity and the penalty, which heat.
 
     Returns
     -------
     float, s : least h/(c + 1.2 (α c + β max|μ|)) of all
-    float, m2/s4 : greatest square of an acceleration
+    float, m2/s4 : greatest square of an acceleration by stresses
 
     References
     ----------
@@ -210,6 +212,7 @@ def reference_accelerations(
     length = law.smoothing.length
     for i in range(first, last):
         fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, 0.0
+        px, py, pz = 0.0, 0.0, 0.0
         density, rest, sound = nominal[i, 9], nominal[i, 10], motion[i, 3]
         for q in range(begin[i], end[i]):
             j = neighbour[q]
@@ -275,13 +278,14 @@ def reference_accelerations(
             push = 0.5 * penalty * stiff * place[j, 3] * kernel(square, law.smoothing)
             push *= excess * per * per * per_now
             heat += (along - push) * dot
-            fx += (push - along) * dx
-            fy += (push - along) * dy
-            fz += (push - along) * dz
+            px += (push - along) * dx
+            py += (push - along) * dy
+            pz += (push - along) * dz
             fastest = max(fastest, mu)
         each = 1.0 / rest
         fx, fy, fz = fx * each, fy * each, fz * each
         acceleration[i, 0], acceleration[i, 1], acceleration[i, 2] = fx, fy, fz
+        heats[i, 0], heats[i, 1], heats[i, 2] = each * px, each * py, each * pz
         heating[i] = 0.5 * heat * each
         drag = law.linear * sound + law.quadratic * fastest
         slowest = min(slowest, length / (sound + 1.2 * drag))

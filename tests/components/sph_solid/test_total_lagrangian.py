@@ -126,3 +126,55 @@ def test_what_does_not_go_with_it_is_refused():
     for other in ({"kernel_correction": True}, {"artificial_stress": 0.3}):
         with pytest.raises(ValueError, match="total_lagrangian has corrected gradients"):
             strip(**other)
+
+
+def pair(gap=0.5, speed=4.0, **given):
+    """Two strips, one after the other along x, that fly at each other at a speed [m/s]."""
+    middle, half = LONG * DX, (LONG + 0.5 * gap) * DX
+    bodies = tuple(
+        Body(
+            lowest=(low, 0.0, 0.0), highest=(low + LONG * DX, 1.0, WIDE * DX), material=RUBBER,
+            velocity=(way * speed, 0.0, 0.0),
+        )
+        for low, way in ((middle - half, 1.0), (middle + half - LONG * DX, -1.0))
+    )  # fmt: skip
+    return SphSolid(SphSolidParams(spacing=DX, dimensions=2, bodies=bodies, **given))
+
+
+def test_bodies_that_meet_push_each_other_off_and_exchange_their_momentum():
+    """Equal bars that meet part with each other's velocity."""
+    made = pair()
+    before = made.totals()
+    run(made, 6e-4)
+    after, left = made.totals(), made.state.body == 0
+    assert -4.0 < made.state.velocity[left, 0].mean() < -0.85 * 4.0
+    assert made.state.position[left, 0].max() < made.state.position[~left, 0].min()
+    whole = before.kinetic + before.internal
+    assert after.kinetic + after.internal == pytest.approx(whole, rel=5e-3)
+    assert np.abs(after.momentum).max() < 1e-12 * 4.0 * after.mass
+    assert not made.warnings()
+
+
+def test_a_body_that_meets_a_plane_moves_as_one_that_meets_its_image():
+    whole = run(pair(gap=3.0), 1.2e-3)
+    plane = SymmetryPlane(axis="x", position=LONG * DX, side="-")
+    body = whole.params.bodies[0]
+    params = SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), symmetry=(plane,))
+    half = run(SphSolid(params), 1.2e-3)
+    mine = whole.state.velocity[whole.state.body == 0, 0]
+    assert half.state.velocity[:, 0].mean() == pytest.approx(mine.mean(), rel=0.02)
+    assert half.state.velocity[:, 0].mean() < -3.0
+
+
+def test_a_resumed_contact_has_the_same_bits():
+    made, again = run(pair(), 4e-5), pair()
+    again.load(made.save())
+    ahead, found = run(made, 1.2e-4).save(), run(again, 1.2e-4).save()
+    assert all(np.array_equal(ahead[key], found[key]) for key in ahead)
+
+
+def test_elastic_bodies_keep_the_neighbours_of_the_start_unless_told_otherwise():
+    assert pair().lists.are_for_good and pair().law.linear == 0.0
+    assert not pair(kernel_correction=True).lists.are_for_good
+    assert not pair(artificial_stress=0.3).lists.are_for_good
+    assert pair(kernel_correction=False).law.linear == 1.0

@@ -1,0 +1,157 @@
+"""Shapes, motion at the start, and gravity of bodies, against exact answers."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quintet.components.shared.materials.params import Material
+from quintet.components.sph_solid.body import Body
+from quintet.components.sph_solid.component import SphSolid
+from quintet.components.sph_solid.params import SphSolidParams, SymmetryPlane
+
+DX = 1e-3  # m
+E, NU, RHO = 1e7, 0.3, 1000.0
+RUBBER = Material(density=RHO, youngs_modulus=E, poissons_ratio=NU)
+BALL = {"shape": "sphere", "centre": (0.0, 0.0, 0.0), "diameter": 6 * DX, "material": RUBBER}
+
+
+def ring(outer=0.020, inner=0.016, spacing=DX, **motion):
+    """A ring in plane strain."""
+    body = Body(
+        shape="tube", axis="y", centre=(0.0, 0.5, 0.0), diameter=2 * outer,
+        inner_diameter=2 * inner, height=1.0, material=RUBBER, **motion,
+    )  # fmt: skip
+    return SphSolid(SphSolidParams(spacing=spacing, dimensions=2, bodies=(body,)))
+
+
+def test_a_body_falls_freely():
+    solid = SphSolid(SphSolidParams(spacing=DX, bodies=(Body(**BALL),), gravity=(0.0, 3.0, -9.81)))
+    start, dt = solid.state.position.copy(), solid.stable_dt()
+    energy = [solid.totals().potential + solid.totals().kinetic]
+    for _ in range(50):
+        solid.step(dt)
+    time = 50 * dt
+    g = np.array([0.0, 3.0, -9.81])
+    np.testing.assert_allclose(
+        solid.state.velocity, np.tile(time * g, (len(start), 1)), atol=1e-9 * time
+    )
+    np.testing.assert_allclose(
+        solid.state.position - start,
+        np.tile(0.5 * time**2 * g, (len(start), 1)),
+        atol=1e-6 * time**2,
+    )
+    energy.append(solid.totals().potential + solid.totals().kinetic)
+    assert energy[1] - energy[0] == pytest.approx(0.0, abs=1e-9 * solid.totals().kinetic)
+
+
+@pytest.mark.parametrize("planes", [(), ("x",), ("x", "z")])
+def test_rings_and_tubes_have_their_volumes(planes):
+    symmetry = tuple(SymmetryPlane(axis=axis) for axis in planes)
+    shape = {
+        "shape": "tube", "axis": "y", "diameter": 0.020, "inner_diameter": 0.012,
+        "height": 0.005, "centre": (0.0, 0.5, 0.0), "material": RUBBER,
+    }  # fmt: skip
+    area = 0.25 * math.pi * (0.020**2 - 0.012**2) / 2 ** len(planes)
+    for dimensions, depth in ((2, 1.0), (3, 0.005)):
+        params = SphSolidParams(
+            spacing=DX, dimensions=dimensions, bodies=(Body(**shape),), symmetry=symmetry
+        )
+        solid = SphSolid(params)
+        assert solid.totals().mass == pytest.approx(RHO * area * depth, rel=1e-12)
+        assert params.expected_count == pytest.approx(solid.items(), rel=0.1)
+
+
+def test_a_mesh_is_filled_with_its_volume_and_its_motion(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=4.0)
+    ball.export(tmp_path / "ball.stl")
+    body = Body(
+        shape="mesh", file=str(tmp_path / "ball.stl"), scale=DX, position=(0.1, 0.0, 0.0),
+        material=RUBBER, velocity=(1.0, 2.0, 3.0), angular_velocity=(0.0, 0.0, 50.0),
+    )  # fmt: skip
+    solid = SphSolid(SphSolidParams(spacing=DX, bodies=(body,)))
+    mass, total = solid._masses(), solid.totals()
+    assert total.mass == pytest.approx(RHO * ball.volume * DX**3, rel=1e-6)
+    middle = mass @ solid.state.position / total.mass
+    np.testing.assert_allclose(middle, [0.1, 0.0, 0.0], atol=0.02 * DX)
+    np.testing.assert_allclose(total.momentum, total.mass * np.array([1.0, 2.0, 3.0]), rtol=0.01)
+    x = solid.state.position[:, 0] - 0.1
+    np.testing.assert_allclose(solid.state.velocity[:, 1], 2.0 + 50.0 * x, atol=1e-3)
+
+
+def test_a_gradient_of_velocity_is_about_the_middle_of_the_body():
+    rates = ((10.0, 20.0, 0.0), (0.0, -5.0, 0.0), (0.0, 0.0, 7.0))
+    body = Body(**(BALL | {"centre": (1.0, 2.0, 3.0)}), velocity_gradient=rates)
+    solid = SphSolid(SphSolidParams(spacing=DX, bodies=(body,)))
+    arms = solid.state.position - np.array([1.0, 2.0, 3.0])
+    np.testing.assert_allclose(solid.state.velocity, arms @ np.array(rates).T, atol=1e-12)
+
+
+def test_a_spinning_ring_keeps_its_angular_momentum_and_grows_by_its_stress():
+    """A thin ring that spins has the hoop stress ρ (ω R)²; its mean strain is that over E'."""
+    rate, radius = 120.0, 0.018
+    solid = ring(angular_velocity=(0.0, rate, 0.0))
+    before, dt = solid.totals().angular_momentum[1], solid.stable_dt()
+    place = solid.state.position
+    assert solid.state.velocity[:, 0] == pytest.approx(rate * place[:, 2])
+    # It swings about the strain of equilibrium: the mean over whole periods.
+    modulus = E / (1.0 - NU**2)
+    period = 2.0 * math.pi * radius / math.sqrt(modulus / RHO)
+    mass, sizes = solid._masses(), []
+    for _ in range(round(2.0 * period / dt)):
+        solid.step(dt)
+        sizes.append(mass @ np.hypot(*solid.state.position[:, ::2].T) / mass.sum())
+    strain = np.mean(sizes) / (mass @ np.hypot(*solid.state.reference[:, ::2].T) / mass.sum()) - 1
+    assert strain == pytest.approx(RHO * (rate * radius) ** 2 / modulus, rel=0.05)
+    assert solid.totals().angular_momentum[1] == pytest.approx(before, rel=1e-9)
+
+
+def test_a_ring_breathes_at_its_frequency():
+    """ω = √(E/(1 - ν²)ρ)/R of a thin ring in plane strain."""
+    rate = 20.0
+    solid = ring(velocity_gradient=((rate, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, rate)))
+    modulus, radius = E / (1.0 - NU**2), 0.018
+    period, dt = 2.0 * math.pi * radius / math.sqrt(modulus / RHO), solid.stable_dt()
+    radial = []
+    for _ in range(round(1.3 * period / dt)):
+        solid.step(dt)
+        x, z = solid.state.position[:, 0], solid.state.position[:, 2]
+        u, w = solid.state.velocity[:, 0], solid.state.velocity[:, 2]
+        radial.append(((u * x + w * z) / np.hypot(x, z)).mean())
+    signs = np.sign(radial)
+    crossings = np.flatnonzero(signs[:-1] != signs[1:]) * dt
+    assert 2.0 * np.diff(crossings)[0] == pytest.approx(period, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"inner_diameter": 0.03}, "inner_diameter of a tube must be below"),
+        ({"inner_diameter": None}, "a tube needs centre and diameter and inner_diameter"),
+        ({"file": "a.stl"}, "a tube needs"),
+    ],
+)
+def test_tubes_that_are_none_are_refused(given, sentence):
+    shape = {
+        "shape": "tube", "diameter": 0.02, "inner_diameter": 0.01, "height": 0.01,
+        "centre": (0.0, 0.0, 0.0), "material": RUBBER,
+    }  # fmt: skip
+    if "file" in given:
+        given = {"file": __file__}
+    with pytest.raises(ValueError, match=sentence):
+        Body(**(shape | given))
+
+
+@pytest.mark.parametrize(
+    "given", [{"angular_velocity": (1.0, 0.0, 0.0)}, {"velocity_gradient": ((0, 1, 0),) * 3}]
+)
+def test_motion_out_of_the_plane_is_refused_in_two_dimensions(given):
+    with pytest.raises(ValueError, match="angular_velocity is about y alone"):
+        ring(**given)
+
+
+def test_gravity_out_of_the_plane_is_refused():
+    box = Body(lowest=(0.0, 0.0, 0.0), highest=(0.01, 1.0, 0.01), material=RUBBER)
+    with pytest.raises(ValueError, match="gravity must lie in the plane"):
+        SphSolidParams(spacing=DX, dimensions=2, bodies=(box,), gravity=(0.0, 9.81, 0.0))
