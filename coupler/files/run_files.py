@@ -69,11 +69,25 @@ def read_marker(folder: Path) -> Marker | None:
         ) from error
 
 
+def may_write(folder: Path, files: Iterable[str]) -> list[Path]:
+    """All files that a run with these files may write into a folder, there or not."""
+    names = [*files, MARKER, LOCK]
+    return [*_within(folder, names), *_snapshots(folder)]
+
+
+def _within(folder: Path, names: Iterable[str]) -> list[Path]:
+    """Files of a folder by their names, and what they are called while they are written."""
+    plain = [Path(name) for name in names]
+    within = [folder / one for one in plain if not one.is_absolute() and ".." not in one.parts]
+    return [*within, *(one.with_name(one.name + PART) for one in within)]
+
+
+def _snapshots(folder: Path) -> list[Path]:
+    return [*folder.glob(SNAPSHOTS), *folder.glob(SNAPSHOTS + PART)]
+
+
 def left(folder: Path, marker: Marker) -> list[Path]:
     """Files of a run that are there, but for what its study logs; the marker's last."""
-    plain = [Path(name) for name in marker.files if name != RUN_LOG]
-    within = [folder / one for one in plain if not one.is_absolute() and ".." not in one.parts]
-    found = [*within, *(one.with_name(one.name + PART) for one in within)]
-    if marker.kind == "run":
-        found += [*folder.glob(SNAPSHOTS), *folder.glob(SNAPSHOTS + PART)]
+    found = _within(folder, (name for name in marker.files if name != RUN_LOG))
+    found += _snapshots(folder) if marker.kind == "run" else []
     return [path for path in [*found, folder / MARKER] if path.is_file() or path.is_symlink()]

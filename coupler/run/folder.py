@@ -14,6 +14,7 @@ from filelock import FileLock, Timeout
 
 from quintet.coupler.coupling.convergence_log import log_file
 from quintet.coupler.files.disk import PART
+from quintet.coupler.files.plain_files import require_no_links, require_plain
 from quintet.coupler.files.run_files import (
     LOCK,
     MARKER,
@@ -21,6 +22,7 @@ from quintet.coupler.files.run_files import (
     RUN_LOG,
     Marker,
     left,
+    may_write,
     new_marker,
     read_marker,
     view_file,
@@ -111,10 +113,12 @@ def _take(
 ) -> RunFolder:
     base = out or Path("runs") / name
     folder = (_next_free(base) if out is None and not force else base).resolve()
-    _former(folder, kind, force)
+    files = list(files)
+    _require_own(folder, files, _former(folder, kind, force))
     folder.mkdir(parents=True, exist_ok=True)
     stack.enter_context(_locked(folder))
     former = _former(folder, kind, force)  # since then another may have begun
+    _require_own(folder, files, former)
     kept = [RUN_LOG] if former and RUN_LOG in former.files else []
     if former:
         _set_aside(folder, former)
@@ -134,8 +138,10 @@ def begin_series(
     """Use a folder for a series of runs, or go on with a former series in it."""
     name = f"{scene}-{kind}"
     folder = (out or Path("runs") / name).resolve()
-    if keep and not force and read_marker(folder):
-        return go_on(folder, kind)
+    if read_marker(folder):
+        require_no_links(folder)  # neither in the place of its own files nor of its runs
+        if keep and not force:
+            return go_on(folder, kind)
     return begin(kind, name, files, folder if keep else out, force)
 
 
@@ -147,12 +153,20 @@ def go_on(folder: Path, kind: str) -> Iterator[RunFolder]:
         yield RunFolder(folder, marker)
 
 
+def _require_own(folder: Path, files: Iterable[str], former: Marker | None) -> None:
+    """Refuse links in the place of what will be written, removed or moved aside."""
+    names = [*files, *(former.files if former else ())]
+    aside = folder / FORMER
+    require_plain(folder, [*may_write(folder, names), *may_write(aside, names)])
+
+
 def check_ours(folder: Path, kind: str) -> Marker:
-    """Read the marker of a folder that must be a run's."""
+    """Read the marker of a folder that must be a run's, its files plain ones."""
     found = read_marker(folder)
     if found is None or found.kind != kind:
         what = f"that of a {found.kind}" if found else "not that of a run"
         raise SceneError(f"{folder}: it must be the folder of a {kind}; it is {what}.")
+    _require_own(folder, (), found)
     return found
 
 
