@@ -82,6 +82,7 @@ def _add_reference(command: Command) -> None:
     one.add_argument("--json", action="store_true", help="for programs")
     one = command("check", check, "read a scene, print its plan; start no solver")
     _scene(one)
+    one.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
     shape = one.add_mutually_exclusive_group()
     shape.add_argument("--graph", action="store_true", help=GRAPH)
     shape.add_argument("--mermaid", action="store_true", help=MERMAID)
@@ -91,6 +92,7 @@ def _add_reference(command: Command) -> None:
     one.add_argument("--write", nargs="+", type=Path, default=[], metavar="FILE", help=WRITE)
     one = command("schema", schema, "keys of scene files as a JSON schema, for editors")
     one.add_argument("scene", nargs="?", help="whose module:Class kinds it is to know as well")
+    one.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
 
 
 def _add_runs(command: Command) -> None:
@@ -146,6 +148,7 @@ def _add_kinds(command: Command) -> None:
     one.add_argument("--json", type=Path, metavar="FILE", help="what was found, for programs")
 
 
+IMPORT = "import kinds that are code of the scene's own, module:Class, and check them too"
 GRAPH = "draw components, ports and links instead of the plan"
 MERMAID = "the same as a Mermaid flowchart, for texts that draw it"
 SUBJECT = (
@@ -194,7 +197,8 @@ def _load(given: argparse.Namespace) -> "Scene":
     # Start-up: only this command needs it.
     from quintet.coupler.scene.read import load
 
-    return load(given.scene, given.preset, given.settings, given.swap, given.transport)
+    asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
+    return load(*asked, imports=getattr(given, "imports", True))
 
 
 def list_scenes(given: argparse.Namespace) -> int:
@@ -211,12 +215,14 @@ def check(given: argparse.Namespace) -> int:
     scene = _load(given)
     # Start-up: only this command needs it.
     from quintet.coupler.scene import graph
-    from quintet.coupler.scene.listing import console, print_plan
+    from quintet.coupler.scene.listing import console, print_plan, unread_notes
     from quintet.coupler.scene.needs import require_memory
 
     require_memory(scene)
     if given.graph or given.mermaid:
         print(graph.mermaid(scene) if given.mermaid else graph.drawing(scene))
+        for note in unread_notes(scene):
+            print(f"quintet: {note}", file=sys.stderr)
     else:
         print_plan(scene, console())
     return 0
@@ -234,10 +240,15 @@ def schema(given: argparse.Namespace) -> int:
     """Print the JSON schema of scene files."""
     # Start-up: only this command needs it.
     from quintet.coupler.reference.schema import as_text, scene_schema
+    from quintet.coupler.scene.listing import unread_notes
     from quintet.coupler.scene.read import load
 
-    scene = load(given.scene) if given.scene else None
-    kinds = [one.kind for one in scene.components.values()] if scene else []
+    scene = load(given.scene, imports=given.imports) if given.scene else None
+    plans = scene.components.values() if scene else ()
+    kinds = [one.kind for one in plans if not one.unread]
+    if scene:
+        for note in unread_notes(scene):
+            print(f"quintet: {note}", file=sys.stderr)
     print(as_text(scene_schema(kinds)))
     return 0
 

@@ -58,14 +58,20 @@ class IterationSettings:
 
 
 def unknown_fields(
-    settings: IterationSettings, takes: Mapping[str, Iterable[Port]], where: str = "iteration"
+    settings: IterationSettings,
+    takes: Mapping[str, Iterable[Port]],
+    where: str = "iteration",
+    unread: tuple[str, ...] = (),
 ) -> list[str]:
-    """Say which keys of `absolute` no component takes; `takes` gives the ports of each."""
+    """Say which keys of `absolute` no component takes; `takes` gives the ports of each.
+
+    Of keys that begin with one of `unread` nothing is known.
+    """
     known = [
         f"{name}.{port.name}.{one.name}"
         for name, ports in takes.items()
         for port in ports
         for one in port.fields
     ]
-    wrong = [key for key in settings.absolute if key not in known]
+    wrong = [key for key in settings.absolute if key not in known and not key.startswith(unread)]
     return [unknown(f"{where}.absolute: field {key}", key, known) for key in wrong]

@@ -137,8 +137,15 @@ def check(
     settings: Overrides = None,
     swap: Mapping[str, str] | None = None,
     transport: str = "",
+    imports: bool = False,
 ) -> "Plan":
     """Read and check a scene without starting anything; the parameters are those of `run`.
+
+    Parameters
+    ----------
+    imports : bool
+        Import kinds that are code of the scene's own, ``module:Class``, to check them too; without
+        it no code of a scene is run.
 
     Returns
     -------
@@ -154,7 +161,7 @@ def check(
     from quintet.coupler.scene.listing import Plan
     from quintet.coupler.scene.needs import require_memory
 
-    made = _scene(scene, preset, settings, swap, transport)
+    made = _scene(scene, preset, settings, swap, transport, imports)
     require_memory(made)
     return Plan(made)
 
@@ -188,13 +195,15 @@ def _scene(
     settings: Overrides,
     swap: Mapping[str, str] | None,
     transport: str,
+    imports: bool = True,
 ) -> "Scene":
     # Components import this package, and none needs the coupler: it is loaded on use.
     from quintet.coupler.scene.overrides import assignments
     from quintet.coupler.scene.read import load as read
 
     swaps = [f"{name}={kind}" for name, kind in (swap or {}).items()]
-    return read(str(scene), preset, assignments(settings or {}), swaps, transport)
+    given = (assignments(settings or {}), swaps, transport)
+    return read(str(scene), preset, *given, imports=imports)
 
 
 def _finished(folder: Path, status: int) -> "Run":

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.coupler.scene.foreign_code import is_trusted, unread_manifest
 from quintet.coupler.scene.scene import NAME, ComponentKeys, ComponentPlan
 from quintet.interfaces.errors import QuintetError, SceneError
 from quintet.interfaces.manifest import Manifest, find, known_kinds
@@ -25,8 +26,13 @@ def require_components(path: Path, table: Table, mistakes: list[str]) -> Table:
     raise SceneError([f"{path.name}: {mistake}" for mistake in (*mistakes, said)])
 
 
-def read_components(table: Table, folder: Path, mistakes: list[str]) -> dict[str, ComponentPlan]:
-    """Read the components of a scene; those with mistakes are left out."""
+def read_components(
+    table: Table, folder: Path, mistakes: list[str], imports: bool = True
+) -> dict[str, ComponentPlan]:
+    """Read the components of a scene; those with mistakes are left out.
+
+    `imports` is whether code of the scene's own may be imported to read them.
+    """
     found = {}
     for name, given in table.items():
         if not NAME.fullmatch(name) or name == "coupler":
@@ -38,12 +44,14 @@ def read_components(table: Table, folder: Path, mistakes: list[str]) -> dict[str
             mistakes.append(
                 f"components.{name} must be a table; found {shown(given)}. Give it a kind."
             )
-        elif one := _component(name, dict(given), folder, mistakes):
+        elif one := _component(name, dict(given), folder, mistakes, imports):
             found[name] = one
     return found
 
 
-def _component(name: str, given: Table, folder: Path, mistakes: list[str]) -> ComponentPlan | None:
+def _component(
+    name: str, given: Table, folder: Path, mistakes: list[str], imports: bool
+) -> ComponentPlan | None:
     where = f"components.{name}"
     if not isinstance(kind := given.get("kind"), str):
         known = ", ".join(sorted(known_kinds()))
@@ -54,6 +62,11 @@ def _component(name: str, given: Table, folder: Path, mistakes: list[str]) -> Co
     mistakes += wrong
     if common is None:
         return None
+    if not (imports or is_trusted(kind, folder)):
+        unread = unread_manifest(kind)
+        return ComponentPlan(
+            name, kind, unread, given, None, (), (), threads=common.threads, unread=True
+        )
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
         return None

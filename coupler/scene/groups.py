@@ -99,6 +99,7 @@ def refused(
     ports = {name: (one.takes, one.gives) for name, one in components.items()}
     wrong = plan.mistakes(coupling, Exchange(links, ports))
     takes = {name: one.takes for name, one in components.items()}
+    unread = [f"{name}." for name, one in components.items() if one.unread]
 
     def below(one: CouplingPlan) -> Iterator[CouplingPlan]:
         yield one
@@ -107,7 +108,7 @@ def refused(
 
     for one in below(coupling):
         where = f"groups.{one.name}.iteration" if one.name else "iteration"
-        wrong += unknown_fields(one.iteration, takes, where)
+        wrong += unknown_fields(one.iteration, takes, where, tuple(unread))
     return wrong
 
 
@@ -134,11 +135,12 @@ def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> li
         for port in component.gives
         for one in port.fields
     ]
+    unread = tuple(f"{name}." for name, one in components.items() if one.unread)
     shown = [f"{name}.{one.name}" for name, part in components.items() for one in part.shows]
     asked = (("fields", file.output.fields, known), ("colours", file.output.colours, shown))
     return [
         unknown(f"output.{key}: {path}", path, there)
         for key, paths, there in asked
         for path in paths
-        if path not in there
+        if path not in there and not path.startswith(unread)
     ]

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.coupling.windows import auto_length
+from quintet.coupler.scene.foreign_code import unread_note
 from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Port
@@ -78,7 +79,9 @@ def print_plan(scene: Scene, console: Console) -> None:
     for one in scene.components.values():
         table.add_row(one.name, one.kind, str(one.threads), *_needs(one, file.end))
     console.print(table)
-    for one in scene.components.values():
+    for note in unread_notes(scene):
+        console.print(note)
+    for one in (one for one in scene.components.values() if not one.unread):
         console.print(f"{one.name} takes {_names(one.takes)}; gives {_names(one.gives)}")
         for note in one.planned.notes if one.planned else ():
             console.print(f"note of {one.name}: {note}")
@@ -87,6 +90,15 @@ def print_plan(scene: Scene, console: Console) -> None:
             console.print(f"link {link.name}: {one_way.giver} -> {one_way.taker}")
     for expected in scene.expect:
         console.print(f"expects {expected.name} within {expected.within:g} {expected.unit}")
+
+
+def unread_notes(scene: Scene) -> list[str]:
+    """What was not checked of a scene, as it is code that was not imported."""
+    names: dict[str, list[str]] = {}
+    for one in scene.components.values():
+        if one.unread:
+            names.setdefault(one.kind, []).append(one.name)
+    return [unread_note(of_kind, kind) for kind, of_kind in names.items()]
 
 
 def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:

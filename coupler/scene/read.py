@@ -12,6 +12,7 @@ from typing import Any
 from quintet.coupler.measures.expectation import Expectation, check
 from quintet.coupler.scene import variants
 from quintet.coupler.scene.component_tables import read_components, require_components
+from quintet.coupler.scene.foreign_code import announce, trusted_tables
 from quintet.coupler.scene.groups import begins_wrong, lay_out, refused, unknown_outputs
 from quintet.coupler.scene.link_tables import read_links
 from quintet.coupler.scene.needs import refused_times
@@ -21,6 +22,7 @@ from quintet.coupler.scene.scene import (
     Scene,
     SceneFile,
     import_folders,
+    kinds_of,
     wrong_name,
 )
 from quintet.coupler.scene.stability_table import Scope
@@ -62,6 +64,7 @@ def load(
     swaps: Iterable[str] = (),
     transport: str = "",
     for_variants: bool = False,
+    imports: bool = True,
 ) -> Scene:
     """Read a scene and check all of it; nothing is started.
 
@@ -75,6 +78,9 @@ def load(
         Components to be replaced by another kind.
     for_variants : bool
         Whether refinements and stability limits will be run, and must suit the settings.
+    imports : bool
+        Whether code of the scene's own may be imported, as a run does: kinds ``module:Class``.
+        Without it their keys and ports are not checked.
 
     Raises
     ------
@@ -95,7 +101,7 @@ def load(
     # Variants were told for the components of the file: each is checked when it is run instead.
     # They need not suit what is set for a run that none of them belongs to.
     asked_for = for_variants or not settings
-    made = _check(path, table, preset, try_variants=not swaps, read_variants=asked_for)
+    made = _check(path, table, preset, not swaps, asked_for, imports)
     asked = {"preset": preset, "settings": settings, "swaps": list(swaps)}
     made.asked = {"scene": str(path.resolve()), "transport": transport, **asked}
     return made
@@ -121,15 +127,20 @@ def _check(
     preset: str,
     try_variants: bool = True,
     read_variants: bool = True,
+    imports: bool = True,
 ) -> Scene:
-    look_in(import_folders(path, table.get("components")))
+    tables = table.get("components")
+    tables = tables if imports else trusted_tables(tables, path.parent)
+    look_in(import_folders(path, tables))
+    announce(kinds_of(tables), path.parent)
     own = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, own, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
     given = require_components(path, table, mistakes)
-    components = read_components(given, path.parent, mistakes)
+    components = read_components(given, path.parent, mistakes, imports)
     wrong = set(given) - set(components)  # told of already
-    links = read_links(_tables(table, "links", mistakes), components, wrong, mistakes)
+    unread = {name for name, one in components.items() if one.unread}
+    links = read_links(_tables(table, "links", mistakes), components, wrong | unread, mistakes)
     expect = _expect(_tables(table, "expect", mistakes), components, wrong, path.parent, mistakes)
     coupling = None
     if file is not None:
@@ -152,8 +163,9 @@ def _check(
     scope, check = None, None
     if file is not None and not mistakes:
         gives = {name: one.gives for name, one in components.items()}
-        scope = Scope(file.end, gives, len(links), [one.name for one in expect])
-        check = partial(_check, path, preset=preset) if try_variants else None
+        expected = [one.name for one in expect]
+        scope = Scope(file.end, gives, len(links), expected, frozenset(unread))
+        check = partial(_check, path, preset=preset, imports=imports) if try_variants else None
     make_variant = variants.variant_maker(table, check)
     study, stability, wrong_variants = variants.read_variants(
         series[0], series[1], make_variant, scope
@@ -218,6 +230,7 @@ def _expect(
         one, lacks = read(Expectation, given, f"expect.{given.get('name', number)}")
         mistakes += lacks
         if one is not None and one.component not in wrong:
-            mistakes += check(one, gives, folder)
+            is_read = one.component not in components or not components[one.component].unread
+            mistakes += check(one, gives, folder) if is_read else []
             found.append(one)
     return found

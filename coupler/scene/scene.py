@@ -176,6 +176,7 @@ class ComponentPlan:
     gives: tuple[Port, ...]
     threads: int = 1
     planned: Plan | None = None  # what running it will need, where its kind can tell
+    unread: bool = False  # its kind is code that was not imported: keys and ports are unknown
 
     def initial(self) -> Fields:
         """What is known of it before it is built; see `Manifest`."""
@@ -259,9 +260,14 @@ class Scene:
 
 def import_folders(path: Path, components: Any) -> list[str]:
     """Folders where components named as ``module:Class`` are looked for; none without any."""
+    named = ":" in "".join(kinds_of(components))
+    return [str(path.parent.resolve()), str(Path.cwd())] if named else []
+
+
+def kinds_of(components: Any) -> list[str]:
+    """Kinds in the tables of the components of a scene, as they stand there."""
     tables = components.values() if isinstance(components, dict) else ()
-    kinds = [str(one.get("kind", "")) for one in tables if isinstance(one, dict)]
-    return [str(path.parent.resolve()), str(Path.cwd())] if ":" in "".join(kinds) else []
+    return [str(one.get("kind", "")) for one in tables if isinstance(one, dict)]
 
 
 def wrong_name(name: str) -> list[str]:

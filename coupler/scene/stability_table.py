@@ -190,6 +190,7 @@ class Scope:
     gives: Mapping[str, tuple[Port, ...]]  # ports that each component gives
     links: int
     expected: list[str]  # names
+    unread: frozenset[str] = frozenset()  # components whose ports are not known
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,7 +288,7 @@ def _check_ends(limit: Limit, make_variant: MakeVariant) -> list[str]:
 def _check_references(one: LimitTable, scope: Scope) -> list[str]:
     """Check that the links, expectations and fields that an invariant names exist."""
     mistakes = []
-    if one.momentum is not None and not scope.links:
+    if one.momentum is not None and not (scope.links or scope.unread):
         mistakes.append("momentum is that of links; the scene has none. Remove it.")
     for name in one.expectation:
         if name not in scope.expected:
@@ -300,6 +301,8 @@ def _check_references(one: LimitTable, scope: Scope) -> list[str]:
 def _bounds(bounds: Bounds, scope: Scope) -> list[str]:
     if bounds.component not in scope.gives:
         return [unknown(f"bounds.component {bounds.component}", bounds.component, scope.gives)]
+    if bounds.component in scope.unread:
+        return []
     ports = scope.gives[bounds.component]
     fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
     if bounds.field not in fields:

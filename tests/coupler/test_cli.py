@@ -66,7 +66,7 @@ def test_the_version_is_that_of_the_package(capsys):
 
 
 def test_check_prints_the_plan_and_starts_nothing(tmp_path, capsys):
-    assert status("check", write_scene(tmp_path, "zenoh", end=0.02)) == 0
+    assert status("check", "--import", write_scene(tmp_path, "zenoh", end=0.02)) == 0
     said = " ".join(capsys.readouterr().out.split())
     for words in (
         "0.02 s over zenoh; 3 processes, the coupler one of them",

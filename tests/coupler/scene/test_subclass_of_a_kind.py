@@ -90,11 +90,11 @@ def test_a_fluid_of_ones_own_keeps_its_gauges_and_has_another(scene: Path, tmp_p
 
 
 def test_its_own_parameters_are_checked_and_its_plan_is_known(scene: Path) -> None:
-    assert "64" in str(quintet.check(str(scene)))
+    assert "64" in str(quintet.check(str(scene), imports=True))
     with pytest.raises(SceneError, match="stirring should be a valid number; found 'much'"):
-        quintet.check(str(scene), settings={"components.water.stirring": "much"})
+        quintet.check(str(scene), imports=True, settings={"components.water.stirring": "much"})
     with pytest.raises(SceneError, match=r"components.water.spacing should be greater than 0"):
-        quintet.check(str(scene), settings={"components.water.spacing": -1.0})
+        quintet.check(str(scene), imports=True, settings={"components.water.spacing": -1.0})
 
 
 THROWN = """

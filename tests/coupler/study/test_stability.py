@@ -217,7 +217,7 @@ WRONG = {
 @pytest.mark.parametrize("case", WRONG)
 def test_a_wrong_limit_is_refused_with_the_scene(tmp_path, capsys, case):
     text, *sentences = WRONG[case]
-    assert command("check", write(tmp_path, limits(text))) == 2
+    assert command("check", "--import", write(tmp_path, limits(text))) == 2
     said = capsys.readouterr().err
     for sentence in sentences:
         assert f"quintet: scene.toml: stability.{sentence}\n" in said
@@ -241,8 +241,8 @@ def test_work_from_outside_is_no_rise_of_the_energy(tmp_path):
 def test_what_is_set_need_not_suit_limits_that_are_not_looked_for(tmp_path, capsys):
     far = 'parameter = "window"\nfrom = 0.005\nto = 0.05\n' + ENERGY
     path, out = write(tmp_path, limits(far)), tmp_path / "out"
-    assert command("check", path) == 0, "the scene as it stands must suit its limits"
-    assert command("check", path, "--set", "end=0.5") == 0, "check looks for no limit"
+    assert command("check", "--import", path) == 0, "the scene as it stands must suit its limits"
+    assert command("check", "--import", path, "--set", "end=0.5") == 0, "check looks for no limit"
     assert command("run", path, "--set", "end=0.5", "--out", out) == 1, "the run looks for none"
     assert "spring: done" in capsys.readouterr().out
     assert command("stability", path, "--set", "end=0.5") == 2, "what looks for it must refuse"

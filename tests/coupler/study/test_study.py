@@ -134,7 +134,7 @@ WRONG = {
 def test_a_wrong_refinement_is_refused_with_the_scene(tmp_path, capsys, case):
     text, sentence = WRONG[case]
     path = write(tmp_path, f"[[study]]\n{text}\n")
-    assert command("check", path) == 2
+    assert command("check", "--import", path) == 2
     assert f"quintet: scene.toml: {sentence}\n" in capsys.readouterr().err
 
 
