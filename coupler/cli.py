@@ -63,7 +63,7 @@ def parser() -> argparse.ArgumentParser:
 
     def command(name: str, does: object, text: str) -> argparse.ArgumentParser:
         one = commands.add_parser(name, help=text, description=text)
-        one.set_defaults(does=does)
+        one.set_defaults(does=does, command=name)
         return one
 
     _add_reference(command)
@@ -117,13 +117,20 @@ def _add_runs(command: Command) -> None:
 
 def _add_studies(command: Command) -> None:
     """Add what runs a scene many times."""
-    one = command("study", study, "error against run time over the refinements of a scene")
+    one = command("study", series, "error against run time over the refinements of a scene")
     _scene(one)
     _report(one, "runs/SCENE-study")
     one.add_argument("--keep", action="store_true", help=KEEP)
-    one = command("stability", stability, "stability limits of a scene")
+    one = command("stability", series, "stability limits of a scene")
     _scene(one)
     _report(one, "runs/SCENE-stability")
+    one = command("scan", series, "whether wrong results of absurd settings are reported")
+    _scene(one, nargs="?")
+    one.add_argument("--all", action="store_true", help=ALL)
+    one.add_argument("--quick", action="store_true", help=QUICK)
+    one.add_argument("--name", default="", metavar="SCAN", help="one of the scene's scans")
+    _report(one, "runs/SCENE-scan")
+    one.add_argument("--keep", action="store_true", help=KEEP)
 
 
 def _add_kinds(command: Command) -> None:
@@ -155,7 +162,9 @@ SUBJECT = (
     "scene, a kind, or link and its kind; then one table or key of it; a list if none is given"
 )
 WRITE = "fill in the tables between <!-- describe SUBJECT --> and <!-- described --> of texts"
-KEEP = "keep runs that an earlier study completed in DIR, of the same scene on the same machine"
+KEEP = "keep runs that were completed in DIR before, of the same scene on the same machine"
+ALL = "scan all scenes that come with quintet and have scans"
+QUICK = "with --all: the preset quick of scenes that have one"
 OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"
 FORCE = "replace a former one in that folder: only the files that it wrote"
 RESUME = "go on with an interrupted or failed run, from its last snapshot"
@@ -354,20 +363,15 @@ def diff(given: argparse.Namespace) -> int:
     return 0 if found is None else 1
 
 
-def study(given: argparse.Namespace) -> int:
-    """Run a convergence study."""
-    # Start-up: only this command needs it.
+def series(given: argparse.Namespace) -> int:
+    """Run a scene many times: a study, stability limits, or scans."""
+    # Start-up: only these commands need them.
+    from quintet.coupler.study.scan import run_scan
+    from quintet.coupler.study.stability import run_stability
     from quintet.coupler.study.study import run_study
 
-    return run_study(given)
-
-
-def stability(given: argparse.Namespace) -> int:
-    """Find the stability limits of a scene."""
-    # Start-up: only this command needs it.
-    from quintet.coupler.study.stability import run_stability
-
-    return run_stability(given)
+    runs = {"study": run_study, "stability": run_stability, "scan": run_scan}
+    return runs[given.command](given)
 
 
 def bench(given: argparse.Namespace) -> int:

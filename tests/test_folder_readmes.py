@@ -20,6 +20,7 @@ from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.report.show import results
 from quintet.coupler.run.run_scene import run_scene
 from quintet.coupler.scene.read import load
+from quintet.coupler.scene.scan_table import ScanTable
 from quintet.coupler.scene.scene import GroupSettings, OutputSettings, SceneFile
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.scene.study_table import RefinementTable
@@ -114,7 +115,7 @@ def test_examples_of_scenes_can_be_read(path):
 
 CONTRACT = [Field, Port, Resources, Manifest, Plan, BenchCase, ConformCase]
 SCENE = [SceneFile, OutputSettings, GroupSettings, IterationSettings, Expectation]
-SCENE += [RefinementTable, LimitTable]
+SCENE += [RefinementTable, LimitTable, ScanTable]
 TOLD = {
     "interfaces/README.md": CONTRACT,
     "coupler/README.md": [Transfer, Demands, Binding],

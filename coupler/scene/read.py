@@ -77,7 +77,7 @@ def load(
     swaps : iterable of ``NAME=KIND``
         Components to be replaced by another kind.
     for_variants : bool
-        Whether refinements and stability limits will be run, and must suit the settings.
+        Whether refinements, stability limits or scans will be run, and must suit the settings.
     imports : bool
         Whether code of the scene's own may be imported, as a run does: kinds ``module:Class``.
         Without it their keys and ports are not checked.
@@ -158,24 +158,23 @@ def _check(
                 " Shorten it."
             )
         mistakes += _reachable(file) + wrong_name(file.name)
-    series = [_tables(table, key, mistakes) for key in variants.TABLES]
-    series = series if read_variants else [[], []]
+    series = {key: _tables(table, key, mistakes) for key in variants.TABLES}
+    series = series if read_variants else {key: [] for key in series}
     scope, check = None, None
     if file is not None and not mistakes:
         gives = {name: one.gives for name, one in components.items()}
-        expected = [one.name for one in expect]
+        expected = {one.name: one for one in expect}
         scope = Scope(file.end, gives, len(links), expected, frozenset(unread))
         check = partial(_check, path, preset=preset, imports=imports) if try_variants else None
     make_variant = variants.variant_maker(table, check)
-    study, stability, wrong_variants = variants.read_variants(
-        series[0], series[1], make_variant, scope
-    )
+    series_of_runs, wrong_variants = variants.read_variants(series, make_variant, scope)
     mistakes += wrong_variants
     if mistakes or file is None or coupling is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])
     resolved = {k: v for k, v in table.items() if k not in ("presets", *variants.TABLES)}
     made = Scene(file, path, preset, components, links, coupling, expect, resolved, file.transport)
-    made.study, made.stability = study, stability
+    made.study, made.stability = series_of_runs.study, series_of_runs.stability
+    made.scan = series_of_runs.scan
     return made
 
 

@@ -11,6 +11,7 @@ from quintet.coupler.coupling.exchange import Exchange, Link
 from quintet.coupler.coupling.iteration_settings import IterationSettings
 from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.scene.scan_table import Scan
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.study_table import Refinement
 from quintet.interfaces.component import Field, Fields, Port
@@ -204,6 +205,7 @@ class Scene:
     asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
     study: list[Refinement] = field(default_factory=list)
     stability: list[Limit] = field(default_factory=list)
+    scan: list[Scan] = field(default_factory=list)
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand
 
     @property

@@ -19,7 +19,7 @@ from typing import Annotated, Any, Literal
 
 import pydantic
 
-from quintet.coupler.measures.expectation import Index
+from quintet.coupler.measures.expectation import Expectation, Index
 from quintet.coupler.scene.study_table import MakeVariant, Table, folder_name, value_at
 from quintet.interfaces.component import Port
 from quintet.interfaces.params import (
@@ -189,7 +189,7 @@ class Scope:
     end: float  # s
     gives: Mapping[str, tuple[Port, ...]]  # ports that each component gives
     links: int
-    expected: list[str]  # names
+    expected: Mapping[str, Expectation]  # by name
     unread: frozenset[str] = frozenset()  # components whose ports are not known
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from quintet.coupler.coupling.links.keys import LinkKeys
 from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.scene.scan_table import ScanTable
 from quintet.coupler.scene.scene import ComponentKeys, GroupSettings
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.scene.study_table import RefinementTable
@@ -33,6 +34,8 @@ class SceneTables:
         Refinements of a convergence study, from coarse to fine.
     stability
         Limits of stability.
+    scan
+        Settings varied from safe to absurd, to see whether wrong results are reported.
     """
 
     components: dict[str, ComponentKeys]
@@ -43,3 +46,4 @@ class SceneTables:
     stand_ins: dict[str, dict[str, dict[str, Any]]] = field(default_factory=dict)
     study: tuple[RefinementTable, ...] = ()
     stability: tuple[LimitTable, ...] = ()
+    scan: tuple[ScanTable, ...] = ()

@@ -1,23 +1,36 @@
-"""Variants of a scene: its refinements and stability limits, checked with the scene."""
+"""Variants of a scene: its refinements, limits and scans, checked with the scene."""
 
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import dataclass, field
 
 from quintet.coupler.scene.overrides import put
+from quintet.coupler.scene.scan_table import Scan, read_scans
 from quintet.coupler.scene.stability_table import Limit, Scope, read_limits
 from quintet.coupler.scene.study_table import MakeVariant, Refinement, Table, read_refinements
 from quintet.interfaces.errors import SceneError
 
-TABLES = ("study", "stability")
+TABLES = ("study", "stability", "scan")
+
+
+@dataclass(frozen=True, slots=True)
+class Variants:
+    """Refinements, stability limits and scans of a scene."""
+
+    study: list[Refinement] = field(default_factory=list)
+    stability: list[Limit] = field(default_factory=list)
+    scan: list[Scan] = field(default_factory=list)
 
 
 def read_variants(
-    study: list[Table], stability: list[Table], make_variant: MakeVariant, scope: Scope | None
-) -> tuple[list[Refinement], list[Limit], list[str]]:
-    """Check refinements and stability limits; a scene with mistakes has no scope."""
-    refinements, wrong = read_refinements(study, make_variant)
-    limits, also_wrong = read_limits(stability, make_variant, scope)
-    return refinements, limits, wrong + also_wrong
+    tables: dict[str, list[Table]], make_variant: MakeVariant, scope: Scope | None
+) -> tuple[Variants, list[str]]:
+    """Check refinements, limits and scans; a scene with mistakes has no scope."""
+    refinements, wrong = read_refinements(tables["study"], make_variant)
+    limits, wrong_limits = read_limits(tables["stability"], make_variant, scope)
+    expected = scope.expected if scope else None
+    scans, wrong_scans = read_scans(tables["scan"], make_variant, expected)
+    return Variants(refinements, limits, scans), wrong + wrong_limits + wrong_scans
 
 
 def variant_maker(table: Table, check: Callable[[Table], object] | None) -> MakeVariant:

@@ -15,11 +15,15 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.files.run_files import RUN_LOG as LOG
+from quintet.coupler.files.run_files import SCENE
 from quintet.coupler.launch.processes import PYTHON, tail
 from quintet.coupler.report.show import NAME, results
 from quintet.coupler.run.folder import begin, discard_former
+from quintet.coupler.run.results import BAD, machine
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import assignments, run_arguments
+from quintet.coupler.scene.read import load, parse
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.process import STARTER
 
 GRACE = 10.0  # s for a run to end after SIGTERM
@@ -66,8 +70,28 @@ class ChildRun:
             process.wait()
         return _results(folder, process.returncode, stalled)
 
+    def earlier(self, settings: dict[str, Any], folder: Path) -> Any:
+        """Results of the same run, done in an earlier series; None if there are none.
+
+        It must be of the scene as it is read now, on this machine with these versions.
+        """
+        if not (folder / NAME).is_file():
+            return None
+        found = results(folder)
+        asked = (self.scene, self.preset, self._overrides(settings), self.swaps, self.transport)
+        try:
+            scene = load(*asked)
+        except SceneError:  # the scene has changed, and refuses now what it took before
+            return None
+        same = parse(folder / SCENE) == scene.resolved
+        done = same and found.get("status") == "done" and found.get("machine") == machine()
+        return found if done else None
+
+    def _overrides(self, settings: dict[str, Any]) -> list[str]:
+        return [*self.settings, *assignments(settings)]
+
     def _command(self, settings: dict[str, Any], folder: Path) -> list[str]:
-        overrides = [*self.settings, *assignments(settings)]
+        overrides = self._overrides(settings)
         asked = run_arguments(self.scene, self.preset, overrides, self.swaps, self.transport)
         python = [*PYTHON, "-m", "quintet.coupler.cli"]
         return [*python, "run", *asked, "--out", str(folder), "--force"]
@@ -94,6 +118,9 @@ def _results(folder: Path, status: int, stalled: bool) -> Any:
         found = results(folder)
     else:
         lines = tail(folder / LOG)
-        cause = f"the run ended with status {status} and left no results: {' '.join(lines[-3:])}"
-        found = {"status": "failed", "windows": 0, "time": 0.0, "fault": {"cause": cause}}
+        state = "refused" if status == BAD else "failed"
+        cause = " ".join(lines[-3:])
+        if status != BAD:
+            cause = f"the run ended with status {status} and left no results: {cause}"
+        found = {"status": state, "windows": 0, "time": 0.0, "fault": {"cause": cause}}
     return found | {"status": "stalled"} if stalled else found

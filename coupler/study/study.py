@@ -17,8 +17,7 @@ from quintet.coupler.report.work_precision import draw, table
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.scene.overrides import assignments
-from quintet.coupler.scene.read import load, parse
+from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.child_run import ChildRun
@@ -49,7 +48,7 @@ def _run_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: Json
     with stop.listening():
         for refinement in scene.study:
             place = folder / refinement.folder
-            kept = earlier_results(given, refinement, place) if given.keep else None
+            kept = child.earlier(refinement.settings, place) if given.keep else None
             print(f"{refinement.label}: {'kept' if kept else 'running'} in {place}", flush=True)
             rows.append(row_of(refinement, kept or child.run(refinement.settings, place)))
             print(f"{refinement.label}: {rows[-1]['status']}, {rows[-1]['wall']:.1f} s", flush=True)
@@ -60,21 +59,6 @@ def _run_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: Json
     wanted.write(found)
     print_summary(found, folder / PICTURE)
     return status_of(found, len(scene.study))
-
-
-def earlier_results(given: argparse.Namespace, refinement: Refinement, folder: Path) -> Row | None:
-    """Results of the same run in an earlier study; None if there are none.
-
-    Done, of the scene as it is read now, on this machine with these versions.
-    """
-    if not (folder / show.NAME).is_file():
-        return None
-    found = show.results(folder)
-    settings = [*given.settings, *assignments(refinement.settings)]
-    asked = (given.scene, given.preset, settings, given.swap, given.transport)
-    same = parse(folder / "scene.toml") == load(*asked).resolved
-    done = same and found.get("status") == "done" and found.get("machine") == results.machine()
-    return found if done else None
 
 
 def row_of(refinement: Refinement, found: Row) -> Row:

@@ -20,6 +20,7 @@ FOREIGN = {
 COMMANDS = {
     "study": ["study", "scene.toml"],
     "stability": ["stability", "scene.toml"],
+    "scan": ["scan", "scene.toml"],
     "bench": ["bench", "toys:COUNTED"],
     "bench exchange": ["bench", "exchange"],
     "conform": ["conform", "--scene", "scene.toml", "--component", "ping"],

@@ -23,7 +23,8 @@ OTHERS = (
     datetime.date(2020, 1, 1),
 )  # fmt: skip
 SETTINGS = ("components=5", "links=1", "expect={}", "groups.a.members=[]", "output=3", "presets=[]",
-            "end=1e300", "window=nan", "order=[]", "study=1", "stability={}", "stand_ins=3",
+            "end=1e300", "window=nan", "order=[]", "study=1", "stability={}", "scan=[1]",
+            "stand_ins=3",
             "tls=[]", "endpoint=tcp/127.0.0.1:0", "iteration.limit=0", "a.b=1", ".=1", "=",
             "expect.0.unit=mm", "expect.99.unit=m", "expect.².unit=m", "end=[[[[")  # fmt: skip
 

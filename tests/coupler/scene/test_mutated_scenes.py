@@ -75,7 +75,7 @@ def start(mutant, out):
     command = [sys.executable, "-m", "quintet.coupler.cli", "run", str(mutant.path)]
     command += [*mutant.arguments, "--transport", "memory", "--out", str(out)]
     changes = [f"end={min(short, scene.file.end)!r}", "output.pictures=[]"]
-    changes += ["study=[]", "stability=[]"]  # whose windows may be longer
+    changes += ["study=[]", "stability=[]", "scan=[]"]  # whose windows may be longer
     command += [word for change in changes for word in ("--set", change)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=COMPILED)
     return done.returncode, done.stderr
