@@ -11,6 +11,7 @@ from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, mesh
 from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.points import points_of
 from quintet.components.fe_plate.state import (
     Array,
     Index,
@@ -63,7 +64,7 @@ def structure(
     nodes = len(made.node)
     share = np.repeat(density * volume / 8.0, 8)
     mass = np.bincount(made.corner.ravel(), share, nodes).astype(np.float64)
-    points = 8 if params.integration == "full" else 1  # of an element
+    points = points_of(params)
     place, element, first = in_blocks(made.part, len(laws), LANES // points)
     corner, own = made.corner[element].astype(np.uint32), volume[element]
     if points == 8:
@@ -164,7 +165,7 @@ def targets(
 def initial_state(params: FePlateParams, built: Structure) -> State:
     """Temperatures and velocities that the parts have at the start; nothing is strained."""
     model, first, node = built.model, built.first, built.mesh.node
-    springs = 0 if params.integration == "full" else first[-1]  # blocks
+    springs = first[-1] if points_of(params) == 1 else 0  # blocks
     rows = max(len(node), int(model.target.max()) + 1)
     made = state_at_rest(node, first[-1], springs, rows, len(model.walls))
     for k, part in enumerate(params.parts):

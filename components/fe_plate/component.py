@@ -1,7 +1,7 @@
 """A structure of finite elements, stepped by velocity Verlet."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from quintet.components.fe_plate.gauges import (
     of_parts,
     wanted_of,
 )
+from quintet.components.fe_plate.judgement import EVERY, Judge, hourglass_weights
 from quintet.components.fe_plate.kernels.blocks import ENERGY
 from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
@@ -28,6 +29,7 @@ from quintet.components.fe_plate.kernels.nodes import (
 )
 from quintet.components.fe_plate.laws import add_pressure
 from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.points import integration_notes, points_of
 from quintet.components.fe_plate.ports import SHOWS
 from quintet.components.fe_plate.state import Array, Resistance, Whole
 from quintet.components.fe_plate.supports import supports
@@ -59,6 +61,9 @@ class Accumulated:
     time: float = 0.0  # s
     work: float = 0.0  # J, of the loads
     outside: float = 0.0  # J, of it that of pressures; less what mass damping took
+    damped: float = 0.0  # J, that mass damping took
+    hung: float = 0.0  # J, that came with what hangs on the nodes
+    steps: int = 0
 
 
 class FePlate(Component):
@@ -103,7 +108,7 @@ class FePlate(Component):
             params.stiffness_damping,
         )
         # Compiled where it is asked for alone.
-        self.kernel = _eight_points if params.integration == "full" else _one_point
+        self.kernel = _one_point if points_of(params) == 1 else _eight_points
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
         self.hung = np.zeros(len(self.surface))  # kg, mass that hangs on the nodes
         self.glued = False  # whether particles hang on it
@@ -111,6 +116,13 @@ class FePlate(Component):
         self.accumulated = Accumulated()
         self.shortest = self._shortest()  # m
         self.bound = self._write_forces(0.0)  # s
+        self.judge = Judge(params, self.places, self.element_mass, built, self._hourglass())
+
+    def _hourglass(self) -> Array:
+        """Energy (e,) that elements lack over that of the springs of their patterns."""
+        if not len(self.state.springs):
+            return np.zeros(len(self.mesh.corner))
+        return hourglass_weights(self.mesh, self.laws, self.params.hourglass)
 
     def _shortest(self) -> float:
         """Least edge [m] of cubes, or squares, as large as the elements."""
@@ -133,6 +145,8 @@ class FePlate(Component):
     def bind(self, static: Fields, joined: Keys) -> None:
         """Let mass hang on the nodes."""
         self.glued = "node_glue" in joined
+        # Glued particles push in the first half of a step alone: the link has that balance.
+        self.judge.closed = not self.glued
         if "node_load.added_mass" in static:
             self._hang(static["node_load.added_mass"])
 
@@ -146,8 +160,10 @@ class FePlate(Component):
         mean = self.state.mean_velocity[rows]
         rest = (before / whole)[:, None] * (self.state.velocity[rows] - mean)
         changed = whole != before
+        energy = kinetic_energy(self.model, self.state)
         self.state.velocity[rows[changed]] = (mean + rest)[changed]
         self.model.inverse_mass[rows] = 1.0 / whole
+        self.accumulated.hung += kinetic_energy(self.model, self.state) - energy
         self.hung = np.array(mass)
 
     def stable_dt(self) -> float:
@@ -169,8 +185,11 @@ class FePlate(Component):
             self._hasten(dt)
         total, damping = self.accumulated, self.params.mass_damping
         kept = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
+        if total.steps % EVERY == 0:
+            self._note_energies()
+        total.steps += 1
         if damping:
-            total.outside -= (1.0 - kept) * kinetic_energy(self.model, self.state)
+            self._note_damped((1.0 - kept) * kinetic_energy(self.model, self.state))
         done = kick_and_drift(self.model, self.state, dt, damping)
         total.time += dt
         total.work += done
@@ -179,9 +198,21 @@ class FePlate(Component):
             total.outside += done - dt * float((mean * self.loads).sum())
         self.bound = self._write_forces(dt)
         if damping:
-            total.outside -= (1.0 / kept - 1.0) * kinetic_energy(self.model, self.state)
+            self._note_damped((1.0 / kept - 1.0) * kinetic_energy(self.model, self.state))
         if self.glued:
             self.state.velocity[self.surface] -= self.early
+
+    def _note_damped(self, energy: float) -> None:
+        """Take down an energy [J] that mass damping took."""
+        self.accumulated.damped += energy
+        self.accumulated.outside -= energy
+
+    def _note_energies(self) -> None:
+        """Take down the energies of the state between two steps, and what was done on it."""
+        total = self.accumulated
+        kinetic, potential = self._motion()
+        done = total.work + total.hung - total.damped + float(self.state.wall_work.sum())
+        self.judge.note(self.state, kinetic, potential, done, total.steps == 0)
 
     def _hasten(self, dt: float) -> None:
         """Let the loads of partners act in the step's first half, and not in its second one.
@@ -278,7 +309,8 @@ class FePlate(Component):
         """Copy out all state."""
         kept = {name: array.copy() for name, array in self._arrays().items()}
         total = self.accumulated
-        kept["accumulated"] = np.array([total.time, total.work, total.outside, self.bound])
+        kept["accumulated"] = np.array([*astuple(total), self.bound])
+        kept["judge"] = self.judge.save()
         own = {"loads": self.loads, "hung": self.hung, "early": self.early}
         return kept | {name: array.copy() for name, array in own.items()}
 
@@ -290,8 +322,9 @@ class FePlate(Component):
         self.loads[:] = state["loads"]
         self.hung, self.early = np.array(state["hung"]), np.array(state["early"])
         self.model.inverse_mass[self.surface] = 1.0 / (self.mass[self.surface] + self.hung)
-        time, work, outside, self.bound = state["accumulated"].tolist()
-        self.accumulated = Accumulated(time, work, outside)
+        time, work, outside, damped, hung, steps, self.bound = state["accumulated"].tolist()
+        self.accumulated = Accumulated(time, work, outside, damped, hung, int(steps))
+        self.judge.load(state["judge"])
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, with what hangs on the nodes.
@@ -299,24 +332,43 @@ class FePlate(Component):
         Internal is strain, plastic work and stabilisation; work is that of pressures, rigid walls
         and mass damping.
         """
-        s, whole = self.state, self.mass.copy()
-        whole[self.surface] += self.hung
-        momentum, moving = whole[:, None] * s.velocity, s.velocity.copy()
-        moving[self.surface] += self.early if self.glued else 0.0
+        s, whole = self.state, self._whole_mass()
+        momentum = whole[:, None] * s.velocity
+        kinetic, potential = self._motion()
         energy = self.element_mass @ self.places.of(s, ENERGY) + self.places.spring_energy(s).sum()
         return Totals(
             mass=float(whole.sum()),
             momentum=momentum.sum(axis=0),
             angular_momentum=np.cross(s.position, momentum).sum(axis=0),
-            kinetic=0.5 * float((whole[:, None] * moving * moving).sum()),
-            potential=-float(whole @ (s.position @ self.model.gravity)),
+            kinetic=kinetic,
+            potential=potential,
             internal=float(energy),
             work=self.accumulated.outside + float(s.wall_work.sum()),
         )
 
+    def _whole_mass(self) -> Array:
+        """Mass (n,) kg of the nodes with what hangs on them."""
+        whole = self.mass.copy()
+        whole[self.surface] += self.hung
+        return whole
+
+    def _motion(self) -> tuple[float, float]:
+        """Kinetic and potential energy [J]."""
+        whole, moving = self._whole_mass(), self.state.velocity
+        if self.glued:
+            moving = moving.copy()
+            moving[self.surface] += self.early
+        kinetic = 0.5 * float((whole[:, None] * moving * moving).sum())
+        gravity = self.model.gravity
+        return kinetic, -float(whole @ (self.state.position @ gravity)) if gravity.any() else 0.0
+
+    def warnings(self) -> dict[str, str]:
+        """Energy from nowhere, hourglassing, and motion that bulk viscosity takes."""
+        return self.judge.warnings()
+
     def notes(self) -> tuple[str, ...]:
-        """Sizes of meshes from files, and what of them is left out."""
-        return self.mesh.notes
+        """Sizes of meshes from files and what of them is left out; integration in thin parts."""
+        return (*self.mesh.notes, *integration_notes(self.params))
 
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""

@@ -12,6 +12,7 @@ from quintet.interfaces.params import (
     parameters,
 )
 
+LEAST_HOURGLASS = 1e-3
 Erosion = Literal["plastic_strain", "damage", "spall"]
 
 
@@ -223,8 +224,10 @@ class FePlateParams:
         In two, x and z, plane strain: parts are one element of 1 m deep along y, forces those on
         1 m, and faces edges.
     integration
-        Reduced: one quadrature point an element, with stabilisation; full: eight, with strains
-        assumed so that bending is exact: eight times the work.
+        Reduced: one quadrature point an element, with stabilisation: of n layers bending lacks
+        1/n² of its stiffness; full: eight, with strains assumed so that bending is exact: eight
+        times the work. Auto: full where a slender part has fewer than 8 layers and no material
+        has a law of shocks or of failure, reduced elsewhere.
     courant : 1
         Share of the greatest step that is proven stable; that of a mesh may be twice as great.
     hourglass : 1
@@ -248,7 +251,7 @@ class FePlateParams:
     gravity: Vector = (0.0, 0.0, 0.0)
     erosion: tuple[Erosion, ...] = ("plastic_strain", "damage", "spall")
     dimensions: Literal[2, 3] = 3
-    integration: Literal["reduced", "full"] = "reduced"
+    integration: Literal["auto", "reduced", "full"] = "auto"
     courant: Positive = 0.9
     hourglass: NotNegative = 0.05
     viscosity_linear: NotNegative = 0.06
@@ -257,6 +260,12 @@ class FePlateParams:
     stiffness_damping: NotNegative = 0.0
 
     def __post_init__(self) -> None:
+        if self.integration != "full" and self.hourglass < LEAST_HOURGLASS:
+            raise ValueError(
+                f"hourglass must be {LEAST_HOURGLASS:g} or more, for nothing else holds patterns "
+                f"that one quadrature point does not see; found {self.hourglass:g}. Raise it (0.05 "
+                'is usual), or set integration = "full".'
+            )
         if not self.parts:
             raise ValueError("parts must be at least one; found none. Add [[parts]].")
         if self.dimensions == 2:

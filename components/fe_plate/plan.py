@@ -2,6 +2,7 @@
 
 from quintet.components.fe_plate.meshes.params import mesh_notes
 from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.points import integration_notes, points_of
 from quintet.interfaces.manifest import Plan
 
 RATE = 5e6  # elements stepped per second and thread
@@ -11,5 +12,11 @@ BYTES = 1000.0  # of an element
 def plan(params: FePlateParams) -> Plan:
     """What a run will need."""
     count = sum(one.count for one in params.parts)
-    notes = mesh_notes(params.parts)
-    return Plan(count, min(one.expected_step for one in params.parts), RATE, BYTES, notes=notes)
+    points = points_of(params)
+    return Plan(
+        count,
+        min(one.expected_step for one in params.parts),
+        RATE / points,
+        BYTES * points,
+        notes=(*mesh_notes(params.parts), *integration_notes(params)),
+    )

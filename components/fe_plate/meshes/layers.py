@@ -1,0 +1,76 @@
+"""How many elements a part has through its thinnest extents.
+
+With one quadrature point an element, n layers lack 1/n² of their stiffness in bending: the strain
+is linear through the thickness, and each layer has that of its middle alone.
+"""
+
+import numpy as np
+
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.components.fe_plate.meshes.mesh import SIDES
+from quintet.components.fe_plate.meshes.params import MeshFile, Part, cut_out
+
+ENOUGH = 8  # layers: 1.6 % too soft
+SLENDER = 0.5  # of a part's longest extent: what is thinner than this bends
+MANY = 10**9
+OPPOSITE = np.array([1, 0, 4, 5, 2, 3])  # the side opposite to each
+
+
+def fewest_layers(part: Part, dimensions: int = 3) -> int:
+    """Fewest elements through an extent in which a part is slender; `MANY` if it is in none."""
+    if part.mesh is not None:
+        return _of_mesh(part.mesh)
+    if part.cylinder is not None:
+        shape, (core, rings, layers) = part.cylinder, part.cylinder.elements
+        across = (2 * (core + rings), 2.0 * shape.radius)
+        return _fewest([across, (layers, shape.length)])
+    assert part.lowest is not None and part.highest is not None and part.elements is not None
+    found = []
+    for along, cut in enumerate(cut_out(part)):
+        if dimensions == 2 and along == 1:
+            continue
+        extent = part.highest[along] - part.lowest[along]
+        found.append((part.elements[along], extent))
+        # Beside a cutout the part is as thin as what is left there.
+        for left in (int(np.argmax(cut)), int(np.argmax(cut[::-1]))) if cut.any() else ():
+            if left:
+                found.append((left, extent * left / part.elements[along]))
+    return _fewest(found)
+
+
+def _fewest(extents: list[tuple[int, float]]) -> int:
+    longest = max(length for _, length in extents)
+    return min((n for n, length in extents if length < SLENDER * longest), default=MANY)
+
+
+def _of_mesh(shape: MeshFile) -> int:
+    """Fewest elements from an outer side through to the one opposite."""
+    mesh = shape.placed()
+    longest = float(np.ptp(mesh.node, axis=0).max())
+    twin = twins(mesh.corner)
+    outer = np.flatnonzero(twin < 0)
+    start, at = _middles(mesh.node, mesh.corner, outer), outer
+    for count in range(1, ENOUGH):
+        through = at - at % 6 + OPPOSITE[at % 6]
+        ends = twin[through] < 0
+        middle = _middles(mesh.node, mesh.corner, through[ends])
+        if (np.linalg.norm(middle - start[ends], axis=1) < SLENDER * longest).any():
+            return count
+        at, start = twin[through[~ends]], start[~ends]
+    return MANY
+
+
+def twins(corner: Whole) -> Whole:
+    """Side 6e + s (6e,) that each side of an element shares with another one; -1 of outer ones."""
+    side = np.sort(corner[:, SIDES].reshape(-1, 4), axis=1)
+    order = np.lexsort(side.T)
+    same = np.flatnonzero((side[order[1:]] == side[order[:-1]]).all(axis=1))
+    found = np.full(len(side), -1)
+    found[order[same]], found[order[same + 1]] = order[same + 1], order[same]
+    return found
+
+
+def _middles(node: Array, corner: Whole, side: Whole) -> Array:
+    """Middles (k, 3) m of some sides."""
+    corners = np.take_along_axis(corner[side // 6], SIDES[side % 6], axis=1)
+    return np.asarray(node[corners].mean(axis=1))
