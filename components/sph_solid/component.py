@@ -164,7 +164,8 @@ class SphSolid(Component):
         glued = self._glued_rows()[state.active > 0.0]
         found = totals(state, self._masses(), glued, self.params.gravity)
         note_energies(state, found.kinetic, found.potential, found.internal)
-        note_viscous(state, self.of_material, self.laws)
+        contact = self.sums.contact_energy(state, self.density[state.material])
+        note_viscous(state, self.of_material, self.laws, contact)
         if state.steps % BONDS_EVERY == 0 and not self.lists.are_for_good:
             note_torn(state, self.bonds, self.laws, self.params)
 

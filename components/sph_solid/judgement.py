@@ -57,9 +57,12 @@ def is_elastic(law: Solid) -> bool:
     return law.hard >= NEVER and not law.shocks and law.spall >= NEVER
 
 
-def note_viscous(state: State, rows: list[Whole], laws: list[Solid]) -> None:
-    """Take down the heat [J] of viscosity in elastic bodies, of the rows of each material."""
-    heat = 0.0
+def note_viscous(state: State, rows: list[Whole], laws: list[Solid], contact: float) -> None:
+    """Take down the heat [J] of viscosity in elastic bodies, of the rows of each material.
+
+    The energy [J] of contact is in their internal energy, and no heat.
+    """
+    heat = -contact
     for mine, law in zip(rows, laws, strict=True):
         if is_elastic(law):
             internal = law.density * state.volume[mine] * state.energy[mine]

@@ -21,6 +21,9 @@ class PairSums(Protocol):
 
     heats: Array | None
 
+    def contact_energy(self, state: State, density: Array) -> float:
+        """Energy [J] that is stored in contact, of densities (n,) kg/m3 at the start."""
+
     def make(self, state: State, lists: SolidLists) -> None:
         """Take lists that were just made."""
 
@@ -35,6 +38,10 @@ class ParticleSums:
     """Sums over pairs of particles, and of their images."""
 
     heats: Array | None = None
+
+    def contact_energy(self, state: State, density: Array) -> float:
+        """None: all pairs are alike."""
+        return 0.0
 
     def __init__(self, team: Team) -> None:
         self.team = team

@@ -45,14 +45,30 @@ class Touching:
                 self.spacing, forces,
             )  # fmt: skip
 
+    def energy(self, state: State, density: Array) -> float:
+        """Energy [J] that contact stores, of densities (n,) kg/m3 at the start."""
+        place, stiff = state.position, density * state.sound**2
+        i, j = self._pairs(place, 1.0).T
+        depth = 1.0 - np.linalg.norm(place[i] - place[j], axis=1) / self.spacing
+        volume = np.sqrt(state.volume[i] * state.volume[j])
+        stored = 0.25 * float(((stiff[i] + stiff[j]) * volume * depth**2).sum())
+        for plane, mine in self.planes:
+            apart = 2.0 * plane.inward * (place[mine, plane.axis] - plane.position)
+            depth = np.maximum(1.0 - apart / self.spacing, 0.0)
+            stored += 0.25 * float((stiff[mine] * state.volume[mine] * depth**2).sum())
+        return stored
+
     def _list(self, place: Array) -> None:
         self.listed = place.copy()
-        self.pairs = np.zeros((0, 2), np.int64)
-        if not np.isfinite(place).all():
-            return  # the step will say so
-        reach = (1.0 + SKIN) * self.spacing
-        pairs = cKDTree(place).query_pairs(reach, output_type="ndarray").astype(np.int64)
+        # What is not finite touches nothing; the step will say so.
+        empty = np.zeros((0, 2), np.int64)
+        self.pairs = self._pairs(place, 1.0 + SKIN) if np.isfinite(place).all() else empty
+
+    def _pairs(self, place: Array, reach: float) -> Whole:
+        """Pairs (p, 2) nearer than so many spacings, that were no neighbours, in their order."""
+        tree = cKDTree(place)
+        pairs = tree.query_pairs(reach * self.spacing, output_type="ndarray").astype(np.int64)
         apart = self.start[pairs[:, 0]] - self.start[pairs[:, 1]]
         were_far = (apart * apart).sum(axis=1) >= self.support * self.support
         pairs = pairs[were_far | (self.group[pairs[:, 0]] != self.group[pairs[:, 1]])]
-        self.pairs = np.ascontiguousarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))])
+        return np.ascontiguousarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))])

@@ -19,6 +19,13 @@ def test_a_bar_has_its_published_length_foot_and_strain(run_scene: Run) -> None:
     assert abs(found["ledger"]["energy_drift"]) < 3e-3
 
 
+def test_rubber_rings_bounce_off_whole(run_scene: Run) -> None:
+    found = run_scene("rubber_rings", "--preset", "quick")
+    assert all(one["met"] for one in found["expect"]), found["expect"]
+    assert not found["warnings"]
+    assert abs(found["ledger"]["energy_drift"]) < 3e-3
+
+
 def test_a_ball_perforates_the_plate_that_stops_one_of_half_its_size(run_scene: Run) -> None:
     for preset in ("quick", "small"):
         more = ("--set", "components.impact.spacing=8e-4")

@@ -40,10 +40,11 @@ def damage_growth(s, pressure, delta, temperature, dt, law):  # type: ignore[no-
         return 0.0
     stress = equivalent(s)
     triaxiality = -pressure / stress if stress > 0.0 else 0.0
-    strain = law.d1 + law.d2 * math.exp(law.d3 * triaxiality)
+    # Below 0 no strain is borne; of two factors below 0 the product would be above.
+    strain = max(law.d1 + law.d2 * math.exp(law.d3 * triaxiality), 0.0)
     rate = delta / (dt * law.reference_rate)
     if rate > 1.0:
-        strain *= 1.0 + law.d4 * math.log(rate)
+        strain *= max(1.0 + law.d4 * math.log(rate), 0.0)
     above = (temperature - law.reference_temperature) / law.melting
-    strain *= 1.0 + law.d5 * max(0.0, above)
+    strain *= max(1.0 + law.d5 * max(0.0, above), 0.0)
     return delta / max(strain, 1e-6)

@@ -1,5 +1,6 @@
 """What a scene says about a material that yields, is shocked, and breaks."""
 
+import math
 from typing import Annotated
 
 from pydantic import Field
@@ -83,7 +84,10 @@ class JohnsonCookDamage:
     """Strain at fracture of Johnson & Cook (1985).
 
     ε_f = (D₁ + D₂ exp(D₃ σ*)) (1 + D₄ ln ε̇*) (1 + D₅ T*), where σ* is the mean tension over
-    the equivalent stress; damage grows as ∫ dε_p/ε_f, and at 1 the material has failed.
+    the equivalent stress; damage grows as ∫ dε_p/ε_f, and at 1 the material has failed. D₁ may be
+    below 0, as of 6061-T6 (Lesuer, Kay & LeBlanc 2001: -0.77, 1.45, -0.47, 0, 1.6); where ε_f would
+    be no more than 1e-6, any plastic strain breaks the material. In uniaxial tension, σ* = 1/3, ε_f
+    must be above 0.
 
     Parameters
     ----------
@@ -91,11 +95,20 @@ class JohnsonCookDamage:
         D₁ to D₅.
     """
 
-    d1: NotNegative
+    d1: Number
     d2: NotNegative = 0.0
     d3: Number = 0.0
     d4: Number = 0.0
     d5: Number = 0.0
+
+    def __post_init__(self) -> None:
+        strain = self.d1 + self.d2 * math.exp(min(self.d3 / 3.0, 600.0))
+        # With neither D₁ nor D₂ there is no damage.
+        if strain <= 0.0 and (self.d1 != 0.0 or self.d2 != 0.0):
+            raise ValueError(
+                "damage: the strain at fracture in uniaxial tension, d1 + d2 exp(d3/3), must be "
+                f"above 0; found {strain:.4g}. Correct d1, d2 or d3."
+            )
 
 
 @parameters

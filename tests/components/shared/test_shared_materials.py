@@ -245,6 +245,25 @@ def test_damage_is_the_share_of_the_strain_at_fracture():
     assert _damage(s, -1.0, 1e-3, 398.0, 1e-6, solid(material("steel"))) == 0.0
 
 
+def test_a_strain_at_fracture_below_zero_breaks_the_material_at_once():
+    """6061-T6 of Lesuer, Kay & LeBlanc (2001) has D₁ = -0.77: at high tension nothing is borne."""
+    made = Material(
+        density=2703.0,
+        youngs_modulus=7e10,
+        poissons_ratio=0.3,
+        johnson_cook=JohnsonCook(a=3.24e8, b=1.14e8, n=0.42, melting_temperature=925.0),
+        damage=JohnsonCookDamage(d1=-0.77, d2=1.45, d3=-0.47, d4=0.0, d5=1.6),
+        specific_heat=896.0,
+    )
+    law, s = solid(made), (2.0, -1.0, -1.0, 0.0, 0.0, 0.0)
+    fracture_strain = -0.77 + 1.45 * math.exp(-0.47 / 3.0)
+    assert fracture_strain == pytest.approx(0.47, abs=0.01)
+    assert _damage(s, -1.0, 1e-3, 298.0, 1e-6, law) == pytest.approx(1e-3 / fracture_strain)
+    assert _damage(s, -6.0, 1e-3, 298.0, 1e-6, law) >= 1.0
+    with pytest.raises(ValueError, match=r"in uniaxial tension.*found -0.28"):
+        JohnsonCookDamage(d1=-0.77, d2=0.57, d3=-0.47)
+
+
 @pytest.mark.parametrize(
     ("given", "rule"),
     [
