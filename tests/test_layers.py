@@ -17,7 +17,7 @@ MAY_IMPORT = {
 FLOORS = {
     "interfaces": [
         {"errors"},
-        {"units", "params"},
+        {"units", "params", "recordings"},
         {"component", "keys"},
         {"ports", "manifest", "rotation", "sums", "faces"},
         {"lines"},

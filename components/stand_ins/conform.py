@@ -8,6 +8,7 @@ import numpy as np
 
 from quintet.interfaces.manifest import ConformCase
 from quintet.interfaces.ports import MOTION, to_json
+from quintet.interfaces.recordings import seal, seal_rows
 
 BODY = {"shape": "box", "size": [0.1, 0.1, 0.1], "position": [1.0, 2.0, 3.0]}
 TURNING = {**BODY, "velocity": [1.0, 0.0, 0.0], "angular_velocity": [0.0, 2.0, 1.0]}
@@ -61,13 +62,15 @@ def _recorded(folder: Path) -> dict[str, Any]:
     }
     static = {"shape": np.ones(3), "size": np.ones((3, 3)), "mass": np.ones(3)}
     with h5py.File(folder / "recording.h5", "w") as file:
-        file.attrs["tick"] = WINDOW
+        file.attrs["run"], file.attrs["tick"], file["scene"] = "", WINDOW, ""
         group = file.create_group("components/bodies")
         group.attrs["ports"] = to_json((MOTION,))
-        group["ticks"] = np.arange(ROWS)
+        group["times"], group["ticks"] = time, np.arange(ROWS)
         group["stable_steps"] = np.full(ROWS, np.inf)
         for key, array in fields.items():
             group[f"fields/{key}"] = array
         for name, array in static.items():
             group[f"static/motion.{name}"] = array
+        seal_rows(group, "bodies", ROWS)
+        seal(group)
     return {"recording": str(folder), "component": "bodies"}

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from quintet.interfaces.component import Fields, fields_of
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import Plan, Ports
 from quintet.interfaces.ports import from_json
+from quintet.interfaces.recordings import CheckedFile, readable
 
 
 def recording_file(path: str) -> Path:
@@ -21,8 +21,8 @@ def recording_file(path: str) -> Path:
 
 
 @contextmanager
-def recorded(params: ReplayParams) -> Iterator[Any]:
-    """Open a recording at the component that is replayed."""
+def recorded(params: ReplayParams) -> Iterator[CheckedFile]:
+    """Open a recording that has the component that is replayed."""
     # Only a replay reads recordings.
     import h5py
 
@@ -32,32 +32,26 @@ def recorded(params: ReplayParams) -> Iterator[Any]:
             f"{where}: there is no such file. Run the scene first, or name "
             "the run to replay, as in --swap NAME=replay@DIR."
         )
-    try:
-        with h5py.File(path, "r", locking=False) as file:
-            known = list(file["components"])
-            if params.component not in known:
-                raise SceneError(
-                    f"{where}: component {params.component} is not in it. It has "
-                    f"{', '.join(known)}."
-                )
-            yield file[f"components/{params.component}"]
-    except (OSError, LookupError, RuntimeError, TypeError, ValueError) as error:
-        raise SceneError(
-            f"{where}: it must be a whole recording of quintet; reading it found "
-            f"{type(error).__name__}: {error}. Name another, or run the scene again."
-        ) from error
+    with readable(params.recording), h5py.File(path, "r", locking=False) as file:
+        known = list(file["components"])
+        if params.component not in known:
+            raise SceneError(
+                f"{where}: component {params.component} is not in it. It has {', '.join(known)}."
+            )
+        yield CheckedFile(file, params.recording)
 
 
 def recorded_ports(params: ReplayParams) -> Ports:
     """Ports that the recorded component gave; it takes nothing back."""
-    with recorded(params) as group:
-        return (), from_json(str(group.attrs["ports"]))
+    with recorded(params) as file:
+        return (), from_json(str(file.component(params.component).attrs["ports"]))
 
 
 def recorded_plan(params: ReplayParams) -> Plan:
     """Tell how many items and bytes there are, and at which times."""
-    with recorded(params) as group:
-        times = group["ticks"][()] * group.file.attrs["tick"]
+    with recorded(params) as file:
+        group = file.component(params.component)
+        times = file.marks(params.component)["ticks"] * file.file.attrs["tick"]
         data = list(group["fields"].values())
         items = max((one.shape[1] for one in data), default=1) or 1
         size = sum(8.0 * np.prod(one.shape, dtype=float) for one in data)
@@ -67,10 +61,11 @@ def recorded_plan(params: ReplayParams) -> Plan:
 def recorded_start(params: ReplayParams) -> Fields:
     """Tell what was described then, and the instants at the recording's start."""
     _, gives = recorded_ports(params)
-    with recorded(params) as group:
+    with recorded(params) as file:
+        group = file.component(params.component)
         known = fields_of(gives)
         found = {key: array[()] for key, array in group.get("static", {}).items()}
         for key, data in group["fields"].items():
             if known[key].centring == "instant" and len(data):
-                found[key] = data[0]
+                found[key] = file.field(params.component, key, slice(1))[0]
         return found

@@ -1,10 +1,9 @@
 """A recorded component, again: gives at each window's end what was recorded there."""
 
-import h5py
 import numpy as np
 
 from quintet.components.stand_ins.params import ReplayParams
-from quintet.components.stand_ins.recorded import recorded_ports, recording_file
+from quintet.components.stand_ins.recorded import recorded, recorded_ports
 from quintet.interfaces.component import Component, Fields, Keys, fields_of
 from quintet.interfaces.errors import StepError
 
@@ -20,11 +19,12 @@ class Replay(Component):
         self.takes, self.gives = recorded_ports(params)
         fields = fields_of(self.gives)
         self.impulses = {key for key, one in fields.items() if one.centring == "impulse"}
-        with h5py.File(recording_file(params.recording), "r", locking=False) as file:
-            group = file[f"components/{params.component}"]
-            self.times = group["ticks"][()] * file.attrs["tick"]  # (rows,) s
-            self.stable = group["stable_steps"][()]  # (rows,) s
-            self.rows = {key: group[f"fields/{key}"][()] for key in group["fields"]}
+        with recorded(params) as file:
+            name, group = params.component, file.component(params.component)
+            marks = file.marks(name)
+            self.times = marks["ticks"] * file.file.attrs["tick"]  # (rows,) s
+            self.stable = marks["stable_steps"]  # (rows,) s
+            self.rows = {key: file.field(name, key) for key in group["fields"]}
             self.static = {key: group[f"static/{key}"][()] for key in group.get("static", ())}
         self.row = 0
         self._into = 0.0  # s, since the last recorded time

@@ -1,0 +1,173 @@
+"""A recording that was changed or cut is noticed by all that read it, or reads as it was."""
+
+import io
+import os
+import shutil
+from contextlib import redirect_stderr
+
+import h5py
+import numpy as np
+import pytest
+
+from quintet.components.stand_ins.params import ReplayParams
+from quintet.components.stand_ins.recorded import recorded_plan, recorded_start
+from quintet.components.stand_ins.replay import Replay
+from quintet.coupler.files.recording import Instant, Recorder, Recording
+from quintet.coupler.report.diff import compare
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.ports import MOTION, SURFACE_LOAD
+from quintet.interfaces.recordings import CHECK, ROW_CHECKS
+
+ROWS, MORE = 70, 5
+
+
+def fields(name, k):
+    random = np.random.default_rng(k)
+    if name == "cubes":
+        return {f"motion.{f.name}": random.normal(size=(3, *f.shape)) for f in MOTION.fields}
+    return {"surface_load.force": random.normal(size=(9, 3))}
+
+
+def add(recorder, first, last):
+    for k in range(first, last):
+        for name in ("cubes", "water"):
+            recorder.add(name, Instant(0.01 * k, k, 0.02), fields(name, k))
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    path = tmp_path_factory.mktemp("whole") / "recording.h5"
+    with Recorder(path, "run 7", "end = 1.0", 0.01) as recorder:
+        recorder.component("cubes", (MOTION,), {"motion.mass": np.arange(3.0)})
+        recorder.component("water", (SURFACE_LOAD,), {})
+        add(recorder, 0, ROWS)
+    return path
+
+
+def differs(path, whole):
+    """As ``quintet diff``."""
+    return compare(whole, path) is not None
+
+
+def loads_other(path, whole):
+    """As expectations and Python read it."""
+    with Recording(whole) as one, Recording(path) as other:
+        assert (one.run, one.scene, one.names) == (other.run, other.scene, other.names)
+        for name in one.names:
+            for key in one.fields(name):
+                assert (one.history(name, key, 2) == other.history(name, key, 2)).all()
+                assert one.field(name, key).tobytes() == other.field(name, key).tobytes()
+            assert (one.times(name) == other.times(name)).all()
+    return False
+
+
+def replays_other(path, whole):
+    """As a scene that replays a component is read and run."""
+    for name in ("cubes", "water"):
+        params = [ReplayParams(recording=str(one), component=name) for one in (whole, path)]
+        plans, starts = (list(map(of, params)) for of in (recorded_plan, recorded_start))
+        assert (plans[0].times == plans[1].times).all()
+        assert (
+            plans[0].items == plans[1].items and plans[0].bytes_per_item == plans[1].bytes_per_item
+        )
+        assert all((starts[0][key] == starts[1][key]).all() for key in starts[0])
+        one, other = map(Replay, params)
+        assert one.gives == other.gives and (one.stable == other.stable).all()
+        assert one.rows.keys() == other.rows.keys() and one.static.keys() == other.static.keys()
+        assert all(one.rows[key].tobytes() == other.rows[key].tobytes() for key in one.rows)
+    return False
+
+
+def goes_on_otherwise(path, whole):
+    """As a run goes on that was interrupted before its last rows."""
+    recorder = Recorder.resume(path, ROWS - MORE)
+    with recorder:
+        add(recorder, ROWS - MORE, ROWS)
+    return differs(path, whole)
+
+
+READERS = [differs, loads_other, replays_other, goes_on_otherwise]
+
+
+def noticed(read, path, whole):
+    """Whether damage is told in a sentence; if not, all must read as it was."""
+    try:
+        with redirect_stderr(io.StringIO()):
+            wrong = read(path, whole)
+    except SceneError as error:
+        assert str(path) in str(error) and len(error.mistakes) == 1
+        return True
+    assert not wrong
+    return False
+
+
+def try_bits(read, whole, path, count, seed=0):
+    """Flip bits of a recording one by one; return how many were noticed."""
+    data, random, found = whole.read_bytes(), np.random.default_rng(seed), 0
+    for number in random.integers(8 * len(data), size=count):
+        changed = bytearray(data)
+        changed[number // 8] ^= 1 << int(number % 8)
+        path.write_bytes(changed)
+        found += noticed(read, path, whole)
+    return found
+
+
+@pytest.mark.parametrize(
+    "count",
+    [
+        15,
+        pytest.param(300, marks=pytest.mark.slow),
+        pytest.param(2500, marks=pytest.mark.full),
+    ],
+)
+@pytest.mark.parametrize("read", READERS)
+def test_every_flipped_bit_is_noticed_or_harmless(whole, tmp_path, read, count):
+    assert try_bits(read, whole, tmp_path / "r.h5", count, count) >= 0.1 * count
+
+
+@pytest.mark.parametrize("read", READERS)
+def test_a_recording_that_was_cut_or_torn_is_noticed(whole, tmp_path, read):
+    data, path = whole.read_bytes(), tmp_path / "r.h5"
+    for part in (0, 1, 100, len(data) // 2, len(data) - 1):
+        path.write_bytes(data[:part])
+        assert noticed(read, path, whole)
+    for place in (len(data) // 3, 2 * len(data) // 3):  # a block that never came to the disk
+        path.write_bytes(data[:place] + bytes(4096) + data[place + 4096 :])
+        noticed(read, path, whole)
+
+
+def test_the_window_that_was_changed_is_named(whole, tmp_path):
+    path = shutil.copy(whole, tmp_path / "r.h5")
+    with h5py.File(path, "r+") as file:
+        file["components/water/fields/surface_load.force"][7, 0, 0] += 1e-9
+    with Recording(path) as recording:
+        assert recording.row("water", 6) and recording.row("water", 8)
+        with pytest.raises(SceneError, match=r"window 7 of water\.surface_load\.force is not as"):
+            recording.field("water", "surface_load.force")
+        assert len(recording.field("cubes", "motion.position")) == ROWS
+
+
+def test_rows_in_each_others_places_are_noticed(whole, tmp_path):
+    path = shutil.copy(whole, tmp_path / "r.h5")
+    with h5py.File(path, "r+") as file:
+        data = file["components/water/fields/surface_load.force"]
+        data[3], data[4] = data[4], data[3]
+    with Recording(path) as recording, pytest.raises(SceneError, match="window 3 of"):
+        recording.field("water", "surface_load.force")
+
+
+def test_a_recording_of_before_is_read_with_a_note_and_sealed_when_a_run_goes_on(
+    whole, tmp_path, capsys
+):
+    path = shutil.copy(whole, tmp_path / "r.h5")
+    with h5py.File(path, "r+") as file:
+        del file.attrs[CHECK]
+        for group in file["components"].values():
+            del group.attrs[CHECK], group[ROW_CHECKS]
+    assert not differs(path, whole) and not replays_other(path, whole)
+    assert capsys.readouterr().err.count(f"recording {path} has no checksums") == 1
+    assert not goes_on_otherwise(path, whole)
+    with h5py.File(path, "r+") as file:
+        file["components/water/fields/surface_load.force"][7, 0, 0] += 1e-9
+    assert noticed(differs, path, whole)
+    assert os.path.getsize(path) < 2 * os.path.getsize(whole)
