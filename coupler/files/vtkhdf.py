@@ -16,7 +16,8 @@ from quintet.coupler.files.disk import PART, removed_on_failure
 from quintet.coupler.files.hdf5 import create, room
 from quintet.coupler.files.vtkhdf_reader import SCENE, UNITS, read_step, scene, times, units
 from quintet.interfaces.component import Array
-from quintet.interfaces.errors import PortError
+from quintet.interfaces.errors import PortError, SceneError
+from quintet.interfaces.recordings import checksum
 
 BLOCK = 1024  # entries by which the small tables grow; readers take the first NSteps
 CHUNK = 1 << 16  # points in the largest chunk
@@ -57,6 +58,7 @@ class VtkHdf:
         self._cell_data: dict[str, h5py.Dataset] = {}
         self._told: list[h5py.Dataset] = []  # where each step finds the texts
         self._parts: dict[int, int] = {}  # number of points -> entry of the table of counts
+        self.check = 0  # checksum of all that was appended
         self._steps = 0
         self._rows = 0  # points written so far
         self._corners = 0  # points that the cells need
@@ -86,6 +88,8 @@ class VtkHdf:
 
     def _append(self, time: float, arrays: dict[str, Array]) -> None:
         count = len(arrays["points"])
+        parts = (one for key in sorted(arrays) for one in (key.encode(), arrays[key]))
+        self.check = checksum(f"{self.check} {time!r}", *parts)
         for key, dataset in self._data.items():
             dataset.resize(self._rows + count, axis=0)
             dataset[self._rows :] = arrays[key].reshape(count, *dataset.shape[1:])
@@ -172,6 +176,7 @@ class VtkHdf:
 
     def _add_cells(self, topology: str, cells: Array) -> None:
         connectivity, offsets = _flat(cells)
+        self.check = checksum(f"{self.check} {topology}", connectivity, offsets)
         group = self._root[topology]
         _extend(group["Connectivity"], connectivity, 0)
         _extend(group["Offsets"], offsets, 0)
@@ -236,14 +241,24 @@ class VtkHdf:
             _extend(group["Offsets"], want + 1, have + 1)
 
 
-def resume(path: Path, time: float) -> VtkHdf:
-    """Continue a file after its steps up to a time [s]; later steps are dropped."""
+def resume(path: Path, time: float, check: int | None = None) -> VtkHdf:
+    """Continue a file after its steps up to a time [s]; later steps are dropped.
+
+    `check` is the checksum of what these steps must hold, where that is known.
+    """
     part = path.with_name(path.name + PART)
     with removed_on_failure(part):
         made = VtkHdf(part, units(path), scene(path))
         for k, when in enumerate(times(path)):
             if when <= time:
                 made.append(*read_step(path, k))
+        if check is not None and made.check != check:
+            made.close()
+            raise SceneError(
+                f"view file {path}: its steps up to {time:g} s must be as the run wrote them; they "
+                "were changed or cut. Copy the file again from where it was made, or run the scene "
+                "again."
+            )
         part.replace(path)
     return made
 

@@ -1,5 +1,7 @@
 """Reading of view files: the steps of a component's view, as they were appended."""
 
+import contextlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +10,7 @@ import numpy as np
 
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.recordings import UNREADABLE
 
 UNITS, SCENE = "units", "scene"  # texts: "NAME UNIT; ..." of points and fields; what ran
 
@@ -21,17 +24,21 @@ def _padded(connectivity: Array, offsets: Array) -> Array:
     return cells
 
 
-def _open(path: Path | str) -> h5py.File:
+@contextlib.contextmanager
+def _open(path: Path | str) -> Iterator[h5py.File]:
+    """Open a view file, and turn errors of reading it into one sentence."""
     try:
-        file = h5py.File(path, "r", locking=False)
-    except OSError as error:
+        with h5py.File(path, "r", locking=False) as file:
+            if "VTKHDF/Steps" not in file:
+                raise SceneError(
+                    f"view file {path}: it has no steps of VTKHDF. Run the scene again."
+                )
+            yield file
+    except UNREADABLE as error:
+        said = " ".join(str(error).split())
         raise SceneError(
-            f"view file {path}: it must be a VTKHDF file; {error}. Run the scene again."
+            f"view file {path}: it must be a VTKHDF file; {said}. Run the scene again."
         ) from error
-    if "VTKHDF/Steps" not in file:
-        file.close()
-        raise SceneError(f"view file {path}: it has no steps of VTKHDF. Run the scene again.")
-    return file
 
 
 def times(path: Path | str) -> Array:

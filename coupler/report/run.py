@@ -12,8 +12,9 @@ import numpy as np
 from rich import box
 from rich.console import Console
 
+from quintet.coupler.files.checksums import KEY, require_same
 from quintet.coupler.files.recording import NAME, Recording
-from quintet.coupler.files.run_files import PICTURES
+from quintet.coupler.files.run_files import LEDGER, PICTURES, SCENE
 from quintet.coupler.report import show
 from quintet.coupler.scene.read import parse
 from quintet.interfaces.component import Array, Field
@@ -22,7 +23,6 @@ from quintet.interfaces.params import unknown
 from quintet.interfaces.units import INTEGRATED
 
 WIDTH = 110  # characters, of tables in a notebook
-LEDGER = "ledger.csv"
 ENDED = (0, 1, 130)  # exit status of a run that did not fail: met, not met, interrupted
 LEDGER_UNITS = {
     "impulse": "N s",
@@ -144,7 +144,8 @@ class Run:
     @property
     def scene(self) -> dict[str, Any]:
         """The scene as it ran, with presets and settings applied."""
-        return parse(self.folder / "scene.toml")
+        self._require_same(SCENE)
+        return parse(self.folder / SCENE)
 
     @property
     def ledger(self) -> dict[str, dict[str, Series]]:
@@ -152,9 +153,14 @@ class Run:
         path = self.folder / LEDGER
         if not path.is_file():
             return {}
+        self._require_same(LEDGER)
         with open(path, newline="") as file:
             rows = list(csv.DictReader(file))
         return {name: _columns(rows, name) for name in dict.fromkeys(row["name"] for row in rows)}
+
+    def _require_same(self, name: str) -> None:
+        """Refuse a file that was changed since the run has ended."""
+        require_same(self.folder, self.results.get(KEY, {}), [name])
 
     @property
     def pictures(self) -> dict[str, Path]:

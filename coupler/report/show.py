@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from quintet.coupler.files.checksums import require_sealed
 from quintet.interfaces.errors import SceneError
 
 NAME = "results.json"
@@ -31,6 +32,7 @@ def results(folder: Path) -> dict[str, Any]:
         raise SceneError(
             f"run {folder}: {path.name} must be one table; found a {type(found).__name__}."
         )
+    require_sealed(found, path)
     return found
 
 

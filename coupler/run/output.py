@@ -5,6 +5,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.schedule import Coupling
@@ -40,10 +41,11 @@ class OutputWriter:
         stop: StopRequest,
         logs: Mapping[str, ConvergenceLog],
         first: int | None = None,
+        view_checks: Mapping[str, int] = MappingProxyType({}),
     ) -> None:
         """Begin the files, or continue them after the first windows of an earlier run."""
         self.scene, self.folder, self.stop, self.first = scene, folder, stop, first
-        self.logs, self.begun = logs, False
+        self.logs, self.begun, self._view_checks = logs, False, view_checks
         self.on_begin: Callable[[], None] = lambda: None  # called when the first window is next
         self.on_window: Callable[[int, float], None] = lambda *_: None  # windows done, time [s]
         self.done, self.time = first or 0, 0.0  # windows, s
@@ -79,13 +81,15 @@ class OutputWriter:
         """See `Observer.begin`."""
         if lacking := list(lacking_items(self.scene.expect, coupling.outputs)):
             raise SceneError(lacking)
+        self.done, self._now = self._windows.done, self._windows.now
+        self.time = self._began = self._windows.time
+        if self.first is not None:
+            self._go_on()
         self.begun = True
         self.on_begin()
         discard_former(self.folder)  # all checks are passed
-        self.done, self._now = self._windows.done, self._windows.now
-        self.time = self._began = self._windows.time
         self.on_window(self.done, self.time)
-        if self.scene.file.output.record:
+        if self.scene.file.output.record and not self._recorder:
             self._recorder = self._recording(coupling, described)
         if self.first is None:
             self._record(coupling)
@@ -94,14 +98,21 @@ class OutputWriter:
 
     def _recording(self, coupling: Coupling, described: Mapping[str, Fields]) -> Recorder:
         path = self.folder / NAME
-        if self.first is not None:
-            return Recorder.resume(path, self.first + 1)
         text = (self.folder / "scene.toml").read_text(encoding="utf-8")
         made = Recorder(path, self.folder.name, text, self._windows.tick)
         for name, one in self.scene.components.items():
             ports = only_fields(one.gives, coupling.outputs[name])
             made.component(name, ports, described[name])
         return made
+
+    def _go_on(self) -> None:
+        """Open the files of an earlier run, and refuse any that was changed since."""
+        if self.scene.file.output.record:
+            self._recorder = Recorder.resume(self.folder / NAME, self.done + 1)
+        for name in self.scene.components:
+            path = self.folder / view_file(name)
+            if path.is_file():
+                self._files[name] = resume(path, self._began, self._view_checks.get(name))
 
     def due(self, ticks: int) -> bool:
         """See `Observer.due`."""
@@ -157,7 +168,8 @@ class OutputWriter:
         began = time.monotonic()
         if self._recorder:
             self._recorder.sync()
-        save(coupling, self.scene, self.folder, self.logs)
+        checks = {name: one.check for name, one in self._files.items()}
+        save(coupling, self.scene, self.folder, self.logs, checks)
         self._kept = time.monotonic()
         self._cost = self._kept - began
 
@@ -190,12 +202,7 @@ class OutputWriter:
     def _file(self, name: str, units: Mapping[str, str]) -> VtkHdf:
         found = self._files.get(name)
         if found is None:
-            path = self.folder / view_file(name)
-            is_there = self.first is not None and path.is_file()
-            if is_there:
-                found = resume(path, self._began)
-            else:
-                found = VtkHdf(path, units, self.scene.headline)
+            found = VtkHdf(self.folder / view_file(name), units, self.scene.headline)
             self._files[name] = found
         return found
 

@@ -1,6 +1,5 @@
 """Results of a run: ``results.json``, pictures and the exit status."""
 
-import json
 import os
 import platform
 import sys
@@ -11,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.files.checksums import of_files, sealed
 from quintet.coupler.files.disk import told, write_at_last
 from quintet.coupler.files.recording import Recording
-from quintet.coupler.files.run_files import PICTURES, RESULTS
+from quintet.coupler.files.run_files import LEDGER, PICTURES, RESULTS, SCENE
 from quintet.coupler.measures.expectation import ROUNDING, Expectation, Outcome, evaluate
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.side_views import side_views
@@ -31,8 +31,12 @@ def outcomes(scene: Scene, folder: Path) -> list[Outcome]:
     path = folder / "recording.h5"
     if not scene.expect or not path.exists():
         return []
-    with Recording(path) as recording:
-        return [_outcome(one, recording, scene.folder) for one in scene.expect]
+    try:
+        with Recording(path) as recording:
+            return [_outcome(one, recording, scene.folder) for one in scene.expect]
+    except SceneError as error:
+        print(f"quintet: {error}", file=sys.stderr)
+        return [_unknown(one) for one in scene.expect]
 
 
 def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
@@ -41,9 +45,14 @@ def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
         return evaluate(one, recording, folder)
     except SceneError as error:
         print(f"quintet: expectation {one.name}: {error}", file=sys.stderr)
-        return Outcome(
-            one.name, None, one.value or 0.0, one.within, one.unit, False, one.source, one.required
-        )
+        return _unknown(one)
+
+
+def _unknown(one: Expectation) -> Outcome:
+    """Outcome of an expectation of which nothing is known."""
+    return Outcome(
+        one.name, None, one.value or 0.0, one.within, one.unit, False, one.source, one.required
+    )
 
 
 def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
@@ -124,8 +133,13 @@ def fault(error: ComponentFailed, folder: Path, lines: list[str]) -> dict[str, A
 
 
 def write(folder: Path, content: dict[str, Any]) -> None:
-    """Write ``results.json``: whole, and elsewhere where the folder's disk has no room for it."""
-    write_at_last(folder / RESULTS, json.dumps(content, indent=2, default=float))
+    """Write ``results.json``: whole, and elsewhere where the folder's disk has no room for it.
+
+    It holds the checksums of the files that are read back, where the run has finished them.
+    """
+    finished = content["status"] in ("done", "interrupted")
+    sums = of_files(folder, (LEDGER, SCENE)) if finished else {}
+    write_at_last(folder / RESULTS, sealed(content, sums))
 
 
 def expectations(found: list[Outcome]) -> list[dict[str, Any]]:

@@ -82,6 +82,8 @@ class Running:
         self.scene, self.folder, self.snapshot = scene, folder, snapshot
         self.stop, self.watchdog, self.clock = stop, watchdog, results.Clock()
         self.exchange = scene.exchange()
+        if snapshot:
+            snapshots.check_files(snapshot)
         size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
         self.ledger = Ledger(self.exchange, folder / LEDGER, size)
         self.logs = {
@@ -89,7 +91,8 @@ class Running:
             for name in scene.coupling.iterated()
         }
         first = snapshots.window_of(snapshot) if snapshot else None
-        self.writer = OutputWriter(scene, folder, stop, self.logs, first)
+        view_checks = snapshots.view_checks(snapshot) if snapshot else {}
+        self.writer = OutputWriter(scene, folder, stop, self.logs, first, view_checks)
         self.files: tuple[Closable, ...] = (self.writer, self.ledger, *self.logs.values())
         self.costs = Costs()
         self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
@@ -271,7 +274,7 @@ def conclude(made: Running) -> int:
         return results.INTERRUPTED
     try:
         results.draw(scene, folder, found)
-    except DiskError as error:
+    except (DiskError, SceneError) as error:
         print(f"quintet: {error}", file=sys.stderr, flush=True)
     except KeyboardInterrupt:  # the run is over, and its results are written
         print(

@@ -11,17 +11,19 @@ import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import h5py
 import numpy as np
 
-from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.files.checksums import of_files, require_same
 from quintet.coupler.files.disk import PART, is_sound, put_in_place, removed_on_failure, seal, told
 from quintet.coupler.files.hdf5 import OF_DATASET, create, room
-from quintet.coupler.files.run_files import SNAPSHOTS
+from quintet.coupler.files.run_files import LEDGER, SNAPSHOTS
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
@@ -48,9 +50,16 @@ def remove(paths: Iterable[Path]) -> None:
 
 
 def save(
-    coupling: Coupling, scene: Scene, folder: Path, logs: Mapping[str, ConvergenceLog]
+    coupling: Coupling,
+    scene: Scene,
+    folder: Path,
+    logs: Mapping[str, ConvergenceLog],
+    views: Mapping[str, int] = MappingProxyType({}),
 ) -> Path:
-    """Write a snapshot at the end of a window, and remove all but the last few."""
+    """Write a snapshot at the end of a window, and remove all but the last few.
+
+    `views` has the checksum of what is in each component's view file.
+    """
     path = folder / f"snapshot-{coupling.windows.done}.h5"
     part = path.with_name(path.name + PART)
     participants = coupling.components
@@ -65,6 +74,8 @@ def save(
         "logs": {name: log.size() for name, log in logs.items()},
         "asked": scene.asked,
         "tick": coupling.windows.tick,
+        "files": of_files(folder, (LEDGER, *map(log_file, logs))),
+        "views": dict(views),
     }
     with removed_on_failure(part), told(path):
         with create(part) as file:
@@ -167,6 +178,19 @@ def file_sizes(path: Path) -> tuple[int, dict[str, int]]:
     """Lengths of the ledger and of the convergence logs when a snapshot was made [bytes]."""
     with h5py.File(path, "r", locking=False) as file:
         return int(_get(file, "ledger")["size"]), dict(_get(file, "logs"))
+
+
+def check_files(path: Path) -> None:
+    """Refuse to go on with files that were changed since a snapshot was made."""
+    with h5py.File(path, "r", locking=False) as file:
+        sums = _get(file, "files") or {}
+    require_same(path.parent, sums, sums)
+
+
+def view_checks(path: Path) -> dict[str, int]:
+    """Checksums of what was in the view files of components when a snapshot was made."""
+    with h5py.File(path, "r", locking=False) as file:
+        return dict(_get(file, "views") or {})
 
 
 def _put(group: Any, name: str, value: Any) -> None:
