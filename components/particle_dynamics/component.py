@@ -1,5 +1,7 @@
 """Particle dynamics: a lattice that heats itself, or spheres that fly."""
 
+from collections.abc import Mapping
+
 from quintet.components.particle_dynamics import MANIFEST
 from quintet.components.particle_dynamics.lattice_dynamics import LatticeDynamics
 from quintet.components.particle_dynamics.params import ParticleDynamicsParams
@@ -70,6 +72,10 @@ class ParticleDynamics(Component):
     def notes(self) -> tuple[str, ...]:
         """Tell of what is lost or missing."""
         return self.moved.notes()
+
+    def warnings(self) -> Mapping[str, str]:
+        """Why the motion may be wrong: overlaps, lost points, missing energy."""
+        return self.moved.warnings()
 
     def totals(self) -> Totals:
         """Mass, momentum and energies."""

@@ -152,31 +152,32 @@ class LatticeDynamics(Component):
         if self.told[2] < 0.0 and abs(self._audit(*self._energies())) > MISSING:
             self.told[2] = time
         if self.params.on_loss == "stop" and (self.told[:2] >= 0.0).any():
-            raise StepError(" ".join(self._sentences()))
+            raise StepError(" ".join(self.warnings().values()))
 
-    def _sentences(self) -> list[str]:
+    def warnings(self) -> dict[str, str]:
+        """Warn of points that left all others, of broken bonds and of missing energy."""
         lost, broken, missing, point = self.told.tolist()
-        found = []
+        found = {}
         if lost >= 0.0:
             place = self.built.start[int(point)]
-            found.append(
+            found["lost point"] = (
                 f"point {int(point)}, at {place} m at the start, has left all others behind, at "
                 f"{lost:g} s: drive or heat less, or damp more."
             )
         if broken >= 0.0:
-            found.append(
+            found["broken bonds"] = (
                 f"less than {INTACT:.0%} of the bonds between nearest points are intact, at "
                 f"{broken:g} s: the lattice has broken up. Drive or heat less, or damp more."
             )
         if missing >= 0.0:
-            found.append(
+            found["energy"] = (
                 f"the energy audit lacks more than {MISSING:.0%} of what was put in, at "
                 f"{missing:g} s: take a smaller courant."
             )
         return found
 
     def notes(self) -> tuple[str, ...]:
-        """Tell of a strong drive, of lost points and of missing energy."""
+        """Tell of a strong drive."""
         drive, spacing = self.params.drive, self.lattice.spacing
         strong = []
         if drive is not None and drive.amplitude >= 0.1 * spacing * CLOSE:
@@ -184,7 +185,7 @@ class LatticeDynamics(Component):
                 f"drive: an amplitude of {drive.amplitude / spacing:.2g} spacings breaks most "
                 "lattices up; 0.05 to 0.08 do not."
             )
-        return (*strong, *self._sentences())
+        return tuple(strong)
 
     def _intact(self) -> float:
         bonds, spacing = self.built.bonds, self.lattice.spacing

@@ -23,7 +23,6 @@ LIMITS = {
     "moving_sphere between cuts": (1, 0.9, 1.2),
     "shock_layer_particle": (0, 0.95, 1.75),  # sound is smeared by the first layer
     "dusty_shock": (0, 0.9, 1.1),
-    "newtons_cradle": (0, 0.9, 1.3),
 }
 
 

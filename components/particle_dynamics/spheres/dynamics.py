@@ -9,7 +9,11 @@ from quintet.components.particle_dynamics.params import ParticleDynamicsParams
 from quintet.components.particle_dynamics.plan import LIMIT
 from quintet.components.particle_dynamics.ports import ports
 from quintet.components.particle_dynamics.spheres.build import build, planes
-from quintet.components.particle_dynamics.spheres.collisions import bounce, bounce_from_walls
+from quintet.components.particle_dynamics.spheres.collisions import (
+    bounce,
+    bounce_from_walls,
+    deepest_overlap,
+)
 from quintet.components.particle_dynamics.spheres.kernels import fly
 from quintet.components.particle_dynamics.spheres.pairs import NearPairs
 from quintet.components.particle_dynamics.spheres.refusals import (
@@ -23,6 +27,10 @@ from quintet.interfaces.ports import SPHERE
 KEPT = ("position", "velocity", "orientation", "spin", "temperature", "force", "torque", "heat")
 ROUNDING = 1e-9  # of a step, by which the time of a launch may be missed
 CLOSING = 0.25  # of the smallest diameter, by which two may come nearer in a step
+OVERLAPPING = 0.01  # of the smaller diameter: spheres that overlap by more are wrong
+TOUCHING = 0.005  # of the smaller diameter: the largest overlap at the end of a step
+MOST_PARTS = 64  # into which a step is divided where several impacts of a sphere fall into it
+SWEEPS = 100  # over all pairs, in which an impulse runs through a row: each in turn
 
 
 class SphereDynamics(Component):
@@ -47,6 +55,7 @@ class SphereDynamics(Component):
         self.force, self.torque = np.zeros((count, 3)), np.zeros((count, 3))
         self.heat = np.zeros(count)  # W
         self.time, self.lost, self.heated = 0.0, 0.0, 0.0  # s, J of impacts, J of partners
+        self.deepest = 0.0  # overlap over the smaller diameter that no step was short enough for
         self.flies = np.zeros(count, bool)  # whether it has been launched
         self._launch(0.0)
 
@@ -75,21 +84,28 @@ class SphereDynamics(Component):
         frequency = math.sqrt(float((one.tether / one.mass).max()))
         if frequency > 0.0:
             limits.append(self.params.courant * LIMIT[self.params.integrator] / frequency)
-        closing = self._closing_speed()
-        if closing > 0.0:
-            limits.append(2.0 * CLOSING * float(one.radius.min()) / closing)
+        closing = self._closing(self.velocity)
+        pull = self._closing(self._acceleration())
+        if closing + pull > 0.0:
+            room = 2.0 * CLOSING * float(one.radius.min())
+            limits.append(2.0 * room / (closing + math.sqrt(closing**2 + 2.0 * pull * room)))
         return min(limits)
 
-    def _closing_speed(self) -> float:
-        """Greatest speed [m/s] at which two may approach each other, or one a wall."""
+    def _closing(self, rates: Array) -> float:
+        """Greatest rate at which two may approach each other, or one a wall, of (n, 3) rates."""
         fastest = 0.0
         if self.near is not None:
-            relative = self.velocity - self.velocity.mean(axis=0)
+            relative = rates - rates.mean(axis=0)
             fastest = 2.0 * math.sqrt(float((relative * relative).sum(axis=1).max()))
         if len(self.planes):
-            towards = -(self.velocity @ self.planes[:, :3].T)
+            towards = -(rates @ self.planes[:, :3].T)
             fastest = max(fastest, float(towards.max()))
         return fastest
+
+    def _acceleration(self) -> Array:
+        """Accelerations (n, 3) m/s2 of those that fly, by all that acts on them."""
+        loaded = self.force / self.spheres.mass[:, None] * self.flies[:, None]
+        return np.asarray(loaded + self._own_acceleration())
 
     def take(self, fields: Fields) -> None:
         """Set force [N], torque [N m] and heat [W] on each sphere; without them there are none."""
@@ -99,6 +115,38 @@ class SphereDynamics(Component):
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; who is launched on the way flies for the rest."""
+        if self.near is None:
+            self._advance(dt)
+            return
+        start, allowed, parts = self.save(), max(self._overlap(), TOUCHING), 1
+        while not self._advance_in_parts(dt, parts, allowed) and parts < MOST_PARTS:
+            parts *= 2
+            self.load(start)
+        self.time = float(start["rest"][0]) + dt
+
+    def _advance_in_parts(self, dt: float, parts: int, allowed: float) -> bool:
+        """Advance by equal parts of dt; return whether no two overlap by more than allowed."""
+        for _ in range(parts):
+            self._advance(dt / parts)
+            overlap = self._overlap()
+            if overlap > allowed:
+                if parts < MOST_PARTS:
+                    return False
+                self.deepest = max(self.deepest, overlap)
+        return True
+
+    def _overlap(self) -> float:
+        """Largest overlap of two spheres, or of one and a wall, over the (smaller) diameter."""
+        assert self.near is not None
+        radius, overlap = self.spheres.radius, 0.0
+        if len(self.planes):
+            height = self.position @ self.planes[:, :3].T - self.planes[:, 3]  # (n, w) m
+            overlap = max(0.0, float((0.5 - height / (2.0 * radius[:, None])).max()))
+        pairs = self.near.at(self.position)
+        return max(overlap, deepest_overlap(self.position, radius, *pairs))
+
+    def _advance(self, dt: float) -> None:
+        """Fly, then bounce."""
         one, end, flew = self.spheres, self.time + dt, self.flies.copy()
         self._launch(end + ROUNDING * dt)
         fly(
@@ -114,15 +162,24 @@ class SphereDynamics(Component):
                 f"sphere {int(np.argmin(np.isfinite(self.velocity).all(axis=1)))}: its velocity "
                 f"is not finite, at {self.time:g} s. Look at what it is loaded by."
             )
-        self._collide()
+        if self.near is not None or len(self.planes):
+            self._collide(dt)
 
-    def _collide(self) -> None:
-        """Bounce from walls, then from each other."""
-        of = self.position, self.velocity, self.spheres.radius, self.spheres.mass, self.flies
-        if len(self.planes):
-            self.lost += bounce_from_walls(*of, self.planes, self.params.restitution)
-        if self.near is not None:
-            self.lost += bounce(*of, *self.near.at(self.position), self.params.restitution)
+    def _collide(self, dt: float) -> None:
+        """Bounce from walls and from each other, until nothing that overlaps approaches."""
+        one, acceleration = self.spheres, self._acceleration()
+        of = self.position, self.velocity, acceleration, one.radius, one.mass, self.flies
+        for sweep in range(SWEEPS):
+            impacts = 0
+            if len(self.planes):
+                lost, impacts = bounce_from_walls(dt, *of, self.planes, self.params.restitution)
+                self.lost += lost
+            if self.near is not None:
+                pairs, backwards = self.near.at(self.position), sweep % 2 == 1
+                lost, more = bounce(dt, *of, *pairs, backwards, self.params.restitution)
+                self.lost, impacts = self.lost + lost, impacts + more
+            if impacts == 0:
+                return
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out motion, temperature and size."""
@@ -149,7 +206,7 @@ class SphereDynamics(Component):
     def save(self) -> Fields:
         """Copy out all state."""
         kept = {name: getattr(self, name).copy() for name in KEPT}
-        numbers = np.array([self.time, self.lost, self.heated])
+        numbers = np.array([self.time, self.lost, self.heated, self.deepest])
         return kept | {"flies": self.flies.astype(np.float64), "rest": numbers}
 
     def load(self, state: Fields) -> None:
@@ -157,7 +214,18 @@ class SphereDynamics(Component):
         for name in KEPT:
             getattr(self, name)[:] = state[name]
         self.flies[:] = state["flies"] > 0.0
-        self.time, self.lost, self.heated = state["rest"].tolist()
+        self.time, self.lost, self.heated, self.deepest = state["rest"].tolist()
+
+    def warnings(self) -> dict[str, str]:
+        """Warn of spheres that were pressed into each other, or into walls."""
+        if self.deepest <= OVERLAPPING:
+            return {}
+        said = (
+            f"spheres overlapped by up to {100.0 * self.deepest:.2g} % of a diameter; impacts must "
+            f"keep them apart within {100.0 * OVERLAPPING:g} %. Hard spheres can neither rest on "
+            "one another nor be packed densely. Take dem_bodies for piles and packings."
+        )
+        return {"overlap": said}
 
     def totals(self) -> Totals:
         """Mass, momentum and energies; internal is heat, that of impacts included."""

@@ -90,6 +90,99 @@ def test_a_sphere_bounces_from_a_wall():
     assert made.give({"motion.velocity"})["motion.velocity"][0] == pytest.approx([0.5, 0.0, 0.6])
 
 
+def crowd(restitution, spacing, gravity=(0.0, 0.0, 0.0)):
+    """27 spheres at random velocities in a box of walls, `spacing` diameters apart."""
+    random, side = np.random.default_rng(0), 3 * 0.02 * spacing
+    places = (np.stack(np.meshgrid(*[np.arange(3)] * 3), -1).reshape(-1, 3) + 0.5) * side / 3
+    given = [{"position": tuple(x), "velocity": tuple(random.normal(size=3))} for x in places]
+    normals = [tuple(sign * row) for row in np.eye(3) for sign in (1.0, -1.0)]
+    walls = tuple(Wall(normal=n, offset=-side if sum(n) < 0.0 else 0.0) for n in normals)
+    return spheres(*given, walls=walls, restitution=restitution, gravity=gravity)
+
+
+def overlaps(made):
+    """Largest overlap of two spheres of 0.02 m, over their diameter."""
+    position = made.give({"motion.position"})["motion.position"]
+    apart = np.linalg.norm(position[:, None] - position[None], axis=2)
+    return 1.0 - apart[np.triu_indices(len(position), 1)].min() / 0.02
+
+
+def advance(made, end):
+    """Advance by natural steps; yield after each."""
+    time = 0.0
+    while time < end:
+        dt = min(made.stable_dt(), end - time)
+        made.step(dt)
+        time += dt
+        yield time
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("spacing", [1.05, 1.5])
+def test_spheres_overlap_by_less_than_1_percent_at_the_natural_step(restitution, spacing):
+    made = crowd(restitution, spacing)
+    start = made.totals()
+    assert max(overlaps(made) for _ in advance(made, 0.2)) < 0.01
+    end = made.totals()
+    assert end.kinetic + end.internal == pytest.approx(start.kinetic, rel=1e-12)
+    assert made.warnings() == {}
+
+
+def test_impacts_have_their_own_times_within_a_step():
+    made = spheres(
+        {"position": (0.0, 0.0, 0.0), "velocity": (1.0, 0.0, 0.0)},
+        *({"position": (0.0213 + 0.02 * k, 0.0, 0.0)} for k in range(5)),
+        {"position": (0.1250, 0.0, 0.0), "velocity": (0.5, 0.0, 0.0)},
+    )
+    for _ in range(7):
+        made.step(1e-3)
+    found = made.give({"motion.position", "motion.velocity"})
+    # The first strikes the row after 1.3 ms; it stops, and the last of the row leaves with 1 m/s.
+    exact = [0.0013, *(0.0213 + 0.02 * k for k in range(4)), 0.1013 + 0.0057, 0.1285]
+    velocities = [0.0] * 5 + [1.0, 0.5]
+    if exact[-1] - exact[-2] < 0.02:  # which then strikes the one before it
+        late = (0.02 - (exact[-1] - exact[-2])) / 0.5
+        exact[-2:] = exact[-2] - 0.5 * late, exact[-1] + 0.5 * late
+        velocities[-2:] = 0.5, 1.0
+    assert found["motion.position"][:, 0] == pytest.approx(exact, abs=1e-12)
+    assert found["motion.velocity"][:, 0] == pytest.approx(velocities, abs=1e-12)
+
+
+@pytest.mark.parametrize("step", [0.01, 0.1, 0.3])
+def test_a_fall_and_a_bounce_are_exact_at_any_step(step):
+    made = spheres({"position": (0.0, 0.0, 1.01)}, walls=(Wall(normal=(0, 0, 1.0)),), gravity=G)
+    fall = np.sqrt(2.0 / 9.81)  # s, one metre
+    for k in range(round(0.6 / step)):
+        made.step(step)
+        time = (k + 1) * step
+        since = time - fall
+        height = 1.0 - 0.5 * 9.81 * time**2
+        if since > 0.0:
+            height = 9.81 * fall * since - 0.5 * 9.81 * since**2
+        assert made.give({"motion.position"})["motion.position"][0, 2] == pytest.approx(
+            height + 0.01, abs=1e-12
+        )
+
+
+def test_spheres_that_fall_meet_though_they_are_at_rest_at_the_start():
+    made = spheres(
+        {"position": (0.0, 0.0, 0.0), "launch": 10.0}, {"position": (0.0, 0.0, 0.5)}, gravity=G
+    )
+    list(advance(made, 1.0))
+    assert made.give({"motion.position"})["motion.position"][1, 2] >= 0.02 * 0.99
+
+
+def test_a_pile_that_hard_spheres_cannot_make_is_warned_of():
+    made = crowd(0.5, 1.05, G)
+    deepest = max(overlaps(made) for _ in advance(made, 0.3))
+    assert deepest > 0.01
+    (said,) = made.warnings().values()
+    assert "spheres overlapped by up to" in said and "Take dem_bodies" in said
+    again = crowd(0.5, 1.05, G)
+    again.load(made.save())
+    assert again.warnings() == made.warnings()
+
+
 def test_spheres_that_begin_within_another_are_refused():
     places = [(0.1, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.017)]
     given = [{"position": one, "launch": 0.1 * k} for k, one in enumerate(places)]
