@@ -13,14 +13,15 @@ if TYPE_CHECKING:
     from quintet.coupler.scene.scene import Scene
 
 LONGEST = 2000  # characters of a sentence
-BAD = 2  # exit status of bad input: nothing was started
+BAD, INTERRUPTED = 2, 130  # exit status of bad input, with which nothing is started; of Ctrl-C
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run one command and exit with its status."""
     given = parser().parse_args(arguments)
     try:
-        require_writable(getattr(given, "json", None))
+        if isinstance(path := getattr(given, "json", None), Path):
+            _require_writable(path)
         status = given.does(given)
     except SceneError as error:
         for mistake in error.mistakes:
@@ -29,6 +30,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except QuintetError as error:
         print(f"quintet: {error}", file=sys.stderr)
         status = BAD
+    except KeyboardInterrupt:  # before anything was started, or after all was written
+        print("\nquintet: interrupted", file=sys.stderr)
+        status = INTERRUPTED
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 0
@@ -41,16 +45,11 @@ def sentence(mistake: str) -> str:
     return line if len(line) <= LONGEST else f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
 
 
-def require_writable(path: object) -> None:
-    """Refuse a file for results that cannot be written, before anything is computed for it."""
-    if not isinstance(path, Path):
-        return
-    there = path if path.exists() else path.parent
-    if path.is_dir() or not there.exists() or not os.access(there, os.W_OK):
-        raise SceneError(
-            f"--json {path}: it must be a file that can be written; there is no such folder, or it "
-            "is read-only. Name another."
-        )
+def _require_writable(path: Path) -> None:
+    # Start-up: only commands that leave a file need it.
+    from quintet.coupler.files.json_file import require_writable
+
+    require_writable(path)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -292,7 +291,7 @@ def _run_rank(scene: "Scene", folder: Path, snapshot: Path | None) -> int:
     from quintet.coupler.run.simulate import simulate
 
     begin_rank(folder)
-    status = simulate(scene, folder, snapshot)
+    status = simulate(scene, folder, snapshot, own_process=True)
     end_rank(folder, status)
     return 0  # who started the job reads the status; MPI takes any other for a failure
 

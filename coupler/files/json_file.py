@@ -1,6 +1,7 @@
 """A file for programs that a command leaves where it is told to; nothing else is ever replaced."""
 
 import json
+import os
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,16 @@ class JsonFile:
         """Write the file whole."""
         if self.path:
             write_whole(self.path, json.dumps(content, indent=2))
+
+
+def require_writable(path: Path) -> None:
+    """Refuse a file for results that cannot be written, before anything is computed for it."""
+    there = path if path.exists() else path.parent
+    if path.is_dir() or not there.exists() or not os.access(there, os.W_OK):
+        raise SceneError(
+            f"--json {path}: it must be a file that can be written; there is no such folder, or it "
+            "is read-only. Name another."
+        )
 
 
 def _is_of(path: Path, keys: Collection[str]) -> bool:

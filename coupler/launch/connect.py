@@ -112,7 +112,7 @@ class OverZenoh:
             self.session = Session(endpoint, True, "coupler", scene.security)
         except LineError as error:
             raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
-        self.run = secrets.token_hex(8)
+        self.run = watchdog.mark
         lines = {name: ZenohLine(self.session, self.run, name) for name in scene.components}
         try:
             for name, line in lines.items():

@@ -15,32 +15,36 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import IO
+from typing import IO, NamedTuple
 
 import psutil
 
+from quintet.coupler.launch.companion import Companion
 from quintet.coupler.launch.processes import PYTHON, end_marked, environment, marked, tail
 from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
 from quintet.interfaces.serving.log_stream import print_into_logs
-from quintet.interfaces.serving.process import STARTER
+from quintet.interfaces.serving.process import STARTER, shared_files
 
 JOB_FILE = "mpi.json"  # in the log folder: processes, and the exit status of the coupler
 COUPLER_OUTPUT = ("coupler.out", "coupler.err")  # there too
 LAUNCHER_LOG = "mpiexec.log"  # there too
 ENDING, AT_ONCE = 3.0, 0.5  # s for all ranks to end after the coupler has, if all is well or not
 LOOKING = 0.2  # s between two looks at the ranks while they start
+ORPHANED = 10.0  # s for the coupler to end in order after the process that started the job died
 
 
 def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
     """The MPMD command line: rank 0 couples, the others are components in the scene's order."""
     python = [*PYTHON, "-m", "mpi4py"]
     new_session = [*PYTHON, "-m", "quintet.coupler.launch.new_session"]
+    new_session.append(str(folder / "log" / JOB_FILE))
     line = [*find_launcher(), "-n", "1", *new_session, *python]
     line += ["-m", "quintet.coupler.cli", *arguments, "--inside-mpi"]
     for name, one in scene.components.items():
@@ -71,11 +75,33 @@ def _options(launcher: str) -> list[str]:
     return ["--map-by", ":OVERSUBSCRIBE"] if open_mpi else []
 
 
-def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
-    """Start the ranks, wait for the coupler among them, clean up; return the exit status."""
+class Starter(NamedTuple):
+    """The process that starts a job."""
+
+    pid: int
+    began: float  # s since the epoch
+
+    def precedes(self, path: str) -> bool:
+        """Whether a file was made after the job began."""
+        try:
+            return os.stat(path).st_ctime >= self.began
+        except OSError:
+            return False
+
+
+class JobEnd(NamedTuple):
+    """How an MPI job ended: as its coupler says, or why the coupler could not say it."""
+
+    status: int  # exit status of the coupler, or what it would have been
+    cause: str = ""  # why there are no results; "" where the coupler wrote them
+
+
+def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
+    """Start the ranks, wait for the coupler among them, clean up; return how the job ended."""
     job_file = folder / "log" / JOB_FILE
     job_file.parent.mkdir(parents=True, exist_ok=True)
     job_file.unlink(missing_ok=True)
+    starter = Starter(os.getpid(), time.time())
     threads = max(one.threads for one in scene.components.values())
     line = command(arguments, scene, folder)
     env = {**environment(threads), STARTER: str(os.getpid())}
@@ -94,17 +120,22 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> int:
             stack.enter_context(open(job_file.with_name(name), "w+b")) for name in COUPLER_OUTPUT
         ]
         signals = stack.enter_context(_forward_signals(job_file, process))
+        companion = Companion(partial(_see_to_end, job_file, output, starter))
+        stack.callback(companion.close)
         reason = _await(process, job_file, output, signals)
         found = _read(job_file)
-        _clean_up(process, found)
+        end_ranks(found, starter)
+        process.wait()
         _forward_output(output)
     if "status" in found:
-        return int(str(found["status"]))
+        return JobEnd(int(str(found["status"])))
     if signals:
-        return 130
-    print(f"quintet: {reason}; there are no results", file=sys.stderr)
-    print("\n".join(f"    {one}" for one in tail(log)), file=sys.stderr)
-    return 3
+        return JobEnd(130, "interrupted before all components had joined")
+    if number := int(str(_read(job_file).get("killed", 0))):
+        reason = f"the coupler was killed by signal {number} ({signal.Signals(number).name})"
+    print(f"quintet: {reason}", file=sys.stderr)
+    print("\n".join(f"    {line}" for line in tail(log)), file=sys.stderr)
+    return JobEnd(3, reason)
 
 
 def _await(
@@ -187,7 +218,7 @@ def write_processes(folder: Path, pids: list[int] | None, shared: list[str]) -> 
 def end_rank(folder: Path, status: int) -> None:
     """End the coupler's rank: in order when all is well, else with an abort of the job."""
     found = _read(folder / "log" / JOB_FILE)
-    _unlink(found)  # all ranks have it open by now; the process that started the job may have ended
+    _unlink(found.get("shared", []))  # type: ignore[arg-type]  # all ranks have it open by now; the process that started the job may have ended
     _write(folder, {**found, "status": status})
     sys.stdout.flush()
     sys.stderr.flush()
@@ -207,15 +238,31 @@ def _write(folder: Path, content: dict[str, object]) -> None:
     part.replace(path)
 
 
-def _clean_up(process: "subprocess.Popen[bytes]", found: dict[str, object]) -> None:
-    """End processes that still run, and remove files of killed ranks in shared memory."""
-    end_marked(STARTER, str(os.getpid()))
-    process.wait()
-    _unlink(found)
+def _see_to_end(job_file: Path, output: Sequence[IO[bytes]], starter: Starter) -> None:
+    """Show the end of a job whose starter is gone: its coupler ends in order; then clean up."""
+    limit = time.monotonic() + ORPHANED
+    while "status" not in (found := _read(job_file)) and time.monotonic() < limit:
+        _forward_output(output)
+        if not running(int(str(found.get("coupler", 0)))):
+            break
+        time.sleep(0.02)
+    _forward_output(output)
+    end_ranks(found, starter)
 
 
-def _unlink(found: dict[str, object]) -> None:
-    for path in found.get("shared", []):  # type: ignore[attr-defined]
+def end_ranks(found: dict[str, object], starter: Starter) -> None:
+    """End processes of a job that still run, and remove what they leave in shared memory.
+
+    A rank that is killed as MPI begins has told nobody of the files that it maps.
+    """
+    pids = list(marked(STARTER, str(starter.pid)))
+    mapped = {path for pid in pids for path in shared_files(pid) if starter.precedes(path)}
+    end_marked(STARTER, str(starter.pid))
+    _unlink({*found.get("shared", []), *mapped})  # type: ignore[misc]
+
+
+def _unlink(paths: Iterable[str]) -> None:
+    for path in paths:
         with contextlib.suppress(OSError):
             os.unlink(path)
 

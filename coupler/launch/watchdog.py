@@ -7,6 +7,7 @@ the others waiting for his patience beyond three of his usual windows. A stopped
 at once: nothing goes on by itself there.
 """
 
+import secrets
 import signal
 import sys
 import threading
@@ -94,6 +95,7 @@ class Watchdog:
     own: bool = False
     acts: Callable[[], bool] = lambda: True
     guard: Guard | None = None
+    mark: str = field(default_factory=lambda: secrets.token_hex(8))  # of all processes of the run
     verdict: BaseException | None = None  # why the run is to end
     _all: dict[str, Watched] = field(default_factory=dict)
     _asked_at: float = 0.0

@@ -13,6 +13,7 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from quintet.coupler.coupling.convergence_log import log_file
+from quintet.coupler.files import reached
 from quintet.coupler.files.disk import PART
 from quintet.coupler.files.plain_files import require_no_links, require_plain
 from quintet.coupler.files.run_files import (
@@ -40,7 +41,8 @@ SHOWN = 3  # foreign files named in a message
 
 def files_of(scene: Scene) -> list[str]:
     """Names of all files that a run of a scene may write, but for its snapshots."""
-    logs = [*(f"{name}.log" for name in scene.components), *COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG]
+    logs = [f"{name}.log" for name in scene.components]
+    logs += [*COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG, reached.NAME]
     views = [one(name) for name in scene.components for one in (view_file, walls_file)]
     convergence = [log_file(group) for group in scene.coupling.iterated()]
     return [*RUN_FILES, *views, *convergence, *(f"log/{name}" for name in logs)]

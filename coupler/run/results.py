@@ -2,6 +2,7 @@
 
 import os
 import platform
+import shlex
 import sys
 import time
 from dataclasses import asdict
@@ -18,12 +19,25 @@ from quintet.coupler.measures.expectation import ROUNDING, Expectation, Outcome,
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.side_views import side_views
 from quintet.coupler.report.view_steps import view_files
+from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
 
 DONE, UNMET, BAD, FAILED, INTERRUPTED = 0, 1, 2, 3, 130  # exit status
 PACKAGES = ("quintet", "numpy", "numba", "mpi4py", "eclipse-zenoh", "h5py", "msgpack")
+
+
+def headline(scene: Scene, outcome: dict[str, Any]) -> dict[str, Any]:
+    """What ``results.json`` begins with: what ran, how it ended, where, and how to repeat it."""
+    return {
+        "scene": scene.file.name,
+        "preset": scene.preset,
+        "transport": scene.transport,
+        **outcome,
+        "machine": machine(),
+        "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
+    }
 
 
 def outcomes(scene: Scene, folder: Path) -> list[Outcome]:
@@ -53,6 +67,20 @@ def _unknown(one: Expectation) -> Outcome:
     return Outcome(
         one.name, None, one.value or 0.0, one.within, one.unit, False, one.source, one.required
     )
+
+
+def draw_until(scene: Scene, folder: Path, reached: float) -> None:
+    """Draw what was due before a failure at a time [s]; what is torn is left out, and told."""
+    output, out = scene.file.output, folder / PICTURES[0]
+    due = [time for time in output.pictures if time <= reached]
+    if not due:
+        return
+    try:
+        if view_files(folder):
+            scale = output.displacement_scale
+            side_views(folder, out, due, scene.headline, output.colours, output.region, scale)
+    except (Exception, KeyboardInterrupt) as error:  # the fault is what counts
+        print(f"quintet: pictures before the fault left out: {error}", file=sys.stderr, flush=True)
 
 
 def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
@@ -121,13 +149,14 @@ def cpu() -> str:
 
 
 def fault(error: ComponentFailed, folder: Path, lines: list[str]) -> dict[str, Any]:
-    """Describe a failure: component, window, cause, traceback, end of its log."""
+    """Describe a failure: component, window, cause, traceback, its log if it has one."""
+    log = folder / "log" / f"{error.component}.log"  # a component in this process has none
     return {
         "component": error.component,
         "window": error.window,
         "cause": error.cause,
         "traceback": error.trace,
-        "log": str(folder / "log" / f"{error.component}.log"),
+        "log": str(log) if log.is_file() else "",
         "tail": lines,
     }
 

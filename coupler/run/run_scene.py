@@ -8,7 +8,7 @@ from quintet.coupler.files.run_files import RESULTS
 from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin, files_of, go_on
-from quintet.coupler.run.simulate import make_folder, simulate
+from quintet.coupler.run.simulate import conclude_for_coupler, make_folder, simulate
 from quintet.coupler.scene.needs import require_memory
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
@@ -76,5 +76,8 @@ def check_machine(scene: Scene) -> None:
 def _run(scene: Scene, folder: Path, snapshot: Path | None, own_process: bool) -> int:
     if scene.transport == "mpi":
         target = ["--resume", str(folder)] if snapshot else ["--out", str(folder)]
-        return run_under_mpi(["run", *run_arguments(**scene.asked), *target], scene, folder)
+        end = run_under_mpi(["run", *run_arguments(**scene.asked), *target], scene, folder)
+        if end.cause:
+            conclude_for_coupler(scene, folder, end.status, end.cause)
+        return end.status
     return simulate(scene, folder, snapshot, own_process)

@@ -25,16 +25,18 @@ from quintet.coupler.files.disk import (
     told,
     write_whole,
 )
+from quintet.coupler.files.reached import NAME as REACHED
+from quintet.coupler.files.reached import Reached
 from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
+from quintet.coupler.launch.companion import Companion
 from quintet.coupler.launch.connect import Connection, connect
-from quintet.coupler.launch.processes import tail
+from quintet.coupler.launch.processes import RUN, end_marked, tail
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.start_report import StartReport
-from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import DiskError, LinkError, QuintetError, SceneError
 
@@ -97,6 +99,7 @@ class Running:
         self.costs = Costs()
         self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
         self.participants: dict[str, Participant] = {}
+        self.draws = True  # pictures that were due before a failure; a forked process leaves them
         self._start = StartReport(log_files(scene, folder))
         self.writer.on_begin = self._start.close
         self._connection: Connection | None = None
@@ -107,8 +110,8 @@ class Running:
         """Join the components and couple them to the end, or until a signal ends it."""
         scene = self.scene
         main = threading.current_thread() is threading.main_thread()
-        if self.watchdog.own and self.stop.leave and main:
-            self._begin_guard()
+        if self.stop.leave and main:
+            self._begin_guard() if self.watchdog.own else self._begin_companion()
         self._start.show()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
         self.participants = connection.participants
@@ -133,9 +136,23 @@ class Running:
         self._guard = self.watchdog.guard = guard = Guard(patience, self.stop, self._report)
         self.writer.on_window = guard.note
 
+    def _begin_companion(self) -> None:
+        """Have it written down if this process is killed: the others are processes of their own."""
+        path = self.folder / "log" / REACHED
+        self.writer.on_window = Reached(path).note
+        if self.scene.transport == "zenoh":  # who started an MPI job sees to its ranks
+            self._guard = Companion(self._report_death)
+
+    def _report_death(self) -> None:
+        """End what this process left and write down that it is gone, from its companion."""
+        end_marked(RUN, self.watchdog.mark)
+        windows, reached = Reached.read(self.folder / "log" / REACHED)
+        cause = "the coupler's process is gone: it was killed, perhaps for want of memory"
+        self._report(ComponentFailed("coupler", windows, cause), windows, reached)
+
     def _report(self, error: ComponentFailed, windows: int, reached: float) -> None:
-        """Write down a failure, from the guard's process."""
-        self.writer.done, self.writer.time = windows, reached
+        """Write down a failure, from the process beside this one."""
+        self.writer.done, self.writer.time, self.draws = windows, reached, False
         self.outcome |= failed(error, self.scene, self.folder, self.writer)
         self.outcome |= doubts(self.ledger)
         conclude(self)
@@ -237,38 +254,55 @@ def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -
     return {"status": "failed", "fault": found, "windows": writer.done, "time": writer.time}
 
 
+def how_to_resume(folder: Path, outcome: dict[str, Any]) -> dict[str, str]:
+    """Tell how a run that was not done can go on, if it can."""
+    if kept := snapshots.snapshots(folder):
+        resume = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
+        behind = outcome["windows"] - snapshots.window_of(kept[-1])
+        again = f" ({behind} windows are computed again)" if behind else ""
+        print(f"to go on: {resume}{again}", file=sys.stderr)
+        return {"resume": resume}
+    if outcome["status"] == "interrupted":
+        print("it cannot go on: it was ended before its first snapshot", file=sys.stderr)
+    return {}
+
+
+def conclude_for_coupler(scene: Scene, folder: Path, status: int, cause: str) -> None:
+    """Write the results of a run whose coupler is gone, from the process that started it."""
+    windows, reached = Reached.read(folder / "log" / REACHED)
+    outcome: dict[str, Any] = {"status": "interrupted", "windows": windows, "time": reached}
+    if status != results.INTERRUPTED:
+        error = ComponentFailed("coupler", windows, cause)
+        outcome |= {"status": "failed", "fault": results.fault(error, folder, [])}
+    content = {**results.headline(scene, outcome), "expect": [], "ledger": {"links": []}}
+    give_up_reserve(folder)
+    results.write(folder, content | how_to_resume(folder, outcome))
+
+
 def conclude(made: Running) -> int:
     """Evaluate the expectations, write the results, draw; return the exit status."""
     scene, folder, outcome = made.scene, made.folder, made.outcome
     ended = outcome["status"] in ("done", "interrupted")
     found = results.outcomes(scene, folder) if ended else []
     content = {
-        "scene": scene.file.name,
-        "preset": scene.preset,
-        "transport": scene.transport,
-        **outcome,
+        **results.headline(scene, outcome),
         "expect": results.expectations(found),
         "ledger": made.ledger.summary(),
         "repetitions": made.costs.repetitions,
         "unconverged": made.costs.unconverged,
         "notes": {name: one.notes for name, one in made.participants.items() if one.notes},
         "timing": results.timing(made.participants, made.clock(), made.costs.mapping),
-        "machine": results.machine(),
-        "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))
-    elif kept := snapshots.snapshots(folder):
-        content["resume"] = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
-        behind = outcome["windows"] - snapshots.window_of(kept[-1])
-        again = f" ({behind} windows are computed again)" if behind else ""
-        print(f"to go on: {content['resume']}{again}", file=sys.stderr)
-    elif outcome["status"] == "interrupted":
-        print("it cannot go on: it was ended before its first snapshot", file=sys.stderr)
+    else:
+        content |= how_to_resume(folder, outcome)
     results.write(folder, content)
     if outcome["status"] == "refused":
         return results.BAD
     if outcome["status"] == "failed":
+        if made.draws:
+            results.draw_until(scene, folder, outcome["time"])
         return results.FAILED
     if outcome["status"] == "interrupted":
         return results.INTERRUPTED

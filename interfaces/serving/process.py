@@ -156,11 +156,13 @@ def end_children() -> None:
             child.kill()
 
 
-def shared_files() -> list[str]:
-    """Files in shared memory that this process maps; a killed process leaves them behind."""
-    with open("/proc/self/maps") as maps:
-        found = {line.split(maxsplit=5)[5].strip() for line in maps if "/dev/shm/" in line}
-    return sorted(found)
+def shared_files(pid: int | str = "self") -> list[str]:
+    """Files in shared memory that a process maps; a killed process leaves them behind."""
+    try:
+        lines = Path(f"/proc/{pid}/maps").read_text(errors="replace").splitlines()
+    except OSError:  # it has ended meanwhile
+        return []
+    return sorted({line.split(maxsplit=5)[5].strip() for line in lines if "/dev/shm/" in line})
 
 
 def say(text: str) -> None:

@@ -132,7 +132,8 @@ def test_an_mpi_job_ends_when_its_coupler_is_killed(tmp_path, who):
         run.end()
     if "rank" in who:
         assert run.process.returncode == 3
-        assert "quintet: the coupler ended; there are no results" in err
+        assert "quintet: the coupler was killed by signal 9 (SIGKILL)" in err
+        assert run.results["fault"]["component"] == "coupler"
     else:
         assert run.results["status"] == "interrupted"
     assert not run.left_in_shared_memory()

@@ -1,0 +1,64 @@
+"""A process beside this one that acts once this one is gone, however it ended.
+
+A process that is killed says nothing and cleans nothing up. Its companion is forked before
+libraries start threads, polls its parent, and needs nothing that the parent's threads may hold.
+"""
+
+import contextlib
+import os
+import signal
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from typing import NoReturn
+
+from quintet.coupler.launch.signal_handler import ENDING
+
+LOOKING = 0.1  # s between two looks at the parent
+
+
+class Companion:
+    """The companion of this process.
+
+    Parameters
+    ----------
+    act : function
+        Called in the companion once this process is gone.
+    """
+
+    def __init__(self, act: Callable[[], object]) -> None:
+        parent = os.getpid()
+        signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+        with warnings.catch_warnings():
+            # Of threads, as those of OpenBLAS: the companion uses none of what they may hold.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            self._pid = os.fork()
+        if not self._pid:
+            _wait_and_act(parent, act)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
+
+    def close(self) -> None:
+        """End the companion; a second call does nothing."""
+        if not self._pid:
+            return
+        with contextlib.suppress(ProcessLookupError, ChildProcessError):
+            os.kill(self._pid, signal.SIGKILL)
+            os.waitpid(self._pid, 0)
+        self._pid = 0
+
+
+def _wait_and_act(parent: int, act: Callable[[], object]) -> NoReturn:
+    try:
+        os.setsid()  # what ends the parent's session or process group must not end this
+        signal.set_wakeup_fd(-1)
+        for number in ENDING:
+            signal.signal(number, signal.SIG_IGN)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
+        while os.getppid() == parent:
+            time.sleep(LOOKING)
+        act()
+        sys.stdout.flush()
+        sys.stderr.flush()
+    finally:
+        os._exit(0)

@@ -1,0 +1,48 @@
+"""A run whose own process is killed leaves its results, and the line that tells how to go on."""
+
+import json
+import os
+import signal
+
+import pytest
+from started import Started, write_scene
+
+CASES = [
+    pytest.param("zenoh", "starter", marks=pytest.mark.zenoh),
+    pytest.param("mpi", "starter", marks=pytest.mark.mpi),
+    pytest.param("mpi", "coupler", marks=pytest.mark.mpi),
+]
+
+
+@pytest.mark.parametrize(("transport", "who"), CASES)
+def test_a_killed_coupler_leaves_results_and_the_way_to_resume(tmp_path, transport, who):
+    scene = write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3")
+    run = Started(scene, "--set", "output.snapshots=0.02")
+    run.wait_for_windows()
+    run.wait_until(lambda: list(run.folder.glob("snapshot-*.h5")))
+    pid = run.process.pid
+    if who == "coupler":
+        pid = json.loads((run.folder / "log" / "mpi.json").read_text())["coupler"]
+    os.kill(pid, signal.SIGKILL)
+    run.out, run.err = run.process.communicate(timeout=30)
+    left, shared = run.left_processes(5.0), run.left_in_shared_memory()
+    run.end()
+    assert not left and not shared
+    found = json.loads((run.folder / "results.json").read_text())
+    assert found["windows"] >= 20 and found["time"] == pytest.approx(1e-3 * found["windows"])
+    assert found["resume"].startswith("quintet run --resume")
+    assert "to go on: quintet run --resume" in run.err
+    if who == "starter" and transport == "mpi":  # the coupler's rank is alive, and ends in order
+        assert found["status"] == "interrupted"
+        return
+    assert found["status"] == "failed" and found["fault"]["component"] == "coupler"
+    said = "killed by signal 9 (SIGKILL)" if who == "coupler" else "it was killed"
+    assert said in found["fault"]["cause"] and said in run.err
+
+
+@pytest.mark.zenoh
+def test_no_companion_is_left_after_a_run(tmp_path):
+    run = Started(write_scene(tmp_path, "zenoh", 0.01))
+    assert run.wait() == 0 and not run.left_processes()
+    found = json.loads((run.folder / "results.json").read_text())
+    assert found["status"] == "done", "its companion wrote nothing"
