@@ -136,7 +136,8 @@ class Boundary:
         "adiabatic" one holds it; "inflow" has the state that is given, "outflow" that of the gas
         which leaves.
     state
-        Of an inflow: all of it, as of what flows faster than sound.
+        Of an inflow: of the gas beyond it. Where that comes in faster than sound the boundary has
+        this state; where it is slower waves leave, by the Riemann problem of both gases.
     total
         Of an inflow, in place of the state: it then has the pressure of the gas that it meets.
     pressure : Pa

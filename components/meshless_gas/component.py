@@ -13,7 +13,7 @@ from quintet.components.meshless_gas.diagnostics import (
     failure,
     totals,
 )
-from quintet.components.meshless_gas.gauges import fronts, line, nearest_nodes, probes
+from quintet.components.meshless_gas.gauges import fronts, line, nearest_nodes, probes, refuse_far
 from quintet.components.meshless_gas.kernels.boundaries import boundary_flows, write_boundaries
 from quintet.components.meshless_gas.kernels.ghosts import (
     write_ghost_gradients,
@@ -29,6 +29,7 @@ from quintet.components.meshless_gas.kernels.motion import (
 from quintet.components.meshless_gas.kernels.outflows import continue_outflows
 from quintet.components.meshless_gas.kernels.residuals import write_residuals
 from quintet.components.meshless_gas.limiters import limiter_of
+from quintet.components.meshless_gas.monitors import blocked_inflows
 from quintet.components.meshless_gas.node_motion import node_motion
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
@@ -98,6 +99,8 @@ class MeshlessGas(Component):
             self.viscous = Viscous(params, self.domain, self.team)
         self.wall_loads = WallLoads(params, self.domain) if has_walls(params) else None
         self.settling = Settling(params.steady) if params.steady is not None else None
+        ends = [end for one in params.fronts for end in (one.begin, one.end)]
+        refuse_far(self.domain, (*params.probes, *ends), self.team)
         self.probed = nearest_nodes(cloud, params.probes, self.team)
         self.lines = [line(cloud, one, self.team) for one in params.fronts]
         self.particles = None
@@ -342,9 +345,10 @@ class MeshlessGas(Component):
         return self.domain.notes
 
     def warnings(self) -> dict[str, str]:
-        """Doubts about the cloud."""
+        """Doubts about the cloud, and about inflows at which waves have arrived."""
         doubts = self.domain.doubts
-        return {"neighbours": " ".join(doubts)} if doubts else {}
+        said = {"neighbours": " ".join(doubts)} if doubts else {}
+        return said | blocked_inflows(self.params, self.state, self.domain)
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""

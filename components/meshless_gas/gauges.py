@@ -1,5 +1,6 @@
 """What is read at places: states of the nearest nodes, and fronts along lines."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -7,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.boundaries import Gas
+from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.readings import Front
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import SceneError
 
 NEAR = 4  # nodes between which is interpolated
 PER_SPACING = 4.0  # places on a line
@@ -39,6 +42,28 @@ def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]], team: Team) -
     return nearest(cloud.positions, among, np.array(places, np.float64), 1, team)[0][:, 0]
 
 
+def refuse_far(domain: Domain, places: Sequence[Sequence[float]], team: Team) -> None:
+    """Refuse places that lie farther from the nodes than these from each other."""
+    cloud, near = domain.cloud, domain.stencils.neighbours
+    rows = nearest_nodes(cloud, places, team)
+    for place, row in zip(places, rows, strict=True):
+        arms = cloud.positions[near[row]] - cloud.positions[row]
+        arm = cloud.positions[row] - np.array(place)
+        if cloud_is_plane(cloud):
+            arm[1] = 0.0
+        away, reach = np.linalg.norm(arm), np.linalg.norm(arms, axis=1).max()
+        if away > reach:
+            raise SceneError(
+                f"probes and fronts must lie among the nodes; {list(place)} m is {away:.3g} m from "
+                f"the nearest, whose neighbours are at most {reach:.3g} m away. Move it."
+            )
+
+
+def cloud_is_plane(cloud: Cloud) -> bool:
+    """Whether all nodes but ghosts have one y."""
+    return float(np.ptp(cloud.positions[: cloud.nodes, 1])) == 0.0
+
+
 def line(cloud: Cloud, front: Front, team: Team) -> SampledLine:
     """Find the nodes around the places of a line."""
     begin, end = np.array(front.begin), np.array(front.end)
@@ -56,33 +81,35 @@ def line(cloud: Cloud, front: Front, team: Team) -> SampledLine:
     return SampledLine(distances, rows, weights, begin, direction, column, front.level)
 
 
-def crossing(one: SampledLine, primitive: Array) -> tuple[float, bool]:
-    """Distance [m] at which the level is first passed, and whether it is."""
+def crossing(one: SampledLine, primitive: Array) -> float:
+    """Distance [m] at which the level is first passed; not a number if it is not."""
     values = (one.weights * primitive[one.rows, one.column]).sum(axis=1)
     above = values > one.level
     turns = np.flatnonzero(above[1:] != above[:-1])
     if not len(turns):
-        return float(one.distances[-1]), False
+        return math.nan
     k = int(turns[0])
     share = (one.level - values[k]) / (values[k + 1] - values[k])
-    return float(one.distances[k] + share * (one.distances[k + 1] - one.distances[k])), True
+    return float(one.distances[k] + share * (one.distances[k + 1] - one.distances[k]))
 
 
 def fronts(lines: Sequence[SampledLine], primitive: Array) -> Fields:
     """Fields of the port `fronts`."""
-    found = [crossing(one, primitive) for one in lines]
-    places = np.array([a.begin + d * a.direction for a, (d, _) in zip(lines, found, strict=True)])
-    angles = [angle(places[: k + 1]) for k in range(len(places))]
+    distances = np.array([crossing(one, primitive) for one in lines])
+    places = np.array([a.begin + d * a.direction for a, d in zip(lines, distances, strict=True)])
     return {
         "fronts.position": places,
-        "fronts.distance": np.array([distance for distance, _ in found]),
-        "fronts.angle": np.array(angles),
-        "fronts.found": np.array([float(there) for _, there in found]),
+        "fronts.distance": distances,
+        "fronts.angle": np.array([angle(places[: k + 1]) for k in range(len(places))]),
+        "fronts.found": np.isfinite(distances).astype(np.float64),
     }
 
 
 def angle(places: Array) -> float:
-    """Angle [rad] to x of the straight line through places (k, 3) m, of least squares in z."""
+    """Angle [rad] to x of the straight line through places (k, 3) m, of least squares in z.
+
+    Not a number if any place is none.
+    """
     x, z = (places[:, d] - places[:, d].mean() for d in (0, 2))
     across = float((x * x).sum())
     return float(np.arctan2((x * z).sum(), across)) if len(places) > 1 else 0.0

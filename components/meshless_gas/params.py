@@ -113,6 +113,8 @@ class MeshlessGasParams:
             raise ValueError(sentence)
         for sentence in self._wrong_faces() if self.box is not None else self._wrong_names():
             raise ValueError(sentence)
+        for sentence in self._wrong_places():
+            raise ValueError(sentence)
 
     def _wrong_clouds(self) -> list[str]:
         """What does not fit between the cloud and the dimensions."""
@@ -252,6 +254,20 @@ class MeshlessGasParams:
             wrong = wrong_part(part.part, corners, self.box.spacing, kinds)
             found += [f"box.refinements: {wrong}"] if wrong else []
         return found
+
+    def _wrong_places(self) -> list[str]:
+        """Which places of probes and ends of fronts lie outside the nodes."""
+        places = [(f"probes, item {k}", place) for k, place in enumerate(self.probes)]
+        for k, front in enumerate(self.fronts):
+            places += [
+                (f"fronts, item {k}: begin", front.begin),
+                (f"fronts, item {k}: end", front.end),
+            ]
+        return [
+            f"{name}: it must lie among the nodes; found {list(place)} m. Move it."
+            for name, place in places
+            if not self.cloud.holds(place, self.dimensions)
+        ]
 
     def kind_of(self, face: str) -> str:
         """Kind of the boundary at a face of the box."""

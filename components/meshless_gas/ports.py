@@ -97,7 +97,7 @@ FRONTS = Port(
         POSITION,
         Field("distance", (), "m"),  # from where the line begins
         Field("angle", (), "rad"),
-        Field("found", (), "1"),  # whether there is one; else it is said to be at the line's end
+        Field("found", (), "1"),  # whether there is one; else the other fields are not a number
     ),
 )
 

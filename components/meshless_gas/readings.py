@@ -38,7 +38,7 @@ class Front:
     field
         What the front is a jump of.
     level : of the field
-        The front is where it is first passed, from the line's begin on.
+        The front is where it is first passed, from the line's begin on; nowhere if it is not.
     """
 
     begin: Vector

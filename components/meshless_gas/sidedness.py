@@ -24,12 +24,12 @@ from quintet.interfaces.errors import SceneError
 Rows = NDArray[np.int64]
 Find = Callable[[Cloud, int, Team, Rows | None], Whole]
 
-EVEN = 0.3  # greatest sidedness where the number of neighbours is chosen here
+EVEN = 0.35  # greatest sidedness where the number of neighbours is chosen here
 UNEVEN = 0.6  # greatest sidedness where the scene says how many neighbours there are
 FEW = 0.01  # share of the nodes of layers, whose neighbours are fixed, that may have more
 WORST = 0.9  # sidedness that no node may keep
 TIE = 1e-6  # relative difference of distances that count as equal
-MORE, AT_LEAST = 3, 6  # times as many neighbours, and this many more, are tried
+BLOCK = {True: 8, False: 18}  # neighbours of a whole block of a lattice, in the plane and not
 
 
 class Cure(NamedTuple):
@@ -132,7 +132,7 @@ def surround(
     rows = np.flatnonzero(is_advanced(cloud.kind[: cloud.nodes])).astype(np.int64)
     completed = 0
     if is_lattice:
-        near, completed = _whole_shells(cloud, find, near, rows, team)
+        near, completed = _whole_shells(cloud, find, near, rows, planar, team)
     made = stencils(cloud, near, planar, team)
     found = sidedness(cloud, made, rows, planar, team)
     worst = float(found.max(initial=0.0))
@@ -145,7 +145,7 @@ def surround(
 
 
 def _whole_shells(
-    cloud: Cloud, find: Find, near: Whole, rows: Rows, team: Team
+    cloud: Cloud, find: Find, near: Whole, rows: Rows, planar: bool, team: Team
 ) -> tuple[Whole, int]:
     """Neighbours where all of one distance are taken, and of how many nodes some were left out."""
     count = near.shape[1]
@@ -156,7 +156,7 @@ def _whole_shells(
     cut = rows[away[:, count] <= (1.0 + TIE) * away[:, count - 1]]
     if not len(cut):
         return near, 0
-    pool = find(cloud, _most(cloud, count), team, cut)
+    pool = find(cloud, _most(cloud, count, planar), team, cut)
     away = _distance(cloud, cut, pool)
     taken = (away <= (1.0 + TIE) * away[:, count - 1 : count]).sum(axis=1)
     return _with(near, cut, pool, taken), len(cut)
@@ -168,16 +168,17 @@ def _extended(
     """Neighbours with the fewest of each uneven node that make it even, and its sidedness then."""
     near = made.neighbours
     fewest = int((near[uneven] != uneven[:, None]).sum(axis=1).min())
-    pool = find(cloud, _most(cloud, fewest), team, uneven)
+    pool = find(cloud, _most(cloud, fewest, planar), team, uneven)
     best, taken = np.full(len(uneven), np.inf), np.zeros(len(uneven), np.int64)
     waiting = np.arange(len(uneven))
-    for many in range(4 if planar else 6, pool.shape[1] + 1):
+    # Fewer are a last resort, as beside boundaries, beyond which far neighbours are on one side.
+    fewer = range(4 if planar else 6, fewest)
+    for many in (*range(fewest, pool.shape[1] + 1), *fewer):
         rows = uneven[waiting]
         found = _sidedness_of(cloud, rows, pool[waiting, :many], planar, team)
         better = found < best[waiting]
         best[waiting[better]], taken[waiting[better]] = found[better], many
-        if many >= fewest:
-            waiting = waiting[best[waiting] > limit]
+        waiting = waiting[best[waiting] > limit]
         if not len(waiting):
             break
     return _with(near, uneven, pool, taken), best
@@ -208,8 +209,9 @@ def _distance(cloud: Cloud, rows: Rows, near: Whole) -> Array:
     return np.asarray(np.sqrt((arms**2).sum(axis=2)) / mean)
 
 
-def _most(cloud: Cloud, count: int) -> int:
-    return min(MORE * count + AT_LEAST, len(cloud.positions) - 1)
+def _most(cloud: Cloud, count: int, planar: bool) -> int:
+    """How many neighbours are tried: up to 14, in space 34; farther ones blur what is sharp."""
+    return min(2 * max(count, BLOCK[planar]) - 2, len(cloud.positions) - 1)
 
 
 def _with(near: Whole, rows: Rows, pool: Whole, taken: NDArray[np.int64]) -> Whole:
@@ -256,7 +258,7 @@ def notes_of(cure: Cure, count: int, nodes: int, planar: bool) -> tuple[str, ...
         said.append(
             f"neighbours: the {count} nearest of {cure.completed} of {nodes} nodes leave out "
             f"others that are as near, on one side; all these were added, up to {most} neighbours. "
-            f"Leave neighbours out, or say {8 if planar else 18}, to compute faster."
+            f"Leave neighbours out, or say {BLOCK[planar]}, to compute faster."
         )
     if cure.extended:
         said.append(

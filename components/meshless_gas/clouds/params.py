@@ -84,6 +84,11 @@ class BoxCloud:
                 count += cells * (2 ** len(axes) - 1)
         return round(count)
 
+    def holds(self, place: Vector, dimensions: int) -> bool:
+        """Whether a place (3,) m lies in the box."""
+        axes, slack = (0, 2) if dimensions == 2 else (0, 1, 2), 1e-9 * self.spacing
+        return all(self.lowest[d] - slack <= place[d] <= self.highest[d] + slack for d in axes)
+
     @staticmethod
     def _count(low: Array, high: Array, spacing: float, axes: tuple[int, ...]) -> float:
         return float(np.prod([max(1.0, (high[d] - low[d]) / spacing) for d in axes]))
@@ -164,6 +169,11 @@ class SphereCloud:
         even = 0.15 * self.margin * self.radius / self.layers.count
         return even if self.layers.first is None else self.layers.first
 
+    def holds(self, place: Vector, dimensions: int) -> bool:
+        """Whether a place (3,) m may lie in the layers: they end before the farthest distance."""
+        away = math.dist(place, self.centre)
+        return (1.0 - 1e-9) * self.radius <= away <= (1.0 + 1e-9) * self.reach
+
     def wrong(self, stream: Vector, axisymmetric: bool) -> list[str]:
         """What does not fit between the sphere, the stream [m/s] that it stands in and an axis."""
         found = []
@@ -217,6 +227,13 @@ class PlateCloud:
     rays: Annotated[int, Field(ge=8)]
     finest: Positive
     layers: Layers
+
+    def holds(self, place: Vector, dimensions: int) -> bool:
+        """Whether a place (3,) m lies in the layers."""
+        slack = 1e-9 * self.height
+        return -slack <= place[2] <= self.height + slack and (
+            -self.ahead - slack <= place[0] <= self.length + slack
+        )
 
     @property
     def finest_spacing(self) -> float:

@@ -10,11 +10,13 @@ import numpy as np
 from numba import njit
 
 from quintet.components.meshless_gas.clouds.cloud import INFLOW, OUTFLOW
+from quintet.components.meshless_gas.kernels.far_field import meet
 from quintet.components.meshless_gas.laws import wall_pressure
 from quintet.components.shared.numba_options import EXACT, INNER
 
 # Columns of what a scene says of each boundary: 5 of its state, then these.
 BACK_PRESSURE, TOTAL_PRESSURE, TOTAL_TEMPERATURE, PATCH_COLUMNS = 5, 6, 7, 8
+NOISE = 1e-6  # relative difference from a given state below which gas within has this state
 GATE = 0.5  # Mach number of the flow into a wall above which the wall pushes back
 
 
@@ -87,17 +89,15 @@ def write_boundaries(
     for row in range(rows.shape[0]):
         i = rows[row]
         given = patches[patch[i]]
-        if kind[i] == INFLOW and not given[TOTAL_PRESSURE] > 0.0:
-            for q in range(5):
-                primitive[i, q] = given[q]
-            continue
         near[:] = 0.0
         for k in range(neighbours.shape[1]):
             if weights[row, k] > 0.0:
                 for q in range(5):
                     near[q] += weights[row, k] * primitive[neighbours[i, k], q]
-        if kind[i] == INFLOW:
+        if kind[i] == INFLOW and given[TOTAL_PRESSURE] > 0.0:
             from_rest(near, given, gamma, gas_constant)
+        elif kind[i] == INFLOW:
+            come_in(near, given, normals[i], gamma)
         elif kind[i] == OUTFLOW:
             leave(near, normals[i], given[BACK_PRESSURE], gamma)
         elif frame is None:
@@ -106,6 +106,23 @@ def write_boundaries(
             slip(near, normals[i], frame[i, 0], frame[i, 1], frame[i, 2], gamma)
         for q in range(5):
             primitive[i, q] = near[q]
+
+
+@njit(**INNER)
+def come_in(near: Any, given: Any, normal: Any, gamma: float) -> None:
+    """State of gas that comes in: the given one; slower than sound it lets waves out."""
+    into, same = 0.0, True
+    for d in range(3):
+        into += given[1 + d] * normal[d]
+    sound = math.sqrt(gamma * given[4] / given[0])
+    for q in range(5):
+        size = given[q] if q == 0 or q == 4 else sound
+        same = same and abs(near[q] - given[q]) <= NOISE * size
+    if not same and into < sound:
+        meet(near, given, normal, gamma)
+        return
+    for q in range(5):
+        near[q] = given[q]
 
 
 @njit(**INNER)

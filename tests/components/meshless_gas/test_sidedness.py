@@ -62,7 +62,7 @@ def test_neighbours_that_are_not_asked_for_surround_each_node(dimensions, jitter
         dimensions=dimensions, box={"jitter": jitter, "spacing": 0.1 * (dimensions - 1)}
     )
     near = made.domain.stencils.neighbours
-    assert worst(made) <= EVEN
+    assert worst(made) <= (EVEN if jitter < 0.6 else UNEVEN)
     count = (near[: made.items()] != np.arange(made.items())[:, None]).sum(axis=1)
     assert np.median(count) <= (12 if dimensions == 2 else 30) and made.notes() == ()
 
