@@ -69,6 +69,9 @@ class Demands:
     relaxation : tuple of float
         Share of the change of its instants that is handed on, in the first windows; the last
         one holds for all the others. Empty: all of it.
+    settles : bool
+        Whether what it hands on must come to rest from window to window, as the temperature
+        between two bars; it is then watched for swings instead of being stepped twice.
     reason : str
         Why, for whoever asks for something else.
     """
@@ -76,6 +79,7 @@ class Demands:
     equal_steps: bool = False
     schemes: tuple[str, ...] = ("serial", "parallel", "iterated")
     relaxation: tuple[float, ...] = ()
+    settles: bool = False
     reason: str = ""
 
 

@@ -19,7 +19,9 @@ from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.coupler.coupling.run_warnings import RunWarnings
+from quintet.coupler.coupling.settling_watch import SettlingWatch
 from quintet.coupler.coupling.stability_watch import StabilityWatch
+from quintet.coupler.coupling.time_error import TimeErrors
 from quintet.coupler.files.table_file import TableFile
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.rotation import vector_between
@@ -82,6 +84,8 @@ class Ledger:
         self.energy = EnergyBalance()
         self.watch = StabilityWatch(self.accounts)
         self.warnings = RunWarnings()
+        self.time_errors = TimeErrors()
+        self.settling = SettlingWatch()
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
         self._table = TableFile(path, size)
@@ -230,6 +234,8 @@ class Ledger:
             "energy": self.energy.save(),
             "watch": self.watch.save(),
             "warnings": self.warnings.save(),
+            "time_errors": self.time_errors.save(),
+            "settling": self.settling.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
             "size": self._table.flush(),
@@ -243,6 +249,8 @@ class Ledger:
         self.energy.load(state["energy"])
         self.watch.load(state["watch"])
         self.warnings.load(state["warnings"])
+        self.time_errors.load(state["time_errors"])
+        self.settling.load(state["settling"])
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])
 

@@ -26,6 +26,10 @@ class ComponentFailed(QuintetError):
         super().__init__(f"{component} failed in window {window}: {cause}")
 
 
+class TrialFailed(QuintetError):
+    """A component could not do a trial window; it will come back to the state before."""
+
+
 @dataclass(slots=True)
 class Timing:
     """Where a component's time went."""
@@ -87,11 +91,14 @@ class Participant:
         self._asked = 0.0
         self._answered = True  # whether the answer to the last order is known
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
+        self.trial = False  # whether its windows are a trial, undone afterwards
 
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
         self._asked = time.perf_counter()
         self.order, self._answered = order, False
+        if self.trial:
+            header["trial"] = True
         try:
             with self.keeping_others_waiting:
                 self.line.send({"order": order, "window": self.window, **header}, fields or {})
@@ -104,13 +111,22 @@ class Participant:
             with self.keeping_others_waiting:
                 message = self.line.receive(LONGEST_WAIT, expected)
             failed = message.order == "failed"
+            if self.trial and message.order == "unable":
+                self._answered = True
+                said = f"{message.header.get('error')}: {message.header.get('text')}"
+                raise TrialFailed(f"{self.name}: {sendable(said)}")
             if not failed:
                 check_answer(self.order, message)
                 if self.sums and self.order == "advance":
                     self.sums.check(message)
             if finite:
                 require_finite(message.fields, "what it gave")
-        except (LineError, MessageError) as error:
+        except MessageError as error:
+            if self.trial:
+                self._answered = True
+                raise TrialFailed(f"{self.name}: {error}") from error
+            raise self._failure(error) from error
+        except LineError as error:
             raise self._failure(error) from error
         self._answered = self.built = True
         if failed:
@@ -185,6 +201,10 @@ class Participant:
         message = self.receive(self.shapes)
         took = time.perf_counter() - self._asked
         timing, header = self.timing, message.header
+        self.stable = float(header["stable"])
+        self.window += 1
+        if self.trial:
+            return message
         timing.first = timing.first or took
         timing.wait += took
         timing.compute += float(header["busy"])
@@ -192,9 +212,7 @@ class Participant:
         timing.steps += int(header["steps"])
         timing.windows += 1
         timing.recent.append(took)
-        self.stable = float(header["stable"])
         self._note(message)
-        self.window += 1
         return message
 
     def give(
@@ -210,14 +228,19 @@ class Participant:
         self.shapes = {key: array.shape for key, array in fields.items()}
         return fields
 
+    @property
+    def answered(self) -> bool:
+        """Whether it has answered the last order."""
+        return self._answered
+
     def order_keep(self, depth: int) -> None:
         """Order that the present state be kept, for couplings that repeat windows at a depth."""
         self._kept[depth] = self.window, self.stable
         self.send_order("keep", depth=depth)
 
-    def order_rewind(self, depth: int) -> None:
-        """Order that it come back to the state that was kept."""
-        self.send_order("rewind", depth=depth)
+    def order_rewind(self, depth: int, last: bool = False) -> None:
+        """Order that it come back to the state that was kept; for the last time it forgets it."""
+        self.send_order("rewind", depth=depth, last=last)
         self.window, self.stable = self._kept[depth]
 
     def save(self) -> dict[str, Array]:

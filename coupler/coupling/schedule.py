@@ -89,6 +89,7 @@ class Costs:
     mapping: float = 0.0  # s spent on transfers and bookkeeping
     repetitions: int = 0  # of windows
     unconverged: int = 0  # windows that went on at the limit of repetitions
+    checks: float = 0.0  # s spent on trial windows, all components included
 
 
 @dataclass(slots=True)
@@ -138,6 +139,12 @@ class Coupling:
     def components(self) -> dict[str, Participant]:
         """Every component, also those in groups."""
         return {k: v for one in self.members.values() for k, v in one.components.items()}
+
+    def carries(self, link: str) -> "Coupling | None":
+        """Find the coupling, this or that of a group, whose windows a link's transfers cross."""
+        if any(self.exchange.links[self.exchange.link_of[n]].name == link for n in self.transfers):
+            return self
+        return next((one for inner in self._inner() if (one := inner.carries(link))), None)
 
     def allowed(self) -> float:
         """How long the next window may be where it follows the state [s]."""

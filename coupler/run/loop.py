@@ -8,6 +8,7 @@ from quintet.coupler.coupling.group import join_ports
 from quintet.coupler.coupling.participant import describe_all
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.schemes import advance
+from quintet.coupler.coupling.time_check import TimeCheck
 from quintet.coupler.coupling.windows import Windows, run_windows
 from quintet.interfaces.component import Fields
 
@@ -67,9 +68,16 @@ def run(
     resume(coupling)
     observer.begin(coupling, described)
     watch = coupling.ledger.watch
+    check = TimeCheck()
     while not windows.finished and not observer.wants_end():
+        check.before(coupling)
         advance(coupling, lambda now: watch.asks or observer.due(now))
         coupling.ledger.close_window(coupling.all_late(), coupling.all_in_transit())
+        check.after(coupling)
+        coupling.ledger.settling.look(coupling)
+        if windows.finished:
+            check.warn(coupling)
+            watch.conclude(coupling)
         doubts = [*watch.look(coupling), *coupling.ledger.warnings.close_window(windows.time)]
         observer.end_window(coupling)
         for doubt in doubts:

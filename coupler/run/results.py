@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.coupling.schedule import Costs
 from quintet.coupler.files.checksums import of_files, sealed
 from quintet.coupler.files.disk import told, write_at_last
 from quintet.coupler.files.recording import Recording
@@ -101,7 +102,7 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
             comparison(scene.folder, scene.expect, found, recording, out, title, values)
 
 
-def timing(participants: dict[str, Participant], wall: float, mapping: float) -> dict[str, Any]:
+def timing(participants: dict[str, Participant], wall: float, costs: Costs) -> dict[str, Any]:
     """Wall time and its parts [s], and the sum of the peak memories of all processes [bytes]."""
     components = {}
     exchange = compile_time = 0.0
@@ -122,7 +123,8 @@ def timing(participants: dict[str, Participant], wall: float, mapping: float) ->
         "compile": compile_time,
         "components": components,
         "exchange": exchange,
-        "mapping": mapping,
+        "mapping": costs.mapping,
+        "checks": costs.checks,
         "memory": peak_memory() + sum(one.timing.memory for one in participants.values()),
     }
 

@@ -16,7 +16,8 @@ from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
-from quintet.coupler.coupling.schedule import Costs
+from quintet.coupler.coupling.schedule import Costs, Coupling
+from quintet.coupler.coupling.time_check import suspects
 from quintet.coupler.files.disk import (
     REASONS,
     disk_error,
@@ -37,6 +38,7 @@ from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.start_report import StartReport
+from quintet.coupler.scene.predicted_limits import beyond_limits
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import DiskError, LinkError, QuintetError, SceneError
 
@@ -103,6 +105,7 @@ class Running:
         self._start = StartReport(log_files(scene, folder))
         self.writer.on_begin = self._start.close
         self._connection: Connection | None = None
+        self._coupling: Coupling | None = None
         self._ending = threading.Lock()
         self._guard: Closable | None = None
 
@@ -113,9 +116,10 @@ class Running:
         if self.stop.leave and main:
             self._begin_guard() if self.watchdog.own else self._begin_companion()
         self._start.show()
+        self._warn_of_limits()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
         self.participants = connection.participants
-        coupling = assemble(
+        self._coupling = coupling = assemble(
             scene.coupling, self.participants, self.exchange, self.ledger, self.logs, self.costs
         )
         path = self.snapshot
@@ -126,6 +130,13 @@ class Running:
         connection.close(True)
         self._connection = None
         self.outcome |= outcome_of(end)
+
+    def _warn_of_limits(self) -> None:
+        """Warn of predicted limits that the scene runs beyond."""
+        for name, text in beyond_limits(self.scene).items():
+            self.ledger.warnings.note("scene", {name: text})
+        for warning in self.ledger.warnings.close_window(0.0):
+            self.writer.warn(str(warning))
 
     def _begin_guard(self) -> None:
         """Have it ended from another process too: here a solver may stop all Python."""
@@ -175,6 +186,7 @@ class Running:
                 self.outcome |= refused(error, writer) or failed(
                     error, self.scene, self.folder, writer
                 )
+                self._suspect_coupling()
             if self._connection:
                 self._connection.close(False)
             for one in self.files:
@@ -184,6 +196,16 @@ class Running:
                 self.outcome["status"] = "interrupted"
             self.outcome |= doubts(self.ledger)
             return conclude(self)
+
+    def _suspect_coupling(self) -> None:
+        """Say beside a failure which couplings were doubtful before it."""
+        fault = self.outcome.get("fault")
+        if fault is None or self._coupling is None or not self.writer.begun:
+            return
+        for text in (found := suspects(self._coupling)):
+            print(f"  {text}", file=sys.stderr, flush=True)
+        if found:
+            fault["coupling"] = found
 
     def leave(self) -> None:
         """End from another thread: the main one is in a solver that does not come back."""
@@ -290,8 +312,9 @@ def conclude(made: Running) -> int:
         "ledger": made.ledger.summary(),
         "repetitions": made.costs.repetitions,
         "unconverged": made.costs.unconverged,
+        "time_errors": made.ledger.time_errors.summary(),
         "notes": {name: one.notes for name, one in made.participants.items() if one.notes},
-        "timing": results.timing(made.participants, made.clock(), made.costs.mapping),
+        "timing": results.timing(made.participants, made.clock(), made.costs),
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))

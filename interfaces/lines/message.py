@@ -25,7 +25,7 @@ MAGIC = b"qnt3"
 PREFIX = struct.Struct("<4sIQI")  # magic, bytes of the header, bytes of the frame, CRC-32 of header
 PACKER = msgpack.Packer()  # making one takes longer than packing a header
 HEADER_LIMIT = 1 << 20  # bytes
-WITHOUT_ARRAYS = ("failed", "abort")  # orders that may replace an expected message
+WITHOUT_ARRAYS = ("failed", "unable", "abort")  # that may replace an expected message
 
 
 @dataclass(slots=True)

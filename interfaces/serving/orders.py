@@ -48,7 +48,7 @@ def _is_rows(value: Any) -> bool:
 COUNT: Rule = is_count, "a whole number from 0"
 NAMES: Rule = is_names, "a list of names"
 FLAG: Rule = lambda value: isinstance(value, bool), "true or false"
-OF_ALL: dict[str, Rule] = {"window": COUNT, "depth": COUNT}
+OF_ALL: dict[str, Rule] = {"window": COUNT, "depth": COUNT, "trial": FLAG}
 OPTIONAL: dict[str, dict[str, Rule]] = {
     "go": {"folder": (lambda value: isinstance(value, str) and "\0" not in value, "a folder")},
     "bind": {
@@ -57,6 +57,7 @@ OPTIONAL: dict[str, dict[str, Rule]] = {
         "works": (_is_works, "a list of three names each"),
     },
     "prime": {"shares": (_is_shares, "a table of pairs of rows")},
+    "rewind": {"last": FLAG},
     "advance": {
         "steps": (_is_steps, f"a whole number from 0 to {MOST_STEPS}"),
         "totals": FLAG,

@@ -137,6 +137,8 @@ class Server:
             "busy": time.perf_counter() - began,
             "cpu": time.process_time() - spent,
         }
+        if is_trial(message):
+            return answer, fields
         if notes := self._notes():
             answer["notes"] = notes
         if warnings := self.component.warnings():
@@ -232,11 +234,12 @@ class Server:
         self.inputs.load(parts["inputs"])
 
     def _keep(self, message: Message) -> Answer:
-        self._kept[depth(message)] = self.state()
-        return {}, {}
+        state = self._kept[depth(message)] = self.state()
+        return {"stateless": not any(key.startswith("component/") for key in state)}, {}
 
     def _rewind(self, message: Message) -> Answer:
-        self.restore(self._kept[depth(message)])
+        kept, at = self._kept, depth(message)
+        self.restore(kept.pop(at) if message.header.get("last") else kept[at])
         return {}, {}
 
     def _save(self, _: Message) -> Answer:
@@ -271,6 +274,11 @@ def unlike(state: Fields, own: Fields) -> str:
 def depth(message: Message) -> int:
     """How deep in groups the coupling is that keeps a state; 0 is the whole run."""
     return int(message.header.get("depth", 0))  # checked before
+
+
+def is_trial(message: Message) -> bool:
+    """Whether an order belongs to a trial: windows that are undone afterwards."""
+    return bool(message.header.get("trial", False))  # checked before
 
 
 def peak_memory() -> int:
@@ -311,6 +319,9 @@ def answer(server: Server, line: Line, message: Message) -> bool:
         header, fields = server.handle(message)
     except (Exception, SystemExit) as error:
         told = failure(error)
+        if is_trial(message):  # it comes back to the state before, and the run goes on
+            line.send({**told, "order": "unable", "traceback": ""}, {})
+            return True
         print(told["traceback"], end="", file=sys.stderr, flush=True)  # into the component's log
         line.send(told, {})
         return False

@@ -100,10 +100,11 @@ class Heat:
     def demands(self) -> Demands:
         """Any steps; its relaxation is from window to window, so windows are not repeated."""
         if self.relaxation == (1.0,):
-            return Demands()
+            return Demands(settles=True)
         return Demands(
             schemes=("serial", "parallel"),
             relaxation=self.relaxation,
+            settles=True,
             reason="its temperature is relaxed from window to window, so windows are not repeated",
         )
 

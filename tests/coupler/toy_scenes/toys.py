@@ -35,8 +35,9 @@ class Toy(Component):
     def __init__(self, params):
         self.params = params
         self.value = np.linspace(0.0, 1.0, 3 * params.items).reshape(-1, 3)
-        self.push = np.zeros_like(self.value)
-        self.steps = 0
+        self.push, self.pushed = np.zeros_like(self.value), np.zeros_like(self.value)
+        self.partner = self.value
+        self.steps, self.time = 0, 0.0
 
     def stable_dt(self):
         return 1e-3 / self.params.substeps
@@ -44,8 +45,8 @@ class Toy(Component):
     def take(self, fields):
         if any(field.shape != self.value.shape for field in fields.values()):
             raise PortError(f"a toy takes fields of shape {self.value.shape} only")
-        self.value = 0.9 * self.value + 0.1 * fields.get("in.number", self.value)
-        self.value = self.value + 1e-3 * fields.get("in.push", self.push)
+        self.partner = np.array(fields.get("in.number", self.value))
+        self.pushed = np.array(fields.get("in.push", self.push))
 
     def step(self, dt):
         time.sleep(self.params.pause)
@@ -53,8 +54,9 @@ class Toy(Component):
             print("a step", flush=True)
         if self.steps == self.params.fails_at:
             self.fail()
-        self.push = np.sin(self.value + self.steps)
-        self.steps += 1
+        self.value = self.value + dt * (100.0 * (self.partner - self.value) + self.pushed)
+        self.push = np.sin(self.value + 10.0 * self.time)
+        self.steps, self.time = self.steps + 1, self.time + dt
         if self.steps == 50:
             print("step 50", flush=True)
 
@@ -76,13 +78,16 @@ class Toy(Component):
 
     def save(self):
         state = {"value": self.value, "push": self.push, "steps": np.array(self.steps)}
-        return {name: array.copy() for name, array in state.items()}
+        inputs = {"partner": self.partner, "pushed": self.pushed, "time": np.array(self.time)}
+        return {name: array.copy() for name, array in (state | inputs).items()}
 
     def load(self, state):
         shape = self.value.shape
         self.value = np.array(state["value"], float).reshape(shape)
         self.push = np.array(state["push"], float).reshape(shape)
-        self.steps = int(state["steps"])
+        self.partner = np.array(state["partner"], float).reshape(shape)
+        self.pushed = np.array(state["pushed"], float).reshape(shape)
+        self.steps, self.time = int(state["steps"]), float(state["time"])
 
     def totals(self):
         return Totals(mass=1.0)

@@ -1,0 +1,155 @@
+"""Looks at some windows of a run twice, and warns where the coupling is too coarse in time.
+
+Which windows are looked at depends on their number alone. What counts has the same bits whether a
+window is looked at or not.
+"""
+
+from typing import TYPE_CHECKING
+
+from quintet.coupler.coupling.participant import TrialFailed
+from quintet.coupler.coupling.time_error import PIECES, FieldError, Key, is_sampled, sample
+from quintet.coupler.coupling.trial_window import Outputs, step_in_pieces
+from quintet.interfaces.component import Field, Fields
+
+if TYPE_CHECKING:
+    from quintet.coupler.coupling.schedule import Coupling
+
+SAME = 1e-9  # by which two windows of one length may differ, relative
+# Estimated errors above which a run is warned. Dust that relaxes to a stream, with velocities that
+# are 2, 5, 11, 24 % off: bias of the loads 5, 11, 20, 36 %. Two masses on springs in repeated
+# windows, with positions that are 0.8, 4, 13 % off: drift of the motion 4, 12, 48 %. Loads of
+# floating bodies that are struck and tumble differ by 12 % from window to window, to and fro.
+BIAS_LIMIT, LOAD_LIMIT = 0.1, 0.4
+MOTION_LIMIT, DRIFT_LIMIT = 0.05, 0.1
+EARLY, FEWEST = 5.0, 6  # times the limit, and samples: then a run is warned before its end
+FORCES = "N", "N m"
+AIM = 0.01  # error of the window that is advised
+
+
+class TimeCheck:
+    """Compares windows with the same ones in pieces; the estimates are in the ledger."""
+
+    def __init__(self) -> None:
+        self._pieces: Outputs | None = None
+        self._start: dict[str, Fields] = {}
+
+    def before(self, coupling: "Coupling") -> None:
+        """Step the coming window in pieces, if it is one to be looked at."""
+        windows, errors = coupling.windows, coupling.ledger.time_errors
+        errors.due = errors.due or is_sampled(windows.done + 1)
+        if not errors.due or errors.skipped or not judged(coupling):
+            return
+        saved = windows.save()
+        ticks = windows.next(coupling.allowed())
+        windows.load(saved)
+        dt, last = ticks * windows.tick, coupling.last_dt
+        if last and abs(dt - last) > SAME * last:
+            return  # what is late belongs to a window of another length
+        errors.due, self._start = False, dict(coupling.outputs)
+        try:
+            self._pieces = step_in_pieces(coupling, ticks, PIECES)
+        except TrialFailed as error:
+            errors.skipped = str(error)
+
+    def after(self, coupling: "Coupling") -> None:
+        """Compare the window with its pieces."""
+        pieces, self._pieces = self._pieces, None
+        if pieces is None:
+            return
+        samples = {}
+        for name, path in judged(coupling):
+            field, whole = coupling.exchange.gives[name][path], coupling.outputs[name][path]
+            start = None if field.centring == "impulse" else self._start[name][path]
+            samples[name, path] = sample(whole, pieces[name, path], start, field.kind)
+        coupling.ledger.time_errors.add(coupling.windows.done, samples)
+        self.warn(coupling, EARLY, FEWEST)
+
+    def warn(self, coupling: "Coupling", factor: float = 1.0, samples: int = 1) -> None:
+        """Warn of links whose estimated error is above so many times its limit."""
+        errors = coupling.ledger.time_errors
+        for link, (key, over) in worst_fields(coupling).items():
+            found = errors.fields[key]
+            if over > factor and found.samples >= samples:
+                text = _text(coupling, link, key)
+                coupling.ledger.warnings.note(f"link {link}", {"window": text})
+
+
+def suspects(coupling: "Coupling") -> list[str]:
+    """Say of which links the windows looked at so far were too long, and which seem unstable."""
+    coarse = {
+        link: _text(coupling, link, key)
+        for link, (key, over) in worst_fields(coupling).items()
+        if over > 1.0
+    }
+    return [
+        *coupling.ledger.watch.suspects(coupling),
+        *(f"link {link}: {text}" for link, text in coarse.items()),
+    ]
+
+
+def worst_fields(coupling: "Coupling") -> dict[str, tuple[Key, float]]:
+    """Field of each link with the largest error over its limit, and that ratio."""
+    worst: dict[str, tuple[Key, float]] = {}
+    for key, link in judged(coupling).items():
+        found = coupling.ledger.time_errors.fields.get(key)
+        if found is None:
+            continue
+        over = _over(found, coupling.exchange.gives[key[0]][key[1]])
+        if over > worst.get(link, (key, 0.0))[1]:
+            worst[link] = key, over
+    return worst
+
+
+def _over(found: FieldError, field: Field) -> float:
+    """How many times its limit the estimated error of a field is."""
+    if field.centring == "impulse":
+        return max(found.bias / BIAS_LIMIT, found.local / LOAD_LIMIT)
+    return max(found.local / MOTION_LIMIT, found.drift / DRIFT_LIMIT)
+
+
+def judged(coupling: "Coupling") -> dict[Key, str]:
+    """Outputs by which links are judged, and the links: loads, and instants that add up a rate.
+
+    A force that comes a window late changes a velocity back and forth, not the way. Torques are
+    judged by the rotations that they make, as those of symmetric bodies are rounding. Of a link
+    that demands equal steps the forces hold two sides together, whatever the step. A link that
+    must settle is an iteration from window to window, not steps in time.
+    """
+    exchange = coupling.exchange
+    keys: dict[Key, str] = {}
+    for number, link in enumerate(exchange.links):
+        demands = link.demands()
+        if demands.relaxation or demands.settles:
+            continue
+        crossing = [
+            (one.giver, key)
+            for at, one in enumerate(exchange.transfers)
+            if exchange.link_of[at] == number
+            for key in one.reads
+        ]
+        fields = {(name, key): exchange.gives[name][key] for name, key in crossing}
+        fields = {key: one for key, one in fields.items() if one.kind != "flag"}
+        loads = [key for key, one in fields.items() if one.centring == "impulse"]
+        moves = [key for key, one in fields.items() if one.rate]
+        if demands.equal_steps:
+            chosen = [key for key, one in fields.items() if one.unit not in FORCES]
+        elif loads:
+            chosen = [*moves, *(key for key in loads if fields[key].unit != FORCES[1])]
+        else:
+            chosen = list(fields)
+        keys |= dict.fromkeys(chosen, link.name)
+    return keys
+
+
+def _text(coupling: "Coupling", link: str, key: Key) -> str:
+    found = coupling.ledger.time_errors.fields[key]
+    error = found.motion if len(found.low) else found.bias or found.local
+    inner = coupling.carries(link) or coupling
+    window, place = inner.last_dt, f"groups.{inner.plan.name}." if inner.plan.name else ""
+    order = 2.0 if inner.plan.scheme == "iterated" else 1.0
+    shorter = window * (AIM / error) ** (1.0 / order)
+    return (
+        f"windows of {window:.3g} s are too long: {'.'.join(key)} is wrong by about "
+        f"{100.0 * min(error, 1.0):.0f} % or more of what it changes, estimated from windows in "
+        f"{PIECES} pieces. Set {place}window to {shorter:.1g} s or less."
+    )

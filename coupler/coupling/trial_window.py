@@ -1,0 +1,161 @@
+"""A window stepped in shorter pieces, as a trial: afterwards everything is as it was before.
+
+The components keep their states and come back to them; nothing of a trial is booked, recorded,
+or counted in the times of the components.
+"""
+
+import dataclasses
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+
+import numpy as np
+
+from quintet.coupler.coupling.group import Group
+from quintet.coupler.coupling.participant import ComponentFailed, TrialFailed
+from quintet.coupler.coupling.schedule import Coupling, Window
+from quintet.coupler.coupling.schemes import SCHEMES
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import StepError
+
+DEPTH = 1 << 20  # of the states kept: no group is so deep
+Outputs = dict[tuple[str, str], Array]  # by component and field
+
+
+def step_in_pieces(coupling: Coupling, ticks: int, pieces: int) -> Outputs:
+    """Step the next window [ticks] of the run in equal pieces, and come back to its start.
+
+    Returns
+    -------
+    mapping
+        Instants at the window's end, and impulses of the whole window.
+
+    Raises
+    ------
+    TrialFailed
+        If a component cannot keep its state or cannot step so. The state is that of before.
+    """
+    with _undone(coupling):
+        _keep(coupling)
+        try:
+            return _steps(coupling, ticks, pieces)
+        except StepError as error:  # repeated windows that did not agree
+            raise TrialFailed(str(error)) from error
+        finally:
+            _rewind(coupling)
+
+
+def _steps(coupling: Coupling, ticks: int, pieces: int) -> Outputs:
+    whole, outputs = ticks * coupling.windows.tick, Outputs()
+    _shorten_late_impulses(coupling, whole / pieces)
+    for number in range(pieces):
+        part = ticks * (number + 1) // pieces - ticks * number // pieces
+        exact = ticks >= pieces
+        dt = part * coupling.windows.tick if exact else whole / pieces
+        window = Window(coupling.windows.done, part if exact else 1, dt, False)
+        SCHEMES[coupling.plan.scheme](coupling, window)
+        coupling.last_dt = dt
+        for name, fields in coupling.outputs.items():
+            for key, array in fields.items():
+                place, field = (name, key), coupling.exchange.gives[name][key]
+                summed = field.centring == "impulse" and place in outputs
+                outputs[place] = outputs[place] + array if summed else array
+    return outputs
+
+
+def _shorten_late_impulses(coupling: Coupling, dt: float) -> None:
+    """Let impulses that wait for the next window be those of one as long as a piece [s].
+
+    Else the first piece would get the impulse of a whole window, at many times the rate.
+    """
+    for number in coupling.late:
+        transfer = coupling.exchange.transfers[number]
+        gives, giver = coupling.exchange.gives[transfer.giver], transfer.giver
+        late = {key for key in transfer.reads if gives[key].centring == "impulse"}
+        coupling.outputs[giver] = {
+            key: array * (dt / coupling.last_dt) if key in late else array
+            for key, array in coupling.outputs[giver].items()
+        }
+
+
+def _keep(coupling: Coupling) -> None:
+    stateless = []
+    for one in coupling.components.values():
+        one.order_keep(DEPTH)
+    try:
+        for name, one in coupling.components.items():
+            if one.receive().header.get("stateless"):
+                stateless.append(name)
+    finally:
+        _await_all(coupling)
+    if stateless:
+        raise TrialFailed(f"{', '.join(stateless)} keeps no state.")
+
+
+def _rewind(coupling: Coupling) -> None:
+    components = coupling.components.values()
+    _await_all(coupling)
+    for one in components:
+        one.order_rewind(DEPTH, last=True)
+    for one in components:
+        one.receive()
+
+
+def _await_all(coupling: Coupling) -> None:
+    """Wait for the components that were under way when another failed."""
+    for one in coupling.components.values():
+        while not one.answered:
+            with suppress(TrialFailed):
+                one.receive()
+
+
+@contextmanager
+def _undone(coupling: Coupling) -> Iterator[None]:
+    """Bring the coupler's memory back at the end: couplings, books, logs and costs."""
+    began = time.perf_counter()
+    groups = {k: one for k, one in coupling.members.items() if isinstance(one, Group)}
+    state, books = coupling.save(), coupling.ledger.save()
+    inner = {name: group.save() for name, group in groups.items()}
+    couplings = list(_couplings(coupling))
+    logs, costs = [one.log for one in couplings], dataclasses.replace(coupling.costs)
+    before = dict(coupling.outputs)
+    for one in coupling.components.values():
+        one.trial = True
+    for each in couplings:
+        each.log = None
+    try:
+        yield
+    finally:
+        for one in coupling.components.values():
+            one.trial = False
+        coupling.load(state)
+        for name, group in groups.items():
+            group.load(inner[name])
+        coupling.ledger.load(books)
+        for each, log in zip(couplings, logs, strict=True):
+            each.log = log
+        for item in dataclasses.fields(costs):
+            setattr(coupling.costs, item.name, getattr(costs, item.name))
+        coupling.costs.checks += time.perf_counter() - began
+    _require_undone(coupling, before)
+
+
+def _couplings(coupling: Coupling) -> Iterator[Coupling]:
+    yield coupling
+    for member in coupling.members.values():
+        if member.inner is not None:
+            yield from _couplings(member.inner)
+
+
+def _require_undone(coupling: Coupling, before: Mapping[str, Fields]) -> None:
+    """End the run if a component did not come back: it would go on from a wrong state."""
+    for name, one in coupling.components.items():
+        gives, now = coupling.exchange.gives[name], one.call("give").fields
+        for key, array in before[name].items():
+            if gives[key].centring == "instant" and not np.array_equal(now[key], array):
+                raise ComponentFailed(
+                    name,
+                    one.window,
+                    f"load must bring back what save gave; {key} differs after a window was "
+                    "undone. Run quintet conform on its kind.",
+                )

@@ -1,0 +1,88 @@
+"""The error of a coupling in time, estimated from windows that were stepped twice."""
+
+import numpy as np
+import pytest
+
+from quintet.coupler.coupling.settling_watch import Swings
+from quintet.coupler.coupling.time_error import TimeErrors, is_sampled, sample
+
+KEY = ("body", "motion.position")
+
+
+def estimated(error, window=0.01, windows=64, period=1.0, scatter=0.0, seed=1):
+    """Of an oscillation whose change in each window is wrong by a share, with noise."""
+    errors, random = TimeErrors(), np.random.default_rng(seed)
+    for number in filter(is_sampled, range(1, windows + 1)):
+        ends = np.array([number - 1, number]) * window
+        start, end = (np.array([[np.sin(2.0 * np.pi * t / period), 0.0, 0.0]]) for t in ends)
+        noise = scatter * random.standard_normal(start.shape)
+        errors.add(number, {KEY: sample(end, end - error * (end - start) + noise, start, "value")})
+    return errors
+
+
+def test_an_error_of_every_window_is_found_whole():
+    found = estimated(0.04).fields[KEY]
+    assert found.local == pytest.approx(0.04)
+    assert found.bias == pytest.approx(0.04)
+
+
+def test_the_error_of_a_motion_to_and_fro_adds_up_over_its_way():
+    short, long = (estimated(0.01, windows=one).fields[KEY].drift for one in (100, 4096))
+    assert short < 0.05
+    assert long > 0.3
+
+
+def test_noise_adds_up_to_nothing():
+    found = [estimated(0.0, windows=4096, scatter=0.01, seed=n).fields[KEY] for n in range(20)]
+    assert sum(one.bias == 0.0 for one in found) >= 18
+    assert all(one.local > 0.05 for one in found)
+
+
+def test_what_does_not_move_is_not_judged():
+    errors = TimeErrors()
+    rest, rounding = np.ones((3, 3)), 1e-13
+    for number in (1, 2, 4):
+        samples = {KEY: sample(rest + rounding, rest, rest, "value")}
+        errors.add(number, samples)
+    assert errors.fields[KEY].motion == 0.0
+
+
+def test_a_quaternion_and_its_negative_are_the_same():
+    start, end = np.array([[1.0, 0.0, 0.0, 0.0]]), np.array([[0.8, 0.6, 0.0, 0.0]])
+    found = sample(end, -end, -start, "rotation")
+    assert found.difference == 0.0
+    assert found.change == pytest.approx(np.sqrt(0.4))
+
+
+def test_estimates_come_back_from_a_snapshot():
+    errors, again = estimated(0.04, windows=8), TimeErrors()
+    again.load(errors.save())
+    assert again.summary() == errors.summary()
+    assert again.save()["window"] == 8
+
+
+def test_windows_are_sampled_at_powers_of_two_and_then_evenly():
+    numbers = [number for number in range(1, 2049) if is_sampled(number)]
+    assert numbers == [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 1536, 2048]
+
+
+def swung(factor, noise=0.0, windows=24, seed=2):
+    """Changes by a factor from window to window, of the mean of many points with noise."""
+    random = np.random.default_rng(seed)
+    values = 100.0 * np.cumsum(float(factor) ** np.arange(windows))
+    swings = Swings(np.full(16, values[0]))
+    for value in values[1:]:
+        swings.add(value + noise * random.standard_normal(16))
+    return swings
+
+
+def test_a_swing_from_window_to_window_that_does_not_decay_is_seen():
+    assert swung(-1.0).persists
+    assert swung(-1.0, noise=20.0).persists
+    assert swung(-1.2).ratio == pytest.approx(-1.0)
+
+
+def test_what_comes_to_rest_is_no_swing():
+    assert not swung(-0.6).persists
+    assert not swung(0.8).persists
+    assert not any(swung(0.0, noise=20.0, seed=n).persists for n in range(20))
