@@ -9,6 +9,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
+
 from quintet.interfaces.lines.process_status import running
 
 # Python, which by itself looks for modules where it is started before it looks anywhere else.
@@ -76,3 +78,26 @@ def tail(path: Path, lines: int = 12) -> list[str]:
             return file.read().decode(errors="replace").splitlines()[-lines:]
     except OSError:
         return []
+
+
+class OwnProcesses:
+    """Processes that solvers in this process start: they end with the run.
+
+    They are children of this process, or inherit its environment, whatever session they are in.
+    """
+
+    def __init__(self, mark: str) -> None:
+        self.mark, self.before = mark, set(_children())
+        os.environ[RUN] = mark
+
+    def end(self) -> None:
+        """Kill those that still run."""
+        os.environ.pop(RUN, None)
+        for child in set(_children()) - self.before:
+            with contextlib.suppress(psutil.Error):
+                child.kill()
+        end_marked(RUN, self.mark)
+
+
+def _children() -> list[psutil.Process]:
+    return psutil.Process().children(recursive=True)

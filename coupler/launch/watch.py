@@ -14,6 +14,7 @@ from quintet.interfaces.lines.process_status import running
 
 BUSY = 0.02  # share of a core below which a process does not compute
 INTERVAL = 0.5  # s between two readings of processor times
+IDLE = "sleeping"
 
 
 @dataclass(slots=True)
@@ -130,4 +131,4 @@ def _activity(status: str, own: float, children: float) -> str:
         return "waiting for a disk"
     if own > BUSY:
         return "computing"
-    return "waiting for its children, which compute" if children > BUSY else "sleeping"
+    return "waiting for its children, which compute" if children > BUSY else IDLE

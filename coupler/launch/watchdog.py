@@ -1,12 +1,13 @@
 """The watchdog of a run: a thread that sees who died and who keeps the others waiting.
 
 It decides; the thread that couples carries it out when it next looks, or is made to look. What
-a component may take is never known, so that a false alarm is worse than a late one: nothing is
-limited while a component is built or compiles its kernels, and nobody is ended who has not kept
-the others waiting for his patience beyond three of his usual windows. A stopped process is ended
-at once: nothing goes on by itself there.
+a component may take is never known, so that a false alarm is worse than a late one: nobody is
+ended who compiles kernels, or who has not kept the others waiting for its patience beyond three of
+its usual windows. A component that is built may compute for thirty times its patience, and may do
+nothing for its patience. A stopped process is ended at once: nothing goes on by itself there.
 """
 
+import math
 import secrets
 import signal
 import sys
@@ -18,7 +19,7 @@ from typing import Protocol
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch import stack
-from quintet.coupler.launch.watch import Watch
+from quintet.coupler.launch.watch import IDLE, Watch
 
 LOOKING = 0.05  # s between two looks at all components
 LONGEST_LOOK = 1.0  # s; if more has passed, this process itself was stopped meanwhile
@@ -26,6 +27,7 @@ USUAL, EXTRA = 3.0, 5.0  # told after 3 usual windows and 5 s
 DEAD = 0.3  # s until a death is told; before, whoever waits for the component knows more
 ENDING, SAVING = 0.7, 1.1  # s to end a window, and to save, after an end was asked for
 OBEYING, AT_ONCE = 0.5, 0.15  # s for the thread that couples to carry out a verdict
+BUILDING = 30.0  # times its patience may a component compute while it is built
 POKE = signal.SIGURG  # makes the main thread look; without a handler it does nothing
 
 
@@ -62,6 +64,7 @@ class Watched:
     patience: float  # s
     since: float = 0.0  # when the wait began, as the participant has it
     waited: float = 0.0  # s
+    idle: float = 0.0  # s in a row that its process did nothing while it was to be built
     tell_at: float = 0.0  # s of waiting
     end_at: float = 0.0  # s of waiting
     told: bool = False
@@ -70,11 +73,27 @@ class Watched:
 
     def begin(self, since: float) -> None:
         """Begin a new wait."""
-        self.since, self.waited, self.told = since, 0.0, False
+        self.since, self.waited, self.idle, self.told = since, 0.0, 0.0, False
         self.watch.begin()
         usual = USUAL * self.participant.timing.usual
-        self.end_at = usual + self.patience
-        self.tell_at = min(usual + EXTRA, self.end_at) if self.participant.built else self.end_at
+        if self.participant.built:
+            self.end_at = usual + self.patience
+            self.tell_at = min(usual + EXTRA, self.end_at)
+        else:
+            begun = self.watch.pid or self.participant.order  # else it is awaited from elsewhere
+            self.end_at = BUILDING * self.patience if begun else math.inf
+            self.tell_at = self.patience
+
+    def read(self, passed: float) -> None:
+        """Find out what its process does, now and then; add to the time in which it is idle."""
+        built = self.participant.built
+        if not built or self.waited > 0.2 * self.tell_at:
+            self.watch.read()
+        self.idle = self.idle + passed if not built and self.watch.activity == IDLE else 0.0
+
+    def is_over(self) -> bool:
+        """Whether it has taken longer than it may."""
+        return self.waited > self.end_at or self.idle > self.patience
 
 
 @dataclass(slots=True)
@@ -193,9 +212,8 @@ class Watchdog:
             watch.activity = "stopped"
             self.fail(one, f"stopped responding: {watch.described()}")
             return
-        if one.waited > 0.2 * one.tell_at:
-            watch.read()
-        if one.waited > min(one.tell_at, one.end_at) and self.acts():
+        one.read(passed)
+        if (one.waited > one.tell_at or one.is_over()) and self.acts():
             self._tell_or_end(one)
 
     def _tell_or_end(self, one: Watched) -> None:
@@ -206,17 +224,19 @@ class Watchdog:
         place = participant.window
         if stack.compiles(calls):
             doing = doing.replace("computing", "compiling")
-        what = f"for {one.waited:.1f} s in window {place}" if participant.built else "to be built"
+        what = f"for {one.waited:.1f} s " + (
+            f"in window {place}" if participant.built else "to be built"
+        )
         usual = f", usually {participant.timing.usual:.2g} s" if participant.timing.usual else ""
         where = stack.innermost(calls)
-        over = one.waited > one.end_at
-        if over and participant.built and not stack.compiles(calls):
+        over = one.is_over()
+        if over and not stack.compiles(calls):
             at = f", at {where[0].removeprefix('  File ')}" if where else ""
             cause = f"stopped responding: kept the others waiting {what}{usual}; {doing}{at}"
             self.fail(one, cause, calls)
             return
         if over:
-            one.end_at += one.patience
+            one.end_at, one.idle = one.end_at + one.patience, 0.0
         one.told, one.tell_at = True, 2.0 * one.waited
         say(f"{participant.name} keeps the others waiting {what}{usual}: {doing}", where)
 

@@ -31,9 +31,10 @@ from quintet.coupler.files.reached import Reached
 from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
 from quintet.coupler.launch.companion import Companion
 from quintet.coupler.launch.connect import Connection, connect
-from quintet.coupler.launch.processes import RUN, end_marked, tail
+from quintet.coupler.launch.processes import RUN, OwnProcesses, end_marked, tail
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
+from quintet.coupler.run.leaving import leave_in_time
 from quintet.coupler.run.loop import RunEnd, run
 from quintet.coupler.run.output import OutputWriter
 from quintet.coupler.run.signals import StopRequest
@@ -66,10 +67,14 @@ def simulate(
         with stop.listening(lambda: watchdog.verdict is not None):
             made.run()
     except KeyboardInterrupt as error:
-        return made.end(watchdog.verdict or error)
+        status = made.end(watchdog.verdict or error)
     except Exception as error:  # any failure is reported in the results
-        return made.end(error)
-    return made.end(None)
+        status = made.end(error)
+    else:
+        status = made.end(None)
+    if own_process and watchdog.own:
+        leave_in_time(status, max(map(scene.patience, scene.components)))
+    return status
 
 
 class Running:
@@ -108,11 +113,14 @@ class Running:
         self._coupling: Coupling | None = None
         self._ending = threading.Lock()
         self._guard: Closable | None = None
+        self._started: OwnProcesses | None = None
 
     def run(self) -> None:
         """Join the components and couple them to the end, or until a signal ends it."""
         scene = self.scene
         main = threading.current_thread() is threading.main_thread()
+        if self.stop.leave and self.watchdog.own:
+            self._started = OwnProcesses(self.watchdog.mark)
         if self.stop.leave and main:
             self._begin_guard() if self.watchdog.own else self._begin_companion()
         self._start.show()
@@ -155,8 +163,7 @@ class Running:
             self._guard = Companion(self._report_death)
 
     def _report_death(self) -> None:
-        """End what this process left and write down that it is gone, from its companion."""
-        end_marked(RUN, self.watchdog.mark)
+        """Write down that this process is gone, from its companion."""
         windows, reached = Reached.read(self.folder / "log" / REACHED)
         cause = "the coupler's process is gone: it was killed, perhaps for want of memory"
         self._report(ComponentFailed("coupler", windows, cause), windows, reached)
@@ -164,6 +171,7 @@ class Running:
     def _report(self, error: ComponentFailed, windows: int, reached: float) -> None:
         """Write down a failure, from the process beside this one."""
         self.writer.done, self.writer.time, self.draws = windows, reached, False
+        end_marked(RUN, self.watchdog.mark)
         self.outcome |= failed(error, self.scene, self.folder, self.writer)
         self.outcome |= doubts(self.ledger)
         conclude(self)
@@ -173,6 +181,8 @@ class Running:
         with self._ending:
             if self._guard:
                 self._guard.close()
+            if self._started:
+                self._started.end()
             self._start.close()
             writer, lost = self.writer, False
             if isinstance(error, KeyboardInterrupt) or isinstance(

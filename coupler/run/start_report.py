@@ -14,6 +14,7 @@ from quintet.coupler.run.progress import shows_bar
 from quintet.interfaces.serving.notices import listen
 
 LINE_INTERVAL = 2.0  # s between two lines where there is no terminal
+LONG = 10.0  # s after which a line is printed again though nothing has changed; then twice as long
 SHOWN = 60  # characters of what one component says
 
 
@@ -68,10 +69,11 @@ class StartReport:
         return Text(f"{time.monotonic() - self._began:3.0f} s  {self.doing()}")
 
     def _print(self) -> None:
-        shown = ""
+        shown, again = "", LONG
         while not self._over.wait(LINE_INTERVAL):
-            doing = self.doing()
-            if doing != shown:
+            doing, waited = self.doing(), time.monotonic() - self._began
+            if doing != shown or waited > again:
+                again = max(LONG, 2.0 * waited)
                 with contextlib.suppress(OSError):  # nobody reads it any more
                     print(self._text().plain, flush=True)
             shown = doing

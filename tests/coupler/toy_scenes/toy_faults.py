@@ -1,5 +1,6 @@
 """A component with every fault that a solver may have, and one that lets others wait in earnest."""
 
+import atexit
 import ctypes
 import os
 import resource
@@ -130,7 +131,9 @@ class Waiting(Toy):
     def __init__(self, params):
         super().__init__(params)
         if params.fails_by == "build":
-            time.sleep(params.seconds)
+            end = time.time() + params.seconds
+            while time.time() < end:
+                pass
 
     def step(self, dt):
         if self.params.fails_by == "first" and self.steps == 0:
@@ -152,3 +155,39 @@ class Waiting(Toy):
                 end = time.time() + seconds
                 while time.time() < end:
                     subprocess.run([sys.executable, "-c", BUSY.format(0.2)], check=True)
+
+
+class Hanging(Toy):
+    """Hangs as it is built, or as the process that it is in ends."""
+
+    @parameters
+    class Params:
+        items: Count = 5
+        pause: float = 0.0
+        substeps: Count = 1
+        seen: bool = False
+        talks: bool = False
+        fails_at: int = -1
+        fails_by: Literal["sleeps", "computes", "locks", "thread at exit", "lock at exit"]
+
+    def __init__(self, params):
+        super().__init__(params)
+        match params.fails_by:
+            case "sleeps":
+                time.sleep(600.0)
+            case "computes":
+                while True:
+                    pass
+            case "locks":
+                hold_the_lock()
+            case "thread at exit":
+                threading.Thread(target=time.sleep, args=(600.0,)).start()
+            case "lock at exit":
+                atexit.register(hold_the_lock)
+
+
+def hold_the_lock():
+    """Wait for ever in C, with the interpreter's lock held."""
+    library = ctypes.PyDLL(None)
+    library.pthread_mutex_lock(LOCK)
+    library.pthread_mutex_lock(LOCK)
