@@ -203,8 +203,10 @@ SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME
 
 def _load(given: argparse.Namespace) -> "Scene":
     # Start-up: only this command needs it.
+    from quintet.coupler.scene.overrides import tell_repeated
     from quintet.coupler.scene.read import load
 
+    tell_repeated(given.settings, given.swap)
     asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
     return load(*asked, imports=getattr(given, "imports", True))
 
@@ -223,14 +225,13 @@ def check(given: argparse.Namespace) -> int:
     scene = _load(given)
     # Start-up: only this command needs it.
     from quintet.coupler.scene import graph
-    from quintet.coupler.scene.listing import console, print_plan, unread_notes
+    from quintet.coupler.scene.listing import console, print_plan, tell_unread
     from quintet.coupler.scene.needs import require_memory
 
     require_memory(scene)
     if given.graph or given.mermaid:
         print(graph.mermaid(scene) if given.mermaid else graph.drawing(scene))
-        for note in unread_notes(scene):
-            print(f"quintet: {note}", file=sys.stderr)
+        tell_unread(scene)
     else:
         print_plan(scene, console())
     return 0
@@ -248,15 +249,14 @@ def schema(given: argparse.Namespace) -> int:
     """Print the JSON schema of scene files."""
     # Start-up: only this command needs it.
     from quintet.coupler.reference.schema import as_text, scene_schema
-    from quintet.coupler.scene.listing import unread_notes
+    from quintet.coupler.scene.listing import tell_unread
     from quintet.coupler.scene.read import load
 
     scene = load(given.scene, imports=given.imports) if given.scene else None
     plans = scene.components.values() if scene else ()
     kinds = [one.kind for one in plans if not one.unread]
     if scene:
-        for note in unread_notes(scene):
-            print(f"quintet: {note}", file=sys.stderr)
+        tell_unread(scene)
     print(as_text(scene_schema(kinds)))
     return 0
 

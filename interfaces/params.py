@@ -18,6 +18,7 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, dataclass_transform, get_args
 
@@ -64,6 +65,8 @@ TAG = re.compile(r"constrained-\w+|(?:literal|tuple|dict)\[.*\]")  # what pydant
 LARGEST = 1e30  # no quantity in SI units is as large; of ten of them a product is still finite
 DEEPEST = 32  # tables and lists within each other
 SHOWN = 200  # characters of a value in a sentence
+MOST_NEAR = 200  # names among which the nearest is looked for, and that are listed
+MOST_SAID = 20  # mistakes of one table
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
@@ -96,14 +99,22 @@ def read(
         text = json.dumps(given)
         context = {"folder": folder or Path()}
         with np.errstate(over="raise", divide="raise", invalid="raise"):
-            return TypeAdapter(params).validate_json(text, strict=True, context=context), []
+            return _adapter(params).validate_json(text, strict=True, context=context), []
     except ValidationError as error:
         found = _by_place(error.errors())
-        return None, [_sentence(params, where, one) for one in _without_old(params, found)]
+        wrong = _without_old(params, found)
+        more = [f"{where}: {len(wrong) - MOST_SAID} more mistakes."] if wrong[MOST_SAID:] else []
+        return None, [*(_sentence(params, where, one) for one in wrong[:MOST_SAID]), *more]
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return None, [beyond_computing(where, given, error)]
     except (TypeError, ValueError) as error:
         return None, [f"{where}: {error}. Use numbers, text, lists and tables only."]
+
+
+@cache
+def _adapter(params: type) -> TypeAdapter[Any]:
+    """What checks a parameter class, made once: making it takes longer than checking."""
+    return TypeAdapter(params)
 
 
 def extremes(value: Any, where: str, depth: int = 0) -> Iterator[str]:
@@ -194,8 +205,12 @@ def _sentence(params: type, where: str, mistake: Any) -> str:
 def unknown(place: str, name: str, known: Iterable[str]) -> str:
     """Say that a name is not known, and which is nearest."""
     known = sorted(known)
-    near = difflib.get_close_matches(name, known, 1, 0.5)
-    hint = f"Did you mean {near[0]}?" if near else f"Known here: {', '.join(known) or 'nothing'}."
+    # The search takes the square of the lengths of names: of absurd ones none is near.
+    is_short = len(name) <= SHOWN and len(known) <= MOST_NEAR
+    near = difflib.get_close_matches(name, known, 1, 0.5) if is_short else []
+    place = place if len(place) <= 2 * SHOWN else f"{place[:SHOWN]} ... {place[-SHOWN:]}"
+    names = ", ".join(known[:MOST_NEAR]) + (", ..." if len(known) > MOST_NEAR else "")
+    hint = f"Did you mean {near[0]}?" if near else f"Known here: {names or 'nothing'}."
     return f"{place} is not known. {hint}"
 
 

@@ -112,8 +112,9 @@ def readable(path: object) -> Iterator[None]:
     except UNREADABLE as error:
         said = " ".join(f"{type(error).__name__}: {error}".split())
         raise SceneError(
-            f"recording {path}: it is not a whole recording of quintet; reading it found {said}. "
-            "Copy it again from where it was made, or run the scene again."
+            f"recording {path}: it must be a whole recording of quintet; reading it found {said}. "
+            "As it is not a whole recording, copy it again from where it was made, or run the "
+            "scene again."
         ) from error
 
 

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.coupling.windows import auto_length
+from quintet.coupler.measures.expectation import ROUNDING, Expectation
 from quintet.coupler.scene.foreign_code import unread_note
 from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene
@@ -89,7 +90,16 @@ def print_plan(scene: Scene, console: Console) -> None:
         for one_way in link.transfers:
             console.print(f"link {link.name}: {one_way.giver} -> {one_way.taker}")
     for expected in scene.expect:
-        console.print(f"expects {expected.name} within {expected.within:g} {expected.unit}")
+        late = beyond(expected, file.end)
+        console.print(f"expects {expected.name} within {expected.within:g} {expected.unit}{late}")
+
+
+def beyond(expected: Expectation, end: float) -> str:
+    """What a plan says of an expectation that a run will not reach."""
+    last = expected.begin if expected.end is None else expected.end
+    if last <= end * (1.0 + ROUNDING):
+        return ""
+    return f": not reached, as it needs t = {last:g} s and the run ends at {end:g} s"
 
 
 def unread_notes(scene: Scene) -> list[str]:
@@ -99,6 +109,12 @@ def unread_notes(scene: Scene) -> list[str]:
         if one.unread:
             names.setdefault(one.kind, []).append(one.name)
     return [unread_note(of_kind, kind) for kind, of_kind in names.items()]
+
+
+def tell_unread(scene: Scene) -> None:
+    """Print the same where something else is printed for programs."""
+    for note in unread_notes(scene):
+        print(f"quintet: {note}", file=sys.stderr)
 
 
 def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:

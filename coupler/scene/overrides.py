@@ -2,14 +2,16 @@
 
 import os
 import re
-import tomllib
+import sys
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import tomli_w
 
+from quintet.coupler.scene.toml import LONGEST_KEY, value_of
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import shown, unknown
+from quintet.interfaces.params import DEEPEST, shown, unknown
 
 
 def put_preset(table: dict[str, Any], preset: str) -> list[str]:
@@ -29,11 +31,17 @@ def put_set(table: dict[str, Any], setting: str) -> list[str]:
     """Apply ``PATH=VALUE``, the value in TOML; return the mistakes."""
     path, equals, text = setting.partition("=")
     if not equals:
-        return [f"--set needs PATH=VALUE; found {setting!r}. Give it as in --set window=1e-3."]
+        said = shown(setting)
+        return [f"--set needs PATH=VALUE; found {said}. Give it as in --set window=1e-3."]
+    if len(path) > LONGEST_KEY or path.count(".") >= DEEPEST:
+        return [
+            f"--set: a path must have at most {LONGEST_KEY} characters and {DEEPEST} parts; found "
+            f"{shown(path)}. Correct it."
+        ]
     try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except (ValueError, RecursionError):
-        value = text  # a word needs no quotes on the command line
+        value = value_of(text)
+    except ValueError as error:
+        return [f"--set {path}: {error}; found {shown(text)}. Correct it."]
     return put(table, path, value)
 
 
@@ -65,6 +73,15 @@ def is_index(text: str, among: list[Any]) -> bool:
 def _may_be_made(heads: list[str]) -> bool:
     """Whether a scene may lack the table: its own, or inside a component's, which checks it."""
     return heads in (["output"], ["iteration"]) or (heads[0] == "components" and len(heads) > 2)
+
+
+def tell_repeated(settings: Iterable[str], swaps: Iterable[str]) -> None:
+    """Print which paths, and components to be swapped, are given more than once."""
+    for option, values in (("--set", settings), ("--swap", swaps)):
+        for path, count in Counter(one.partition("=")[0] for one in values).items():
+            if count > 1:
+                said = f"{option} {shown(path)} is given {count} times: the last one counts"
+                print(f"quintet: {said}", file=sys.stderr)
 
 
 def assignments(settings: Mapping[str, Any]) -> list[str]:

@@ -1,6 +1,5 @@
 """Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
 
-import tomllib
 from collections.abc import Iterable
 from dataclasses import fields
 from functools import partial
@@ -28,10 +27,11 @@ from quintet.coupler.scene.scene import (
 from quintet.coupler.scene.stability_table import Scope
 from quintet.coupler.scene.swap import put_swap
 from quintet.coupler.scene.tables import SceneTables
+from quintet.coupler.scene.toml import read_file, too_many
 from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
 from quintet.interfaces.manifest import look_in
-from quintet.interfaces.params import DEEPEST, extremes, read, shown, unknown
+from quintet.interfaces.params import extremes, read, shown, unknown
 
 MOST_TOLD = 20  # mistakes of one kind
 TABLES = tuple(one.name for one in fields(SceneTables))
@@ -96,6 +96,7 @@ def load(
         mistakes += put_set(table, setting)
     if transport:
         table["transport"] = transport
+    mistakes = mistakes or too_many(table)
     if mistakes := mistakes or list(islice(extremes(table, ""), MOST_TOLD)):
         raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
     # Variants were told for the components of the file: each is checked when it is run instead.
@@ -109,16 +110,7 @@ def load(
 
 def parse(path: Path) -> dict[str, Any]:
     """Read a TOML file as it stands."""
-    try:
-        with open(path, "rb") as file:
-            return tomllib.load(file)
-    except (OSError, ValueError) as error:
-        raise SceneError(f"{path.name}: a scene must be valid TOML: {error}.") from error
-    except RecursionError as error:
-        raise SceneError(
-            f"{path.name}: a scene must be valid TOML, its lists and tables at most {DEEPEST} "
-            "deep; found more. Flatten them."
-        ) from error
+    return read_file(path)
 
 
 def _check(

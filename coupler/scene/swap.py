@@ -18,7 +18,12 @@ def put_swap(table: Table, swap: str) -> list[str]:
     name, equals, kind = swap.partition("=")
     if not equals:
         return [f"--swap needs NAME=KIND; found {swap!r}. Give it as in --swap NAME=replay."]
-    kind, _, source = kind.partition("@")
+    kind, of_run, source = kind.partition("@")
+    if of_run and (kind != "replay" or not source):
+        return [
+            f"--swap {swap}: @ names the run of a replay; found {shown(kind)} of {shown(source)}. "
+            "Give it as in --swap NAME=replay@runs/earlier."
+        ]
     components = table.get("components")
     if not isinstance(components, dict):
         return [

@@ -98,7 +98,7 @@ def test_a_recording_that_was_changed_is_not_gone_on_with(killed, tmp_path, caps
     os.truncate(path, path.stat().st_size // 2)
     assert status("run", "--resume", again) == 2
     said = capsys.readouterr().err
-    assert "not a whole recording of quintet" in said and "Traceback" not in said
+    assert "not a whole recording" in said and "Traceback" not in said
 
 
 def test_a_run_goes_on_with_files_that_are_whole(killed, tmp_path):
