@@ -170,6 +170,7 @@ class Outcome:
     source: str
     required: bool = True
     not_reached: float | None = None
+    reason: str = ""  # why a run that reached its times has no value
 
 
 def check(
@@ -349,7 +350,17 @@ def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> 
         expectation.source,
         expectation.required,
         not_reached,
+        "" if math.isfinite(value) or not_reached is not None else _why_none(expectation),
     )
+
+
+def _why_none(expectation: Expectation) -> str:
+    """Why a run that reached all times of an expectation has no value of it."""
+    if expectation.from_level is not None:
+        return f"the curve never passes from_level {expectation.from_level:g}, or has no value then"
+    if expectation.level is not None:
+        return f"the curve never passes the level {expectation.level:g}"
+    return "the recorded curve has no finite value, or does not oscillate"
 
 
 def _value(

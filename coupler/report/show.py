@@ -65,6 +65,9 @@ def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | No
         if table is not None:
             table.box = frame
             screen.print(table)
+    for one in found.get("expect") or []:
+        if one.get("reason"):
+            screen.print(Text(f"{one.get('name', '?')}: not met: {one['reason']}"))
     for line in (_balance(found), _shares(found)):
         if line:
             screen.print(line)

@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
+from quintet.components.sph_fluid.setup.gauge_checks import check_gauges
 from quintet.components.sph_fluid.setup.geometry import (
     Box,
     closed_faces,
@@ -30,6 +31,7 @@ def check(params: "SphFluidParams") -> None:
     check_slab(params)
     check_symmetry(params)
     check_methods(params)
+    check_gauges(params)
     if params.shapes:
         # Left out of scenes whose fluid is in boxes.
         from quintet.components.sph_fluid.setup.shape_checks import check_shapes

@@ -164,6 +164,14 @@ def test_a_run_that_ends_too_early_has_no_value_and_does_not_meet(tmp_path, reco
         assert outcome.not_reached > 2.0, "the time that was needed lies beyond the run's 2 s"
 
 
+def test_a_level_that_is_never_passed_is_told(tmp_path, recording):
+    outcome = evaluate(
+        _expectation(measure="crossing", level=7.0, value=0.5, unit="s"), recording, tmp_path
+    )
+    assert outcome.value is None and not outcome.met
+    assert outcome.reason == "the curve never passes the level 7"
+
+
 @pytest.mark.parametrize("rows", [0, 1])
 def test_a_run_that_finished_no_window_meets_nothing(tmp_path, rows):
     with Recorder(tmp_path / "recording.h5", "", "") as recorder:

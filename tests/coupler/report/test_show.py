@@ -98,3 +98,9 @@ def test_a_folder_without_results_is_refused(tmp_path):
         (tmp_path / "results.json").write_text(text)
         with pytest.raises(SceneError, match=word):
             results(tmp_path)
+
+
+def test_an_expectation_without_a_value_says_why(tmp_path, capsys):
+    one = RESULTS["expect"][0] | {"value": None, "met": False, "reason": "never passed"}
+    said = _shown(tmp_path, RESULTS | {"expect": [one]}, capsys)
+    assert f"{one['name']}: not met: never passed" in " ".join(said.split())
