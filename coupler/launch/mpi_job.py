@@ -35,6 +35,9 @@ from quintet.interfaces.serving.process import STARTER, shared_files
 JOB_FILE = "mpi.json"  # in the log folder: processes, and the exit status of the coupler
 COUPLER_OUTPUT = ("coupler.out", "coupler.err")  # there too
 LAUNCHER_LOG = "mpiexec.log"  # there too
+LAUNCHER_FILE = (
+    "hydra_hwloc_xmlfile_"  # how names of temporary files begin that a killed one leaves
+)
 ENDING, AT_ONCE = 3.0, 0.5  # s for all ranks to end after the coupler has, if all is well or not
 LOOKING = 0.2  # s between two looks at the ranks while they start
 ORPHANED = 10.0  # s for the coupler to end in order after the process that started the job died
@@ -256,9 +259,19 @@ def end_ranks(found: dict[str, object], starter: Starter) -> None:
     A rank that is killed as MPI begins has told nobody of the files that it maps.
     """
     pids = list(marked(STARTER, str(starter.pid)))
-    mapped = {path for pid in pids for path in shared_files(pid) if starter.precedes(path)}
+    used = {path for pid in pids for path in (*shared_files(pid), *_launcher_files(pid))}
+    own = {path for path in used if starter.precedes(path)}
     end_marked(STARTER, str(starter.pid))
-    _unlink({*found.get("shared", []), *mapped})  # type: ignore[misc]
+    _unlink({*found.get("shared", []), *own})  # type: ignore[misc]
+
+
+def _launcher_files(pid: int) -> Iterator[str]:
+    """Files in which a process of the launcher keeps the layout of the machine."""
+    for link in Path(f"/proc/{pid}/fd").glob("*"):
+        with contextlib.suppress(OSError):
+            path = link.readlink()
+            if path.name.startswith(LAUNCHER_FILE):
+                yield str(path)
 
 
 def _unlink(paths: Iterable[str]) -> None:

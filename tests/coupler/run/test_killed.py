@@ -3,15 +3,29 @@
 import json
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from started import Started, write_scene
+
+from quintet.coupler.launch.mpi_job import LAUNCHER_FILE, find_launcher
 
 CASES = [
     pytest.param("zenoh", "starter", marks=pytest.mark.zenoh),
     pytest.param("mpi", "starter", marks=pytest.mark.mpi),
     pytest.param("mpi", "coupler", marks=pytest.mark.mpi),
 ]
+
+
+def _open_launcher_files(run):
+    """Temporary files of the MPI launcher that processes of a run have open."""
+    links = (link for pid in run.processes() for link in Path(f"/proc/{pid}/fd").glob("*"))
+    paths = (link.readlink() for link in links if link.is_symlink())
+    return {path for path in paths if path.name.startswith(LAUNCHER_FILE)}
+
+
+def _is_hydra():
+    return "-disable-auto-cleanup" in find_launcher()
 
 
 @pytest.mark.parametrize(("transport", "who"), CASES)
@@ -23,11 +37,14 @@ def test_a_killed_coupler_leaves_results_and_the_way_to_resume(tmp_path, transpo
     pid = run.process.pid
     if who == "coupler":
         pid = json.loads((run.folder / "log" / "mpi.json").read_text())["coupler"]
+    launcher_files = _open_launcher_files(run)
+    assert bool(launcher_files) == (transport == "mpi") or not _is_hydra()
     os.kill(pid, signal.SIGKILL)
     run.out, run.err = run.process.communicate(timeout=30)
     left, shared = run.left_processes(5.0), run.left_in_shared_memory()
     run.end()
     assert not left and not shared
+    assert not launcher_files or not launcher_files & set(Path("/tmp").glob("hydra_hwloc*"))
     found = json.loads((run.folder / "results.json").read_text())
     assert found["windows"] >= 20 and found["time"] == pytest.approx(1e-3 * found["windows"])
     assert found["resume"].startswith("quintet run --resume")
