@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from quintet.components.meshless_gas import resolution
 from quintet.components.meshless_gas.build import initial_state
 from quintet.components.meshless_gas.clouds.mirrored import hold_along
 from quintet.components.meshless_gas.diagnostics import (
@@ -99,6 +100,7 @@ class MeshlessGas(Component):
             self.viscous = Viscous(params, self.domain, self.team)
         self.wall_loads = WallLoads(params, self.domain) if has_walls(params) else None
         self.settling = Settling(params.steady) if params.steady is not None else None
+        self.coarse = resolution.doubts(params, self.domain)
         ends = [end for one in params.fronts for end in (one.begin, one.end)]
         refuse_far(self.domain, (*params.probes, *ends), self.team)
         self.probed = nearest_nodes(cloud, params.probes, self.team)
@@ -345,9 +347,9 @@ class MeshlessGas(Component):
         return self.domain.notes
 
     def warnings(self) -> dict[str, str]:
-        """Doubts about the cloud, and about inflows at which waves have arrived."""
+        """Doubts about the cloud and the order, and about inflows at which waves have arrived."""
         doubts = self.domain.doubts
-        said = {"neighbours": " ".join(doubts)} if doubts else {}
+        said = self.coarse | ({"neighbours": " ".join(doubts)} if doubts else {})
         return said | blocked_inflows(self.params, self.state, self.domain)
 
     def totals(self) -> Totals:

@@ -82,12 +82,12 @@ def line(cloud: Cloud, front: Front, team: Team) -> SampledLine:
 
 
 def crossing(one: SampledLine, primitive: Array) -> float:
-    """Distance [m] at which the level is first passed; not a number if it is not."""
+    """Distance [m] at which the level is first passed; minus the line's length if it is not."""
     values = (one.weights * primitive[one.rows, one.column]).sum(axis=1)
     above = values > one.level
     turns = np.flatnonzero(above[1:] != above[:-1])
     if not len(turns):
-        return math.nan
+        return -float(one.distances[-1])
     k = int(turns[0])
     share = (one.level - values[k]) / (values[k + 1] - values[k])
     return float(one.distances[k] + share * (one.distances[k + 1] - one.distances[k]))
@@ -96,20 +96,20 @@ def crossing(one: SampledLine, primitive: Array) -> float:
 def fronts(lines: Sequence[SampledLine], primitive: Array) -> Fields:
     """Fields of the port `fronts`."""
     distances = np.array([crossing(one, primitive) for one in lines])
+    met = distances >= 0.0
     places = np.array([a.begin + d * a.direction for a, d in zip(lines, distances, strict=True)])
     return {
         "fronts.position": places,
         "fronts.distance": distances,
-        "fronts.angle": np.array([angle(places[: k + 1]) for k in range(len(places))]),
-        "fronts.found": np.isfinite(distances).astype(np.float64),
+        "fronts.angle": np.array(
+            [angle(places[: k + 1]) if met[: k + 1].all() else -math.pi for k in range(len(met))]
+        ),
+        "fronts.found": met.astype(np.float64),
     }
 
 
 def angle(places: Array) -> float:
-    """Angle [rad] to x of the straight line through places (k, 3) m, of least squares in z.
-
-    Not a number if any place is none.
-    """
+    """Angle [rad] to x of the straight line through places (k, 3) m, of least squares in z."""
     x, z = (places[:, d] - places[:, d].mean() for d in (0, 2))
     across = float((x * x).sum())
     return float(np.arctan2((x * z).sum(), across)) if len(places) > 1 else 0.0

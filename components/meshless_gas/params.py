@@ -177,6 +177,11 @@ class MeshlessGasParams:
 
     def _wrong_walls(self) -> list[str]:
         """What does not fit between walls and friction."""
+        if self.viscous and self.order == 1:
+            return [
+                "viscous needs order = 2: the first order adds a viscosity of about half of "
+                "density, speed of sound and spacing. Leave order out."
+            ]
         holding = [n for n, one in self.boundaries.items() if one.kind in HOLDING]
         if holding and not self.viscous:
             return [f"boundaries.{holding[0]} holds the gas by friction. Say viscous = true."]
@@ -215,6 +220,11 @@ class MeshlessGasParams:
             found.append("the gas begins with initial or riemann, one of them. Correct it.")
         if self.riemann is not None and (self.vortex or self.zones or self.moving):
             found.append("riemann is for a tube alone: leave out vortex, zones and moving.")
+        if self.local_steps and (self.riemann is not None or self.vortex is not None):
+            found.append(
+                "local_steps is for flows that become steady: with riemann or vortex its times "
+                "mean nothing. Leave it out."
+            )
         if self.vortex is not None and self.initial is not None:
             share = (self.gas.gamma - 1.0) / (2.0 * self.gas.gamma) * math.e
             density, *_, pressure = self.initial.primitive(self.gas)

@@ -97,7 +97,9 @@ FRONTS = Port(
         POSITION,
         Field("distance", (), "m"),  # from where the line begins
         Field("angle", (), "rad"),
-        Field("found", (), "1"),  # whether there is one; else the other fields are not a number
+        # Whether there is one; else the distance is minus the line's length, and the angle of it and
+        # all behind it is -π: what no front has.
+        Field("found", (), "1"),
     ),
 )
 

@@ -152,7 +152,7 @@ class SphereCloud:
 
     centre: Vector = (0.0, 0.0, 0.0)
     radius: Positive
-    rays: Annotated[int, Field(ge=6)]
+    rays: Annotated[int, Field(ge=8)]
     layers: Layers
     sector: Annotated[float, Field(gt=0.2, le=math.pi + 1e-9, allow_inf_nan=False)] = 1.4
     margin: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.35
