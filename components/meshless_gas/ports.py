@@ -97,8 +97,8 @@ FRONTS = Port(
         POSITION,
         Field("distance", (), "m"),  # from where the line begins
         Field("angle", (), "rad"),
-        # Whether there is one; else the distance is minus the line's length, and the angle of it and
-        # all behind it is -π: what no front has.
+        # Whether there is one; else the distance is minus the line's length, and the angle of it
+        # and all behind it is -π: what no front has.
         Field("found", (), "1"),
     ),
 )
