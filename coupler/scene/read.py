@@ -1,5 +1,6 @@
 """Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import fields
 from functools import partial
@@ -224,4 +225,7 @@ def _expect(
             is_read = one.component not in components or not components[one.component].unread
             mistakes += check(one, gives, folder) if is_read else []
             found.append(one)
+    for name, count in Counter(one.name for one in found).items():
+        if count > 1:  # results and studies know an expectation by its name alone
+            mistakes.append(f"expect: {count} have the name {shown(name)}. Give each its own.")
     return found

@@ -27,7 +27,13 @@ def _port_pairs(value: Any) -> tuple[Any, ...]:
             "pairs must be pairs of ports, the giver first, as in "
             f'[["a.motion", "b.foot"]]; found {shown(value)}. Name both of each.'
         )
-    return tuple(tuple(pair) for pair in value)
+    pairs = [tuple(pair) for pair in value]
+    if twice := [pair for number, pair in enumerate(pairs) if pair in pairs[:number]]:
+        raise ValueError(
+            f"pairs must be different, as what is carried twice counts twice; found "
+            f"{shown(list(twice[0]))} again. Remove it."
+        )
+    return tuple(pairs)
 
 
 Between = Annotated[tuple[str, str], BeforeValidator(_two_components)]

@@ -100,6 +100,21 @@ def test_the_run_of_another_kind_than_replay_is_refused(tmp_path):
             load(str(path), swaps=[swap])
 
 
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ('expect.1.name="lower.end"', "expect: 2 have the name 'lower.end'"),
+        (
+            'links.0.pairs=[["lower.motion", "upper.foot"], ["lower.motion", "upper.foot"]]',
+            "pairs must be different",
+        ),
+    ],
+)
+def test_what_is_given_twice_is_refused(setting, words):
+    with pytest.raises(SceneError, match=words):
+        load("two_springs", settings=[setting])
+
+
 def test_check_says_which_expectations_a_run_does_not_reach(tmp_path, capsys):
     with pytest.raises(SystemExit):
         main(["check", "two_springs", "--set", "end=0.5"])
