@@ -30,6 +30,7 @@ from quintet.components.sph_solid.kernels.motion import (
     kick_and_heat,
 )
 from quintet.components.sph_solid.kernels.pairs import Forces
+from quintet.components.sph_solid.method import viscosity_note
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.pair_sums import pair_sums
 from quintet.components.sph_solid.params import SphSolidParams
@@ -172,6 +173,11 @@ class SphSolid(Component):
     def warnings(self) -> Mapping[str, str]:
         """Reasons why the results may be wrong: energy from nowhere, numerical fracture."""
         return warnings(self.state, self.density, self.params, len(self.bonds))
+
+    def notes(self) -> tuple[str, ...]:
+        """Settings that would be better for a slow impact."""
+        note = viscosity_note(self.params)
+        return (note,) if note else ()
 
     def _begin(self) -> None:
         """Find what acts at the start, where nothing is strained."""

@@ -16,17 +16,17 @@ from scipy.spatial import cKDTree
 
 from quintet.components.shared.materials.solid import NEVER, Solid
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
-from quintet.components.sph_solid.method import method
+from quintet.components.sph_solid.method import method, viscosity_warning
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, State, Whole
 
-ENERGY_EVERY, BONDS_EVERY = 16, 64  # steps
+ENERGY_EVERY, BONDS_EVERY = 32, 64  # steps
 NEAREST = 1.2  # spacings: bonds at the start are no longer
 EMPTY = 0.95  # spacings around the middle of a lost bond, where no particle is
 NEGLIGIBLE = 1e-6  # of the largest energy: smaller changes are rounding
 STILL = 1e-14  # of V ρc²: strains of 1e-7 are rounding too
 MOST_GAINED = 0.03  # of the energy turned over
-MOST_HEATED = 0.15  # of the energy turned over, in elastic bodies, by the artificial viscosity
+MOST_HEATED = 0.22  # of the energy turned over, in elastic bodies, by the artificial viscosity
 FEWEST_LOST = 1e-3  # of all bonds
 
 
@@ -109,7 +109,8 @@ def warnings(
     state: State, density: Array, params: SphSolidParams, bond_count: int
 ) -> dict[str, str]:
     """Reasons why the results may be wrong, by subject; of densities (materials,) kg/m3."""
-    texts: dict[str, str] = {}
+    viscosity = viscosity_warning(params)
+    texts = {"viscosity": viscosity} if viscosity else {}
     turned = float((state.ranges[:, 1] - state.ranges[:, 0]).max())
     least = STILL * float((state.volume * state.sound**2 * density[state.material]).sum())
     if turned > max(least, NEGLIGIBLE * float(np.abs(state.ranges).max())):
@@ -129,7 +130,7 @@ def _of_energy(state: State, turned: float, params: SphSolidParams) -> dict[str,
         share, verb = max((gained, "gained"), (lost, "lost"), (unstored, "gained"))
         return {
             "energy": f"the energy of the bodies must change by what is done on them alone; they "
-            f"{verb} {share:.1%} of the {turned:.3g} J that were turned over. {cure}"
+            f"{verb} {100.0 * share:.3g} % of the {turned:.3g} J that were turned over. {cure}"
         }
     if heated > MOST_HEATED:
         return {

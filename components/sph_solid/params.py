@@ -8,6 +8,7 @@ from pydantic import Field
 from quintet.components.shared.materials.params import material
 from quintet.components.sph_solid.body import Axis, Body
 from quintet.interfaces.params import (
+    Fraction,
     NotNegative,
     Number,
     Positive,
@@ -15,6 +16,7 @@ from quintet.interfaces.params import (
     parameters,
 )
 
+LEAST_SMOOTHING, MOST_SMOOTHING = 0.9, 4.0
 ROUND = ("cylinder", "tube")
 NARROW = 2.4  # smoothing lengths between planes: nothing is as near to the images of images
 
@@ -150,7 +152,7 @@ class SphSolidParams:
     viscosity_linear: NotNegative | None = None
     viscosity_quadratic: NotNegative | None = None
     kernel_correction: bool | None = None
-    artificial_stress: NotNegative = 0.0
+    artificial_stress: Fraction = 0.0
     total_lagrangian: bool | None = None
 
     def __post_init__(self) -> None:
@@ -158,6 +160,12 @@ class SphSolidParams:
         sides = [one.axis + one.side for one in self.symmetry]
         for is_wrong, sentence in (
             (not self.bodies, "bodies must be at least one; found none. Add [[bodies]]."),
+            (
+                not LEAST_SMOOTHING <= self.smoothing <= MOST_SMOOTHING,
+                f"smoothing must lie between {LEAST_SMOOTHING:g} and {MOST_SMOOTHING:g}: with "
+                "less, gradients of a lattice are wrong by more than 5 %, with more each particle "
+                f"has thousands of neighbours; found {self.smoothing:g}. 1.2 is usual.",
+            ),
             (
                 any(one.body >= len(self.bodies) for one in self.levels),
                 f"levels: body must be below {len(self.bodies)}, their number.",

@@ -92,3 +92,32 @@ def test_a_body_at_rest_or_in_even_motion_is_sound(speed):
     for _ in range(70):
         solid.step(solid.stable_dt())
     assert not solid.warnings()
+
+
+@pytest.mark.parametrize(
+    ("speed", "settings", "sentence"),
+    [
+        (1000.0, {"viscosity_linear": 0.0}, "too little artificial viscosity"),
+        (1000.0, {"viscosity_linear": 10.0}, "so much artificial viscosity"),
+        (1000.0, {}, None),
+        (200.0, {"viscosity_linear": 0.1, "viscosity_quadratic": 0.5}, None),
+    ],
+)
+def test_viscosities_that_do_not_suit_the_speed_of_impact_are_told(speed, settings, sentence):
+    low, high = (0.0, 0.0, 0.0), (3 * DX, 3 * DX, 3 * DX)
+    body = Body(lowest=low, highest=high, material="steel", velocity=(0.0, 0.0, -speed))
+    solid = SphSolid(SphSolidParams(spacing=DX, bodies=(body,), **settings))
+    found = solid.warnings().get("viscosity")
+    assert found is None if sentence is None else sentence in found
+
+
+def test_a_slow_impact_with_the_viscosity_of_shocks_is_noted():
+    low, high = (0.0, 0.0, 0.0), (3 * DX, 3 * DX, 3 * DX)
+    body = Body(lowest=low, highest=high, material="steel", velocity=(0.0, 0.0, -200.0))
+    (note,) = SphSolid(SphSolidParams(spacing=DX, bodies=(body,))).notes()
+    assert "viscosity_linear = 0.1" in note
+
+
+def test_smoothing_that_reaches_too_few_particles_is_refused():
+    with pytest.raises(ValueError, match=r"smoothing must lie between 0.9 and 4"):
+        strip(smoothing=0.6)
