@@ -102,7 +102,7 @@ class Participant:
         try:
             with self.keeping_others_waiting:
                 self.line.send({"order": order, "window": self.window, **header}, fields or {})
-        except LineError as error:
+        except (LineError, MessageError) as error:
             raise self._failure(error) from error
 
     def receive(self, expected: Shapes | None = None, finite: bool = True) -> Message:

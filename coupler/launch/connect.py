@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from quintet.coupler.coupling.participant import LONGEST_WAIT, ComponentFailed, Participant
 from quintet.coupler.launch import stack
-from quintet.coupler.launch.mpi_job import write_processes
+from quintet.coupler.launch.mpi_job import exit_file, write_processes
 from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
 from quintet.coupler.launch.watch import Watch
 from quintet.coupler.launch.watchdog import Watchdog
@@ -21,6 +21,7 @@ from quintet.coupler.scene.read import library
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Component
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
+from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.lines.message import Message
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.process import build, shared_files
@@ -37,6 +38,9 @@ class Connection(Protocol):
 
     def close(self, well: bool) -> None:
         """Close all connections; components finish in order if all is well, else they are ended."""
+
+    def notes(self) -> list[str]:
+        """What the user should know of the connections."""
 
 
 def connect(scene: Scene, folder: Path, watchdog: Watchdog) -> Connection:
@@ -86,6 +90,10 @@ class InMemory:
         """See `Connection.close`."""
         self.watchdog.close()
 
+    def notes(self) -> list[str]:
+        """See `Connection.notes`."""
+        return []
+
 
 def _built(one: ComponentPlan, header: dict[str, Any]) -> Component:
     try:
@@ -102,21 +110,32 @@ class OverZenoh:
 
     def __init__(self, scene: Scene, folder: Path, watchdog: Watchdog) -> None:
         # Only the transport that a run uses is loaded: zenoh starts threads.
+        from quintet.interfaces.lines.admission import Admission, ForeignMessages
         from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.participants: dict[str, Participant] = {}
         self.watchdog = watchdog
         self.watches: dict[str, Watch] = {}
+        self.secret = secrets.token_hex(16)
         try:
-            self.session = Session(endpoint, True, "coupler", scene.security)
+            self.session = Session(endpoint, True, "coupler", scene.security, self.secret)
         except LineError as error:
             raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
+        self.foreign = ForeignMessages(self.session.zenoh)
+        kinds = {name: one.manifest.kind for name, one in scene.components.items()}
+        awaited = {name: kind for name, kind in kinds.items() if name in scene.elsewhere}
+        self.admission = Admission(
+            self.session.zenoh, self.secret, awaited, kinds.keys() - awaited.keys(), self.foreign
+        )
+        watchdog.news = self.foreign.look
         self.run = watchdog.mark
         lines = {name: ZenohLine(self.session, self.run, name) for name in scene.components}
         try:
+            if scene.security and kinds.keys() - awaited.keys():
+                require_reachable(endpoint, scene.security)
             for name, line in lines.items():
-                self.watches[name] = Watch(name)
+                self.watches[name] = Watch(name, awaited=name in awaited)
                 if name in scene.elsewhere:
                     print(f"{name} is awaited: {join_command(scene, name, endpoint)}", flush=True)
                 else:
@@ -146,7 +165,7 @@ class OverZenoh:
             arguments += ["--tls", *scene.tls]
         for place in scene.import_folders:
             arguments += ["--look-in", place]
-        process = start(arguments, log_of(folder, name), one.threads, self.run)
+        process = start(arguments, log_of(folder, name), one.threads, self.run, self.secret)
         self.watches[name].pid, self.watches[name].process = process.pid, process
 
     def close(self, well: bool) -> None:
@@ -154,8 +173,23 @@ class OverZenoh:
         self.watchdog.expect_ends()
         end_all(self.participants, list(self.watches.values()), well, self.watchdog)
         self.watchdog.close()
+        self.watchdog.news = lambda: ""
         end_marked(RUN, self.run)
         self.session.close()
+
+    def notes(self) -> list[str]:
+        """See `Connection.notes`."""
+        return self.foreign.summary()
+
+
+def require_reachable(endpoint: str, security: Security) -> None:
+    """Refuse certificates with which the components that are started here could not connect."""
+    # Only runs over zenoh with certificates look at them.
+    from quintet.interfaces.lines.reach import obstacle
+
+    found = obstacle(endpoint, security)
+    if found.text and found.certain:
+        raise SceneError(f"scene.endpoint {endpoint}: {found.text}")
 
 
 def join_command(scene: Scene, name: str, endpoint: str) -> str:
@@ -182,7 +216,7 @@ class OverMpi:
         try:
             for rank, name in enumerate(scene.components, start=1):
                 one = Participant(name, mpi.MpiLine(run, "coupler", name, rank))
-                watch = self.watches[name] = Watch(name)
+                watch = self.watches[name] = Watch(name, exit_file=exit_file(folder, name))
                 self.watchdog.add(one, watch, scene.patience(name))
                 hello = one.await_hello(LONGEST_WAIT, lambda seconds: None)
                 self.participants[name] = one
@@ -205,6 +239,10 @@ class OverMpi:
             for watch in self.watches.values():
                 watch.end(0.0)
 
+    def notes(self) -> list[str]:
+        """See `Connection.notes`."""
+        return []
+
 
 def accept(scene: Scene, one: Participant, hello: Message, watch: Watch, folder: Path) -> None:
     """Accept a component: check its kind, watch its process, send its parameters."""
@@ -214,6 +252,7 @@ def accept(scene: Scene, one: Participant, hello: Message, watch: Watch, folder:
         raise ComponentFailed(
             one.name, 0, f"{expected} must say hello; found {header.get('kind')!r}. Start that."
         )
+    watch.awaited = False
     if header.get("host") == socket.gethostname():
         watch.pid = int(header["pid"])
         told = map(Path, map(str, header.get("shared", [])))

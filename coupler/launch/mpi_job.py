@@ -30,7 +30,7 @@ from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
 from quintet.interfaces.serving.log_stream import print_into_logs
-from quintet.interfaces.serving.process import STARTER, shared_files
+from quintet.interfaces.serving.process import LAUNCHER, STARTER, shared_files
 
 JOB_FILE = "mpi.json"  # in the log folder: processes, and the exit status of the coupler
 COUPLER_OUTPUT = ("coupler.out", "coupler.err")  # there too
@@ -38,6 +38,8 @@ LAUNCHER_LOG = "mpiexec.log"  # there too
 LAUNCHER_FILE = (
     "hydra_hwloc_xmlfile_"  # how names of temporary files begin that a killed one leaves
 )
+# Starts a rank and writes how it ended: only its parent learns that, and mpiexec reports late.
+RANK = f'{LAUNCHER}=$PPID; export {LAUNCHER}; "$@"; echo $? > "$0"'
 ENDING, AT_ONCE = 3.0, 0.5  # s for all ranks to end after the coupler has, if all is well or not
 LOOKING = 0.2  # s between two looks at the ranks while they start
 ORPHANED = 10.0  # s for the coupler to end in order after the process that started the job died
@@ -52,10 +54,16 @@ def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
     line += ["-m", "quintet.coupler.cli", *arguments, "--inside-mpi"]
     for name, one in scene.components.items():
         log = str(folder / "log" / f"{name}.log")
-        line += [":", "-n", "1", *python, "-m", "quintet.interfaces.serving.process", one.kind]
+        line += [":", "-n", "1", "sh", "-c", RANK, str(exit_file(folder, name))]
+        line += [*python, "-m", "quintet.interfaces.serving.process", one.kind]
         line += ["--name", name, "--mpi", "--log", log]
         line += [word for place in scene.import_folders for word in ("--look-in", place)]
     return line
+
+
+def exit_file(folder: Path, name: str) -> Path:
+    """File in which the exit status of a component's rank is written when it has ended."""
+    return folder / "log" / f"{name}.exit"
 
 
 def find_launcher() -> list[str]:
@@ -105,6 +113,9 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
     job_file.parent.mkdir(parents=True, exist_ok=True)
     job_file.unlink(missing_ok=True)
     starter = Starter(os.getpid(), time.time())
+    exits = [exit_file(folder, name) for name in scene.components]
+    for path in exits:
+        path.unlink(missing_ok=True)
     threads = max(one.threads for one in scene.components.values())
     line = command(arguments, scene, folder)
     env = {**environment(threads), STARTER: str(os.getpid())}
@@ -130,6 +141,8 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
         end_ranks(found, starter)
         process.wait()
         _forward_output(output)
+        for path in exits:
+            path.unlink(missing_ok=True)
     if "status" in found:
         return JobEnd(int(str(found["status"])))
     if signals:

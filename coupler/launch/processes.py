@@ -12,6 +12,7 @@ from pathlib import Path
 import psutil
 
 from quintet.interfaces.lines.process_status import running
+from quintet.interfaces.serving.process import SECRET
 
 # Python, which by itself looks for modules where it is started before it looks anywhere else.
 PYTHON = (sys.executable, "-P")
@@ -20,8 +21,13 @@ KILLED = 1.0  # s within which the system has ended what was killed
 RUN = "QUINTET_RUN"  # in the environment of all processes of a run, and of those that they start
 
 
-def start(arguments: list[str], log: Path, threads: int, run: str = "") -> subprocess.Popen[bytes]:
-    """Start a Python program, part of a run, in a session of its own, its output in a log."""
+def start(
+    arguments: list[str], log: Path, threads: int, run: str = "", secret: str = ""
+) -> subprocess.Popen[bytes]:
+    """Start a Python program, part of a run, in a session of its own, its output in a log.
+
+    It gets the secret of the run's messages in its environment, which other users cannot see.
+    """
     with open(log, "ab") as file:
         return subprocess.Popen(
             [*PYTHON, *arguments],
@@ -29,7 +35,7 @@ def start(arguments: list[str], log: Path, threads: int, run: str = "") -> subpr
             stdout=file,
             stderr=file,
             start_new_session=True,
-            env={**environment(threads), RUN: run},
+            env={**environment(threads), RUN: run, SECRET: secret},
         )
 
 

@@ -7,6 +7,7 @@ import subprocess
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import psutil
 
@@ -15,6 +16,17 @@ from quintet.interfaces.lines.process_status import running
 BUSY = 0.02  # share of a core below which a process does not compute
 INTERVAL = 0.5  # s between two readings of processor times
 IDLE = "sleeping"
+SIGNALS = frozenset(map(int, signal.Signals))
+WRITTEN = 0.3  # s within which the exit status of a process is written that was started for us
+
+
+def killed_for_memory() -> int:
+    """Processes that this system has killed so far because its memory ran out."""
+    with contextlib.suppress(OSError):
+        for line in Path("/proc/vmstat").read_text().splitlines():
+            if line.startswith("oom_kill "):
+                return int(line.split()[1])
+    return 0
 
 
 @dataclass(slots=True)
@@ -27,6 +39,8 @@ class Watch:
         0: on another host.
     process : Popen or None
         When it is our own child.
+    exit_file : path or None
+        Where the exit status of a process is written that another process has started for us.
     shared : list of str
         Files in shared memory that it maps.
     where : function
@@ -36,12 +50,15 @@ class Watch:
     name: str
     pid: int = 0
     process: subprocess.Popen[bytes] | None = None
+    exit_file: Path | None = None
     shared: list[str] = field(default_factory=list)
     where: Callable[[], str] = lambda: ""
+    awaited: bool = False  # until somebody joins by hand under its name
     activity: str = ""  # what it did since the last reading
     _read_at: float = 0.0
     _times: tuple[float, float] = (0.0, 0.0)  # s, of its own and of its children
     _stopped: int = 0  # readings that found it so, one after the other
+    _killed_before: int = field(default_factory=killed_for_memory)
 
     def alive(self) -> bool:
         """Whether the process still runs."""
@@ -51,12 +68,31 @@ class Watch:
 
     def ending(self) -> str:
         """Describe how the process ended."""
-        code = self.process.returncode if self.process else None
+        code = self.process.returncode if self.process else self._written()
         if code is None:
             return f"process {self.pid} is gone: it ended or was killed"
         if code < 0:
-            return f"process {self.pid} was killed by signal {-code} ({signal.Signals(-code).name})"
+            name = signal.Signals(-code).name
+            return f"process {self.pid} was killed by signal {-code} ({name}){self._reason(-code)}"
         return f"process {self.pid} ended by itself with status {code}, before it was told to"
+
+    def _written(self) -> int | None:
+        """Exit status of a process of another parent; negative: the signal that killed it."""
+        limit = time.monotonic() + WRITTEN
+        while self.exit_file and time.monotonic() < limit:
+            with contextlib.suppress(OSError, ValueError):
+                code = int(self.exit_file.read_text())
+                return 128 - code if code - 128 in SIGNALS else code  # as a shell counts
+            time.sleep(0.005)
+        return None
+
+    def _reason(self, number: int) -> str:
+        """Why a process was killed, where the system tells."""
+        if number == signal.SIGSEGV:
+            return ": its compiled code used memory that is not its own; its log has the stack"
+        if number == signal.SIGKILL and killed_for_memory() > self._killed_before:
+            return ", most likely by the system, whose memory ran out: use fewer items or threads"
+        return ""
 
     def stopped(self) -> bool:
         """Whether the process was stopped, and is not being debugged; asked again and again."""
@@ -89,6 +125,8 @@ class Watch:
 
     def described(self) -> str:
         """What the process does, in words."""
+        if self.awaited:
+            return f"nobody has joined as {self.name} yet"
         if not self.pid:
             return "its process is on another host"
         return f"process {self.pid} is {self.activity or 'running'}"

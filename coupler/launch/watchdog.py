@@ -115,6 +115,7 @@ class Watchdog:
     acts: Callable[[], bool] = lambda: True
     guard: Guard | None = None
     mark: str = field(default_factory=lambda: secrets.token_hex(8))  # of all processes of the run
+    news: Callable[[], str] = lambda: ""  # what else the user should know, at every look
     verdict: BaseException | None = None  # why the run is to end
     _all: dict[str, Watched] = field(default_factory=dict)
     _asked_at: float = 0.0
@@ -166,6 +167,8 @@ class Watchdog:
             passed, self._last = min(now - self._last, LONGEST_LOOK), now
             if self.guard:
                 self.guard.look([one.participant for one in list(self._all.values())])
+            if news := self.news():
+                say(news)
             if self.verdict:
                 self._enforce(now)
                 continue
@@ -227,6 +230,10 @@ class Watchdog:
         what = f"for {one.waited:.1f} s " + (
             f"in window {place}" if participant.built else "to be built"
         )
+        if one.watch.awaited:
+            one.told, one.tell_at = True, 2.0 * one.waited
+            say(f"the run waits for {participant.name}: {doing}")
+            return
         usual = f", usually {participant.timing.usual:.2g} s" if participant.timing.usual else ""
         where = stack.innermost(calls)
         over = one.is_over()

@@ -41,7 +41,7 @@ SHOWN = 3  # foreign files named in a message
 
 def files_of(scene: Scene) -> list[str]:
     """Names of all files that a run of a scene may write, but for its snapshots."""
-    logs = [f"{name}.log" for name in scene.components]
+    logs = [f"{name}.{end}" for name in scene.components for end in ("log", "exit")]
     logs += [*COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG, reached.NAME]
     views = [one(name) for name in scene.components for one in (view_file, walls_file)]
     convergence = [log_file(group) for group in scene.coupling.iterated()]

@@ -6,6 +6,7 @@ import shlex
 import sys
 import threading
 import traceback
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
@@ -111,6 +112,7 @@ class Running:
         self.writer.on_begin = self._start.close
         self._connection: Connection | None = None
         self._coupling: Coupling | None = None
+        self.notes_of_lines: Callable[[], list[str]] = list
         self._ending = threading.Lock()
         self._guard: Closable | None = None
         self._started: OwnProcesses | None = None
@@ -126,7 +128,7 @@ class Running:
         self._start.show()
         self._warn_of_limits()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
-        self.participants = connection.participants
+        self.participants, self.notes_of_lines = connection.participants, connection.notes
         self._coupling = coupling = assemble(
             scene.coupling, self.participants, self.exchange, self.ledger, self.logs, self.costs
         )
@@ -243,6 +245,13 @@ def make_folder(scene: Scene, folder: Path) -> None:
     reserve(folder, RESULTS)
 
 
+def notes(made: Running) -> dict[str, list[str]]:
+    """What the user should know of each component, and of the lines to them."""
+    all_notes = {name: one.notes for name, one in made.participants.items()}
+    all_notes["coupler"] = made.notes_of_lines()
+    return {name: texts for name, texts in all_notes.items() if texts}
+
+
 def outcome_of(end: RunEnd) -> dict[str, Any]:
     """Status of a run, complete or interrupted."""
     status = "done" if end.finished else "interrupted"
@@ -323,7 +332,7 @@ def conclude(made: Running) -> int:
         "repetitions": made.costs.repetitions,
         "unconverged": made.costs.unconverged,
         "time_errors": made.ledger.time_errors.summary(),
-        "notes": {name: one.notes for name, one in made.participants.items() if one.notes},
+        "notes": notes(made),
         "timing": results.timing(made.participants, made.clock(), made.costs),
     }
     if outcome["status"] == "done":

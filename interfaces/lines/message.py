@@ -25,6 +25,7 @@ MAGIC = b"qnt3"
 PREFIX = struct.Struct("<4sIQI")  # magic, bytes of the header, bytes of the frame, CRC-32 of header
 PACKER = msgpack.Packer()  # making one takes longer than packing a header
 HEADER_LIMIT = 1 << 20  # bytes
+UNLIMITED = 1 << 62  # bytes
 WITHOUT_ARRAYS = ("failed", "unable", "abort")  # that may replace an expected message
 
 
@@ -41,12 +42,23 @@ class Message:
         return str(self.header.get("order", ""))
 
 
-def encode(header: Mapping[str, Any], fields: Fields, scratch: bytearray | None) -> bytearray:
-    """Pack a message into one frame; `scratch` is reused when it has the right length."""
-    layout = lay_out(tuple([(key, a.dtype.str, a.shape) for key, a in fields.items()]))
+def encode(
+    header: Mapping[str, Any], fields: Fields, scratch: bytearray | None, limit: int = UNLIMITED
+) -> bytearray:
+    """Pack a message into one frame; `scratch` is reused when it has the right length.
+
+    A frame of more than `limit` bytes is refused before any memory is taken for it.
+    """
+    try:
+        layout = lay_out(tuple([(key, a.dtype.str, a.shape) for key, a in fields.items()]))
+    except AttributeError:
+        _refuse_no_array(fields)
+        raise
     packed = PACKER.pack({**header, "arrays": layout.packed})
     first = aligned(PREFIX.size + len(packed))
     total = first + layout.size
+    if total > limit:
+        _refuse_large(layout, total, limit)
     frame = scratch if scratch is not None and len(scratch) == total else bytearray(total)
     PREFIX.pack_into(frame, 0, MAGIC, len(packed), total, zlib.crc32(packed))
     frame[PREFIX.size : PREFIX.size + len(packed)] = packed
@@ -104,6 +116,24 @@ def _header(frame: Frame) -> tuple[dict[str, Any], int]:
     if not isinstance(header, dict):
         raise MessageError(f"the header must be a map; found {type(header).__name__}.")
     return header, aligned(PREFIX.size + size)
+
+
+def _refuse_no_array(fields: Fields) -> None:
+    for key, array in fields.items():
+        if not isinstance(array, np.ndarray):
+            raise MessageError(
+                f"field {key}: it must be an array of numbers; found {type(array).__name__}. "
+                "Correct what gives it."
+            )
+
+
+def _refuse_large(layout: Layout, total: int, limit: int) -> None:
+    largest = max(layout.places, key=lambda place: place.end - place.start)
+    raise MessageError(
+        f"a message must have at most {limit / 1e9:.2f} GB on this line; this one has "
+        f"{total / 1e9:.2f} GB, the most of it {largest.key} with shape {largest.shape}. Use "
+        "fewer items, or the transport mpi or memory."
+    )
 
 
 def _refuse_size(layout: Layout, room: int) -> None:

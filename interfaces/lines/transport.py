@@ -13,7 +13,7 @@ from typing import Any, Protocol, TypeVar
 
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import LineError
-from quintet.interfaces.lines.message import Frame, Message, Shapes, decode, encode
+from quintet.interfaces.lines.message import UNLIMITED, Frame, Message, Shapes, decode, encode
 
 T = TypeVar("T")
 
@@ -67,6 +67,8 @@ def wait(poll: Callable[[], T | None], seconds: float, broken: Callable[[], str]
 class FramedLine(ABC):
     """A line over a transport of bytes: numbered messages of one run, in order and complete."""
 
+    limit = UNLIMITED  # bytes of a frame
+
     def __init__(self, run: str, name: str) -> None:
         self.run = run  # "" until the first message of the coupler
         self.name = name  # who sends
@@ -79,7 +81,7 @@ class FramedLine(ABC):
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """See `Line.send`."""
         stamped = {**header, "run": self.run, "from": self.name, "seq": self._sent}
-        self._scratch = encode(stamped, fields, self._scratch)
+        self._scratch = encode(stamped, fields, self._scratch, self.limit)
         self._sent += 1
         self._put(self._scratch)
 

@@ -7,18 +7,26 @@ peer of the network, and a publisher's messages are lost until a subscriber is m
 
 import contextlib
 import json
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import zenoh
 from zenoh import handlers
 
 from quintet.interfaces.errors import LineError
+from quintet.interfaces.lines.admission import ask_to_join
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
 from quintet.interfaces.lines.message import Frame
+from quintet.interfaces.lines.reach import Obstacle, await_listener, obstacle
 from quintet.interfaces.lines.transport import FramedLine, wait
 
 CAPACITY = 1024  # messages that a receiver may leave unread; lock-step needs two or three
 BLOCKED = 600_000_000  # us that a full connection may block before it is given up
+OPEN = "open"  # the secret of lines that nobody has to be kept from
+CONNECTING = 10_000  # ms
+STARTING = 10.0  # s that a run may take until it listens
+DOUBTFUL = 3_000  # ms, where something listens that does not answer as zenoh does
+LARGEST = 1 << 30  # bytes of a message; zenoh drops larger ones without a word
 LEASE = 60_000  # ms without a keep-alive; shorter ones expire while a solver uses all cores
 
 
@@ -31,10 +39,11 @@ def configuration(endpoint: str, listens: bool, security: Security | None) -> ze
         "scouting/gossip/enabled": False,
         "transport/shared_memory/enabled": False,
         "transport/link/tx/lease": LEASE,
+        "transport/link/rx/max_message_size": LARGEST,
         "transport/link/tx/queue/congestion_control/block/wait_before_close": BLOCKED,
         "listen/endpoints": [endpoint] if listens else [],
         "connect/endpoints": [] if listens else [endpoint],
-        "connect/timeout_ms": 10_000,
+        "connect/timeout_ms": CONNECTING,
         "connect/exit_on_failure": True,
     }
     if security is not None:
@@ -54,20 +63,45 @@ def configuration(endpoint: str, listens: bool, security: Security | None) -> ze
 
 
 class Session:
-    """A zenoh session and the liveliness of its peers; lines share it."""
+    """A zenoh session and the liveliness of its peers; lines share it.
 
-    def __init__(self, endpoint: str, listens: bool, me: str, security: Security | None) -> None:
+    All its keys have the secret of the run as a verbatim part: no wildcard of zenoh matches them,
+    so that others can neither read nor send messages on them. With None as secret the session
+    only connects, until it is given one.
+    """
+
+    def __init__(
+        self,
+        endpoint: str,
+        listens: bool,
+        me: str,
+        security: Security | None,
+        secret: str | None = OPEN,
+    ) -> None:
         self.me = me
+        doubt = Obstacle() if listens else obstacle(endpoint, security)
+        if doubt.text and doubt.certain:
+            raise LineError(f"endpoint {endpoint}: {me} cannot reach it: {doubt.text}")
+        config = configuration(endpoint, listens, security)
+        if doubt.text:
+            config.insert_json5("connect/timeout_ms", json.dumps(DOUBTFUL))
         try:
-            self.zenoh = zenoh.open(configuration(endpoint, listens, security))
+            self.zenoh = zenoh.open(config)
         except zenoh.ZError as error:
-            raise LineError(f"endpoint {endpoint}: {me} cannot reach it: {error}") from error
-        self._token = self.zenoh.liveliness().declare_token(f"quintet/alive/{me}")
-        self._liveliness = self.zenoh.liveliness().declare_subscriber(
-            "quintet/alive/*", handlers.FifoChannel(CAPACITY), history=True
-        )
+            reason = doubt.text or _without_place(str(error))
+            raise LineError(f"endpoint {endpoint}: {me} cannot reach it: {reason}") from error
         self.alive: set[str] = set()
         self.ended: set[str] = set()
+        if secret is not None:
+            self.enter(secret)
+
+    def enter(self, secret: str) -> None:
+        """Take part in the run with this secret."""
+        self.root = f"quintet/@{secret}"
+        self._token = self.zenoh.liveliness().declare_token(f"{self.root}/alive/{self.me}")
+        self._liveliness = self.zenoh.liveliness().declare_subscriber(
+            f"{self.root}/alive/*", handlers.FifoChannel(CAPACITY), history=True
+        )
 
     def update(self) -> None:
         """Update which peers are alive and which have ended."""
@@ -87,6 +121,8 @@ class Session:
 class ZenohLine(FramedLine):
     """A line between `me` and `other` over a session."""
 
+    limit = LARGEST - (1 << 16)  # zenoh adds its own header
+
     def __init__(
         self, session: Session, run: str, other: str, closes_session: bool = False
     ) -> None:
@@ -95,10 +131,10 @@ class ZenohLine(FramedLine):
         self.other = other
         self._closes_session = closes_session
         self._inbox = session.zenoh.declare_subscriber(
-            f"quintet/{other}/to/{session.me}", handlers.FifoChannel(CAPACITY)
+            f"{session.root}/{other}/to/{session.me}", handlers.FifoChannel(CAPACITY)
         )
         self._outbox = session.zenoh.declare_publisher(
-            f"quintet/{session.me}/to/{other}",
+            f"{session.root}/{session.me}/to/{other}",
             congestion_control=zenoh.CongestionControl.BLOCK,
             reliability=zenoh.Reliability.RELIABLE,
             priority=zenoh.Priority.DATA,
@@ -132,9 +168,40 @@ class ZenohLine(FramedLine):
             self.session.close()
 
 
-def connect(endpoint: str, name: str, security: Security | None = None) -> ZenohLine:
-    """Open a component's line to the coupler."""
-    session = Session(endpoint, False, name, security)
+def connect(
+    endpoint: str, name: str, security: Security | None = None, secret: str = OPEN
+) -> ZenohLine:
+    """Open the line of a component that the coupler has started."""
+    return _to_coupler(Session(endpoint, False, name, security, secret))
+
+
+def join(
+    endpoint: str,
+    name: str,
+    about: Mapping[str, Any],
+    security: Security | None = None,
+    say: Callable[[str], object] = lambda text: None,
+) -> ZenohLine:
+    """Open the line of a component that was started by hand: the coupler may refuse it.
+
+    It may be started a little before the run.
+    """
+    await_listener(endpoint, STARTING, say)
+    session = Session(endpoint, False, name, security, None)
+    try:
+        session.enter(ask_to_join(session.zenoh, name, about))
+    except BaseException:
+        session.close()
+        raise
+    return _to_coupler(session)
+
+
+def _to_coupler(session: Session) -> ZenohLine:
     line = ZenohLine(session, "", "coupler", closes_session=True)
     line.wait_for_partner(30.0)
     return line
+
+
+def _without_place(text: str) -> str:
+    """What zenoh says of an error, without the place in its own code."""
+    return text.partition(" at /")[0]

@@ -16,6 +16,7 @@ from quintet.interfaces.sums import column_sums, moment, product, size
 
 Sums = dict[str, list[float]]
 Rows = Sequence[tuple[int, int]]
+NUMBERS = "fiub"  # kinds of types that hold real numbers
 
 
 class Outputs:
@@ -37,6 +38,7 @@ class Outputs:
         self.shares: Mapping[str, Rows] = {}  # port taken -> first and last row + 1 of each link
         self.work: dict[str, list[float]] = {}  # of each link
         self.moment: dict[str, Array] = {}
+        self.rows: dict[str, int] = {}  # of each field, from the first time that it was given
 
     def want(self, keys: Iterable[str]) -> None:
         """Ask for these fields only."""
@@ -52,6 +54,33 @@ class Outputs:
     def begin(self) -> None:
         """Forget the last window."""
         self.total, self.work, self.moment = {}, {}, {}
+
+    def check(self, given: Fields) -> Fields:
+        """Return what give() returned, once every field is as its port and its first time say."""
+        if not isinstance(given, Mapping):
+            raise PortError(
+                f"give() must return its fields by name; found {type(given).__name__}. Correct it."
+            )
+        for key, array in given.items():
+            if not isinstance(array, np.ndarray) or array.dtype.kind not in NUMBERS:
+                found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
+                raise PortError(
+                    f"output {key} must be an array of real numbers; found {found}. Correct give()."
+                )
+            field = self.fields.get(key)
+            if field is None or not array.ndim or array.shape[1:] != field.shape:
+                known = field.shape if field else None
+                raise PortError(
+                    f"output {key} must have shape (n, *{known}) as its port says; found "
+                    f"{array.shape}. Correct give(), or the port."
+                )
+            if len(array) != self.rows.setdefault(key, len(array)):
+                raise PortError(
+                    f"output {key} must keep its shape {(self.rows[key], *field.shape)}; found "
+                    f"{array.shape}. The number of items of a port must not change: let a field "
+                    "`active` say which of them exist."
+                )
+        return given
 
     def add(self, given: Fields, taken: Fields, dt: float) -> None:
         """Add one step."""
@@ -78,13 +107,6 @@ class Outputs:
 
     def collect(self, given: Fields) -> dict[str, Array]:
         """Return the fields to send: instants as they are now, impulses summed over the window."""
-        for key, array in given.items():
-            if key not in self.fields or array.shape[1:] != self.fields[key].shape:
-                known = self.fields[key].shape if key in self.fields else None
-                raise PortError(
-                    f"output {key} must have shape (n, *{known}) as its port says; found "
-                    f"{array.shape}. Correct give(), or the port."
-                )
         missing = [key for key in self.shapes if key not in given]
         if missing:
             raise PortError(

@@ -28,7 +28,10 @@ LINGERING = 10.0  # s
 # Asks a component where in its code it is: one of the signals that no library uses for itself.
 STACK_SIGNAL = signal.SIGRTMIN + 7
 LOOK_IN = "look for module:Class here too, after all that is installed; may be repeated"
+SECRET = "QUINTET_SECRET"  # set where the coupler has started the component: that of its messages
 STARTER = "QUINTET_STARTER"  # set where a run was started by another process here: which one
+
+LAUNCHER = "QUINTET_LAUNCHER"  # set where a shell lies between the launcher of ranks and this one
 
 
 def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -> None:
@@ -70,8 +73,9 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     listen(say)
     say(f"{given.name}: {manifest.title}, process {os.getpid()}")
     try:
-        line = over_mpi(given.name) if given.mpi else over_zenoh(given)
-        line.send({"order": "hello", "kind": manifest.kind, **about_me()}, {})
+        hello = {"order": "hello", "kind": manifest.kind, **about_me()}
+        line = over_mpi(given.name) if given.mpi else over_zenoh(given, hello)
+        line.send(hello, {})
         order = line.receive(LONGEST_WAIT)  # others may join later, or be started by hand
     except QuintetError as error:
         say(f"{given.name}: {error}")
@@ -118,12 +122,16 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     return make(solver, params, resources)
 
 
-def over_zenoh(given: argparse.Namespace) -> Line:
+def over_zenoh(given: argparse.Namespace, hello: dict[str, Any]) -> Line:
     """Connect over zenoh; only a process that does so imports it."""
     # What a run does not use is not loaded: zenoh starts threads.
-    from quintet.interfaces.lines.zenoh import connect
+    from quintet.interfaces.lines.zenoh import connect, join
 
-    return connect(given.at, given.name, Security(*given.tls) if given.tls else None)
+    security = Security(*given.tls) if given.tls else None
+    secret = os.environ.pop(SECRET, "")  # processes that the solver starts need not have it
+    if secret:
+        return connect(given.at, given.name, security, secret)
+    return join(given.at, given.name, hello, security, lambda text: say(f"{given.name}: {text}"))
 
 
 def over_mpi(name: str) -> Line:
@@ -131,7 +139,8 @@ def over_mpi(name: str) -> Line:
     # What a run does not use is not loaded: mpi4py starts MPI.
     from quintet.interfaces.lines.mpi import MpiLine
 
-    return MpiLine("", name, "coupler", 0, os.getppid() if launched_here() else 0)
+    launcher = int(os.environ.get(LAUNCHER, os.getppid()))
+    return MpiLine("", name, "coupler", 0, launcher if launched_here() else 0)
 
 
 def launched_here() -> bool:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from quintet.interfaces.component import Component, Fields
-from quintet.interfaces.errors import OrderError, QuintetError, StepError
+from quintet.interfaces.errors import LineError, OrderError, QuintetError, StepError
 from quintet.interfaces.lines.message import Message, require_finite
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.serving.inputs import Inputs
@@ -116,7 +116,7 @@ class Server:
 
     def _give(self, _: Message) -> Answer:
         self.outputs.begin()
-        return {}, self.outputs.collect(self.component.give(self.outputs.wanted))
+        return {}, self.outputs.collect(self._given(self.outputs.wanted))
 
     def _advance(self, message: Message) -> Answer:
         header, began, spent = message.header, time.perf_counter(), time.process_time()
@@ -180,15 +180,19 @@ class Server:
             component.step(dt)
             self._stable = None
             if pieces == 1:
-                given = component.give(outputs.wanted)
+                given = self._given(outputs.wanted)
             elif outputs.through:
-                given = component.give(outputs.through)
+                given = self._given(outputs.through)
             if outputs.through:
                 outputs.add(given, taken or inputs.rate, dt)
             for key in applied:
                 applied[key] += dt * sums[key]
             done, steps = end, steps + 1
         return steps, {key: total.tolist() for key, total in applied.items()}, given
+
+    def _given(self, wanted: frozenset[str]) -> Fields:
+        """Fields that the component gives now, checked."""
+        return self.outputs.check(self.component.give(wanted))
 
     def _pieces(self, left: int, time: float) -> int:
         """Check that the steps which a link demands are stable."""
@@ -317,6 +321,9 @@ def answer(server: Server, line: Line, message: Message) -> bool:
     """Handle one order and send the answer; tell whether to go on."""
     try:
         header, fields = server.handle(message)
+        line.send({"order": "done", **header}, fields)
+    except LineError:
+        raise
     except (Exception, SystemExit) as error:
         told = failure(error)
         if is_trial(message):  # it comes back to the state before, and the run goes on
@@ -325,7 +332,6 @@ def answer(server: Server, line: Line, message: Message) -> bool:
         print(told["traceback"], end="", file=sys.stderr, flush=True)  # into the component's log
         line.send(told, {})
         return False
-    line.send({"order": "done", **header}, fields)
     return message.order != "finish"
 
 

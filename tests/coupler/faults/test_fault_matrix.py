@@ -17,6 +17,11 @@ DEFAULT = {
     "NaN": "zenoh",
     "wrong shape": "memory",
     "out of memory": "zenoh",
+    "SIGSEGV": "mpi",
+    "impulse of wrong shape": "memory",
+    "complex": "zenoh",
+    "None": "mpi",
+    "huge": "zenoh",
 }
 LOADED = 3.0  # s that a loaded machine may add
 IDS = [f"{fault.name}, {transport}" for fault, transport in CASES]

@@ -140,6 +140,33 @@ def test_a_process_that_is_not_our_child_is_gone_when_it_is():
     assert not running(process.pid)
 
 
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [
+        ("137\n", "was killed by signal 9 (SIGKILL)"),
+        ("139\n", "was killed by signal 11 (SIGSEGV): its compiled code used memory"),
+        ("134\n", "was killed by signal 6 (SIGABRT)"),
+        ("0\n", "ended by itself with status 0"),
+        ("5\n", "ended by itself with status 5"),
+        ("", "is gone: it ended or was killed"),
+    ],
+)
+def test_how_a_rank_ended_is_read_from_the_file_of_its_parent(tmp_path, written, words):
+    (tmp_path / "pong.exit").write_text(written)
+    assert words in Watch("pong", 7, exit_file=tmp_path / "pong.exit").ending()
+
+
+def test_a_lack_of_memory_is_said_where_the_system_has_killed_for_it(monkeypatch, tmp_path):
+    (tmp_path / "pong.exit").write_text("137")
+    watch = Watch("pong", 7, exit_file=tmp_path / "pong.exit")
+    monkeypatch.setattr("quintet.coupler.launch.watch.killed_for_memory", lambda: 1 << 40)
+    assert "most likely by the system, whose memory ran out" in watch.ending()
+
+
+def test_who_has_not_joined_is_on_no_other_host():
+    assert Watch("water", awaited=True).described() == "nobody has joined as water yet"
+
+
 def test_ending_leaves_no_process_and_no_file(watched, tmp_path):
     watch, left = watched(SLEEPS), tmp_path / "shared"
     left.touch()

@@ -36,13 +36,15 @@ class Faulty(Toy):
         fails_at: int = -1
         fails_by: Literal[
             "exception", "sys.exit", "os._exit", "SIGKILL", "SIGSTOP", "deadlock", "endless loop",
-            "compiled loop", "polling loop", "NaN", "wrong shape", "out of memory",
+            "compiled loop", "polling loop", "NaN", "wrong shape", "out of memory", "SIGSEGV",
+            "impulse of wrong shape", "complex", "None", "huge",
         ] = "exception"  # fmt: skip
         moment: str = ""  # file for the time of the failure
         child: bool = False  # whether it has a child process, in a session of its own
 
     def __init__(self, params):
         super().__init__(params)
+        self.odd = {}  # what it gives in place of its fields
         self.endless = compiled() if params.fails_by == "compiled loop" else None
         if params.child:
             subprocess.Popen([sys.executable, "-c", OUTLIVES])
@@ -59,6 +61,8 @@ class Faulty(Toy):
                 os._exit(0)
             case "SIGKILL":
                 os.kill(os.getpid(), signal.SIGKILL)
+            case "SIGSEGV":
+                os.kill(os.getpid(), signal.SIGSEGV)
             case "SIGSTOP":
                 os.kill(os.getpid(), signal.SIGSTOP)
             case "deadlock":
@@ -77,8 +81,19 @@ class Faulty(Toy):
                 self.value = np.full_like(self.value, np.nan)
             case "wrong shape":
                 self.value = np.zeros((2, 3))
+            case "impulse of wrong shape":
+                self.odd = {"out.push": np.ones((1, 3))}
+            case "complex":
+                self.odd = {"out.number": self.value + 1j}
+            case "None":
+                self.odd = {"out.push": None}
+            case "huge":  # 6 GB, of which nothing is in memory
+                self.odd = {"out.number": np.broadcast_to(0.0, (250_000_000, 3))}
             case "out of memory":
                 exhaust()
+
+    def give(self, wanted):
+        return super().give(wanted) | self.odd
 
 
 def wait_as_for_a_disk(seconds):

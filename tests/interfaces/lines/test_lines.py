@@ -2,12 +2,14 @@
 
 import time
 
+import numpy as np
 import pytest
 
 from quintet.interfaces.errors import LineError, MessageError
 from quintet.interfaces.lines.memory import MemoryLine
 from quintet.interfaces.lines.message import encode
 from quintet.interfaces.lines.transport import FramedLine, wait
+from quintet.interfaces.serving.serve import answer
 
 
 class ByHand(FramedLine):
@@ -139,3 +141,37 @@ def test_a_line_in_memory_hands_over_at_once():
         assert line.receive(0.0).header["got"] == order
     with pytest.raises(LineError, match="the component gave no answer"):
         line.receive(1.0)
+
+
+def test_a_message_that_is_too_large_is_refused_before_memory_is_taken_for_it():
+    line = ByHand()
+    line.limit = 1 << 30
+    huge = np.broadcast_to(0.0, (1 << 37, 3))
+    with pytest.raises(MessageError, match=r"at most 1\.07 GB .* out\.number with shape \(137438"):
+        line.send({"order": "done"}, {"few": np.zeros(3), "out.number": huge})
+    line.send({"order": "done"}, {"few": np.zeros(3)})
+    assert len(line.sent) == 1  # and numbered 0: nothing was lost
+    other = ByHand()
+    other.frames = list(line.sent)
+    assert other.receive(0.1).header["seq"] == 0
+
+
+def test_what_is_no_array_is_named():
+    for value, words in ((None, "found NoneType"), (3.0, "found float")):
+        with pytest.raises(MessageError, match=f"field x: it must be an array .* {words}"):
+            ByHand().send({"order": "done"}, {"n": np.zeros(3), "x": value})
+
+
+def test_an_answer_that_cannot_be_sent_is_the_failure_of_its_component(capsys):
+    line = MemoryLine("r1", "echo")
+    line.far.limit = 1 << 20
+
+    class Large:
+        def handle(self, message):
+            return {}, {"state": np.zeros(1 << 20)}
+
+    line.handle = lambda message: answer(Large(), line.far, message)
+    line.send({"order": "save"}, {})
+    failed = line.receive(0.0)
+    assert failed.order == "failed" and failed.header["error"] == "MessageError"
+    assert "the most of it state" in failed.header["text"]

@@ -222,6 +222,28 @@ def test_outputs_that_do_not_fit_their_ports_are_refused(given, words):
         server.handle(Message({"order": "give"}))
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (None, r"give\(\) must return its fields by name; found NoneType"),
+        ({"push.force": None}, r"output push\.force must be an array .* found NoneType"),
+        ({"push.force": [[0.0] * 3] * N}, r"output push\.force must be an array .* found list"),
+        ({"push.force": np.zeros((N, 3), complex)}, r"push\.force .* found complex128"),
+        ({"push.force": np.full((N, 3), None)}, r"push\.force .* found object"),
+        ({"push.force": np.zeros((N + 1, 3))}, r"keep its shape \(4, 3\); found \(5, 3\)\. The"),
+        ({"push.force": np.zeros((1, 3))}, r"keep its shape \(4, 3\); found \(1, 3\)"),
+    ],
+)
+@pytest.mark.parametrize("stable", [1.0, 0.4 * WINDOW])
+def test_a_field_that_changes_its_kind_or_shape_is_named(given, words, stable):
+    server = served([stable])
+    server.handle(Message({"order": "give"}))
+    plain = server.component.give
+    server.component.give = lambda wanted: given if given is None else plain(wanted) | given
+    with pytest.raises(PortError, match=words):
+        server.advance(WINDOW)
+
+
 def test_an_error_goes_back_over_the_line_with_its_traceback(capsys):
     server = Server(Spring([1.0]), "spring")
     line = MemoryLine("r", "spring")

@@ -1,0 +1,178 @@
+"""Messages from outside a run reach nobody in it; who joins by hand is admitted once."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+
+from quintet.coupler.launch.connect import free_port
+from quintet.interfaces.errors import LineError
+from quintet.interfaces.lines.admission import (
+    LONGEST_REQUEST,
+    TOO_MANY,
+    Admission,
+    ForeignMessages,
+)
+from quintet.interfaces.lines.zenoh import Session, ZenohLine, configuration, connect, join
+
+pytestmark = pytest.mark.zenoh
+SECRET = "5ecret"
+WHO = {"kind": "toy", "host": "here", "pid": 7}
+OLD = "a former run"
+KEYS = [
+    "quintet/pong/to/coupler", "quintet/coupler/to/pong", "quintet/alive/pong", "quintet/**", "**",
+    "*/*/pong/to/coupler", "quintet/*/coupler/to/pong", f"quintet/{SECRET}/pong/to/coupler",
+    "quintet/@open/pong/to/coupler", "quintet/@/pong/to/coupler",
+]  # fmt: skip
+
+
+@pytest.fixture
+def endpoint():
+    return f"tcp/127.0.0.1:{free_port()}"
+
+
+@pytest.fixture
+def coupler(endpoint):
+    session = Session(endpoint, True, "coupler", None, SECRET)
+    session.foreign = ForeignMessages(session.zenoh)
+    session.foreign.look()
+    others = ("ping",)
+    session.admission = Admission(session.zenoh, SECRET, {"pong": "toy"}, others, session.foreign)
+    yield session
+    session.close()
+
+
+@pytest.fixture
+def stranger(endpoint, coupler):
+    import zenoh
+
+    session = zenoh.open(configuration(endpoint, False, None))
+    yield session
+    session.close()
+
+
+def test_strangers_neither_send_nor_overhear(coupler, stranger, endpoint):
+    from zenoh import handlers
+
+    line = ZenohLine(coupler, "r1", "pong")
+    other = connect(endpoint, "pong", None, SECRET)
+    line.wait_for_partner(10.0)
+    overheard = stranger.declare_subscriber("**", handlers.FifoChannel(100))
+    alive = stranger.liveliness().declare_token("quintet/alive/pong")
+    time.sleep(0.2)
+    for key in KEYS:
+        for payload in (b"1234567", b"", bytes(100_000)):
+            stranger.put(key, payload)
+    alive.undeclare()
+    for n in range(20):
+        line.send({"order": "advance", "n": n}, {"a": np.full(3, float(n))})
+        message = other.receive(5.0)
+        assert message.header["n"] == n and (message.fields["a"] == n).all()
+        other.send({"order": "done", "n": n}, {})
+        assert line.receive(5.0).header["n"] == n
+    time.sleep(0.2)
+    assert coupler.foreign.count >= 3 * (len(KEYS) - 4)  # `@...` and `*/*/...` reach nobody
+    assert "from outside the run were dropped; the first: 7 bytes" in coupler.foreign.look()
+    keys = [str(sample.key_expr) for sample in iter(overheard.try_recv, None)]
+    assert keys and set(keys) <= set(KEYS)
+    other.close()
+
+
+def test_a_flood_costs_little_and_is_reported_now_and_then(coupler, stranger):
+    import zenoh
+
+    reports, began, spent = [], time.monotonic(), time.process_time()
+    sent = 0
+    block = zenoh.CongestionControl.BLOCK
+    while time.monotonic() - began < 1.5:
+        for _ in range(1000):
+            stranger.put("quintet/pong/to/coupler", b"x" * 50, congestion_control=block)
+        sent += 1000
+        reports.append(coupler.foreign.look())
+    assert sent > 10 * TOO_MANY > coupler.foreign.count / 10
+    assert len(list(filter(None, reports))) == 1
+    assert "at least" in coupler.foreign.summary()[0]
+    assert time.process_time() - spent < 8.0
+
+
+def test_who_is_awaited_joins_once(coupler, endpoint):
+    line = ZenohLine(coupler, "r1", "pong")
+    other = join(endpoint, "pong", WHO)
+    other.send({"order": "hello"}, {})
+    assert line.receive(5.0).order == "hello"
+    began = time.monotonic()
+    with pytest.raises(LineError, match=r"pong has joined already \(process 7 on here\)"):
+        join(endpoint, "pong", {**WHO, "pid": 8})
+    assert time.monotonic() - began < 3.0
+    line.send({"order": "go"}, {})
+    assert other.receive(5.0).order == "go"  # the second one has ended nothing
+    assert "1 request(s) to join were refused" in coupler.foreign.look()
+    other.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "about", "words"),
+    [
+        ("ping", WHO, "ping is started by the run itself. Start the run with --elsewhere ping"),
+        ("peng", WHO, "the run awaits pong, not peng"),
+        ("pong", {**WHO, "kind": "fish\x1b[2J\ud800"}, r"pong must be of kind toy; found fish\?\["),
+        ("pong", {**WHO, "pid": "x"}, "a request to join must name its kind, host and process"),
+    ],
+)
+def test_who_is_not_awaited_is_refused_with_the_reason(coupler, endpoint, name, about, words):
+    with pytest.raises(LineError, match=words):
+        join(endpoint, name, about)
+    assert coupler.foreign.refused == 1 and not coupler.admission.joined
+
+
+@pytest.mark.parametrize(
+    "request_bytes",
+    [b"", b"7654321", b"[" * 4000, b"{}", b"[]", b"null", b'{"kind": 1, "host": 2, "pid": 3}',
+     json.dumps({**WHO, "more": "x" * LONGEST_REQUEST}).encode(), b"\xff\xfe"],
+)  # fmt: skip
+def test_a_malformed_request_is_refused(coupler, stranger, request_bytes):
+    for key in ("quintet/join/pong", "quintet/join/*", "quintet/**"):
+        replies = list(stranger.get(key, payload=request_bytes, timeout=5.0))
+        assert [reply.ok for reply in replies] == [None]
+    assert not coupler.admission.joined
+
+
+def test_where_no_run_answers_a_join_says_so(endpoint, monkeypatch):
+    monkeypatch.setattr("quintet.interfaces.lines.admission.ANSWERING", 1.0)
+    other = Session(endpoint, True, "coupler", None, SECRET)  # which admits nobody
+    with pytest.raises(LineError, match="no run answered within 1 s"):
+        join(endpoint, "pong", WHO)
+    other.close()
+
+
+def test_a_component_of_a_former_run_reaches_nobody(coupler, endpoint):
+    line = ZenohLine(coupler, "r1", "pong")
+    late = Session(endpoint, False, "pong", None, OLD.replace(" ", "-"))
+    old = ZenohLine(late, "r0", "coupler")
+    for _ in range(5):
+        old.send({"order": "done"}, {})
+    time.sleep(0.2)
+    assert line.peek() is None and line._broken() == ""
+    late.close()
+    time.sleep(0.1)
+    assert line._broken() == ""
+
+
+def test_a_join_may_begin_before_its_run(endpoint, monkeypatch):
+    said, opened = [], []
+
+    def begin(text):
+        said.append(text)
+        session = Session(endpoint, True, "coupler", None, SECRET)
+        foreign = ForeignMessages(session.zenoh)
+        admission = Admission(session.zenoh, SECRET, {"pong": "toy"}, (), foreign)
+        opened.extend([session, admission, ZenohLine(session, "r1", "pong")])
+
+    other = join(endpoint, "pong", WHO, None, begin)
+    assert said == [f"nobody listens at {endpoint} yet; waiting for up to 10 s"]
+    other.close()
+    opened[0].close()
+    monkeypatch.setattr("quintet.interfaces.lines.zenoh.STARTING", 0.3)
+    with pytest.raises(LineError, match="nobody listens on port"):
+        join(endpoint, "pong", WHO, None, said.append)
