@@ -19,10 +19,13 @@ OF_DATASET = 1 << 14  # bytes of HDF5's own, at most, that a piece adds to a dat
 OF_FILE = 1 << 16  # and to the file
 
 
-def create(path: Path | str) -> h5py.File:
-    """Make a file, in the default format version: newer ones refuse a file after a kill."""
+def create(path: Path | str, cache: int | None = None) -> h5py.File:
+    """Make a file, in the default format version: newer ones refuse a file after a kill.
+
+    `cache` is the size [bytes] of what HDF5 keeps of each data set in memory, if not its default.
+    """
     try:
-        return h5py.File(path, "w", locking=False)
+        return h5py.File(path, "w", locking=False, rdcc_nbytes=cache)
     except OSError as error:
         raise disk_error(Path(path), error) from error
 

@@ -35,6 +35,8 @@ BATCH = 64  # rows written at once, at most; a power of two
 BATCH_BYTES = 8 << 20  # of all fields of a component together
 CHUNK_BYTES = 1 << 20
 CHECKED = 256  # rows of a chunk of checksums
+# Rows are written once, in whole chunks. HDF5 would still keep up to 8 MiB of each data set.
+CACHE_BYTES = 1 << 14
 # Measured on noisy doubles: 200 MB/s and 0.97 of the size, against 60 MB/s and 0.89 of gzip 1,
 # and 1.3 GB/s unpacked. Forces of which four in five are zero shrink to 0.43.
 PACKED = {"shuffle": True, "compression": "lzf"}
@@ -66,7 +68,7 @@ class Recorder(_Closed):
     """Write a recording; rows are collected back and written in batches."""
 
     def __init__(self, path: Path | str, run: str, scene: str, tick: float = 1.0) -> None:
-        self._file = create(path)
+        self._file = create(path, CACHE_BYTES)
         self._tracks: dict[str, _Track] = {}
         with room(self._file, OF_FILE + len(scene.encode())):
             self._file.attrs["run"] = run
@@ -82,7 +84,7 @@ class Recorder(_Closed):
         with readable(path):
             with h5py.File(path, "r", locking=False) as file:
                 CheckedFile(file, path).check_rows(rows)
-            made._file = h5py.File(path, "r+", locking=False)
+            made._file = h5py.File(path, "r+", locking=False, rdcc_nbytes=CACHE_BYTES)
             for name, group in made._file["components"].items():
                 ports = from_json(str(group.attrs["ports"]))
                 made._tracks[name] = _Track(group, name, ports)
