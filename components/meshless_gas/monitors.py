@@ -9,7 +9,7 @@ from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import State
 
 BLOCKED = 0.1  # relative difference of the pressure beside an inflow from that of what comes in
-FEW, SHARE = 2, 0.1  # nodes, and share of those of the boundary, at which this may be so
+FEW, SHARE = 2, 0.25  # nodes, and share of those of the boundary, at which this may be so
 SETTLING = 10.0  # spacings that what comes in must have run before it is judged
 
 
