@@ -1,7 +1,7 @@
 """Rigid bodies in contact, stepped by velocity Verlet."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -10,7 +10,12 @@ from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.contact import search
 from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, no_ball_pairs
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
-from quintet.components.dem_bodies.diagnostics import ALLOWED_DEPTH, contact_points, failure
+from quintet.components.dem_bodies.diagnostics import (
+    ALLOWED_DEPTH,
+    contact_points,
+    doubts,
+    failure,
+)
 from quintet.components.dem_bodies.integration.step_limit import (
     count_ball_contacts,
     count_contacts,
@@ -51,6 +56,8 @@ class Accumulated:
     time: float = 0.0  # s
     dissipated: float = 0.0  # J, by dampers and friction
     given: float = 0.0  # J, work of the loads
+    coarsest: float = 0.0  # longest step in contact, over the duration of that contact
+    deepest: float = 0.0  # largest overlap over the radius of the contact
 
 
 class DemBodies(Component):
@@ -181,6 +188,9 @@ class DemBodies(Component):
         self.accumulated.time += dt
         self.accumulated.given += float(report[rows.LOAD_WORK])
         self.accumulated.dissipated += float(lost)
+        duration = DURATION * SPEED_UP / math.sqrt(max(report[rows.STIFFEST], 1e-300))  # s
+        self.accumulated.coarsest = max(self.accumulated.coarsest, float(dt / duration))
+        self.accumulated.deepest = max(self.accumulated.deepest, float(report[rows.DEEPEST]))
 
     def _move(self, dt: float) -> None:
         stage = kernels.DRIFT
@@ -260,7 +270,7 @@ class DemBodies(Component):
                     kept[f"balls.{name}"] = array.copy()
             kept["balls.partner"] = self.balls.partner.astype(np.int64)  # messages know no uint32
         total = self.accumulated
-        kept["accumulated"] = np.array([total.time, total.dissipated, total.given])
+        kept["accumulated"] = np.array(astuple(total))
         return kept
 
     def load(self, state: Fields) -> None:
@@ -288,6 +298,10 @@ class DemBodies(Component):
             if array is not None:
                 array[:] = state[f"balls.{name}"]
         return pairs
+
+    def warnings(self) -> dict[str, str]:
+        """Warn of contacts that few steps resolved, and of deep overlaps."""
+        return doubts(self.accumulated.coarsest, self.accumulated.deepest)
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the bodies; internal is the contacts' elastic energy."""

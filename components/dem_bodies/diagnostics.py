@@ -17,6 +17,8 @@ from quintet.components.dem_bodies.state import (
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import StepError
 
+DOUBTFUL_DEPTH = 0.2  # overlap over contact radius: more is not as stiff bodies do
+FEWEST_STEPS = 5  # of a contact
 ALLOWED_DEPTH = 0.5  # overlap over contact radius; Hertz's law is for small ones
 
 
@@ -39,6 +41,32 @@ def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: floa
         f"{state.report[DEEPEST]:.3g} of it deep in {other}, near {where.round(4).tolist()} m. "
         "Make youngs_modulus or edge_radius larger, or impact_speed nearer to that of impacts."
     )
+
+
+def doubts(coarsest: float, deepest: float) -> dict[str, str]:
+    """Say why contacts may be wrong.
+
+    Parameters
+    ----------
+    coarsest : float, 1
+        Longest step in contact over the duration of that contact.
+    deepest : float, 1
+        Largest overlap over the radius of the contact.
+    """
+    found = {}
+    if coarsest * FEWEST_STEPS > 1.0:
+        found["steps"] = (
+            f"a contact must last {FEWEST_STEPS} steps or more, or its rebound is wrong; one "
+            f"lasted {1.0 / coarsest:.2g}. Take a shorter fixed_step, or none, and an impact_speed "
+            "that is that of the fastest impact."
+        )
+    if deepest > DOUBTFUL_DEPTH:
+        found["overlap"] = (
+            f"bodies must overlap by less than {DOUBTFUL_DEPTH:g} of the radius of their contact, "
+            f"as Hertz's law is for small overlaps; found {deepest:.2g}. Make youngs_modulus or "
+            "edge_radius larger."
+        )
+    return found
 
 
 def deepest_pair(state: State, balls: BallPairs | None, others: BodyPairs) -> tuple[int, int]:

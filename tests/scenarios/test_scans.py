@@ -1,0 +1,30 @@
+"""Settings from safe to absurd: no result is silently wrong, and none is a false alarm."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from quintet.coupler.cli import main
+
+CASES = [
+    pytest.param("ball_on_floor.toml", name, marks=pytest.mark.slow)
+    for name in (
+        "fixed step", "longest step", "stiffness", "restitution", "impact speed",
+        "steps per contact",
+    )
+]  # fmt: skip
+CASES += [pytest.param("newtons_cradle", name, marks=pytest.mark.slow) for name in
+          ("step", "window", "courant")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("scene", "scan"), CASES)
+def test_no_wrong_result_is_silent(scene: str, scan: str, tmp_path: Path) -> None:
+    file = str(Path(__file__).with_name(scene)) if scene.endswith(".toml") else scene
+    words = ["scan", file, "--name", scan, "--out", str(tmp_path / "runs")]
+    with pytest.raises(SystemExit) as ended:
+        main([*words, "--json", str(tmp_path / "found.json")])
+    (found,) = json.loads((tmp_path / "found.json").read_text())["scans"]
+    verdicts = [row["verdict"] for row in found["rows"]]
+    assert ended.value.code == 0 and "SILENT" not in verdicts
+    assert verdicts[0] == "right" and "false alarm" not in verdicts
