@@ -35,8 +35,8 @@ class Toy(Component):
     def __init__(self, params):
         self.params = params
         self.value = np.linspace(0.0, 1.0, 3 * params.items).reshape(-1, 3)
-        self.push, self.pushed = np.zeros_like(self.value), np.zeros_like(self.value)
-        self.partner = self.value
+        self.push, self.pushed = np.zeros_like(self.value), np.zeros((1, 3))
+        self.partner = np.zeros((0, 3))  # none yet
         self.steps, self.time = 0, 0.0
 
     def stable_dt(self):
@@ -45,8 +45,8 @@ class Toy(Component):
     def take(self, fields):
         if any(field.shape != self.value.shape for field in fields.values()):
             raise PortError(f"a toy takes fields of shape {self.value.shape} only")
-        self.partner = np.array(fields.get("in.number", self.value))
-        self.pushed = np.array(fields.get("in.push", self.push))
+        self.partner = np.array(fields.get("in.number", self.partner))
+        self.pushed = np.array(fields.get("in.push", self.pushed))
 
     def step(self, dt):
         time.sleep(self.params.pause)
@@ -54,7 +54,8 @@ class Toy(Component):
             print("a step", flush=True)
         if self.steps == self.params.fails_at:
             self.fail()
-        self.value = self.value + dt * (100.0 * (self.partner - self.value) + self.pushed)
+        pull = 100.0 * (self.partner - self.value) if len(self.partner) else 0.0
+        self.value = self.value + dt * (pull + self.pushed)
         self.push = np.sin(self.value + 10.0 * self.time)
         self.steps, self.time = self.steps + 1, self.time + dt
         if self.steps == 50:
@@ -85,8 +86,8 @@ class Toy(Component):
         shape = self.value.shape
         self.value = np.array(state["value"], float).reshape(shape)
         self.push = np.array(state["push"], float).reshape(shape)
-        self.partner = np.array(state["partner"], float).reshape(shape)
-        self.pushed = np.array(state["pushed"], float).reshape(shape)
+        self.partner = np.array(state["partner"], float).reshape(-1, 3)
+        self.pushed = np.array(state["pushed"], float).reshape(-1, 3)
         self.steps, self.time = int(state["steps"]), float(state["time"])
 
     def totals(self):
