@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid import MANIFEST, build, diagnostics, features
+from quintet.components.sph_fluid import MANIFEST, build, diagnostics, features, judgement
 from quintet.components.sph_fluid.boundary.planar import in_plane, require_one_metre
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.integration.method import Moved, StepTask
@@ -16,7 +16,7 @@ from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
-from quintet.components.sph_fluid.setup.geometry import wall_faces
+from quintet.components.sph_fluid.setup.geometry import slab_thickness, wall_faces
 from quintet.components.sph_fluid.setup.mass import mass_notes
 from quintet.components.sph_fluid.setup.start import stated
 from quintet.components.sph_fluid.state import Array, State
@@ -129,6 +129,9 @@ class SphFluid(Component):
         if self.filter:
             self.filter.apply(self.state, self.lists.arrays, self.team)
         rows, rate = self.boundary.rows_with_density_rate(self.state), self.pairs.rates.rate
+        if self.state.steps % judgement.EVERY == 0:
+            isolated = not len(self.samples.row) and not self.params.boundary.wall_velocity
+            judgement.note(self.state, self.params, self.totals(), isolated)
         task = StepTask(dt, rows, rate, self._compute_rates, partial(self._apply_forces, dt))
         self._finish(self.integration.step(self.state, task, self.team), dt)
 
@@ -201,6 +204,11 @@ class SphFluid(Component):
     def notes(self) -> tuple[str, ...]:
         """What was not as a scene may have meant it: masses, films that are missing."""
         return (*self.told, *(self.films.notes if self.films else ()))
+
+    def warnings(self) -> dict[str, str]:
+        """Compression, fluid that leaves its tank, and energy from nowhere."""
+        mass = self.constants.mass * slab_thickness(self.params)
+        return judgement.warnings(self.state, self.params, mass)
 
     def walls(self) -> Fields:
         """Return the tank's closed faces, and the obstacles in it."""

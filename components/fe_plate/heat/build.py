@@ -86,4 +86,5 @@ def initial_state(params: FeHeatParams, model: Model, surface: int) -> State:
     held = np.array([one.temperature for one in params.held], float)
     is_held = model.holder >= 0
     temperature[is_held] = held[model.holder[is_held]]
-    return State(temperature, np.zeros(surface), np.zeros(len(held)), np.zeros(1))
+    judged = np.zeros((len(params.parts), 2))
+    return State(temperature, np.zeros(surface), np.zeros(len(held)), np.zeros(1), judged)

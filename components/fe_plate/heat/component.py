@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.components.fe_plate.heat import MANIFEST
 from quintet.components.fe_plate.heat.build import build, initial_state
+from quintet.components.fe_plate.heat.judgement import note, transient_times, warnings
 from quintet.components.fe_plate.heat.kernels import conduct, solve
 from quintet.components.fe_plate.heat.params import FeHeatParams
 from quintet.components.fe_plate.heat.ports import SHOWS
@@ -51,6 +52,8 @@ class FeHeat(Component):
             int(np.argmin(((mesh.node - one) ** 2).sum(axis=1))) for one in params.node_gauges
         ]
         self.state = initial_state(params, self.model, len(self.surface))
+        self.start = self.state.temperature.copy()  # K
+        self.times = transient_times(params, self.model)  # s
 
     def describe(self) -> Fields:
         """State where the nodes of the surface are, and the corners of its faces."""
@@ -83,7 +86,10 @@ class FeHeat(Component):
             none = np.zeros_like(load)
             gained = self._net_flow(self._solved(none, load, self.state.temperature), load)
         else:
+            before = self.state.temperature.copy()
             gained = self._advance(dt, load)
+            now, part = self.state.temperature, self.model.part
+            note(self.state.judged, self.start, before, now, dt, part, self.times)
         held = self.model.holder >= 0
         flow = np.bincount(self.model.holder[held], -gained[held], len(self.state.held))
         self.state.held[:] = flow
@@ -167,6 +173,10 @@ class FeHeat(Component):
             return Totals(mass=mass)
         heat = float(self.model.capacity @ self.state.temperature)
         return Totals(mass=mass, internal=heat, work=float(self.state.outside[0]))
+
+    def warnings(self) -> dict[str, str]:
+        """Steps that pass over the transient of a part."""
+        return warnings(self.state.judged, self.times)
 
     def notes(self) -> tuple[str, ...]:
         """Sizes of meshes from files, and what of them is left out."""

@@ -27,3 +27,4 @@ class State(NamedTuple):
     heat: Array  # (nodes of the surface,) W, of partners
     held: Array  # (h,) W, mean flow of the last step from what holds nodes into the body
     outside: Array  # (1,) J, heat of fluxes and of what holds nodes since the start
+    judged: Array  # (p, 2) K, 1: largest change of temperature; longest step that was too long

@@ -16,6 +16,7 @@ from quintet.components.sph_fluid.setup.mass import check_mass
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.params import SphFluidParams
 
+LEAST_WAVE_LAYERS = 8
 ROUNDING = 1e-6  # of a spacing
 
 
@@ -44,6 +45,17 @@ def check(params: "SphFluidParams") -> None:
         check_initial(params, fluid_boxes(params))
     if params.wave is not None:
         params.wave.check(params.fluid, params.gravity)
+        check_wave_resolution(params)
+
+
+def check_wave_resolution(params: "SphFluidParams") -> None:
+    """Refuse a wave on water of few particles: of five in the depth its period is 11 % long."""
+    layers = depth(params) / params.spacing
+    if layers < LEAST_WAVE_LAYERS - ROUNDING:
+        raise ValueError(
+            f"wave needs {LEAST_WAVE_LAYERS} particles or more in the depth; found {layers:.3g}. "
+            "Refine the spacing."
+        )
 
 
 def check_boxes(params: "SphFluidParams") -> None:

@@ -255,3 +255,21 @@ def test_what_cannot_be_built_is_refused(given, words):
 def test_what_contradicts_itself_is_refused(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+@pytest.mark.parametrize(("share", "is_told"), [(0.2, False), (2.0, True)])
+def test_steps_that_pass_over_the_transient_are_warned_of(share, is_told):
+    """A step is long beside L²/(π² a), in which heat crosses a part of length L."""
+    part = ConductingPart(
+        lowest=(0.0,) * 3, highest=(0.03, 0.01, 0.01), elements=(6, 1, 1), conductivity=237.0,
+        density=2700.0, specific_heat=900.0,
+    )  # fmt: skip
+    held = FixedTemperature(lowest=(0.03, 0.0, 0.0), highest=(0.03, 0.01, 0.01), temperature=400.0)
+    made = FeHeat(FeHeatParams(parts=(part,), held=(held,)))
+    crossing = 0.03**2 * 2700.0 * 900.0 / (math.pi**2 * 237.0)
+    for _ in range(3):
+        made.step(share * crossing)
+    assert bool(made.warnings()) == is_told
+    other = FeHeat(made.params)
+    other.load(made.save())
+    assert other.warnings() == made.warnings()

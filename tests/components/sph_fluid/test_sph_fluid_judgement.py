@@ -1,0 +1,86 @@
+"""What a fluid warns of: compression, loss, energy from nowhere; of still water nothing."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from fluid_params import fluid_params
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.judgement import EVERY
+
+Make = Callable[..., SphFluid]
+
+
+def advance(fluid: SphFluid, steps: int) -> None:
+    for _ in range(steps):
+        fluid.take({})
+        fluid.step(fluid.stable_dt())
+
+
+def changed(fluid: SphFluid, name: str, rows: slice, column: int, value: float) -> None:
+    state = {key: np.array(array) for key, array in fluid.save().items()}
+    state[name][rows, column] = value
+    fluid.load(state)
+
+
+def test_still_water_warns_of_nothing(pool: Make) -> None:
+    fluid = pool()
+    advance(fluid, 2 * EVERY + 1)
+    assert fluid.state.judged.any() and not fluid.warnings()
+
+
+def test_fluid_that_is_compressed_is_warned_of_and_the_warning_is_part_of_the_state(
+    pool: Make,
+) -> None:
+    """Of a fifth of the fluid the density is 8 % too high: a Mach number of 0.28."""
+    fluid = pool()
+    changed(fluid, "position_density", slice(0, fluid.state.fluid // 5), 3, 1080.0)
+    advance(fluid, 1)
+    assert "density within 5%; 20% of it did not" in fluid.warnings()["compression"]
+    other = pool()
+    assert not other.warnings()
+    other.load(fluid.save())
+    assert other.warnings() == fluid.warnings()
+
+
+def test_fluid_below_the_floor_of_its_tank_is_warned_of(pool: Make) -> None:
+    fluid = pool()
+    changed(fluid, "position_density", slice(0, 10), 2, -0.05)
+    advance(fluid, 1)
+    assert f"10 of {fluid.state.fluid} particles are beyond" in fluid.warnings()["loss"]
+
+
+def test_fluid_that_leaves_by_an_open_side_is_not(pool: Make) -> None:
+    fluid = pool(**{"boundary.open_faces": ("x+", "z+")})
+    changed(fluid, "position_density", slice(0, 10), 0, 0.22)
+    advance(fluid, 1)
+    assert not fluid.warnings()
+
+
+def test_motion_that_gravity_does_not_bring_is_warned_of(pool: Make) -> None:
+    fluid = pool()
+    advance(fluid, EVERY)
+    changed(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
+    advance(fluid, 1)
+    assert "energy" in fluid.warnings()
+
+
+def test_a_flow_of_few_particles_is_warned_of(pool: Make) -> None:
+    fluid = pool()  # five in the depth
+    changed(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
+    advance(fluid, 1)
+    assert "found 5" in fluid.warnings()["resolution"]
+
+
+def test_artificial_viscosity_beyond_the_fluids_own_is_warned_of(pool: Make) -> None:
+    fluid = pool(**{"viscosity.kinematic": 1e-3, "viscosity.artificial": 0.1})
+    assert "acts as 0.003 m2/s" in fluid.warnings()["viscosity"]
+    assert not pool(**{"viscosity.kinematic": 1e-3, "viscosity.artificial": 0.0}).warnings()
+
+
+def test_a_wave_on_few_particles_is_refused() -> None:
+    wave = {"amplitude": 0.02, "length": 1.0}
+    tank = ((0.0, 0.0, 0.0), (1.0, 0.1, 0.5))
+    with pytest.raises(ValueError, match="wave needs 8 particles or more in the depth; found 5"):
+        fluid_params(spacing=0.1, sound_speed=30.0, dimensions=2, fluid=(tank,), wave=wave)
