@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -12,7 +13,8 @@ import pytest
 @pytest.mark.parametrize("scene", ["heated_slab", "plate_modes", "still_water"])
 def test_no_row_of_a_scan_is_silent(tmp_path, scene):
     file = tmp_path / "scan.json"
-    command = [sys.executable, "-m", "quintet", "scan", scene, "--json", str(file)]
+    quintet = str(Path(sys.executable).parent / "quintet")
+    command = [quintet, "scan", scene, "--json", str(file)]
     subprocess.run(command, cwd=tmp_path, check=False, timeout=1200)
     rows = [row for scan in json.loads(file.read_text())["scans"] for row in scan["rows"]]
     assert rows and not [row for row in rows if row["verdict"] == "SILENT"]
