@@ -133,7 +133,7 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
         output = [
             stack.enter_context(open(job_file.with_name(name), "w+b")) for name in COUPLER_OUTPUT
         ]
-        signals = stack.enter_context(_forward_signals(job_file, process))
+        signals = stack.enter_context(_forward_signals(job_file))
         companion = Companion(partial(_see_to_end, job_file, output, starter))
         stack.callback(companion.close)
         reason = _await(process, job_file, output, signals)
@@ -193,7 +193,7 @@ def _forward_output(output: Sequence[IO[bytes]]) -> None:
 
 
 @contextlib.contextmanager
-def _forward_signals(job_file: Path, process: "subprocess.Popen[bytes]") -> Iterator[list[int]]:
+def _forward_signals(job_file: Path) -> Iterator[list[int]]:
     """Forward SIGINT, SIGTERM and SIGHUP to the coupler alone, which ends the others in order."""
     signals: list[int] = []
 
@@ -202,8 +202,10 @@ def _forward_signals(job_file: Path, process: "subprocess.Popen[bytes]") -> Iter
         pid = int(str(_read(job_file).get("coupler", 0)))
         if number == signal.SIGHUP:  # libraries of MPI use it for themselves
             number = signal.SIGTERM
+        # Ranks in which MPI begins are ended by who waits for them, who sees first what they map.
         with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, number) if pid else os.killpg(process.pid, signal.SIGTERM)
+            if pid:
+                os.kill(pid, number)
 
     with handled_by(forward):
         yield signals

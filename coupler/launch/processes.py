@@ -1,6 +1,7 @@
 """Component processes: starting them, finding all that belong to a run, ending them."""
 
 import contextlib
+import ctypes
 import os
 import signal
 import subprocess
@@ -18,6 +19,7 @@ from quintet.interfaces.serving.process import SECRET
 PYTHON = (sys.executable, "-P")
 GRACE = 2.0  # s for a process to end by itself
 KILLED = 1.0  # s within which the system has ended what was killed
+SET_CHILD_SUBREAPER = 36  # of prctl
 RUN = "QUINTET_RUN"  # in the environment of all processes of a run, and of those that they start
 
 
@@ -90,19 +92,27 @@ class OwnProcesses:
     """Processes that solvers in this process start: they end with the run.
 
     They are children of this process, or inherit its environment, whatever session they are in.
+    Orphans among them become children of this process, too.
     """
 
     def __init__(self, mark: str) -> None:
         self.mark, self.before = mark, set(_children())
         os.environ[RUN] = mark
+        _adopt_orphans(True)
 
     def end(self) -> None:
         """Kill those that still run."""
         os.environ.pop(RUN, None)
+        _adopt_orphans(False)
         for child in set(_children()) - self.before:
             with contextlib.suppress(psutil.Error):
                 child.kill()
         end_marked(RUN, self.mark)
+
+
+def _adopt_orphans(adopts: bool) -> None:
+    """Become the parent of descendants whose own parent ends, or no longer; see prctl(2)."""
+    ctypes.CDLL(None).prctl(SET_CHILD_SUBREAPER, int(adopts), 0, 0, 0)
 
 
 def _children() -> list[psutil.Process]:

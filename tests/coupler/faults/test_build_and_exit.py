@@ -1,5 +1,6 @@
 """A component that hangs as it is built, or as its process ends, does not keep the run for ever."""
 
+import psutil
 import pytest
 
 ZENOH = pytest.param("zenoh", marks=pytest.mark.zenoh)
@@ -48,7 +49,9 @@ def test_over_memory_a_lock_that_is_held_at_exit_does_not_last(faulty):
 
 def test_over_memory_processes_of_a_component_end_when_an_exception_ends_the_run(faulty, tmp_path):
     moment = tmp_path / "moment"
-    pong = f'fails_at = 3\nfails_by = "exception"\nmoment = "{moment}"\nchild = true'
+    pong = f'fails_at = 3\nfails_by = "exception"\nmoment = "{moment}"\nchild = true\norphan = true'
     run = faulty("Faulty", "memory", pong)
     assert run.wait(LOADED) == 3 and run.results["fault"]["component"] == "pong"
     assert not run.left_processes()
+    mine = (p for p in psutil.process_iter() if p.status() != psutil.STATUS_ZOMBIE)
+    assert not [p for p in mine if "time.sleep(601)" in " ".join(p.cmdline())]

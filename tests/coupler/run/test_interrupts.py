@@ -197,3 +197,23 @@ def read_until(terminal, true):
         assert time.monotonic() < limit
         if select.select([terminal], [], [], 0.05)[0]:
             os.read(terminal, 1 << 12)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("transport", ["memory", *OVER])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("delay", [0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2])
+def test_a_signal_in_any_phase_leaves_results_and_nothing_else(tmp_path, transport, number, delay):
+    """Building, starting, joining, the first window: counted from when the folder is made."""
+    run = Started(write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3"))
+    run.wait_until((run.folder / "scene.toml").is_file)
+    time.sleep(delay)
+    os.killpg(run.process.pid, number) if number == signal.SIGINT else run.process.terminate()
+    run.out, run.err = run.process.communicate(timeout=30)
+    left, shared = run.left_processes(5.0), run.left_in_shared_memory()
+    run.end()
+    assert not left and not shared
+    assert run.process.returncode in (130, -number), "the latter before signals are handled"
+    assert "Traceback" not in run.err
+    if run.process.returncode == 130 and "quintet: interrupted" not in run.err:
+        assert run.results["status"] == "interrupted"

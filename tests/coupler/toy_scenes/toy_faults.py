@@ -21,6 +21,12 @@ LOCK = ctypes.create_string_buffer(64)  # a mutex of the C library
 BUSY = "import time\nend = time.time() + {}\nwhile time.time() < end: pass"
 OPENS = "import time; time.sleep({}); open('pipe', 'w')"
 OUTLIVES = "import os, time\nos.setsid()\ntime.sleep(600)"
+# An orphan in a session of its own, without the environment of whoever started it.
+SLEEPS = "import time; time.sleep(601)"
+ORPHANED = f"""
+import subprocess, sys
+subprocess.Popen([sys.executable, "-c", "{SLEEPS}"], env={{}}, start_new_session=True)
+"""
 
 
 class Faulty(Toy):
@@ -41,6 +47,7 @@ class Faulty(Toy):
         ] = "exception"  # fmt: skip
         moment: str = ""  # file for the time of the failure
         child: bool = False  # whether it has a child process, in a session of its own
+        orphan: bool = False  # whether it has started a process whose parent has ended
 
     def __init__(self, params):
         super().__init__(params)
@@ -48,6 +55,8 @@ class Faulty(Toy):
         self.endless = compiled() if params.fails_by == "compiled loop" else None
         if params.child:
             subprocess.Popen([sys.executable, "-c", OUTLIVES])
+        if params.orphan:
+            subprocess.run([sys.executable, "-c", ORPHANED], check=True)
 
     def fail(self):
         with open(self.params.moment, "w") as file:
