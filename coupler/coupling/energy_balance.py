@@ -1,4 +1,4 @@
-"""The energy of a whole run: whether it rises, told against all that was turned over.
+"""Energy and mass of a whole run: how far they rise and fall, told against what was turned over.
 
 What is done on components from outside of the run is no rise, and what they lose there no fall.
 """
@@ -12,14 +12,15 @@ NEGLIGIBLE = 1e-6
 
 
 class EnergyBalance:
-    """Extremes of every energy of every component, and the rise of their sum."""
+    """Extremes of every energy of every component, the change of their sum, and of every mass."""
 
     def __init__(self) -> None:
         self._range: dict[str, list[float]] = {}  # J, by component and kind: least, most
-        self._sums: list[float] = []  # J, at the start and the largest since
+        self._sums: list[float] = []  # J, at the start, the largest since and the last
+        self._masses: dict[str, list[float]] = {}  # kg, by component: at the start and the last
 
     def note(self, totals: Mapping[str, Mapping[str, Any]]) -> None:
-        """Take down the energies [J] of all components at one time."""
+        """Take down the energies [J] and masses [kg] of all components at one time."""
         total = 0.0
         for name, one in totals.items():
             for kind in KINDS:
@@ -28,8 +29,10 @@ class EnergyBalance:
                 least, most = self._range.get(f"{name}.{kind}", (energy, energy))
                 self._range[f"{name}.{kind}"] = [min(least, energy), max(most, energy)]
             total -= float(one["work"])
-        start, largest = self._sums or (total, total)
-        self._sums = [start, max(largest, total)]
+            mass = float(one["mass"])
+            self._masses[name] = [self._masses.get(name, [mass])[0], mass]
+        start, largest, _ = self._sums or (total, total, total)
+        self._sums = [start, max(largest, total), total]
 
     def largest(self, *kinds: str) -> float:
         """Largest energy [J] of one of some kinds that any component had, by magnitude."""
@@ -38,23 +41,42 @@ class EnergyBalance:
             (abs(one) for kind, pair in ranges if kind in kinds for one in pair), default=0.0
         )
 
-    def drift(self) -> float | None:
-        """Largest rise of the sum, less works, above its start over the largest energy turned over.
+    def change(self) -> dict[str, float] | None:
+        """Largest rise and final loss [J] of the sum, less works, and what was turned over.
 
-        That is the largest change of one kind of energy of one component. None where nothing was
-        turned over but rounding: there is nothing to tell a rise against.
+        Both are told from the start; that is turned over which is the largest change [J] of one
+        kind of energy of one component. None where nothing was turned over but rounding: there is
+        nothing to tell a change against.
         """
         turned = max((most - least for least, most in self._range.values()), default=0.0)
         if not turned > NEGLIGIBLE * self.largest(*KINDS):
             return None
-        start, largest = self._sums
-        return (largest - start) / turned
+        start, largest, last = self._sums
+        return {"gained": largest - start, "lost": max(start - last, 0.0), "turned_over": turned}
+
+    def drift(self) -> float | None:
+        """Largest rise of the sum, less works, above its start over the energy turned over."""
+        change = self.change()
+        return change["gained"] / change["turned_over"] if change else None
+
+    def mass_drift(self) -> dict[str, dict[str, float | None]]:
+        """Change [kg] of each component's mass from the start to the end, and over that at the start.
+
+        Components without a mass are left out; the relative change is None where there was none at
+        the start.
+        """
+        return {
+            name: {"kg": last - start, "relative": (last - start) / start if start else None}
+            for name, (start, last) in self._masses.items()
+            if start or last
+        }
 
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
-        return {"range": self._range, "sums": self._sums}
+        return {"range": self._range, "sums": self._sums, "masses": self._masses}
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
         self._range = {key: list(pair) for key, pair in state["range"].items()}
         self._sums = list(state["sums"])
+        self._masses = {name: list(pair) for name, pair in state["masses"].items()}

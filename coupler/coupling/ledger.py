@@ -260,7 +260,12 @@ class Ledger:
             {**_as_row(one), "energy_residual": one.energy_residual}
             for one in self.accounts.values()
         ]
-        return {"links": links, "energy_drift": self.energy.drift()}
+        return {
+            "links": links,
+            "energy_drift": self.energy.drift(),
+            "energy_change": self.energy.change(),
+            "mass_drift": self.energy.mass_drift(),
+        }
 
     def sync(self) -> None:
         """Bring all that was written to the disk."""

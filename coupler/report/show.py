@@ -16,6 +16,8 @@ from quintet.interfaces.errors import SceneError
 
 NAME = "results.json"
 UNWRAPPED = 10_000  # characters, more than any line has
+MASS_TOLD = 1e-3  # of a component's mass, a change that is told
+ROUNDING = 1e-9  # of the energy that was turned over
 Row = list[Any]
 
 
@@ -68,7 +70,7 @@ def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | No
     for one in found.get("expect") or []:
         if one.get("reason"):
             screen.print(Text(f"{one.get('name', '?')}: not met: {one['reason']}"))
-    for line in (_balance(found), _shares(found)):
+    for line in (_balance(found), _masses(found), _shares(found)):
         if line:
             screen.print(line)
     for name, notes in (found.get("notes") or {}).items():
@@ -150,13 +152,33 @@ def _ledger(found: Mapping[str, Any]) -> Table | None:
 
 
 def _balance(found: Mapping[str, Any]) -> str:
-    ledger = found.get("ledger") or {}
-    others = [
-        f"{key.replace('_', ' ')} {_number(value)}"
-        for key, value in ledger.items()
-        if key != "links" and value is not None
-    ]
-    return "Balance: " + ", ".join(others) if others else ""
+    """How the energy of the run changed; nothing where no component tells its energies."""
+    change = (found.get("ledger") or {}).get("energy_change")
+    if not change:
+        return ""
+    gained, lost, turned = (change[key] for key in ("gained", "lost", "turned_over"))
+    return (
+        f"Energy: rose by at most {_per_cent(gained / turned)} %, lost {_per_cent(lost / turned)} %"
+        f" ({_number(lost)} J of {_number(turned)} J turned over)"
+    )
+
+
+def _masses(found: Mapping[str, Any]) -> str:
+    """Which components' masses changed, by more than what is negligible."""
+    drifts = (found.get("ledger") or {}).get("mass_drift") or {}
+    said = []
+    for name, drift in drifts.items():
+        share = drift["relative"]
+        if share is None:
+            said.append(f"mass of {name} changed by {drift['kg']:+.3g} kg from none")
+        elif abs(share) > MASS_TOLD:
+            said.append(f"mass of {name} changed by {100.0 * share:+.2g} % ({drift['kg']:+.3g} kg)")
+    return "Mass: " + ", ".join(said) if said else ""
+
+
+def _per_cent(share: float) -> str:
+    """A share in per cent; what is rounding is 0."""
+    return f"{float(f'{100.0 * share:.2g}'):g}" if share > ROUNDING else "0"
 
 
 def _timing(found: Mapping[str, Any]) -> Table | None:

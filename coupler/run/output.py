@@ -117,7 +117,7 @@ class OutputWriter:
     def due(self, ticks: int) -> bool:
         """See `Observer.due`."""
         often = any(self._passes(every, ticks) for every in (self._views, self._totals))
-        return often or self._meets_picture(ticks)
+        return often or self._meets_picture(ticks) or ticks >= self._windows.end
 
     def _meets_picture(self, ticks: int) -> bool:
         """Whether the time of a picture lies between the last window's end and a time [ticks]."""
@@ -135,7 +135,7 @@ class OutputWriter:
         self._record(coupling)
         if self._passes(self._views, now) or self._meets_picture(now):
             self._note(coupling)
-        elif self._passes(self._totals, now):
+        elif self._passes(self._totals, now) or now >= windows.end:
             coupling.ledger.note(self.time, dict(coupling.ledger.totals))
         if self._progress:
             self._progress.show(self._reading(coupling))

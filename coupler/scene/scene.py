@@ -83,7 +83,8 @@ class OutputSettings:
     displacement_scale : 1
         How many times as large pictures draw displacements, of components that show them.
     totals : s
-        Between two rows of the ledger; 0: with the views.
+        Between two rows of the ledger; 0: with the views. Rows of the start and the end always
+        stand there.
     snapshots : s
         Between two, to resume from; 0: every ten minutes of the clock, and at an interruption.
     record

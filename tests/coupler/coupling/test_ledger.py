@@ -118,10 +118,14 @@ def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
     assert len(rows) == 1 + 3 * 3
     assert {len(row) for row in rows if row[1] in ("a", "b")} == {len(rows[0])}
     assert ledger.summary()["energy_drift"] == pytest.approx(0.5 / 1.5)
+    change = ledger.summary()["energy_change"]
+    assert change == pytest.approx({"gained": 0.5, "lost": 0.0, "turned_over": 1.5})
+    assert ledger.summary()["mass_drift"]["a"] == {"kg": 0.0, "relative": 0.0}
 
 
-def _totals(kinetic, potential, work=0.0):
-    return {"a": {"kinetic": kinetic, "potential": potential, "internal": 0.0, "work": work}}
+def _totals(kinetic, potential, work=0.0, mass=0.0):
+    energies = {"kinetic": kinetic, "potential": potential, "internal": 0.0}
+    return {"a": {**energies, "work": work, "mass": mass}}
 
 
 def test_what_is_done_from_outside_is_no_rise_of_energy():
@@ -150,3 +154,34 @@ def test_a_rise_of_energy_is_told_against_the_largest_that_was_turned_over(energ
     kept.load(balance.save())
     for one in (balance, kept):
         assert one.drift() == (None if drift is None else pytest.approx(drift, rel=1e-6))
+
+
+def test_the_energy_that_is_lost_at_the_end_is_told_beside_the_largest_rise():
+    balance = EnergyBalance()
+    for kinetic in (10.0, 10.3, 5.0, 9.4):
+        balance.note(_totals(kinetic, 0.0))
+    kept = EnergyBalance()
+    kept.load(balance.save())
+    for one in (balance, kept):
+        assert one.change() == pytest.approx({"gained": 0.3, "lost": 0.6, "turned_over": 5.3})
+    kept.note(_totals(10.0, 0.0))
+    assert kept.change()["lost"] == 0.0, "it is what is missing at the end"
+
+
+def test_a_change_of_mass_is_told_over_the_mass_at_the_start():
+    balance = EnergyBalance()
+    for mass in (200.0, 150.0, 198.0):
+        balance.note(_totals(1.0, 0.0, mass=mass))
+    kept = EnergyBalance()
+    kept.load(balance.save())
+    for one in (balance, kept):
+        assert one.mass_drift() == {"a": {"kg": -2.0, "relative": -0.01}}
+
+
+def test_a_mass_that_was_none_at_the_start_has_no_relative_change_and_none_is_left_out():
+    filled, without = EnergyBalance(), EnergyBalance()
+    for mass in (0.0, 3.0):
+        filled.note(_totals(1.0, 0.0, mass=mass))
+        without.note(_totals(1.0, 0.0))
+    assert filled.mass_drift() == {"a": {"kg": 3.0, "relative": None}}
+    assert without.mass_drift() == {}

@@ -19,7 +19,11 @@ RESULTS = {
     ],
     "ledger": {
         "links": [{"link": "water-cubes", "momentum_residual": 1e-15, "energy_residual": 2e-14}],
-        "energy_drift": 0.01,
+        "energy_drift": 0.003,
+        "energy_change": {"gained": 3.0, "lost": 12.0, "turned_over": 1000.0},
+        "mass_drift": {
+            "water": {"kg": -2.0, "relative": -0.01}, "cubes": {"kg": 1e-9, "relative": 1e-9},
+        },
     },
     "timing": {
         "wall": 100.0, "compile": 20.0, "exchange": 0.4, "mapping": 0.3,
@@ -48,7 +52,23 @@ def test_show_tells_expectations_ledger_and_timing(tmp_path, capsys):
     assert _line(text, "late") == ["not", "met", "late", "s", "-", "1.5", "0.1"]
     assert _line(text, "water-cubes") == ["water-cubes", "1e-15", "2e-14"]
     assert _line(text, "9000") == ["water", "80", "150", "5", "9000", "61000", "6.862e+06"]
-    assert "energy drift 0.01" in text and "exchange 0.4 s" in text
+    assert "exchange 0.4 s" in text
+
+
+def test_show_tells_what_energy_the_run_gained_and_lost(tmp_path, capsys):
+    text = _shown(tmp_path, RESULTS, capsys)
+    assert "Energy: rose by at most 0.3 %, lost 1.2 % (12 J of 1000 J turned over)\n" in text
+    assert "Mass: mass of water changed by -1 % (-2 kg)\n" in text, "and only of water"
+    filled = {"basin": {"kg": 2.5, "relative": None}}
+    text = _shown(tmp_path, RESULTS | {"ledger": {"links": [], "mass_drift": filled}}, capsys)
+    assert "Mass: mass of basin changed by +2.5 kg from none" in text
+    assert "Energy" not in text
+
+
+def test_show_tells_nothing_of_energy_and_mass_where_no_component_has_them(tmp_path, capsys):
+    bare = {"links": [], "energy_drift": None, "energy_change": None, "mass_drift": {}}
+    text = _shown(tmp_path, RESULTS | {"ledger": bare}, capsys)
+    assert not any(word in text for word in ("Energy", "energy", "Mass", "mass", "Balance"))
 
 
 def test_show_tells_which_time_a_run_did_not_reach(tmp_path, capsys):
