@@ -60,7 +60,7 @@ class EnergyBalance:
         return change["gained"] / change["turned_over"] if change else None
 
     def mass_drift(self) -> dict[str, dict[str, float | None]]:
-        """Change [kg] of each component's mass from the start to the end, and over that at the start.
+        """Change of each component's mass since the start: in kg, and relative.
 
         Components without a mass are left out; the relative change is None where there was none at
         the start.
