@@ -77,7 +77,8 @@ class Port:
     """A named bundle of fields that all have one row per item.
 
     ``static`` fields go once, with the port, before the first step (a body's mass);
-    ``states`` go once, against it (the spacing at which the taker wants surfaces sampled).
+    ``states`` go once, against it (the spacing at which the taker wants surfaces sampled); a
+    direct link refuses what exceeds a state ``largest_X`` of one row in a field ``X`` at the start.
     ``items`` says whose they are: what several links bring to a component's own items is
     added up, what they bring as the partner's items stands in rows one after another. Their
     number never changes: items that may die have a field ``active`` (`ports.ACTIVE`), which is 0

@@ -17,7 +17,7 @@ Phys. 77 (1988) 439.
 
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.plan import plan
-from quintet.components.meshless_gas.ports import SHOWS, ports
+from quintet.components.meshless_gas.ports import SHOWS, initial, ports
 from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "MeshlessGasParams"]
@@ -30,6 +30,7 @@ MANIFEST = Manifest(
     ports=ports,
     shows=SHOWS,
     plan=plan,
+    initial=initial,
     bench="quintet.components.meshless_gas.bench:cases",
     conform="quintet.components.meshless_gas.conform:cases",
 )

@@ -113,6 +113,12 @@ class MeshlessGas(Component):
             self.particles = Partner(params, self.domain)
         self._take_over()
 
+    def describe(self) -> Fields:
+        """State how large a particle may be that is taken for a point."""
+        if self.particles is None:
+            return {}
+        return {"particles.largest_diameter": np.array([self.particles.coarsest])}
+
     def bind(self, static: Fields, joined: Keys) -> None:
         """Learn what a partner's particles and bodies are like, and whether it takes their heat."""
         self.motion.bind(static, joined)

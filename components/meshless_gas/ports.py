@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
-from quintet.interfaces.component import Field, Port
+from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import HEAT, LOAD, MOTION, SPHERES, TEMPERATURE, VELOCITY
 
@@ -138,7 +140,8 @@ SURFACE = Port(
 
 # Spheres that nodes do not resolve, as the partner has them, and what the gas does to them; a point
 # is not turned, its torque is 0.
-PARTICLES = replace(SPHERES, name="particles")
+# The largest that the gas can take for points: the spacing of its nodes where they are coarsest.
+PARTICLES = replace(SPHERES, name="particles", states=(Field("largest_diameter", (), "m"),))
 PARTICLE_LOAD = replace(LOAD, name="particle_load")
 PARTICLE_HEAT = replace(HEAT, name="particle_heat")
 
@@ -156,3 +159,10 @@ def ports(params: MeshlessGasParams) -> Ports:
     driven = any(one.is_driven for one in params.moving.bodies)
     bodies = (BODIES, SURFACE, *((LOAD, HEAT) if driven else ()))
     return (MOTION,) if driven else (), (*given, *bodies)
+
+
+def initial(params: MeshlessGasParams) -> Fields:
+    """What is stated of particles before there are nodes; layers round a body are not known yet."""
+    if params.particles is None or params.box is None:
+        return {}
+    return {"particles.largest_diameter": np.array([params.box.spacing])}

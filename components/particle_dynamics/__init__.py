@@ -27,6 +27,7 @@ Yoshida, Phys. Lett. A 150 (1990) 262; Leimkuhler & Matthews, Appl. Math. Res. E
 from quintet.components.particle_dynamics.params import ParticleDynamicsParams
 from quintet.components.particle_dynamics.plan import plan
 from quintet.components.particle_dynamics.ports import SHOWS, ports
+from quintet.components.particle_dynamics.start import initial
 from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "ParticleDynamicsParams"]
@@ -39,6 +40,7 @@ MANIFEST = Manifest(
     ports=ports,
     shows=SHOWS,
     plan=plan,
+    initial=initial,
     bench="quintet.components.particle_dynamics.bench:cases",
     conform="quintet.components.particle_dynamics.conform:cases",
 )

@@ -1,5 +1,6 @@
 """Dust in gas over a direct link, and spheres on springs: against what is exact."""
 
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,8 @@ from quintet.coupler.report.diff import compare
 from quintet.coupler.run import snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
+from quintet.coupler.scene.scene import ComponentPlan
+from quintet.interfaces.errors import SceneError
 
 Run = Callable[..., dict]
 MEMORY = ("--transport", "memory")
@@ -100,3 +103,24 @@ def test_two_processes_and_a_resumption_give_the_bits_of_one_process(
     assert simulate(scene_over("zenoh"), again, kept[0]) in (0, 1)
     assert compare(tmp_path / "memory", tmp_path / "zenoh") is None
     assert compare(tmp_path / "memory", again) is None
+
+
+LARGE = "components.dust.spheres.1.diameter=0.02"  # nodes are 0.01 m apart
+
+
+def test_spheres_larger_than_the_spacing_are_refused_as_the_scene_is_checked() -> None:
+    with pytest.raises(SceneError, match=r"largest_diameter states; found 0\.02 m of item 16"):
+        load("dust_in_stream", settings=[LARGE])
+
+
+def test_spheres_larger_than_the_spacing_are_refused_before_the_first_window(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Where a kind does not tell beforehand what it states, as of layers of nodes."""
+    monkeypatch.setattr(ComponentPlan, "initial", lambda _: {})
+    scene = load("dust_in_stream", settings=[LARGE, 'transport="memory"'])
+    make_folder(scene, tmp_path)
+    assert simulate(scene, tmp_path) == 2
+    found = json.loads((tmp_path / "results.json").read_text())
+    assert found["status"] == "refused" and found["windows"] == 0
+    assert "dust.spheres.diameter must be at most 0.01 m" in found["cause"]

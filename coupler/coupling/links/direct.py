@@ -23,6 +23,8 @@ from quintet.interfaces.component import Array, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import parameters, unknown
 
+LARGEST = "largest_"  # begins the name of a state: the most that a field may be at the start
+
 
 @parameters
 class DirectKeys:
@@ -136,6 +138,27 @@ class Direct:
     def demands(self) -> Demands:
         """Nothing: any steps, any scheme."""
         return Demands()
+
+    def refuses(self, initial: Mapping[str, Fields]) -> list[str]:
+        """See `exchange.refused_starts`: what is larger than the taker states that it can take."""
+        wrong = []
+        for giver, given, taker, taken in self.joined:
+            for stated in taken.states:
+                if not stated.name.startswith(LARGEST):
+                    continue
+                place = f"{given.name}.{stated.name.removeprefix(LARGEST)}"
+                limit = initial.get(taker, {}).get(f"{taken.name}.{stated.name}")
+                values = initial.get(giver, {}).get(place)
+                if limit is None or values is None or not values.size:
+                    continue
+                if (largest := float(values.max())) > (most := float(limit[0])):
+                    wrong.append(
+                        f"link {self.name}: {giver}.{place} must be at most {most:.4g} "
+                        f"{stated.unit}, as {taker}.{taken.name}.{stated.name} states; found "
+                        f"{largest:.4g} {stated.unit} of item {int(values.argmax())}. Correct "
+                        f"{giver} or {taker}."
+                    )
+        return wrong
 
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Pass on the static fields that the taking port asks for."""
