@@ -199,19 +199,22 @@ def advice(coupling: "Coupling", link: str) -> str:
 
     Staggered windows are unstable where what is carried along weighs more than what carries it:
     what gives the force answers a change of velocity in one window with more momentum than the
-    other side has. What answers by sound does so the less the shorter the window; half the step
-    of the side that gives the force was short enough for cubes of 50 kg/m³ and more in water.
-    Where windows are as short as that step, they are better repeated until both sides agree.
+    other side has. What answers by sound does so the less the shorter the window, but no window
+    is short enough for whatever is light: half the step of the side that gives the force was for
+    cubes of 50 kg/m³ in water, and not for 20. Windows of that length that are repeated until
+    both sides agree were stable for all of them.
     """
     inner = coupling.carries(link) or coupling
     key = f"groups.{inner.plan.name}." if inner.plan.name else ""
     (works,) = (one.works for one in coupling.exchange.links if one.name == link)
     step = min((inner.components[name].stable for name in works), default=math.inf)
     window = inner.last_dt
-    if inner.plan.scheme != "iterated" and window <= step:
-        return f'set {key}scheme = "iterated".'
     shorter = 0.5 * min(window, step)
     digits = 10.0 ** (math.floor(math.log10(shorter)) - 1)
-    return (
-        f"shorten {key}window from {window:.3g} s to {math.floor(shorter / digits) * digits:g} s."
-    )
+    short = f"{math.floor(shorter / digits) * digits:g}"
+    if inner.plan.scheme == "iterated":
+        return f"shorten {key}window from {window:.3g} s to {short} s."
+    repeated = f'set {key}scheme = "iterated"'
+    if window <= step:
+        return f"{repeated}."
+    return f"{repeated}, and shorten {key}window from {window:.3g} s to {short} s."
