@@ -16,6 +16,12 @@ CASES = [
 ]  # fmt: skip
 CASES += [pytest.param("newtons_cradle", name, marks=pytest.mark.slow) for name in
           ("step", "window", "courant")]  # fmt: skip
+# Of each kind of link.
+CASES += [pytest.param("two_springs", name, marks=pytest.mark.slow) for name in
+          ("window, serial", "window, iterated", "stiffness, serial",
+           "stiffness, iterated")]  # fmt: skip
+CASES += [pytest.param("floating_square", name, marks=pytest.mark.full) for name in
+          ("window", "density")]  # fmt: skip
 
 
 @pytest.mark.parametrize(("scene", "scan"), CASES)
