@@ -2,7 +2,7 @@
 
 import inspect
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -83,6 +83,8 @@ class Port:
     added up, what they bring as the partner's items stands in rows one after another. Their
     number never changes: items that may die have a field ``active`` (`ports.ACTIVE`), which is 0
     from then on.
+    ``lacks`` has names of fields that other settings would add, each with what to set: a scene that
+    asks for one is told so.
     """
 
     name: str
@@ -90,6 +92,13 @@ class Port:
     items: Literal["own", "partner"] = "own"
     static: tuple[Field, ...] = ()
     states: tuple[Field, ...] = ()
+    lacks: tuple[tuple[str, str], ...] = ()
+
+
+def lacked(ports: Iterable[Port], path: str) -> str:
+    """What to set for ports to have a field, ``"port.field"``; "" where nothing would help."""
+    remedies = {f"{port.name}.{name}": said for port in ports for name, said in port.lacks}
+    return remedies.get(path, "")
 
 
 @dataclass(slots=True)

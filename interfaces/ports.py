@@ -158,8 +158,9 @@ def only_fields(ports: Iterable[Port], keys: Container[str]) -> tuple[Port, ...]
 
 
 def to_json(ports: Iterable[Port]) -> str:
-    """Write ports as text, for a recording."""
-    return json.dumps([asdict(port) for port in ports])
+    """Write ports as text, for a recording: what they have, not what they lack."""
+    tables = [asdict(port) for port in ports]
+    return json.dumps([{k: v for k, v in one.items() if k != "lacks"} for one in tables])
 
 
 def from_json(text: str) -> tuple[Port, ...]:

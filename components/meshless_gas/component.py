@@ -326,9 +326,10 @@ class MeshlessGas(Component):
         given.update(self.motion.outputs(self.state.primitive))
         if self.wall_loads is not None and ports_wanted & {"wall", "body"}:
             self._feel()
-            settled = float(self.settling is not None and self.settling.is_settled)
             given.update(self.wall_loads.wall(self.fluxes.primitive))
-            given.update(self.wall_loads.body(self.fluxes.primitive, settled))
+            given.update(self.wall_loads.body(self.fluxes.primitive))
+            if self.settling is not None:
+                given["body.settled"] = np.array([float(self.settling.is_settled)])
         return {key: given[key] for key in wanted}
 
     def save(self) -> Fields:

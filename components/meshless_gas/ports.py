@@ -73,7 +73,8 @@ WALL = Port(
 
 def body(params: MeshlessGasParams) -> Port:
     """Sums over what `wall` has, less the pressure of the stream; of whole rings about an axis."""
-    names = ["settled"]  # whether the flow is steady: 1 if it is
+    # Whether the flow is steady: 1 if it is. Nothing judges it without `steady`.
+    names = ["settled"] if params.steady is not None else []
     if params.box is None:
         names.append("drag_coefficient")  # by the cross-section of a sphere, the area of a plate
     if params.sphere is not None:
@@ -88,7 +89,11 @@ def body(params: MeshlessGasParams) -> Port:
         Field("torque", (3,), "N m"),  # about the centre of a sphere, else about the origin
         Field("heat", (), "W"),
     )
-    return Port("body", fields=(*fields, *(Field(name, (), "1") for name in names)))
+    return Port(
+        "body",
+        fields=(*fields, *(Field(name, (), "1") for name in names)),
+        lacks=() if "settled" in names else (("settled", "Give the gas a table steady."),),
+    )
 
 
 # On each line, where a front is; and the angle to x, about y, of the straight line that fits best

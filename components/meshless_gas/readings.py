@@ -11,6 +11,8 @@ from quintet.interfaces.params import Positive, Vector, parameters
 class Steady:
     """When a flow counts as settled: from then on the gas is left as it is.
 
+    With it alone the gas gives `body.settled`, 1 from then on.
+
     Parameters
     ----------
     steps : 1

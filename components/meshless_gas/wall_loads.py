@@ -91,14 +91,13 @@ class WallLoads:
             "wall.heat_flux": self.heat.copy(),
         }
 
-    def body(self, primitive: Array, settled: float) -> Fields:
-        """Fields of the port `body`."""
+    def body(self, primitive: Array) -> Fields:
+        """Fields of the port `body`, but for what is judged over time."""
         force = self.force(primitive)
         given = {
             "body.force": force[None],
             "body.torque": self.torque(primitive)[None],
             "body.heat": np.array([(self.sizes * self.heat).sum()]),
-            "body.settled": np.array([settled]),
         }
         if self.stream is not None:
             given |= {f"body.{key}": np.array([one]) for key, one in self._ratios(primitive, force)}

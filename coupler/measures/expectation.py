@@ -16,7 +16,7 @@ import pydantic
 from quintet.coupler.measures import time_series
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
-from quintet.interfaces.component import Field, Fields, Port
+from quintet.interfaces.component import Field, Fields, Port, lacked
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters, shown, unknown
 from quintet.interfaces.units import INTEGRATED, same
@@ -189,7 +189,7 @@ def check(
     else:
         ports = gives[expectation.component]
         fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
-        mistakes += _check_field(expectation, fields) or _check_unit(
+        mistakes += _check_field(expectation, fields, ports) or _check_unit(
             expectation, fields[expectation.field]
         )
     if expectation.csv is not None:
@@ -200,10 +200,14 @@ def check(
     return mistakes
 
 
-def _check_field(expectation: Expectation, fields: Mapping[str, Field]) -> list[str]:
+def _check_field(
+    expectation: Expectation, fields: Mapping[str, Field], ports: tuple[Port, ...]
+) -> list[str]:
     where = f"expectation {expectation.name}"
     if expectation.field not in fields:
         place = f"{where}: field {expectation.component}.{expectation.field}"
+        if remedy := lacked(ports, expectation.field):
+            return [f"{place} is not given with these settings. {remedy}"]
         return [unknown(place, expectation.field, fields)]
     shape, axis = fields[expectation.field].shape, expectation.axis
     if axis is not None and (len(shape) != 1 or axis >= shape[0]):
@@ -249,7 +253,7 @@ def curve(expectation: Expectation, recording: "Recording") -> Curve:
     """Return the computed curve, offset and scaled; an impulse as its mean rate at mid-window."""
     ports = recording.ports(expectation.component)
     fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
-    if mistakes := _check_field(expectation, fields):
+    if mistakes := _check_field(expectation, fields, ports):
         raise SceneError(mistakes)
     name, key, item = expectation.component, expectation.field, expectation.item
     times = recording.times(name)

@@ -10,7 +10,7 @@ from quintet.coupler.coupling.iteration_settings import unknown_fields
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.measures.expectation import Expectation, lacking_items
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Fields, lacked
 from quintet.interfaces.params import read, shown, unknown
 
 
@@ -138,8 +138,15 @@ def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> li
     unread = tuple(f"{name}." for name, one in components.items() if one.unread)
     shown = [f"{name}.{one.name}" for name, part in components.items() for one in part.shows]
     asked = (("fields", file.output.fields, known), ("colours", file.output.colours, shown))
+
+    def remedy(path: str) -> str:
+        name, _, field = path.partition(".")
+        return lacked(components[name].gives, field) if name in components else ""
+
     return [
-        unknown(f"output.{key}: {path}", path, there)
+        f"output.{key}: {path} is not given with these settings. {remedy(path)}"
+        if remedy(path)
+        else unknown(f"output.{key}: {path}", path, there)
         for key, paths, there in asked
         for path in paths
         if path not in there and not path.startswith(unread)

@@ -160,7 +160,8 @@ def _check(
         scope = Scope(file.end, gives, len(links), expected, frozenset(unread))
         check = partial(_check, path, preset=preset, imports=imports) if try_variants else None
     make_variant = variants.variant_maker(table, check)
-    series_of_runs, wrong_variants = variants.read_variants(series, make_variant, scope)
+    inherits = bool(preset) and "scan" not in table["presets"][preset]
+    series_of_runs, wrong_variants = variants.read_variants(series, make_variant, scope, inherits)
     mistakes += wrong_variants
     if mistakes or file is None or coupling is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])

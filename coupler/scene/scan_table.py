@@ -127,9 +127,15 @@ class Scan:
 
 
 def read_scans(
-    tables: list[Table], make_variant: MakeVariant, expected: Mapping[str, Expectation] | None
+    tables: list[Table],
+    make_variant: MakeVariant,
+    expected: Mapping[str, Expectation] | None,
+    is_inherited: bool = False,
 ) -> tuple[list[Scan], list[str]]:
-    """Check the scans of a scene; without its expectations only their form."""
+    """Check the scans of a scene; without its expectations only their form.
+
+    Scans that a preset inherits from its scene are left out where they do not suit what it sets.
+    """
     scans: list[Scan] = []
     mistakes: list[str] = []
     for number, table in enumerate(tables):
@@ -143,8 +149,10 @@ def read_scans(
         scan = Scan(checked, name, judged, scale)
         if scan.folder in {other.folder for other in scans}:
             wrong.append(f"two scans have the name {name}. Give each its own.")
-        scans.append(scan)
         wrong += make_variant(scan.settings(0))[1]
+        if wrong and is_inherited:
+            continue
+        scans.append(scan)
         mistakes += [f"{where}: {mistake}" for mistake in dict.fromkeys(wrong)]
     return scans, mistakes
 

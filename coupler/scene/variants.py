@@ -23,13 +23,16 @@ class Variants:
 
 
 def read_variants(
-    tables: dict[str, list[Table]], make_variant: MakeVariant, scope: Scope | None
+    tables: dict[str, list[Table]],
+    make_variant: MakeVariant,
+    scope: Scope | None,
+    inherits_scans: bool = False,
 ) -> tuple[Variants, list[str]]:
     """Check refinements, limits and scans; a scene with mistakes has no scope."""
     refinements, wrong = read_refinements(tables["study"], make_variant)
     limits, wrong_limits = read_limits(tables["stability"], make_variant, scope)
     expected = scope.expected if scope else None
-    scans, wrong_scans = read_scans(tables["scan"], make_variant, expected)
+    scans, wrong_scans = read_scans(tables["scan"], make_variant, expected, inherits_scans)
     return Variants(refinements, limits, scans), wrong + wrong_limits + wrong_scans
 
 

@@ -35,3 +35,9 @@ def test_every_preset_of_a_scene_can_be_read_with_its_limits_and_studies(scene):
     presets = tomllib.loads(library()[scene].read_text()).get("presets", {})
     for preset in ("", *presets):
         assert load(scene, preset).file.name == scene
+
+
+def test_a_preset_leaves_out_scans_that_judge_what_it_does_not_have():
+    plain, hot = load("blunt_sphere"), load("blunt_sphere", "hot")
+    assert {name for scan in hot.scan for name in scan.judged} <= {one.name for one in hot.expect}
+    assert len(hot.scan) < len(plain.scan)

@@ -72,6 +72,13 @@ def test_a_settled_flow_stands_still_and_says_so() -> None:
     assert math.isinf(again.stable_dt())
 
 
+def test_nothing_tells_whether_a_flow_has_settled_where_no_steady_says_when() -> None:
+    gas, judged = sphere(), sphere(steady={"steps": 5})
+    assert "body.settled" not in fields_of(gas.gives)
+    assert "body.settled" in fields_of(judged.gives)
+    assert judged.give(frozenset({"body.settled"}))["body.settled"] == 0.0
+
+
 def test_a_flow_settles_only_when_densities_and_forces_do() -> None:
     one = Settling(Steady(steps=1, change=1e-3, force=1e-2))
     push = np.array([1.0, 0.0, 0.0])
