@@ -19,6 +19,7 @@ from quintet.components.sph_fluid.ports import SHOWS
 from quintet.components.sph_fluid.setup.geometry import slab_thickness, wall_faces
 from quintet.components.sph_fluid.setup.mass import mass_notes
 from quintet.components.sph_fluid.setup.start import stated
+from quintet.components.sph_fluid.setup.viscosity_notes import viscosity_notes
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -50,7 +51,7 @@ class SphFluid(Component):
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.team, self.constants = Team(resources.threads), constants(params)
-        self.told = list(mass_notes(params))
+        self.told = [*mass_notes(params), *viscosity_notes(params)]
         self.state, self.samples = build.state(params), Samples()
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)

@@ -9,9 +9,11 @@ or of walls that do not hold it.
 import numpy as np
 
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import closed_faces, depth
-from quintet.components.sph_fluid.state import State
+from quintet.components.sph_fluid.setup.geometry import closed_faces, depth, fluid_boxes
+from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Totals
+
+Limit = tuple[float, str]  # and why
 
 EVERY = 128  # steps
 DENSE = 0.05  # of the density: a Mach number of 0.22
@@ -23,8 +25,12 @@ READY = 0.05  # of m g depth: a fluid at rest is judged by this energy
 LEAST_LAYERS = 8  # particles
 FLOWING = 0.02  # of m g depth: fluid at rest has less kinetic energy
 MOST_ARTIFICIAL = 0.1  # of the kinematic viscosity
+LEAST_REYNOLDS = 50.0  # at 53 the front of a dam break is 8 % behind, at 30 13 %
+LEAST_MACH = 1e-3  # of fluid without gravity: slower, it is at rest
+MOST_DAMPED = 0.1  # of a wave's amplitude, in a period
+TINY = 1e-300  # kg
 # Places in what is remembered.
-FIRST, LEAST, GAINED, KINETIC, COMPRESSED, LEAKED, JUDGED = range(7)
+FIRST, LEAST, GAINED, KINETIC, COMPRESSED, LEAKED, JUDGED, HIGHEST, RELEASED, SHEARED = range(10)
 
 
 def note(state: State, params: SphFluidParams, totals: Totals, isolated: bool) -> None:
@@ -33,8 +39,13 @@ def note(state: State, params: SphFluidParams, totals: Totals, isolated: bool) -
     energy = totals.kinetic + totals.potential + totals.internal
     if not judged[JUDGED]:
         judged[FIRST] = judged[LEAST] = energy
+        judged[HIGHEST] = totals.potential
     judged[JUDGED] = 1.0
     judged[KINETIC] = max(judged[KINETIC], totals.kinetic)
+    drift = float(totals.momentum @ totals.momentum) / (2.0 * max(totals.mass, TINY))
+    judged[SHEARED] = max(judged[SHEARED], totals.kinetic - drift)
+    judged[HIGHEST] = max(judged[HIGHEST], totals.potential)
+    judged[RELEASED] = max(judged[RELEASED], judged[HIGHEST] - totals.potential)
     if isolated:
         # What was lost is not gained back: a rise counts from the lowest energy before it.
         judged[LEAST] = min(judged[LEAST], energy)
@@ -77,26 +88,73 @@ def _layers(params: SphFluidParams) -> float:
     if not params.fluid:
         return np.inf
     sizes = [np.subtract(high, low) for low, high in params.fluid]
-    x, y, z = max(sizes, key=np.prod)
-    wide = float(x) if params.dimensions == 2 else float(max(x, y))
-    return min(wide, float(z)) / params.spacing
+    return _shorter(max(sizes, key=np.prod), params) / params.spacing
 
 
-def _of_viscosity(params: SphFluidParams) -> dict[str, str]:
-    """Whether artificial viscosity is more than a share of the fluid's own.
+def _extent(params: SphFluidParams) -> float:
+    """Lesser of the depth and the longest level extent [m] of all the fluid."""
+    lows, highs = zip(*fluid_boxes(params), strict=True)
+    return _shorter(np.max(highs, axis=0) - np.min(lows, axis=0), params)
 
-    It acts as ν = α h c₀ / (4 (D + 2)) in D dimensions, between particles that near each other
+
+def _shorter(size: Array, params: SphFluidParams) -> float:
+    x, y, z = size
+    return min(float(x) if params.dimensions == 2 else float(max(x, y)), float(z))
+
+
+def _equivalent(params: SphFluidParams) -> float:
+    """Kinematic viscosity [m2/s] as which artificial viscosity acts.
+
+    It is ν = α h c₀ / (4 (D + 2)) in D dimensions, between particles that near each other
     (Monaghan, Rep. Prog. Phys. 68 (2005) 1703, of both directions twice that).
     """
-    viscosity = params.viscosity
     sound = params.smoothing_length * params.sound_speed
-    equivalent = viscosity.artificial * sound / (4.0 * (params.dimensions + 2))
-    if not 0.0 < MOST_ARTIFICIAL * viscosity.kinematic < equivalent:
+    return params.viscosity.alpha * sound / (4.0 * (params.dimensions + 2))
+
+
+def _most_artificial(params: SphFluidParams, held: float, judged: Array, mass: float) -> Limit:
+    """Largest equivalent viscosity [m2/s] that leaves the flow as it is, and why.
+
+    `held` [J] is m g depth, `mass` [kg] that of all the fluid. Fluid at rest bears any.
+    """
+    own = params.viscosity.kinematic
+    if own > 0.0:
+        return MOST_ARTIFICIAL * own, f"viscosity.kinematic is {own:g} m2/s"
+    if params.wave is not None:
+        # Lamb 1932, article 348: A falls as exp(-2νk²t).
+        number, g = 2.0 * np.pi / params.wave.length, float(np.linalg.norm(params.gravity))
+        period = 2.0 * np.pi / params.wave.frequency(depth(params), g)
+        most = MOST_DAMPED / (2.0 * number**2 * period)
+        return most, f"a wave must lose less than {MOST_DAMPED:.0%} of its height in a period"
+    speed = float(np.sqrt(2.0 * judged[SHEARED] / mass))
+    if held > 0.0:
+        if max(judged[KINETIC], judged[RELEASED]) < FLOWING * held:
+            return np.inf, ""
+        speed = max(speed, float(np.sqrt(held / mass)))
+    elif speed < LEAST_MACH * params.sound_speed:
+        return np.inf, ""
+    extent = _extent(params)
+    return (
+        speed * extent / LEAST_REYNOLDS,
+        f"the Reynolds number of {speed:.3g} m/s and {extent:.3g} m must be {LEAST_REYNOLDS:g} or "
+        "more",
+    )
+
+
+def _of_viscosity(
+    params: SphFluidParams, held: float, judged: Array, mass: float
+) -> dict[str, str]:
+    """Whether artificial viscosity is so large that it changes the flow."""
+    equivalent = _equivalent(params)
+    most, reason = _most_artificial(params, held, judged, mass)
+    if equivalent <= most:
         return {}
+    alpha = params.viscosity.alpha
     return {
-        "viscosity": f"viscosity.artificial (now {viscosity.artificial:g}) must be small beside "
-        f"the fluid's own; it acts as {equivalent:.2g} m2/s, and viscosity.kinematic is "
-        f"{viscosity.kinematic:g} m2/s. Set viscosity.artificial to 0, or lower it."
+        "viscosity": f"viscosity.artificial must be small beside what moves or thickens the fluid; "
+        f"{alpha:g} acts as {equivalent:.2g} m2/s, and {reason}. Set viscosity.artificial to "
+        f"{alpha * most / equivalent:.2g} or less, or refine the spacing; of a fluid that is as "
+        "viscous set viscosity.kinematic, and viscosity.artificial to 0."
     }
 
 
@@ -109,7 +167,6 @@ def warnings(state: State, params: SphFluidParams, mass: float) -> dict[str, str
             f"did not, so that its flow is that of a gas. Raise sound_speed (now "
             f"{params.sound_speed:g} m/s) to ten times the largest velocity."
         )
-    texts |= _of_viscosity(params)
     leaked, fluid = judged[LEAKED], state.fluid + state.lost
     if leaked > max(MOST_LOST * fluid, FEWEST):
         texts["loss"] = (
@@ -119,6 +176,7 @@ def warnings(state: State, params: SphFluidParams, mass: float) -> dict[str, str
             "which it shall leave."
         )
     held = mass * fluid * float(np.linalg.norm(params.gravity)) * depth(params)  # J
+    texts |= _of_viscosity(params, held, judged, mass * fluid)
     layers = _layers(params)
     if layers < LEAST_LAYERS and judged[KINETIC] > FLOWING * held > 0.0:
         texts["resolution"] = (

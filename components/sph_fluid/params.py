@@ -28,6 +28,8 @@ from quintet.interfaces.params import (
     parameters,
 )
 
+USUAL_ALPHA = 0.1
+
 
 @parameters
 class Viscosity:
@@ -36,7 +38,8 @@ class Viscosity:
     Parameters
     ----------
     artificial : 1
-        α of Monaghan's artificial viscosity (1992, eq. 4.2).
+        α of Monaghan's artificial viscosity (1992, eq. 4.2); without it 0.1, or 0 where
+        `kinematic` is given.
     kinematic : m2/s
         ν, the kinematic viscosity of the fluid itself.
     form
@@ -45,9 +48,16 @@ class Viscosity:
         of stress.
     """
 
-    artificial: NotNegative = 0.1
+    artificial: NotNegative | None = None
     kinematic: NotNegative = 0.0
     form: Literal["laplacian", "stress"] = "laplacian"
+
+    @property
+    def alpha(self) -> float:
+        """α of the artificial viscosity: none beside the fluid's own if it is not given."""
+        if self.artificial is None:
+            return 0.0 if self.kinematic else USUAL_ALPHA
+        return self.artificial
 
 
 @parameters

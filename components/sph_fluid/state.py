@@ -33,7 +33,7 @@ class State:
     force: Array  # (samples, 3) N, mean over the last step
     film: Array  # (samples, 3) of films in narrow gaps: pressure [Pa], full share, width [m] or 0
     # where there is none; (0, 3) where they are not wanted
-    judged: Array  # (7,) what `judgement` remembers
+    judged: Array  # (10,) what `judgement` remembers
     largest_acceleration: float = 0.0  # m/s2, of the last step
     largest_approach: float = 0.0  # 1/s, largest |u·r|/(r²+0.01h²) of the last step
     moved: float = 0.0  # m, furthest that a fluid particle is from its reference
@@ -57,7 +57,7 @@ class State:
             sample=np.full(boundary, -1),
             force=np.zeros((0, 3)),
             film=np.zeros((0, 3)),
-            judged=np.zeros(7),
+            judged=np.zeros(10),
         )
 
     @property

@@ -10,7 +10,7 @@ import pytest
 
 @pytest.mark.slow
 @pytest.mark.full
-@pytest.mark.parametrize("scene", ["heated_slab", "plate_modes", "still_water"])
+@pytest.mark.parametrize("scene", ["dam_break_front", "heated_slab", "plate_modes", "still_water"])
 def test_no_row_of_a_scan_is_silent(tmp_path, scene):
     file = tmp_path / "scan.json"
     quintet = str(Path(sys.executable).parent / "quintet")

@@ -76,7 +76,7 @@ def pair_law(
 ) -> PairLaw:
     """Numbers of all terms that a scene asks for."""
     factor = params.boundary.wall_viscosity_factor
-    artificial = 2.0 * params.viscosity.artificial * params.sound_speed * params.smoothing_length
+    artificial = 2.0 * params.viscosity.alpha * params.sound_speed * params.smoothing_length
     return PairLaw(
         constants=constants(params),
         fluid=PairTerms(

@@ -1,6 +1,6 @@
 """What a fluid warns of: compression, loss, energy from nowhere; of still water nothing."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.judgement import EVERY
+from quintet.components.sph_fluid.pairs.constants import pair_law
 
 Make = Callable[..., SphFluid]
 
@@ -18,10 +19,14 @@ def advance(fluid: SphFluid, steps: int) -> None:
         fluid.step(fluid.stable_dt())
 
 
-def changed(fluid: SphFluid, name: str, rows: slice, column: int, value: float) -> None:
+def changed(fluid: SphFluid, name: str, rows: slice, column: int, value: object) -> None:
     state = {key: np.array(array) for key, array in fluid.save().items()}
     state[name][rows, column] = value
     fluid.load(state)
+
+
+def made(**settings: object) -> Mapping[str, str]:
+    return SphFluid(fluid_params(**settings)).warnings()
 
 
 def test_still_water_warns_of_nothing(pool: Make) -> None:
@@ -77,6 +82,47 @@ def test_artificial_viscosity_beyond_the_fluids_own_is_warned_of(pool: Make) -> 
     fluid = pool(**{"viscosity.kinematic": 1e-3, "viscosity.artificial": 0.1})
     assert "acts as 0.003 m2/s" in fluid.warnings()["viscosity"]
     assert not pool(**{"viscosity.kinematic": 1e-3, "viscosity.artificial": 0.0}).warnings()
+
+
+def test_artificial_viscosity_that_thickens_a_flow_is_warned_of(pool: Make) -> None:
+    """Re = sqrt(g d) d / ν, and ν = α h c₀ / 20; fluid at rest bears any."""
+    assert not pool(**{"viscosity.artificial": 3.0}).warnings()
+    for alpha, told in ((3.0, True), (0.001, False)):
+        fluid = pool(**{"viscosity.artificial": alpha})
+        changed(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
+        advance(fluid, 1)
+        assert ("viscosity" in fluid.warnings()) == told
+        assert not told or "Reynolds number" in fluid.warnings()["viscosity"]
+
+
+def test_fluid_too_thick_to_gain_speed_is_warned_of_by_the_height_that_it_loses(
+    pool: Make,
+) -> None:
+    fluid = pool(**{"viscosity.artificial": 30.0})
+    advance(fluid, 1)
+    low = fluid.state.position_density[: fluid.state.fluid, 2] * 0.9
+    changed(fluid, "position_density", slice(0, fluid.state.fluid), 2, low)
+    advance(fluid, EVERY)
+    assert "viscosity" in fluid.warnings()
+
+
+def test_artificial_viscosity_that_damps_a_wave_is_warned_of() -> None:
+    """2νk² times a period is 0.63 of α = 0.1, and 0.063 of 0.01."""
+    wave = {"amplitude": 0.02, "length": 1.0}
+    tank = ((0.0, 0.0, 0.0), (1.0, 0.1, 0.5))
+    scene = {"spacing": 0.05, "sound_speed": 22.2, "dimensions": 2, "fluid": (tank,), "wave": wave}
+    assert "wave must lose" in made(**scene)["viscosity"]
+    assert "viscosity" not in made(viscosity__artificial=0.01, **scene)
+
+
+def test_there_is_no_artificial_viscosity_beside_the_fluids_own_unless_asked_for(
+    pool: Make,
+) -> None:
+    fluid = pool(**{"viscosity.kinematic": 1e-3})
+    assert fluid.params.viscosity.alpha == 0.0 and not fluid.warnings()
+    assert pair_law(fluid.params).fluid.artificial == 0.0
+    assert any("viscosity.artificial is not" in note for note in fluid.notes())
+    assert pool().params.viscosity.alpha == 0.1
 
 
 def test_a_wave_on_few_particles_is_refused() -> None:
