@@ -10,7 +10,8 @@ before the front, reads nothing below 0 even of a fluid that bears tension.
 
 A level is where the share of volume Σ_j V_j W_j, seen from above, first rises through one half;
 beside a wall, where it is nowhere 1, through half of its largest value. Lone drops are passed
-over; a dry spot reads the lowest level of the tank.
+over; a dry spot reads the lowest level of the tank. With a smoothing so short that two drops fill
+half of a spot or more, a column is wet too where its share of volume sums up to 4 spacings.
 
 The front is half a spacing ahead of the furthest particle with 1/(V W(0)) neighbours or more
 (11 in three dimensions, with h = 1.5 spacings): a block's corner has so many, spray has not.
@@ -35,6 +36,7 @@ FULL = 0.85  # of the room that walls leave: so much is filled where there is bu
 FINE = 0.25  # spacings between the heights at which the share of volume is looked at
 SURFACE = 0.5  # share of the room at the surface
 DROP = 2.0  # particles on one spot whose share of volume is not yet a surface
+DEEP = 4.0  # spacings, of the share of volume along a column that is no drop
 
 
 class Gauges:
@@ -99,12 +101,18 @@ class Gauges:
 
     def _surface(self, share: Array, bottom: float, rise: float) -> float:
         most = min(1.0, float(share.max()))
-        if most <= DROP * self.lone:
+        if most <= DROP * self.lone and not self._is_deep(share, rise):
             return self.floor
         half = SURFACE * most
         k = int(np.flatnonzero(share >= half)[-1])  # never the last: there the share is 0
         part = (share[k] - half) / (share[k] - share[k + 1])
         return float(bottom + (k + part) * rise)
+
+    def _is_deep(self, share: Array, rise: float) -> bool:
+        """Whether a column holds water where drops alone fill as much as water does."""
+        if DROP * self.lone <= SURFACE:
+            return False
+        return float(share.sum()) * rise > DEEP * self.params.spacing
 
     def _front(self, state: State, lists: Lists) -> Array:
         axis = "xyz".index(str(self.params.gauges.front_gauge))

@@ -104,10 +104,10 @@ def test_tension_is_read_inside_the_fluid_alone_where_it_bears_any():
 @pytest.mark.parametrize(("height", "within"), [(0.16, 0.1), (0.06, 0.1), (0.04, 0.25)])
 def test_level_of_still_water_is_within_a_tenth_of_a_spacing_unless_it_is_shallow(height, within):
     water = (BOX[0], (0.2, 0.2, height))
-    spots = ((0.1, 0.1), (0.107, 0.093), (0.0, 0.1), (0.01, 0.19), (0.0, 0.0), (5.0, 0.1))
+    spots = ((0.1, 0.1), (0.107, 0.093), (0.0, 0.1), (0.01, 0.19), (0.0, 0.0), (0.5, 0.1))
     given = {
         "fluid": (water,),
-        "boundary.walls": (BOX[0], (0.2, 0.2, 0.3)),
+        "boundary.walls": (BOX[0], (0.6, 0.2, 0.3)),
         "gauges.level_gauges": spots,
     }
     found = outputs_of(fluid_with(**given))["level_gauge.height"]
@@ -124,6 +124,24 @@ def test_level_is_the_highest_and_passes_over_drops():
     high = fluid.state.position_density[:, 2] > 0.35
     fluid.state.position_density[high, 0] += 1.0
     assert outputs_of(fluid)["level_gauge.height"] == pytest.approx([0.16, 0.16], abs=0.1 * SPACING)
+
+
+@pytest.mark.parametrize("smoothing", [1.0, 1.2])
+def test_level_of_water_is_read_whatever_the_smoothing_and_of_a_drop_it_is_not(smoothing):
+    """Of Wendland's kernel at 1.0 spacing two drops fill more than all of a spot."""
+    fluid = fluid_with(
+        dimensions=2,
+        fluid=(((0.0, 0.0, 0.0), (0.4, 0.1, 0.2)),),
+        kernel="wendland",
+        smoothing=smoothing,
+        **{
+            "boundary.walls": (BOX[0], (0.8, 0.1, 0.3)),
+            "gauges.level_gauges": ((0.2, 0), (0.7, 0)),
+        },
+    )
+    fluid.state.position_density[0, :3] = [0.7, 0.05, 0.1]
+    level, drop = outputs_of(fluid)["level_gauge.height"]
+    assert level == pytest.approx(0.2, abs=0.2 * SPACING) and drop == 0.0
 
 
 def test_level_follows_a_slope():
