@@ -13,6 +13,13 @@ TRANSIT = 0.12 / 6108.0  # s, of a wave through the bar and the rod
 LOADED = 3.93e-6  # s, end of the pulse
 
 
+def test_nothing_is_warned_of_before_the_wave_has_reached_the_particles(run_scene: Run) -> None:
+    """Their energy, rounding until then, is no matter."""
+    settings = "--set", "end=6e-6", "--set", "expect=[]"
+    found = run_scene("glued_bar", "--transport", "memory", *settings)
+    assert (found["warnings"], found["unstable"]) == ([], [])
+
+
 def test_a_wave_passes_the_glue_both_ways_with_little_echo(run_scene: Run) -> None:
     found = run_scene("glued_bar", "--transport", "memory")
     for name in ("echo.in_elements", "echo.in_particles"):

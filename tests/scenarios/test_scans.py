@@ -22,6 +22,9 @@ CASES += [pytest.param("two_springs", name, marks=pytest.mark.slow) for name in
            "stiffness, iterated")]  # fmt: skip
 CASES += [pytest.param("floating_square", name, marks=pytest.mark.full) for name in
           ("window", "density")]  # fmt: skip
+CASES += [pytest.param("dust_in_stream", "window", marks=pytest.mark.full)]
+CASES += [pytest.param("glued_bar", name, marks=pytest.mark.full) for name in
+          ("window", "substeps")]  # fmt: skip
 
 
 @pytest.mark.parametrize(("scene", "scan"), CASES)
@@ -34,3 +37,21 @@ def test_no_wrong_result_is_silent(scene: str, scan: str, tmp_path: Path) -> Non
     verdicts = [row["verdict"] for row in found["rows"]]
     assert ended.value.code == 0 and "SILENT" not in verdicts
     assert verdicts[0] == "right" and "false alarm" not in verdicts
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(
+    ("scene", "scan", "right"),
+    [("water_on_plate", "window", 2), ("hot_bar_coupled", "relaxation", 2)],
+)
+def test_nothing_is_silent_where_only_the_way_to_rest_is_wrong(
+    scene: str, scan: str, right: int, tmp_path: Path
+) -> None:
+    """Long windows or swings are told, although means at rest may be right all the same."""
+    words = ["scan", scene, "--name", scan, "--out", str(tmp_path / "runs")]
+    with pytest.raises(SystemExit) as ended:
+        main([*words, "--json", str(tmp_path / "found.json")])
+    (found,) = json.loads((tmp_path / "found.json").read_text())["scans"]
+    verdicts = [row["verdict"] for row in found["rows"]]
+    assert ended.value.code == 0 and "SILENT" not in verdicts
+    assert verdicts[:right] == ["right"] * right and "right" not in verdicts[right:]
