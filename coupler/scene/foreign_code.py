@@ -6,7 +6,6 @@ installed package is; so is quintet itself with the scenes that come with it.
 """
 
 import os
-import sys
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from importlib.util import find_spec
@@ -77,8 +76,7 @@ def announce(kinds: Iterable[str], folder: Path) -> None:
         where = _origin(module) or f"a module {module}"
         if (kind, where) not in _announced and not is_trusted(kind, folder):
             _announced.add((kind, where))
-            text = f"quintet: the scene's kind {kind} is code: importing {where}"
-            print(text, file=sys.stderr, flush=True)
+            print(f"the scene's kind {kind} is code: importing {where}", flush=True)
 
 
 def _origin(module: str) -> str | None:

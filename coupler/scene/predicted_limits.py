@@ -8,16 +8,22 @@ from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.scene.study_table import value_at
 from quintet.interfaces.params import read, shown
 
-FREE = ("end", "transport", "expect", "output")  # settings that decide no stability
+# Parts of a scene that decide its stability.
+DECISIVE = ("components", "links", "groups", "window", "scheme", "iteration")
 
 
 def beyond_limits(scene: Scene) -> dict[str, str]:
     """Say by name which limits of a scene it runs beyond: those whose settings are the scene's."""
     found = {}
-    tables = parse(scene.path).get("stability")
+    plain = parse(scene.path)
+    tables = plain.get("stability")
     for table in tables if isinstance(tables, list) else ():
         one, _ = read(LimitTable, table, "stability") if isinstance(table, dict) else (None, [])
-        if one is None or not isinstance(one.parameter, str) or not _same(scene.resolved, one):
+        if (
+            one is None
+            or not isinstance(one.parameter, str)
+            or not _same(scene.resolved, plain, one)
+        ):
             continue
         value, wrong = value_at(scene.resolved, one.parameter)
         predicted = _predicted(scene.resolved, one)
@@ -34,14 +40,28 @@ def beyond_limits(scene: Scene) -> dict[str, str]:
     return found
 
 
-def _same(resolved: dict[str, Any], limit: LimitTable) -> bool:
-    """Whether a scene has the settings for which a limit is predicted."""
-    parts = {path: path.partition(".")[0] for path in limit.settings}
+def _same(resolved: dict[str, Any], plain: dict[str, Any], limit: LimitTable) -> bool:
+    """Whether a scene is the one for which a limit is predicted, but for the limit's parameters.
+
+    That is the scene as its file has it, with the limit's settings.
+    """
+    varied = {limit.parameter, *([limit.against.parameter] if limit.against else [])}
+    expected, found = leaves(plain) | limit.settings, leaves(resolved)
     return all(
-        value_at(resolved, path)[0] == value
-        for path, value in limit.settings.items()
-        if parts[path] not in FREE
+        found.get(path) == expected.get(path)
+        for path in found.keys() | expected.keys()
+        if path.partition(".")[0] in DECISIVE and path not in varied
     )
+
+
+def leaves(tables: Any, path: str = "") -> dict[str, Any]:
+    """Values of nested tables by their dotted paths; a list is a value if it has no tables."""
+    if isinstance(tables, list) and any(isinstance(item, dict) for item in tables):
+        tables = {str(number): item for number, item in enumerate(tables)}
+    if not isinstance(tables, dict):
+        return {path: tables}
+    inner = [leaves(value, f"{path}.{key}" if path else key) for key, value in tables.items()]
+    return {place: value for part in inner for place, value in part.items()}
 
 
 def _predicted(resolved: dict[str, Any], limit: LimitTable) -> float | None:

@@ -93,7 +93,7 @@ def test_code_is_imported_where_it_is_asked_for_and_told(scene, how, capsys):
     assert status(how, scene, *(["--import"] if how == "check" else [])) == 2
     told = capsys.readouterr()
     file = scene.with_name("foreign_code_of_a_test.py")
-    assert f"kind foreign_code_of_a_test:Thing is code: importing {file}" in told.err
+    assert f"kind foreign_code_of_a_test:Thing is code: importing {file}" in told.out
     assert "is not a Component" in told.err and (scene.parent / "ran").exists()
 
 
