@@ -52,10 +52,10 @@ class Toy(Component):
         time.sleep(self.params.pause)
         if self.params.talks:
             print("a step", flush=True)
-        if self.steps == self.params.fails_at:
-            self.fail()
         pull = 100.0 * (self.partner - self.value) if len(self.partner) else 0.0
         self.value = self.value + dt * (pull + self.pushed)
+        if self.steps == self.params.fails_at:
+            self.fail()
         self.push = np.sin(self.value + 10.0 * self.time)
         self.steps, self.time = self.steps + 1, self.time + dt
         if self.steps == 50:
