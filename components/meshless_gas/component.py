@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from quintet.components.meshless_gas import resolution
+from quintet.components.meshless_gas.accuracy import accuracy_notes
 from quintet.components.meshless_gas.build import initial_state
 from quintet.components.meshless_gas.clouds.mirrored import hold_along
 from quintet.components.meshless_gas.diagnostics import (
@@ -350,8 +351,8 @@ class MeshlessGas(Component):
         self._take_over()
 
     def notes(self) -> tuple[str, ...]:
-        """What was changed about the neighbours that the scene asks for."""
-        return self.domain.notes
+        """What was changed about the neighbours, and how accurate moving clouds are."""
+        return (*self.domain.notes, *accuracy_notes(self.params))
 
     def warnings(self) -> dict[str, str]:
         """Doubts about the cloud and the order, and about inflows at which waves have arrived."""

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from quintet.components.meshless_gas.accuracy import accuracy_notes
 from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
 from quintet.components.meshless_gas.clouds.grading import capped
 from quintet.components.meshless_gas.component import MeshlessGas
@@ -370,3 +371,10 @@ def test_scenes_without_bodies_import_no_seams():
         "sys.exit('quintet.components.meshless_gas.moving.clouds' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(("share", "wind"), [(0.0, None), (1.0, [0.0, 0.0, 0.0])])
+def test_the_accuracy_of_a_supersonic_body_is_told_by_its_resolution(share, wind):
+    (note,) = accuracy_notes(params_of(scene(share, gas=wind)))
+    assert "4 nodes on its radius" in note and "too large by about 22 %" in note
+    assert accuracy_notes(params_of(scene(0.0, gas=[0.5, 0.0, 0.0]))) == (), "it is subsonic"
