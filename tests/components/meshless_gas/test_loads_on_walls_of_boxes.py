@@ -23,7 +23,7 @@ def test_a_floor_feels_no_pressure_of_the_outflow_nor_of_a_lid_that_slips():
     # The node at the inflow is the inflow's, and half a spacing with it.
     assert given(made, "body.force")[0] == pytest.approx([0.0, 0.0, -2.0 * 0.95], abs=1e-12)
     made.wall_loads.friction[:, 0], made.wall_loads.heat[:] = 1e-3, 4.0
-    felt = made.wall_loads.body(made.fluxes.primitive, 0.0)
+    felt = made.wall_loads.body(made.fluxes.primitive)
     assert felt["body.force"][0, 0] == pytest.approx(1e-3 * 0.95, rel=1e-12)
     assert felt["body.heat"] == pytest.approx(4.0 * 0.95, rel=1e-12)
     assert np.sqrt((made.viscous.areas**2).sum(axis=1)).sum() == pytest.approx(0.95, rel=1e-12)
