@@ -256,6 +256,13 @@ class Component(ABC):
         """
         return {}
 
+    def final_warnings(self) -> Mapping[str, str]:
+        """Warnings that only the whole run can justify, by subject; called once, at its end.
+
+        Not called where a run is interrupted or fails. Printed and reported as `warnings` are.
+        """
+        return {}
+
     def items(self) -> int:
         """How many particles, bodies or elements it advances per step."""
         return 1

@@ -77,6 +77,10 @@ class ParticleDynamics(Component):
         """Why the motion may be wrong: overlaps, lost points, missing energy."""
         return self.moved.warnings()
 
+    def final_warnings(self) -> Mapping[str, str]:
+        """Warnings that only the whole run can justify."""
+        return self.moved.final_warnings()
+
     def totals(self) -> Totals:
         """Mass, momentum and energies."""
         return self.moved.totals()

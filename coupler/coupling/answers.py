@@ -83,6 +83,7 @@ ANSWERS: dict[str, dict[str, Rule]] = {
         "totals": (lambda value: value is None or _are_totals(value), "totals, or nothing"),
     },
     "load": {"stable": NUMBER},
+    "conclude": {"warnings": (_are_texts, "texts by subject")},
     "view": {"totals": (_are_totals, "totals")},
     "finish": {"memory": COUNT},
 }

@@ -228,6 +228,10 @@ class Participant:
         self.shapes = {key: array.shape for key, array in fields.items()}
         return fields
 
+    def final_warnings(self) -> dict[str, str]:
+        """Ask for the warnings that only the whole run can justify, by subject."""
+        return dict(self.call("conclude").header["warnings"])
+
     @property
     def answered(self) -> bool:
         """Whether it has answered the last order."""

@@ -78,6 +78,8 @@ def run(
         if windows.finished:
             check.warn(coupling)
             watch.conclude(coupling)
+            for name, participant in coupling.components.items():
+                coupling.ledger.warnings.note(f"component {name}", participant.final_warnings())
         doubts = [*watch.look(coupling), *coupling.ledger.warnings.close_window(windows.time)]
         observer.end_window(coupling)
         for doubt in doubts:

@@ -18,6 +18,7 @@ LEGAL: dict[str, dict[str, str]] = {
         "save": "ready",
         "load": "ready",
         "view": "ready",
+        "conclude": "ready",
         "finish": "finished",
     },
     "finished": {},

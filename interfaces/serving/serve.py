@@ -8,7 +8,7 @@ import reprlib
 import sys
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -70,6 +70,7 @@ class Server:
             "save": self._save,
             "load": self._load,
             "view": self._view,
+            "conclude": lambda _: ({"warnings": _texts(self.component.final_warnings())}, {}),
             "finish": lambda _: ({"memory": peak_memory()}, {}),
         }
 
@@ -142,7 +143,7 @@ class Server:
         if notes := self._notes():
             answer["notes"] = notes
         if warnings := self.component.warnings():
-            answer["warnings"] = {str(key): str(text) for key, text in warnings.items()}
+            answer["warnings"] = _texts(warnings)
         return answer, fields
 
     def _notes(self) -> list[str]:
@@ -263,6 +264,10 @@ class Server:
         if message.header.get("walls"):
             fields |= {f"walls.{key}": one for key, one in self.component.walls().items()}
         return header, fields
+
+
+def _texts(warnings: Mapping[str, str]) -> dict[str, str]:
+    return {str(subject): str(text) for subject, text in warnings.items()}
 
 
 def unlike(state: Fields, own: Fields) -> str:

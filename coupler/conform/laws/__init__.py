@@ -50,6 +50,7 @@ LAWS: tuple[Law, ...] = (
     state.what_is_saved_does_not_change_afterwards,
     state.what_is_loaded_is_neither_written_to_nor_kept,
     state.warnings_are_those_of_the_state,
+    state.final_warnings_change_nothing,
     accounts.it_counts_what_it_advances_and_what_it_holds,
     accounts.momentum_changes_by_the_impulses,
     accounts.views_are_pictures,

@@ -114,6 +114,24 @@ def warnings_are_those_of_the_state(trial: Trial) -> None:
         trial.move(other)
 
 
+def final_warnings_change_nothing(trial: Trial) -> None:
+    """They are texts by subject, and the component goes on as if nobody had asked."""
+    component, other = trial.build(), trial.build()
+    trial.move(component)
+    trial.move(other)
+    found = dict(component.final_warnings())
+    require(
+        all(isinstance(text, str) for text in (*found, *found.values())),
+        f"final_warnings: must be texts by subject; found {found!r}. Return a dict of texts.",
+    )
+    require_same_bits(
+        component.save(),
+        other.save(),
+        "final_warnings: the state must stay as it is",
+        "Judge what is there, and change nothing.",
+    )
+
+
 def _views(state: Fields) -> Fields:
     views = {key: array.view() for key, array in state.items()}
     for view in views.values():

@@ -169,6 +169,19 @@ class WarnsOfStepsThatItDoesNotSave(Sound):
         return {"steps": f"it made {self.steps} steps"} if self.steps else {}
 
 
+@breaks(state.final_warnings_change_nothing)
+class FinalWarningsAreNoTexts(Sound):
+    def final_warnings(self):
+        return {"steps": 7}
+
+
+@breaks(state.final_warnings_change_nothing)
+class RestsWhenItIsJudged(Sound):
+    def final_warnings(self):
+        self.v = 0.0 * self.v
+        return {}
+
+
 @breaks(accounts.it_counts_what_it_advances_and_what_it_holds)
 class CountsNothing(Sound):
     def items(self):

@@ -12,6 +12,13 @@ WARY = '''
 from toy_spring import Spring
 
 
+class Judged(Spring):
+    """Judges only its whole run."""
+
+    def final_warnings(self):
+        return {"end": f"it ended at {float(self.position[0, 0]):.3f} m. Go on."}
+
+
 class Wary(Spring):
     """Warns while it is beyond a third of its first displacement, and counts nothing unsaved."""
 
@@ -51,6 +58,21 @@ def test_a_warning_is_told_once_and_ends_the_run_with_status_1(tmp_path, capfd, 
     assert printed.err.count("warning of component spring: it went to -0.") == 1
     assert "Warning of component spring: it went to" in printed.out
     assert _results(tmp_path / "out")["status"] == "done"
+
+
+@pytest.mark.parametrize("transport", [*OVER, pytest.param("mpi", marks=pytest.mark.mpi)])
+def test_the_whole_run_is_judged_once_at_its_end(tmp_path, capfd, transport):
+    path = _scene(tmp_path, transport=transport)
+    path.write_text(path.read_text().replace("wary:Wary", "wary:Judged"))
+    assert command("run", path, "--out", tmp_path / "out") == 1
+    (warning,) = _results(tmp_path / "out")["warnings"]
+    assert (warning["source"], warning["subject"], warning["time"]) == (
+        "component spring",
+        "end",
+        1.0,
+    )
+    assert warning["text"] == "it ended at -0.831 m. Go on."
+    assert capfd.readouterr().err.count("warning of component spring: it ended at") == 1
 
 
 def test_a_run_without_warnings_ends_with_status_0(tmp_path):
