@@ -205,10 +205,11 @@ class SphSolid(Component):
         state = self.state
         self.lists.reflect(state)
         low, high = state.velocity.min(axis=0), state.velocity.max(axis=0)
-        self.lists.widen(state, dt * self.lists.spread(low, high))
+        spread = dt * self.lists.spread(low, high)
         middle = state.position + 0.5 * dt * state.velocity
-        if not np.isfinite(middle).all():
+        if self.lists.is_unstable(spread) or not np.isfinite(middle).all():
             raise StepError(failure(state, self.params, dt))
+        self.lists.widen(state, spread)
         self.lists.sort(state, middle)
         self._list()
         self._fill_rows()

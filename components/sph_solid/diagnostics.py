@@ -120,13 +120,14 @@ def failure(state: State, params: SphSolidParams, dt: float) -> str:
     """Say which particle a step [s] failed on, and what to do."""
     finite = np.isfinite(state.position).all(axis=1) & np.isfinite(state.velocity).all(axis=1)
     finite &= np.isfinite(state.acceleration).all(axis=1)
-    speed = np.where(finite, np.abs(state.velocity).max(axis=1), np.inf)  # of squares none is
+    speed = np.where(finite, np.abs(state.velocity).max(axis=1), np.inf)  # squares may overflow
     row = int(np.argmax(speed))
     x, y, z = state.position[row]
     return (
-        f"step of {dt:.3g} s at {state.time:.4g} s: particles must stay finite; particle "
+        f"step of {dt:.3g} s at {state.time:.4g} s: in a step particles must stay finite and move "
+        f"by little more than a smoothing length, {params.length:.3g} m; particle "
         f"{state.identity[row]} of body {state.body[row]}, at ({x:.4g}, {y:.4g}, {z:.4g}) m, has "
         f"{speed[row]:.4g} m/s, a density of {state.density_ratio[row]:.4g} of that at rest and "
         f"{state.pressure[row]:.3g} Pa. Lower courant (now {params.courant}), raise the "
-        "viscosities, or look for bodies that begin in each other."
+        "viscosities, or look for bodies that overlap at the start."
     )

@@ -28,6 +28,9 @@ from quintet.components.sph_solid.state import Array, Rows, State, Whole
 # each other by in it, both over the support: a search costs half as much as the sums over pairs.
 SKIN = 1.0
 LEAST, MOST = 0.01, 0.15  # of the support
+# Of the support, what two may approach each other by in a step: more is an unstable step, and lists
+# that reach so far hold whole bodies.
+MOST_SPREAD = 5.0
 FEW = 64  # particles that are worth comparing with all others rather than searching
 WIDER = 0.1  # of its radius, that a ring may move
 
@@ -105,6 +108,10 @@ class SolidLists:
             if (np.abs(moved[1][fast, 0]) > WIDER * state.reference[fast, 0]).any():
                 return False
         return not meets_unlisted(fast, *places, state.reference, self.support, skin)
+
+    def is_unstable(self, spread: float) -> bool:
+        """Whether no stable step lets two particles approach each other by so much [m]."""
+        return not spread < MOST_SPREAD * self.support
 
     def widen(self, state: State, spread: float) -> None:
         """Choose how far the next lists reach, by what two approach each other in a step [m]."""

@@ -11,6 +11,7 @@ from quintet.components.sph_solid.component import SphSolid
 from quintet.components.sph_solid.kernels.rotated import cuts
 from quintet.components.sph_solid.params import Body, SphSolidParams, SymmetryPlane
 from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import StepError
 
 E, NU, RHO = 7e10, 0.3, 2700.0
 ELASTIC = Material(density=RHO, youngs_modulus=E, poissons_ratio=NU)
@@ -69,6 +70,13 @@ def test_momentum_along_the_axis_is_kept_to_rounding():
     drift = (end.kinetic + end.internal) / (start.kinetic + start.internal) - 1.0
     assert abs(drift) < 3e-3
     assert end.kinetic < 0.6 * start.kinetic
+
+
+def test_steps_far_beyond_the_stable_one_end_in_an_error_of_the_step():
+    bar = strike(courant=8.0)
+    with pytest.raises(StepError, match="Lower courant"):
+        for _ in range(20):
+            bar.step(bar.stable_dt())
 
 
 def test_a_ball_of_rings_rings_as_one_in_three_dimensions():
