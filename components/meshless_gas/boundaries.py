@@ -7,8 +7,8 @@ from pydantic import Field
 
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
-HOLDING = ("isothermal", "adiabatic")  # walls that hold the gas
-HELD = {"velocity", "accommodation"}  # what both may be given
+NO_SLIP = ("isothermal", "adiabatic")  # walls that hold the gas
+NO_SLIP_KEYS = {"velocity", "accommodation"}  # what both may be given
 
 
 @parameters
@@ -165,8 +165,8 @@ class Boundary:
         wrong = {
             "inflow": said not in (["state"], ["total"]),
             "outflow": bool(set(said) - {"pressure"}),
-            "isothermal": bool(set(said) - {"temperature", *HELD}) or not self.temperature,
-            "adiabatic": bool(set(said) - HELD),
+            "isothermal": bool(set(said) - {"temperature", *NO_SLIP_KEYS}) or not self.temperature,
+            "adiabatic": bool(set(said) - NO_SLIP_KEYS),
         }
         if wrong.get(self.kind, bool(said)):
             need = {

@@ -14,9 +14,10 @@ from quintet.components.meshless_gas.clouds.cloud import (
     OUTFLOW,
     SLIP,
     Cloud,
+    is_advanced,
+    is_mirrored,
 )
 from quintet.components.meshless_gas.clouds.layers import Sides
-from quintet.components.meshless_gas.clouds.mirrored import is_advanced, is_mirrored
 from quintet.components.meshless_gas.exact import states_at
 from quintet.components.meshless_gas.kernels.boundaries import (
     BACK_PRESSURE,
@@ -27,6 +28,7 @@ from quintet.components.meshless_gas.kernels.boundaries import (
 )
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
+from quintet.components.meshless_gas.laws.transport import Transport
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.sidedness import EVEN, UNEVEN, doubts_of, notes_of, surround
 from quintet.components.meshless_gas.state import State, conserved
@@ -36,7 +38,6 @@ from quintet.components.meshless_gas.stencils import (
     nearest_neighbours,
     stencils,
 )
-from quintet.components.meshless_gas.transport import Transport
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError

@@ -7,7 +7,6 @@ import numpy as np
 from quintet.components.meshless_gas import resolution
 from quintet.components.meshless_gas.accuracy import accuracy_notes
 from quintet.components.meshless_gas.build import initial_state
-from quintet.components.meshless_gas.clouds.mirrored import hold_along
 from quintet.components.meshless_gas.diagnostics import (
     balance,
     density_change,
@@ -30,16 +29,17 @@ from quintet.components.meshless_gas.kernels.motion import (
 )
 from quintet.components.meshless_gas.kernels.outflows import continue_outflows
 from quintet.components.meshless_gas.kernels.residuals import write_residuals
-from quintet.components.meshless_gas.limiters import limiter_of
+from quintet.components.meshless_gas.kernels.symmetry import hold_along
+from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.monitors import blocked_inflows
 from quintet.components.meshless_gas.node_motion import node_motion
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, ports
-from quintet.components.meshless_gas.shares import FEWEST, LIGHT, SUMS
 from quintet.components.meshless_gas.sidedness import sidedness
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.steady import Settling
+from quintet.components.meshless_gas.thread_grain import FEWEST, LIGHT, SUMS
 from quintet.components.meshless_gas.view import view, walls
 from quintet.components.meshless_gas.wall_loads import WallLoads
 from quintet.components.shared.threads import Team
@@ -109,9 +109,11 @@ class MeshlessGas(Component):
         self.particles = None
         if params.particles is not None:
             # Compiled only where there are particles.
-            from quintet.components.meshless_gas.point_particles.partner import Partner
+            from quintet.components.meshless_gas.point_particles.point_particles import (
+                CoupledParticles,
+            )
 
-            self.particles = Partner(params, self.domain)
+            self.particles = CoupledParticles(params, self.domain)
         self._take_over()
 
     def describe(self) -> Fields:

@@ -9,9 +9,9 @@ from quintet.components.meshless_gas.exact import states_at
 from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.shares import LIGHT, WHOLESALE
 from quintet.components.meshless_gas.sidedness import UNEVEN
 from quintet.components.meshless_gas.state import Fluxes, State, conserved
+from quintet.components.meshless_gas.thread_grain import LIGHT, WHOLESALE
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields, Totals
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from quintet.components.meshless_gas.boundaries import HOLDING, Boundary, Gas, GasState
+from quintet.components.meshless_gas.boundaries import NO_SLIP, Boundary, Gas, GasState
 from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, SphereCloud
 from quintet.components.meshless_gas.clouds.refinement import wrong_part
 from quintet.components.meshless_gas.moving.params import Moving
@@ -182,9 +182,9 @@ class MeshlessGasParams:
                 "viscous needs order = 2: the first order adds a viscosity of about half of "
                 "density, speed of sound and spacing. Leave order out."
             ]
-        holding = [n for n, one in self.boundaries.items() if one.kind in HOLDING]
-        if holding and not self.viscous:
-            return [f"boundaries.{holding[0]} holds the gas by friction. Say viscous = true."]
+        no_slip = [n for n, one in self.boundaries.items() if one.kind in NO_SLIP]
+        if no_slip and not self.viscous:
+            return [f"boundaries.{no_slip[0]} holds the gas by friction. Say viscous = true."]
         return []
 
     def _wrong_names(self) -> list[str]:
@@ -328,5 +328,5 @@ class MeshlessGasParams:
 
 def has_walls(params: MeshlessGasParams) -> bool:
     """Whether what walls feel is given: of bodies, and of walls that hold the gas."""
-    holding = any(one.kind in HOLDING for one in params.boundaries.values())
-    return params.box is None or holding
+    no_slip = any(one.kind in NO_SLIP for one in params.boundaries.values())
+    return params.box is None or no_slip

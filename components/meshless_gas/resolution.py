@@ -3,7 +3,7 @@
 import numpy as np
 
 from quintet.components.meshless_gas.blunt_bodies import shock_radius
-from quintet.components.meshless_gas.boundaries import HOLDING
+from quintet.components.meshless_gas.boundaries import NO_SLIP
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.params import MeshlessGasParams
 
@@ -45,7 +45,7 @@ def _coarse_box(params: MeshlessGasParams) -> str:
         count = params.vortex.radius / box.finest_spacing
         cases.append(("the vortex", "spacings in its radius", count, OF_VORTEX))
     for d in (0, 2) if params.dimensions == 2 else (0, 1, 2):
-        if all(params.kind_of("xyz"[d] + side) in HOLDING for side in "-+"):
+        if all(params.kind_of("xyz"[d] + side) in NO_SLIP for side in "-+"):
             count = sizes[d] / box.finest_spacing + 1.0
             gap = f"the gap across {'xyz'[d]}"
             wide = (

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.meshless_gas.shares import WHOLESALE
+from quintet.components.meshless_gas.thread_grain import WHOLESALE
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.components.meshless_gas.boundaries import HOLDING
+from quintet.components.meshless_gas.boundaries import NO_SLIP
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -104,7 +104,7 @@ def walls(params: MeshlessGasParams) -> Fields:
     """Faces of the box that are walls; of clouds round bodies none."""
     if params.box is None:
         return {}
-    faces = [name for name in params.boundaries if params.kind_of(name) in ("slip", *HOLDING)]
+    faces = [name for name in params.boundaries if params.kind_of(name) in ("slip", *NO_SLIP)]
     low, high = list(params.box.lowest), list(params.box.highest)
     if params.planar:
         low[1], high[1] = -0.5, 0.5

@@ -12,7 +12,7 @@ from quintet.components.meshless_gas.blunt_bodies import (
     normal_shock,
     pitot_pressure,
 )
-from quintet.components.meshless_gas.boundaries import HOLDING, GasState
+from quintet.components.meshless_gas.boundaries import NO_SLIP, GasState
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import WALLS, own_areas
 from quintet.components.meshless_gas.clouds.params import PlateCloud
@@ -34,15 +34,15 @@ class WallLoads:
         if params.box is None:
             chosen = np.isin(cloud.kind[: cloud.nodes], WALLS) & (patch == names.index("wall"))
         else:  # walls of bodies that carry clouds of their own have no patch of the box
-            holding = [n for n, one in enumerate(names) if n and params.kind_of(one) in HOLDING]
-            chosen = np.isin(patch, holding)
+            no_slip = [n for n, one in enumerate(names) if n and params.kind_of(one) in NO_SLIP]
+            chosen = np.isin(patch, no_slip)
         self.rows = np.flatnonzero(chosen)
         self.places = cloud.positions[self.rows]
         # Where a wall ends its node has a share of what gas leaves through, or of another wall.
         self.areas = own_areas(cloud, self.rows)
         self.sizes = np.sqrt((self.areas**2).sum(axis=1))
         if params.box is not None:
-            self.areas = cloud.areas[self.rows] * holding_faces(params, cloud.areas[self.rows])
+            self.areas = cloud.areas[self.rows] * no_slip_faces(params, cloud.areas[self.rows])
         self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
         self.stream = free_stream(params)
         if params.sphere is not None:
@@ -158,10 +158,10 @@ class WallLoads:
         return float(polyfit(self.angle[near] ** 2, height, 2)[0])
 
 
-def holding_faces(params: MeshlessGasParams, areas: Array) -> NDArray[np.bool_]:
+def no_slip_faces(params: MeshlessGasParams, areas: Array) -> NDArray[np.bool_]:
     """Whether each part (w, 3) of the areas of a box's nodes is of a face that holds the gas."""
     first, last = (
-        np.array([params.kind_of(axis + side) in HOLDING for axis in "xyz"]) for side in "-+"
+        np.array([params.kind_of(axis + side) in NO_SLIP for axis in "xyz"]) for side in "-+"
     )
     return np.asarray(np.where(areas > 0.0, first, last))
 

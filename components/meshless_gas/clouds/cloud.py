@@ -99,3 +99,13 @@ def with_ghosts(cloud: Cloud, owner: Array, positions: Array, turn: Array) -> Cl
     )
     rows = [np.concatenate([a, b]) for a, b in zip(cloud, added, strict=True)]
     return Cloud(*rows)
+
+
+def is_mirrored(kind: Array) -> Array:
+    """Whether nodes are those of walls of symmetry."""
+    return np.asarray(kind == SYMMETRY)
+
+
+def is_advanced(kind: Array) -> Array:
+    """Whether nodes are advanced: those within, and those of walls of symmetry."""
+    return np.asarray((kind == INNER) | (kind == SYMMETRY))

@@ -5,15 +5,16 @@ along the wall. What is extrapolated from above, as at other slip walls, has no 
 """
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
-from numba import njit
 
-from quintet.components.meshless_gas.clouds.cloud import INNER, SLIP, SYMMETRY, with_ghosts
+from quintet.components.meshless_gas.clouds.cloud import (
+    INNER,
+    SLIP,
+    SYMMETRY,
+    with_ghosts,
+)
 from quintet.components.meshless_gas.clouds.layers import LayeredCloud
-from quintet.components.shared.numba_options import EXACT
-from quintet.interfaces.component import Array
 
 
 def mirrored(made: LayeredCloud, wall: int) -> LayeredCloud:
@@ -55,28 +56,3 @@ def mirrored(made: LayeredCloud, wall: int) -> LayeredCloud:
 def as_slip(faces: Mapping[str, str]) -> dict[str, str]:
     """What is at each boundary, walls of symmetry as slip walls."""
     return {name: "slip" if kind == "symmetry" else kind for name, kind in faces.items()}
-
-
-@njit(**EXACT)
-def hold_along(rows: Any, normals: Any, conservative: Any, primitive: Any) -> None:
-    """Take the velocity through walls from nodes on them; density and pressure stay."""
-    for row in range(rows.shape[0]):
-        i = rows[row]
-        out = 0.0
-        for d in range(3):
-            out += primitive[i, 1 + d] * normals[i, d]
-        density = primitive[i, 0]
-        conservative[i, 4] -= 0.5 * density * out * out
-        for d in range(3):
-            primitive[i, 1 + d] -= out * normals[i, d]
-            conservative[i, 1 + d] -= density * out * normals[i, d]
-
-
-def is_mirrored(kind: Array) -> Array:
-    """Whether nodes are those of walls of symmetry."""
-    return np.asarray(kind == SYMMETRY)
-
-
-def is_advanced(kind: Array) -> Array:
-    """Whether nodes are advanced: those within, and those of walls of symmetry."""
-    return np.asarray((kind == INNER) | (kind == SYMMETRY))

@@ -11,7 +11,7 @@ from numba import njit
 
 from quintet.components.meshless_gas.clouds.cloud import INFLOW, OUTFLOW
 from quintet.components.meshless_gas.kernels.far_field import meet
-from quintet.components.meshless_gas.laws import wall_pressure
+from quintet.components.meshless_gas.laws.fluxes import wall_pressure
 from quintet.components.shared.numba_options import EXACT, INNER
 
 # Columns of what a scene says of each boundary: 5 of its state, then these.

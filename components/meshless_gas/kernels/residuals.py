@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from quintet.components.meshless_gas.laws import (
+from quintet.components.meshless_gas.laws.fluxes import (
     INLINED,
     LEAST,
     ausmpw,
     smoothness,
 )
-from quintet.components.meshless_gas.limiters import half_step
+from quintet.components.meshless_gas.laws.limiters import half_step
 from quintet.components.shared.numba_options import FAST
 
 LANES = 16

@@ -4,11 +4,12 @@ import numpy as np
 
 from quintet.components.meshless_gas.build import domain, transport_of
 from quintet.components.meshless_gas.clouds.cloud import INNER
+from quintet.components.meshless_gas.kernels.stencils import write_coefficients
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.layout import layout, with_bodies
 from quintet.components.meshless_gas.moving.refusals import refuse_scene
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.stencils import Stencils, write_coefficients
+from quintet.components.meshless_gas.stencils import Stencils
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 

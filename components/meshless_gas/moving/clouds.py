@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.moving.axis import add_axis
+from quintet.components.meshless_gas.moving.fresh_nodes import fill_fresh_nodes
 from quintet.components.meshless_gas.moving.hole_cutting import Holes, without_holes
+from quintet.components.meshless_gas.moving.kernels.axis import add_axis
+from quintet.components.meshless_gas.moving.kernels.walls import add_loads, write_slip_walls
 from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose
 from quintet.components.meshless_gas.moving.outputs import (
     base_force,
@@ -19,6 +21,7 @@ from quintet.components.meshless_gas.moving.outputs import (
     unit_force,
     unit_heat,
 )
+from quintet.components.meshless_gas.moving.overset import FringeStencils
 from quintet.components.meshless_gas.moving.refusals import (
     refuse_jump,
     refuse_off_axis,
@@ -26,10 +29,7 @@ from quintet.components.meshless_gas.moving.refusals import (
     refuse_partner,
     refuse_places,
 )
-from quintet.components.meshless_gas.moving.seam_stencils import Seams
 from quintet.components.meshless_gas.moving.start import soft_start
-from quintet.components.meshless_gas.moving.uncovered import uncover
-from quintet.components.meshless_gas.moving.walls import add_loads, hold_slip_walls
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.components.shared.threads import Team
@@ -65,7 +65,7 @@ class MovingClouds:
         self.heat_is_joined = False  # whether a partner takes the heat of driven bodies
         self.given: Array | None = None  # (driven, 3) m, places at the middle of the coming step
         self.holes = Holes(params.moving, layout, cloud, team)
-        self.seams = Seams(layout, domain, team)
+        self.fringe = FringeStencils(layout, domain, team)
         self.frame = np.zeros((len(cloud.positions), 3))
         self.wall_velocity = np.zeros((len(layout.walls), 3))
         self.loads = np.zeros((len(bodies), 8))  # N, N m, W of walls on gas, W of heat: now
@@ -118,9 +118,9 @@ class MovingClouds:
         self._set_frame()
         self.summed[:] = 0.0
         if self.holes.are_old(self.pose.centre):
-            uncover(self, self._cut(), primitive, conservative)
+            fill_fresh_nodes(self, self._cut(), primitive, conservative)
         else:
-            self.seams.refit(self.pose.centre)
+            self.fringe.refit(self.pose.centre)
         return True
 
     def place(self, stage: int, dt: float) -> None:
@@ -128,13 +128,13 @@ class MovingClouds:
         if stage > 0:
             centre = self.pose.centre + STAGE_TIMES[stage] * dt * self.pose.velocity
             self._place(centre)
-            self.seams.refit(centre)
+            self.fringe.refit(centre)
 
     def end(self, dt: float) -> None:
         """Move clouds to the step's end."""
         self.pose.centre[:] += dt * self.pose.velocity
         self._place(self.pose.centre)
-        self.seams.refit(self.pose.centre)
+        self.fringe.refit(self.pose.centre)
 
     # Stages
 
@@ -142,7 +142,7 @@ class MovingClouds:
         """Write the states of the bodies' walls."""
         own = self.layout
         primitive[own.leaving] = primitive[own.before]
-        hold_slip_walls(
+        write_slip_walls(
             own.walls, own.above, own.heights, self.domain.cloud.normals[own.walls],
             self.wall_velocity, self.gamma, primitive,
         )  # fmt: skip
@@ -167,7 +167,7 @@ class MovingClouds:
     def flatten(self, gradients: Array) -> None:
         """Let states be constant around nodes that reach over a seam, if the scene asks for it."""
         if self.params.seam_order == 1:
-            gradients[self.seams.across] = 0.0
+            gradients[self.fringe.across] = 0.0
 
     def add_rates(self, share: float, work: Fluxes, viscous: "Viscous | None") -> None:
         """Add what symmetry about the axis asks for; sum the loads of a stage."""
@@ -212,7 +212,7 @@ class MovingClouds:
     def _cut(self, is_first: bool = False) -> Rows:
         """Cut holes, find neighbours anew; return the nodes that came back."""
         fresh = self.holes.cut(self.pose.centre, is_first)
-        self.seams.join(self.holes.active, self.pose.centre)
+        self.fringe.join(self.holes.active, self.pose.centre)
         self._leave_out()
         return fresh
 
@@ -227,8 +227,8 @@ class MovingClouds:
         made = self.domain.stencils
         kept = {
             "centre": self.pose.centre, "velocity": self.pose.velocity, "spin": self.pose.spin,
-            "seen": self.holes.seen, "active": self.holes.active, "touched": self.seams.touched,
-            "across": self.seams.across, "neighbours": made.neighbours,
+            "seen": self.holes.seen, "active": self.holes.active, "touched": self.fringe.touched,
+            "across": self.fringe.across, "neighbours": made.neighbours,
             "coefficients": made.coefficients, "summed": self.summed,
             "volumes": self.holes.volumes, "uncovered": np.array(self.holes.uncovered),
         }  # fmt: skip
@@ -244,12 +244,12 @@ class MovingClouds:
             ("summed", self.summed), ("volumes", self.holes.volumes),
         ):  # fmt: skip
             array[:] = saved[f"moving/{name}"]
-        self.seams.touched = np.array(saved["moving/touched"], np.int64)
-        self.seams.across = np.array(saved["moving/across"], np.int64)
+        self.fringe.touched = np.array(saved["moving/touched"], np.int64)
+        self.fringe.across = np.array(saved["moving/across"], np.int64)
         self.holes.uncovered = int(saved["moving/uncovered"])
         self.given = None
         self._place(self.pose.centre)
-        self.seams.fitted[:] = self.pose.centre
-        self.seams.weigh(self.domain.edges.astype(np.int64))
+        self.fringe.fitted[:] = self.pose.centre
+        self.fringe.weigh(self.domain.edges.astype(np.int64))
         self._set_frame()
         self._leave_out()

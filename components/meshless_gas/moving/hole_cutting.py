@@ -7,7 +7,7 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, Cloud
 from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.outflows import Outflows, clear_of_holes
-from quintet.components.meshless_gas.moving.holes import cut, part
+from quintet.components.meshless_gas.moving.kernels.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.refusals import refuse_places

@@ -81,7 +81,7 @@ class Body:
                 "an adiabatic wall has the temperature of the gas; found both. Leave out "
                 "temperature or is_adiabatic."
             )
-        if self.angular_velocity and not self.is_holding:
+        if self.angular_velocity and not self.is_no_slip:
             raise ValueError(
                 "angular_velocity is of a wall that holds the gas; found one that slips. Give a "
                 "temperature, or leave out angular_velocity."
@@ -113,7 +113,7 @@ class Body:
             )
 
     @property
-    def is_holding(self) -> bool:
+    def is_no_slip(self) -> bool:
         """Whether its wall holds the gas by friction."""
         return self.is_adiabatic or self.temperature is not None
 

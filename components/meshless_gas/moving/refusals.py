@@ -62,7 +62,7 @@ def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
         )
     if params.box is None:
         raise SceneError("bodies that carry clouds need a box around them. Give a box.")
-    if not params.viscous and any(one.is_holding for one in keys.bodies):
+    if not params.viscous and any(one.is_no_slip for one in keys.bodies):
         raise SceneError(
             "walls of a temperature, or adiabatic ones, hold the gas by friction. Say viscous = "
             "true, or leave out temperature and is_adiabatic."

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud
-from quintet.components.meshless_gas.clouds.nearest import build, search
+from quintet.components.meshless_gas.clouds.kernels import build, search
+from quintet.components.meshless_gas.laws.transport import Transport
 from quintet.components.meshless_gas.point_particles.kernels import (
     exchange,
     fastest,
@@ -15,7 +16,6 @@ from quintet.components.meshless_gas.point_particles.kernels import (
 from quintet.components.meshless_gas.point_particles.laws import DRAG, HEAT
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.components.meshless_gas.point_particles.particles import Laws, Loads, Particles
-from quintet.components.meshless_gas.transport import Transport
 from quintet.interfaces.component import Array
 
 NODES = {2: 16, 3: 32}  # by dimensions

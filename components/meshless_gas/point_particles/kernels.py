@@ -6,9 +6,9 @@ from typing import Any
 from numba import njit
 from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.laws.transport import sutherland
 from quintet.components.meshless_gas.point_particles.laws import drag_factor, nusselt
 from quintet.components.meshless_gas.point_particles.particles import Laws, Loads, Particles
-from quintet.components.meshless_gas.transport import sutherland
 from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.components.shared.search.cells import Whole
 from quintet.interfaces.component import Array

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.meshless_gas.transport import Transport
+from quintet.components.meshless_gas.laws.transport import Transport
 from quintet.interfaces.component import Array
 
 

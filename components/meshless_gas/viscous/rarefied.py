@@ -5,14 +5,14 @@ import numpy as np
 from quintet.components.meshless_gas.boundaries import Boundary
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import Whole
+from quintet.components.meshless_gas.laws.transport import Transport
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.transport import Transport
-from quintet.components.meshless_gas.viscous.laws import jump_length, slip_length
-from quintet.components.meshless_gas.viscous.slip import (
+from quintet.components.meshless_gas.viscous.kernels.slip import (
     write_jumps,
     write_slip_tractions,
     write_slips,
 )
+from quintet.components.meshless_gas.viscous.laws import jump_length, slip_length
 from quintet.interfaces.component import Array
 
 

@@ -12,25 +12,25 @@ from quintet.components.meshless_gas.clouds.cloud import (
 )
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.shares import LIGHT, SUMS
 from quintet.components.meshless_gas.state import Fluxes
-from quintet.components.meshless_gas.viscous.flux import (
+from quintet.components.meshless_gas.thread_grain import LIGHT, SUMS
+from quintet.components.meshless_gas.viscous.kernels.flux import (
     add_viscous,
     shorten_bounds,
     write_ghost_slopes,
     write_temperature_gradients,
     write_transport,
 )
-from quintet.components.meshless_gas.viscous.walls import (
+from quintet.components.meshless_gas.viscous.kernels.walls import (
     add_wall_flows,
-    hold_walls,
+    write_no_slip_walls,
     write_tractions,
 )
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
-HELD = (NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC)
+NO_SLIP_KINDS = (NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC)
 
 
 class Viscous:
@@ -40,7 +40,7 @@ class Viscous:
         self.domain, self.team, self.law = domain, team, transport_of(params.gas)
         self.gamma = params.gas.gamma
         cloud, (neighbours, coefficients) = domain.cloud, domain.stencils
-        held = np.isin(cloud.kind[: cloud.nodes], HELD)
+        held = np.isin(cloud.kind[: cloud.nodes], NO_SLIP_KINDS)
         self.rows = np.flatnonzero(held).astype(np.int32)
         self.weights = np.empty((len(self.rows), neighbours.shape[1]))
         lacks = write_weights(
@@ -71,7 +71,7 @@ class Viscous:
 
     def hold(self, primitive: Array) -> None:
         """Write the states of walls: their velocity and temperature, the gas's pressure."""
-        hold_walls(
+        write_no_slip_walls(
             self.rows, self.domain.stencils.neighbours, self.weights, self.domain.cloud.normals,
             self.velocity, self.temperature, self.gamma, self.law, primitive,
         )  # fmt: skip

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.moving.kernels.fresh_nodes import write_fresh_in_space
 from quintet.components.meshless_gas.moving.params import Body
-from quintet.components.meshless_gas.moving.seams import write_uncovered_in_space
 from quintet.components.meshless_gas.moving.shells import shell
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.errors import SceneError
@@ -98,9 +98,7 @@ def test_uncovered_nodes_get_linear_fields_exactly_in_space():
     exact = field[0].copy()
     field[0] = -1.0
     far = np.array([[9.0, 0.0, 9.0]]), np.array([0.1])
-    write_uncovered_in_space(
-        np.array([0]), np.arange(1, 13)[None], positions, np.ones(13), *far, field
-    )
+    write_fresh_in_space(np.array([0]), np.arange(1, 13)[None], positions, np.ones(13), *far, field)
     assert np.allclose(field[0], exact, rtol=1e-9)
 
 
@@ -112,7 +110,7 @@ def test_of_first_order_at_seams_states_are_constant_around_nodes_that_reach_ove
     other = made(settings)
     gas.step(gas.stable_dt())
     other.step(other.stable_dt())
-    across = other.motion.seams.across
+    across = other.motion.fringe.across
     assert len(across) > 100
     assert not other.fluxes.gradients[across].any()
     assert gas.fluxes.gradients[across].any()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from quintet.components.meshless_gas.exact.defaults import errors_of, scene_of, without_numerics
+from quintet.components.meshless_gas.analysis.defaults import errors_of, scene_of, without_numerics
 
 SCENES = Path(__file__).parents[3] / "scenarios"
 COARSE = {"components.gas.box.spacing": 0.010101010101010102}  # m, 100 nodes along a tube

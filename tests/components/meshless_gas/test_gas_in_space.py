@@ -6,7 +6,7 @@ from gases import SOD, gas, given, run, state, tube
 
 from quintet.components.meshless_gas.kernels.gradients import write_gradients
 from quintet.components.meshless_gas.kernels.residuals import write_residuals
-from quintet.components.meshless_gas.limiters import VanAlbada
+from quintet.components.meshless_gas.laws.limiters import VanAlbada
 
 pytestmark = pytest.mark.full  # kernels of their own
 

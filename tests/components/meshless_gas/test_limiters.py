@@ -6,7 +6,7 @@ import pytest
 from gases import SOD, given, run, tube
 
 from quintet.components.meshless_gas.exact.riemann import Side, star
-from quintet.components.meshless_gas.limiters import LAWS, NAMED
+from quintet.components.meshless_gas.laws.limiters import LAWS, NAMED
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.params import read
 

@@ -10,8 +10,9 @@ from quintet.components.meshless_gas.accuracy import accuracy_notes
 from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
 from quintet.components.meshless_gas.clouds.grading import capped
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.moving.kernels.fresh_nodes import write_fresh
+from quintet.components.meshless_gas.moving.kernels.fringe import choose
 from quintet.components.meshless_gas.moving.outputs import unit_heat
-from quintet.components.meshless_gas.moving.seams import choose, write_uncovered
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.errors import SceneError, StepError
 from quintet.interfaces.params import read
@@ -221,7 +222,7 @@ def test_uncovered_nodes_get_linear_fields_exactly():
     exact = field[0].copy()
     field[0] = -1.0
     far = np.array([[9.0, 0.0, 9.0]]), np.array([0.1])
-    write_uncovered(np.array([0]), np.arange(1, 9)[None], positions, np.ones(9), *far, field)
+    write_fresh(np.array([0]), np.arange(1, 9)[None], positions, np.ones(9), *far, field)
     assert np.allclose(field[0], exact, rtol=1e-9)
 
 

@@ -9,8 +9,8 @@ from gases import given
 
 from quintet.components.meshless_gas.boundaries import Boundary
 from quintet.components.meshless_gas.component import MeshlessGas
-from quintet.components.meshless_gas.transport import Transport
-from quintet.components.meshless_gas.viscous.slip import write_slip_tractions, write_slips
+from quintet.components.meshless_gas.laws.transport import Transport
+from quintet.components.meshless_gas.viscous.kernels.slip import write_slip_tractions, write_slips
 from quintet.interfaces.params import read
 
 GAMMA, R, PRANDTL, SPEED = 1.4, 1.0 / 1.4, 0.72, 1.0

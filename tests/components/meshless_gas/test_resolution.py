@@ -9,13 +9,13 @@ from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.params import read
 
 AIR = {"density": 1.0, "pressure": 1.0}
-HOLDING = {"kind": "isothermal", "temperature": 1.0}
+NO_SLIP = {"kind": "isothermal", "temperature": 1.0}
 
 
 def gap(nodes):
     spacing = 1.0 / (nodes - 1)
     box = {"highest": [4.0 * spacing, 0.0, 1.0], "spacing": spacing, "jitter": 0.0}
-    return gas(initial=AIR, viscous=True, box=box, boundaries={"z-": HOLDING, "z+": HOLDING})
+    return gas(initial=AIR, viscous=True, box=box, boundaries={"z-": NO_SLIP, "z+": NO_SLIP})
 
 
 def vortex(spacing):

@@ -9,7 +9,7 @@ from quintet.interfaces.errors import SceneError, StepError
 
 def test_coefficients_are_written_anew_only_where_clouds_have_moved(monkeypatch):
     gas = made(scene(bodies=two(0.5), gas=[0.0, 0.0, 0.0]))
-    one, seams, written = gas.motion, gas.motion.seams, []
+    one, seams, written = gas.motion, gas.motion.fringe, []
     before, region = one.domain.stencils.coefficients.copy(), one.domain.cloud.region
     fit = seams.fit
     monkeypatch.setattr(seams, "fit", lambda rows: (written.append(rows), fit(rows)))

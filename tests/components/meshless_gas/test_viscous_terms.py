@@ -5,15 +5,15 @@ import pytest
 
 from quintet.components.meshless_gas.clouds.box import box
 from quintet.components.meshless_gas.kernels.gradients import write_gradients
+from quintet.components.meshless_gas.laws.transport import Transport
 from quintet.components.meshless_gas.stencils import nearest_neighbours, stencils
-from quintet.components.meshless_gas.transport import Transport
-from quintet.components.meshless_gas.viscous.flux import (
+from quintet.components.meshless_gas.viscous.kernels.flux import (
     add_viscous,
     write_temperature_gradients,
     write_transport,
 )
+from quintet.components.meshless_gas.viscous.kernels.walls import write_no_slip_walls
 from quintet.components.meshless_gas.viscous.laws import wall_slope
-from quintet.components.meshless_gas.viscous.walls import hold_walls
 from quintet.components.shared.threads import Team
 
 # Of a viscosity that hardly changes.
@@ -96,7 +96,7 @@ def test_slope_at_a_wall_is_that_of_a_parabola() -> None:
 def test_a_wall_without_slip_stops_a_fast_stream_by_a_shock(mach: float, ratio: float) -> None:
     primitive = np.ones((2, 5))
     primitive[1, 1:4] = [0.0, 0.0, -mach * np.sqrt(1.4)]
-    hold_walls(
+    write_no_slip_walls(
         np.array([0], np.int32), np.array([[1], [0]], np.int32), np.ones((1, 1)),
         np.array([[0.0, 0.0, 1.0]] * 2), np.zeros((1, 3)), np.array([2.0]), 1.4, LAW, primitive,
     )  # fmt: skip

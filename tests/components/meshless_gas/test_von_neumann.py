@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quintet.components.meshless_gas.exact.flow_limit import flow_limit, gas_of
-from quintet.components.meshless_gas.exact.von_neumann import (
+from quintet.components.meshless_gas.analysis.flow_limit import flow_limit, gas_of
+from quintet.components.meshless_gas.analysis.von_neumann import (
     Fluid,
     block,
     cross,

@@ -12,7 +12,8 @@ from quintet.components.meshless_gas.clouds.meridian import (
     SphereInStream,
     sphere_meridian,
 )
-from quintet.components.meshless_gas.clouds.mirrored import hold_along, mirrored
+from quintet.components.meshless_gas.clouds.mirrored import mirrored
+from quintet.components.meshless_gas.kernels.symmetry import hold_along
 from quintet.components.meshless_gas.stencils import stencils
 from quintet.components.shared.threads import Team
 

@@ -1,6 +1,6 @@
 """Largest Courant number of a scene's flow, by von Neumann's analysis at each of its nodes.
 
-    python -m quintet.components.meshless_gas.exact.flow_limit SCENE.toml [NAME]
+    python -m quintet.components.meshless_gas.analysis.flow_limit SCENE.toml [NAME]
 
 The gas of a scene file, with the settings of its limit of stability NAME (the first if not said),
 is run by itself to the end of that limit at the Courant number that holds; each node's neighbours
@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.meshless_gas.analysis.von_neumann import Fluid, Lattice, largest_step
 from quintet.components.meshless_gas.component import MeshlessGas
-from quintet.components.meshless_gas.exact.von_neumann import Fluid, Lattice, largest_step
-from quintet.components.meshless_gas.laws import smoothness
+from quintet.components.meshless_gas.laws.fluxes import smoothness
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError

@@ -12,7 +12,7 @@ import math
 
 from numba import njit
 
-from quintet.components.meshless_gas.transport import sutherland
+from quintet.components.meshless_gas.laws.transport import sutherland
 from quintet.components.meshless_gas.viscous.laws import mean_free_path, slope_shares
 from quintet.components.shared.numba_options import EXACT, INNER
 

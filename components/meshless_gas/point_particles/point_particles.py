@@ -33,7 +33,7 @@ def periods(params: MeshlessGasParams) -> list[tuple[int, float, float]]:
     return found
 
 
-class Partner:
+class CoupledParticles:
     """Particles as they were last told, and their exchange with the nodes."""
 
     def __init__(self, params: MeshlessGasParams, domain: Domain) -> None:

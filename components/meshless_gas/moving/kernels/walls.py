@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from quintet.components.meshless_gas.laws import SENSED, WIDTH, wall_pressure
+from quintet.components.meshless_gas.laws.fluxes import SENSED, WIDTH, wall_pressure
 from quintet.components.shared.numba_options import EXACT
 
 LEAST = 0.3  # of the first node's density and pressure: what a wall's state must keep
 
 
 @njit(**EXACT)
-def hold_slip_walls(
+def write_slip_walls(
     rows: Any, above: Any, heights: Any, normals: Any, velocity: Any, gamma: float, primitive: Any
 ) -> None:
     """Write the states of slip walls: what the two nodes above each say of the wall, stopped there.

@@ -9,7 +9,7 @@ pair feels its own difference: without it the flux does not see waves of two spa
 import numpy as np
 from numba import njit
 
-from quintet.components.meshless_gas.transport import sutherland
+from quintet.components.meshless_gas.laws.transport import sutherland
 from quintet.components.shared.numba_options import FAST, INNER
 
 TWO_THIRDS = 2.0 / 3.0

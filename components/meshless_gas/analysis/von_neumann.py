@@ -1,6 +1,6 @@
 """Largest Courant number at which no wave grows, by von Neumann's analysis on an even lattice.
 
-    python -m quintet.components.meshless_gas.exact.von_neumann --mach 0.73 --order 1
+    python -m quintet.components.meshless_gas.analysis.von_neumann --mach 0.73 --order 1
 
 The Euler equations are linearised about a uniform stream, with the fluxes' derivatives by either
 side; a stage of SSP-RK3 multiplies waves of the rate λ by 1 + z + z²/2 + z³/6, z = λ Δt. On its own
@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.meshless_gas.laws import ausmpw
+from quintet.components.meshless_gas.laws.fluxes import ausmpw
 from quintet.interfaces.component import Array
 
 TINY = 1e-6  # over what the fluxes' derivatives are taken

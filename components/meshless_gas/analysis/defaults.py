@@ -1,6 +1,6 @@
 """Errors of a scene's gas with all keys of its numerics left at their defaults, beside its own.
 
-    python -m quintet.components.meshless_gas.exact.defaults SCENE.toml[:PRESET] ...
+    python -m quintet.components.meshless_gas.analysis.defaults SCENE.toml[:PRESET] ...
 
 Neighbours, limiter, order, Courant number, weights and the way of derivatives are left out of each
 scene; nodes of a box are moved at random by several amounts. An error is what an expectation's
@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from quintet.components.meshless_gas.analysis.flow_limit import put
 from quintet.components.meshless_gas.component import MeshlessGas
-from quintet.components.meshless_gas.exact.flow_limit import put
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read

@@ -5,14 +5,14 @@ import math
 from numba import njit
 
 from quintet.components.meshless_gas.kernels.boundaries import GATE
-from quintet.components.meshless_gas.laws import wall_pressure
-from quintet.components.meshless_gas.transport import sutherland
+from quintet.components.meshless_gas.laws.fluxes import wall_pressure
+from quintet.components.meshless_gas.laws.transport import sutherland
 from quintet.components.meshless_gas.viscous.laws import wall_slope
 from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def hold_walls(  # type: ignore[no-untyped-def]
+def write_no_slip_walls(  # type: ignore[no-untyped-def]
     rows, neighbours, weights, normals, velocity, temperature, gamma, law, primitive
 ):
     """Give nodes of no-slip walls the wall's velocity and temperature, the gas's pressure.

@@ -4,15 +4,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.clouds.cloud import INNER as INNER_NODE
 from quintet.components.meshless_gas.clouds.cloud import (
     NO_SLIP_ADIABATIC,
     NO_SLIP_ISOTHERMAL,
+    Cloud,
 )
+from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
+from quintet.components.meshless_gas.kernels.stencils import write_coefficients
+from quintet.components.meshless_gas.moving.kernels.fringe import choose
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.refusals import too_few
-from quintet.components.meshless_gas.moving.seams import around, choose
-from quintet.components.meshless_gas.stencils import SOUND, write_coefficients
+from quintet.components.meshless_gas.stencils import SOUND
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
@@ -23,7 +27,7 @@ BAND = 3.0  # spacings about a seam within which neighbours are found anew
 NEAR = 4  # times as many nodes are looked at as a node has neighbours
 
 
-class Seams:
+class FringeStencils:
     """Which nodes have neighbours in other clouds, and where bodies were when they were fitted."""
 
     def __init__(self, layout: CloudLayout, domain: Domain, team: Team) -> None:
@@ -32,7 +36,7 @@ class Seams:
         self.fitted = np.zeros((len(layout.radii), 3))  # m, centres when coefficients were written
         self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
         self.across = np.zeros(0, np.int64)  # of these, those that reach over a seam
-        self.holding = np.isin(cloud.kind[: cloud.nodes], (NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC))
+        self.no_slip = np.isin(cloud.kind[: cloud.nodes], (NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC))
         self.edges, self.weights = domain.edges, domain.weights  # of boundary nodes of the box
         self.place = np.full(len(cloud.positions), -1)  # of nodes among these
         self.place[domain.edges] = np.arange(len(domain.edges))
@@ -60,8 +64,8 @@ class Seams:
         near_any[reached[reached < count]] = True
         if not own.planar:
             band[own.leaving] = False  # they have the state of the node beside them
-        self._refuse_walls(band & self.holding, active)
-        rows = np.flatnonzero(band & ~self.holding)
+        self._refuse_walls(band & self.no_slip, active)
+        rows = np.flatnonzero(band & ~self.no_slip)
         before = self.touched
         neighbours[before] = own.home[before]
         images = near_any[cloud.owner] & active[cloud.owner]
@@ -129,3 +133,38 @@ class Seams:
             mixed = moved[region[self.across]] | moved[region[near]].any(axis=1)
             self.fit(self.across[mixed])
         self.fitted[:] = centre
+
+
+def around(
+    rows: NDArray[np.int64],
+    among: NDArray[np.int64],
+    cloud: Cloud,
+    many: int,
+    planar: bool,
+    team: Team,
+) -> NDArray[np.int64]:
+    """Nodes (m, many) near to each of some, the nearest first.
+
+    In space a node at a face of the box finds those within alone: the nearest all lie in the face,
+    and span none.
+
+    Parameters
+    ----------
+    rows : (m,)
+        Nodes.
+    among : (c,)
+        Which may be found.
+    cloud : Cloud
+    many : int
+        At most.
+    planar : bool
+    team : Team
+        Threads.
+    """
+    many = min(many, len(among))
+    found, _ = nearest(cloud.positions, among, cloud.positions[rows], many, team)
+    face = cloud.kind[rows] != INNER_NODE
+    if not planar and face.any():
+        within = among[cloud.kind[among] == INNER_NODE]
+        found[face], _ = nearest(cloud.positions, within, cloud.positions[rows[face]], many, team)
+    return found

@@ -7,7 +7,7 @@ import math
 
 from numba import njit
 
-from quintet.components.meshless_gas.limiters import INLINED
+from quintet.components.meshless_gas.laws.limiters import INLINED
 
 SENSED, WIDTH = 0.2, 0.3  # pressure ratio below which slopes vanish, and over which they grow
 COLLIDING = 4.0  # ram pressure over pressure above which streams collide

@@ -1,0 +1,1 @@
+"""Loops over nodes of a gas with friction."""
