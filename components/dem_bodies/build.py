@@ -35,7 +35,7 @@ from quintet.components.dem_bodies.state import (
     State,
     Whole,
 )
-from quintet.components.shared.polygons import area_moments
+from quintet.components.shared.geometry.polygons import area_moments
 from quintet.interfaces.faces import CORNERS
 
 SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from quintet.components.shared.lattice import cell_centres, lattice_points
+from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
 from quintet.components.sph_fluid.boundary.obstacles import obstacle_points
 from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams

@@ -134,7 +134,7 @@ class Body:
 def surface_box(file: str, scale: float, position: Vector) -> tuple[Vector, Vector]:
     """Lowest and highest corner [m] of a surface in a file."""
     # Scenes without meshes do not import the reader of meshes.
-    from quintet.components.shared.mesh_files import read
+    from quintet.components.shared.geometry.mesh_files import read
 
     triangles = read(file, scale).triangles
     low: list[Number] = (triangles.min(axis=(0, 1)) + position).tolist()
@@ -146,6 +146,6 @@ def surface_box(file: str, scale: float, position: Vector) -> tuple[Vector, Vect
 def surface_volume(file: str, scale: float) -> float:
     """Volume [m3] in a surface in a file."""
     # As above.
-    from quintet.components.shared.mesh_files import read
+    from quintet.components.shared.geometry.mesh_files import read
 
     return read(file, scale).volume

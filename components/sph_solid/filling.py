@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.shared.lattice import cell_centres, lattice_points
+from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
 from quintet.components.sph_solid.body import Body
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array
@@ -100,7 +100,7 @@ def _tube(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
 def _mesh(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     """Points of a lattice in a closed surface."""
     # Scenes without meshes do not import the reader of meshes.
-    from quintet.components.shared.mesh_files import inside, read
+    from quintet.components.shared.geometry.mesh_files import inside, read
 
     assert body.file is not None
     points, share = _box(body, params)

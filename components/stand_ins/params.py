@@ -114,7 +114,7 @@ def check_body(where: str, body: PrescribedBody, planar: bool) -> None:
         )
     if body.corners is not None:
         # Polygons are left out of scenes that have none.
-        from quintet.components.shared.polygons import require_convex
+        from quintet.components.shared.geometry.polygons import require_convex
 
         require_convex(f"{where}.corners", body.corners)
     across, normal = body.angular_velocity[::2], (body.velocity[1], body.amplitude[1])

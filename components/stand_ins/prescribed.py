@@ -96,7 +96,7 @@ def corners_of(body: PrescribedBody) -> Array:
     if body.corners is None:
         return NONE
     # Polygons are left out of scenes that have none.
-    from quintet.components.shared.polygons import in_order
+    from quintet.components.shared.geometry.polygons import in_order
 
     return in_order(body.corners)
 

@@ -23,8 +23,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.shared.lattice import lattice_points
-from quintet.components.shared.mesh_files import Shape, inside, nearest, read
+from quintet.components.shared.geometry.lattice import lattice_points
+from quintet.components.shared.geometry.mesh_files import Shape, inside, nearest, read
 from quintet.interfaces.component import Array
 
 MOST = 2000  # spheres of one body

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
-from quintet.components.shared.lattice import lattice_points
+from quintet.components.shared.geometry.lattice import lattice_points
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
-from quintet.components.shared.polygons import in_space
+from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.components.shared.polygons import (
+from quintet.components.shared.geometry.polygons import (
     area_moments,
     edges,
     in_order,

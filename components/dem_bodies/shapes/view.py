@@ -8,7 +8,7 @@ from quintet.components.dem_bodies.build import Solid
 from quintet.components.dem_bodies.params import Body, Plane
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.state import State
-from quintet.components.shared.polygons import in_space
+from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.faces import CORNERS, FACES, polygons, stacked
 

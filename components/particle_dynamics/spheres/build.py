@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.particle_dynamics.spheres.params import Sphere, Wall
-from quintet.components.shared.lattice import lattice_points
+from quintet.components.shared.geometry.lattice import lattice_points
 from quintet.interfaces.component import Array
 
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.lattice import lattice_points
+from quintet.components.shared.geometry.lattice import lattice_points
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import Box, Face
 from quintet.components.sph_fluid.state import Array

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared import mesh_files
+from quintet.components.shared.geometry import mesh_files
 from quintet.components.sph_fluid.setup.geometry import Box
 from quintet.interfaces.params import Vector
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.lattice import cell_centres, lattice_points
+from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
 from quintet.components.sph_fluid.setup.prisms import inside_polygon
 from quintet.components.sph_fluid.setup.shapes import ACROSS, FluidShape
 

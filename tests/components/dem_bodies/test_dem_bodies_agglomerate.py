@@ -8,7 +8,7 @@ from dem_scenes import FLOOR, NOTHING, build, material, mistakes, run
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.shapes.agglomerate import agglomerate
 from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
-from quintet.components.shared.mesh_files import voxels
+from quintet.components.shared.geometry.mesh_files import voxels
 from quintet.coupler.coupling.body_samples import fill
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import LinkError

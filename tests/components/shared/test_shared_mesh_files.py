@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from quintet.components.shared.mesh_files import read
+from quintet.components.shared.geometry.mesh_files import read
 
 
 def saved(tmp_path, *shells):

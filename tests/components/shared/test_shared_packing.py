@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from quintet.components.shared.lattice import cell_centres, lattice_points, spread_evenly
+from quintet.components.shared.geometry.lattice import cell_centres, lattice_points, spread_evenly
 from quintet.components.shared.packing import PAIRS, empty_rows, pack_rows, pack_values
 from quintet.components.shared.single_precision import SingleCopy, rounded
 from quintet.components.shared.threads import Team

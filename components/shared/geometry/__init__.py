@@ -1,0 +1,1 @@
+"""Shapes of bodies: what a scene says of them, what they enclose, their lattices and surfaces."""
