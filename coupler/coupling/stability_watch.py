@@ -80,40 +80,22 @@ class Made:
         return self.late > LATE_LIMIT * self.late_turnover
 
 
-@dataclass(frozen=True, slots=True)
-class Unstable:
-    """What is told of a link whose coupling is unstable."""
-
-    link: str
-    time: float  # s, when it was seen
-    energy: float  # J, made of nothing until then
-    share: float  # of the work that went through it
-    advice: str
-
-    def __str__(self) -> str:
-        return (
-            f"link {self.link} is unstable: by t = {self.time:.4g} s its sides took "
-            f"{self.energy:.3g} J more work than they gave, {100.0 * self.share:.0f} % of what "
-            f"went through it; {self.advice}"
-        )
-
-
 class StabilityWatch:
     """Looks at every link at the end of every window of the run."""
 
     def __init__(self, links: Iterable[str]) -> None:
         self._made = {name: Made() for name in links}
-        self.found: dict[str, Unstable] = {}
+        self.found: set[str] = set()  # links
         self._negligible = 0.0  # J, as seen last
         self.asks = False  # for the energies at the next window's end: a link is judged by them
 
-    def look(self, coupling: "Coupling") -> list[Unstable]:
-        """Judge all links at a window's end; return what is found for the first time.
+    def look(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+        """Judge all links at a window's end; warn once of each.
 
         A link that seems unstable is judged again a window later, by the energies of then: since
         they were last told a wave may have begun.
         """
-        new, ledger = [], coupling.ledger
+        texts, ledger = {}, coupling.ledger
         energy, known = ledger.energy, self.asks
         if known:
             energy.note(ledger.totals)
@@ -131,13 +113,18 @@ class StabilityWatch:
                 gain, turnover = made.taken - made.given, made.turnover
                 if made.made_of_late():
                     gain, turnover = made.late, made.late_turnover
-                time, share = coupling.windows.time, gain / turnover
-                self.found[name] = Unstable(name, time, gain, share, advice(coupling, name))
-                new.append(self.found[name])
-        return new
+                self.found.add(name)
+                text = (
+                    f"its coupling is unstable: by t = {coupling.windows.time:.4g} s its sides "
+                    f"took {gain:.3g} J more work than they gave, {100.0 * gain / turnover:.0f} % "
+                    f"of the work that went through it; {advice(coupling, name)}"
+                )
+                texts[name] = {"stability": text}
+        return texts
 
-    def conclude(self, coupling: "Coupling") -> None:
-        """Warn, at the end of a run, of links that made or lost too much of what they exchanged."""
+    def final_warnings(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+        """Warn of links that made or lost too much of the work that they exchanged in the run."""
+        texts = {}
         for name, made in self._made.items():
             drift = made.drift()
             if name in self.found or abs(drift) < DRIFT_LIMIT or made.turnover <= self._negligible:
@@ -150,7 +137,8 @@ class StabilityWatch:
                 f"{100.0 * abs(drift):.0f} % of the {made.high - made.low:.3g} J that were "
                 f"exchanged; {advice(coupling, name)}"
             )
-            coupling.ledger.warnings.note(f"link {name}", {"work": text})
+            texts[name] = {"work": text}
+        return texts
 
     def suspects(self, coupling: "Coupling") -> list[str]:
         """Say which links made much of what went through them of late, after any few windows."""
@@ -162,23 +150,19 @@ class StabilityWatch:
             if made.made_of_late() and made.late_turnover > self._negligible
         ]
 
-    def summary(self) -> list[dict[str, Any]]:
-        """What ``results.json`` says of it."""
-        return [{**asdict(one), "text": str(one)} for one in self.found.values()]
-
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
         return {
             "asks": self.asks,
             "made": {name: asdict(one) for name, one in self._made.items()},
-            "found": {name: asdict(one) for name, one in self.found.items()},
+            "found": sorted(self.found),
         }
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
         self.asks = bool(state["asks"])
         self._made = {name: Made(**one) for name, one in state["made"].items()}
-        self.found = {name: Unstable(**one) for name, one in state["found"].items()}
+        self.found = set(state["found"])
 
 
 def _foresees(coupling: "Coupling", link: str) -> bool:

@@ -58,39 +58,42 @@ class TimeCheck:
         except TrialFailed as error:
             errors.skipped = str(error)
 
-    def after(self, coupling: "Coupling") -> None:
-        """Compare the window with its pieces."""
+    def look(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+        """Compare the window with its pieces, if it was stepped so; warn early of large errors."""
         pieces, self._pieces = self._pieces, None
         if pieces is None:
-            return
+            return {}
         samples = {}
         for name, path in judged(coupling):
             field, whole = coupling.exchange.gives[name][path], coupling.outputs[name][path]
             start = None if field.centring == "impulse" else self._start[name][path]
             samples[name, path] = sample(whole, pieces[name, path], start, field.kind)
         coupling.ledger.time_errors.add(coupling.windows.done, samples)
-        self.warn(coupling, EARLY, FEWEST)
+        return _coarse_windows(coupling, EARLY, FEWEST)
 
-    def warn(self, coupling: "Coupling", factor: float = 1.0, samples: int = 1) -> None:
-        """Warn of links whose estimated error is above so many times its limit."""
-        errors = coupling.ledger.time_errors
-        for link, (key, over) in worst_fields(coupling).items():
-            found = errors.fields[key]
-            if over > factor and found.samples >= samples:
-                text = _text(coupling, link, key)
-                coupling.ledger.warnings.note(f"link {link}", {"window": text})
+    def final_warnings(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+        """Warn of every link whose estimated error is above its limit."""
+        return _coarse_windows(coupling)
+
+
+def _coarse_windows(
+    coupling: "Coupling", factor: float = 1.0, samples: int = 1
+) -> dict[str, dict[str, str]]:
+    """Texts of the links whose estimated error is above so many times its limit."""
+    fields = coupling.ledger.time_errors.fields
+    return {
+        link: {"window": _text(coupling, link, key)}
+        for link, (key, over) in worst_fields(coupling).items()
+        if over > factor and fields[key].samples >= samples
+    }
 
 
 def suspects(coupling: "Coupling") -> list[str]:
     """Say of which links the windows looked at so far were too long, and which seem unstable."""
-    coarse = {
-        link: _text(coupling, link, key)
-        for link, (key, over) in worst_fields(coupling).items()
-        if over > 1.0
-    }
+    coarse = _coarse_windows(coupling)
     return [
         *coupling.ledger.watch.suspects(coupling),
-        *(f"link {link}: {text}" for link, text in coarse.items()),
+        *(f"link {link}: {texts['window']}" for link, texts in coarse.items()),
     ]
 
 

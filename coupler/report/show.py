@@ -58,8 +58,6 @@ def show(folder: Path, as_json: bool = False) -> None:
 def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | None = None) -> None:
     """Print results on a console, their tables in a frame or plain."""
     screen.print(_headline(found))
-    for one in found.get("unstable") or []:
-        screen.print(Text(f"Doubtful: {one.get('text', one)}", style="red"))
     for warning in found.get("warnings") or []:
         said = f"Warning of {warning.get('source', '?')}: {warning.get('text', warning)}"
         screen.print(Text(said, style="red"))

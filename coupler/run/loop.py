@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+from quintet.coupler.coupling.checks import Checks
 from quintet.coupler.coupling.group import join_ports
 from quintet.coupler.coupling.participant import describe_all
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.schemes import advance
-from quintet.coupler.coupling.time_check import TimeCheck
 from quintet.coupler.coupling.windows import Windows, run_windows
 from quintet.interfaces.component import Fields
 
@@ -67,23 +67,16 @@ def run(
     observer.plan(windows)
     resume(coupling)
     observer.begin(coupling, described)
-    watch = coupling.ledger.watch
-    check = TimeCheck()
+    ledger, checks = coupling.ledger, Checks(coupling)
     while not windows.finished and not observer.wants_end():
-        check.before(coupling)
-        advance(coupling, lambda now: watch.asks or observer.due(now))
-        coupling.ledger.close_window(coupling.all_late(), coupling.all_in_transit())
-        check.after(coupling)
-        coupling.ledger.settling.look(coupling)
-        if windows.finished:
-            check.warn(coupling)
-            watch.conclude(coupling)
-            for name, participant in coupling.components.items():
-                coupling.ledger.warnings.note(f"component {name}", participant.final_warnings())
-        doubts = [*watch.look(coupling), *coupling.ledger.warnings.close_window(windows.time)]
+        checks.before_window()
+        advance(coupling, lambda now: ledger.watch.asks or observer.due(now))
+        ledger.close_window(coupling.all_late(), coupling.all_in_transit())
+        checks.after_window()
+        raised = ledger.warnings.close_window(windows.time)
         observer.end_window(coupling)
-        for doubt in doubts:
-            observer.warn(str(doubt))
+        for warning in raised:
+            observer.warn(str(warning))
     if not windows.finished:
         observer.ends_early(coupling)
     return RunEnd(windows.finished, windows.done, windows.time)

@@ -175,7 +175,7 @@ class Running:
         self.writer.done, self.writer.time, self.draws = windows, reached, False
         end_marked(RUN, self.watchdog.mark)
         self.outcome |= failed(error, self.scene, self.folder, self.writer)
-        self.outcome |= doubts(self.ledger)
+        self.outcome["warnings"] = self.ledger.warnings.summary()
         conclude(self)
 
     def end(self, error: BaseException | None) -> int:
@@ -206,7 +206,7 @@ class Running:
                     one.close()
             if self.stop.asked and self.outcome["status"] != "done" and not lost:
                 self.outcome["status"] = "interrupted"
-            self.outcome |= doubts(self.ledger)
+            self.outcome["warnings"] = self.ledger.warnings.summary()
             return conclude(self)
 
     def _suspect_coupling(self) -> None:
@@ -256,11 +256,6 @@ def outcome_of(end: RunEnd) -> dict[str, Any]:
     """Status of a run, complete or interrupted."""
     status = "done" if end.finished else "interrupted"
     return {"status": status, "windows": end.windows, "time": end.time}
-
-
-def doubts(ledger: Ledger) -> dict[str, Any]:
-    """What makes the results of a run doubtful: unstable links, and warnings."""
-    return {"unstable": ledger.watch.summary(), "warnings": ledger.warnings.summary()}
 
 
 def refused(error: Exception, writer: OutputWriter) -> dict[str, Any]:
@@ -358,5 +353,4 @@ def conclude(made: Running) -> int:
         )
         return results.INTERRUPTED
     met = all(one.met or not one.required for one in found)
-    sound = met and not any(doubts(made.ledger).values())
-    return results.DONE if sound else results.UNMET
+    return results.DONE if met and not made.ledger.warnings else results.UNMET

@@ -202,11 +202,11 @@ def row_of(scan: Scan, number: int, result: Row) -> Row:
 
 def status_of(result: Row) -> tuple[int, str]:
     """Exit status that a run would have without expectations, and the reason."""
-    doubts = [*(result.get("unstable") or []), *(result.get("warnings") or [])]
+    warnings = result.get("warnings") or []
     match result["status"]:
         case "done":
-            reasons = [str(doubt.get("text", doubt)) for doubt in doubts]
-            return (results.UNMET if doubts else results.DONE), "; ".join(reasons)
+            reasons = [str(warning.get("text", warning)) for warning in warnings]
+            return (results.UNMET if warnings else results.DONE), "; ".join(reasons)
         case "refused":
             cause = result.get("cause") or result.get("fault", {}).get("cause", "")
             return results.BAD, str(cause)

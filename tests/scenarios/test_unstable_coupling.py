@@ -29,9 +29,9 @@ def square(density: float, window: float, scheme: Settings, end: float = 0.15) -
 def told(folder: Path, settings: Settings) -> str:
     """What a run is told about its coupling; "" if it is stable."""
     run = quintet.run("floating_square", preset="quick", settings=settings, out=folder)
-    links = run.results["unstable"]
-    assert str(run).count("Doubtful: link water-square is unstable") == len(links)
-    return str(links[0]["text"]) if links else ""
+    texts = [one["text"] for one in run.results["warnings"] if one["subject"] == "stability"]
+    assert str(run).count("Warning of link water-square: its coupling is unstable") == len(texts)
+    return str(texts[0]) if texts else ""
 
 
 def advised(settings: Settings, text: str) -> Settings:
@@ -59,7 +59,7 @@ def test_a_light_body_in_long_windows_is_told_and_stable_as_advised(
 ) -> None:
     settings = square(density, 5e-3, scheme)
     text = told(tmp_path / "long", settings)
-    assert text.startswith("link water-square is unstable: by t = 0.")
+    assert text.startswith("its coupling is unstable: by t = 0.")
     assert told(tmp_path / "advised", advised(settings, text)) == ""
 
 
@@ -74,8 +74,8 @@ def test_a_doubtful_run_does_not_end_as_one_that_met_all(
         )
     assert ended.value.code == 1
     said = capsys.readouterr()
-    assert "quintet: link water-square is unstable: by t = 0." in said.err
-    assert "Doubtful: link water-square is unstable" in " ".join(said.out.split())
+    assert "quintet: warning of link water-square: its coupling is unstable: by t = 0." in said.err
+    assert "Warning of link water-square: its coupling is unstable" in " ".join(said.out.split())
 
 
 STABLE = [

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.settling_watch import Swings
+from quintet.coupler.coupling.settling_watch import UNSETTLED, Settling
 from quintet.coupler.coupling.time_error import TimeErrors, is_sampled, sample
 
 KEY = ("body", "motion.position")
@@ -70,10 +70,10 @@ def swung(factor, noise=0.0, windows=24, seed=2):
     """Changes by a factor from window to window, of the mean of many points with noise."""
     random = np.random.default_rng(seed)
     values = 100.0 * np.cumsum(float(factor) ** np.arange(windows))
-    swings = Swings(np.full(16, values[0]))
+    settling = Settling(np.full(16, values[0]))
     for value in values[1:]:
-        swings.add(value + noise * random.standard_normal(16))
-    return swings
+        settling.add(value + noise * random.standard_normal(16))
+    return settling
 
 
 def test_a_swing_from_window_to_window_that_does_not_decay_is_seen():
@@ -86,3 +86,24 @@ def test_what_comes_to_rest_is_no_swing():
     assert not swung(-0.6).persists
     assert not swung(0.8).persists
     assert not any(swung(0.0, noise=20.0, seed=n).persists for n in range(20))
+
+
+def relaxed(gain, relaxation, windows, noise=0.0, seed=2):
+    """A field whose answer to a change of what is handed on is that times -gain; its rest is 0."""
+    random = np.random.default_rng(seed)
+    settling = Settling(np.full(16, 100.0))
+    for _ in range(windows):
+        settling.add(-gain * settling.handed + noise * random.standard_normal(16), relaxation)
+    return settling
+
+
+@pytest.mark.parametrize(("relaxation", "windows"), [(0.5, 2), (0.02, 16)])
+def test_a_run_that_ends_before_its_link_has_settled_is_seen(relaxation, windows):
+    assert relaxed(1.0, relaxation, windows).distance > UNSETTLED
+
+
+@pytest.mark.parametrize("relaxation", [0.2, 0.5])
+def test_noisy_answers_that_are_handed_on_in_part_are_settled_and_no_swing(relaxation):
+    for seed in range(20):
+        settling = relaxed(1.0, relaxation, 24, noise=30.0, seed=seed)
+        assert settling.distance < UNSETTLED and not settling.persists

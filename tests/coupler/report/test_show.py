@@ -80,11 +80,11 @@ def test_show_tells_which_time_a_run_did_not_reach(tmp_path, capsys):
     assert "(t = 0.2 s), not required" in _shown(tmp_path, RESULTS | {"expect": [beyond]}, capsys)
 
 
-def test_show_tells_that_a_coupling_is_unstable(tmp_path, capsys):
-    text = "link water-cube is unstable: by t = 0.1 s its sides took 2 J more work than they gave"
-    found = RESULTS | {"unstable": [{"link": "water-cube", "text": text}]}
-    assert f"Doubtful: {text}" in _shown(tmp_path, found, capsys)
-    assert "Doubtful" not in _shown(tmp_path, RESULTS | {"unstable": []}, capsys)
+def test_show_tells_of_warnings(tmp_path, capsys):
+    warning = {"source": "link water-cube", "text": "its coupling is unstable"}
+    text = "Warning of link water-cube: its coupling is unstable"
+    assert text in _shown(tmp_path, RESULTS | {"warnings": [warning]}, capsys)
+    assert "Warning" not in _shown(tmp_path, RESULTS | {"warnings": []}, capsys)
 
 
 def test_show_is_plain_when_piped(tmp_path, capsys):

@@ -108,7 +108,7 @@ def test_runs_that_are_done_are_kept(tmp_path, capsys):
     ("result", "status", "why"),
     [
         ({"status": "done"}, 0, ""),
-        ({"status": "done", "warnings": [{"text": "a"}], "unstable": [{"text": "b"}]}, 1, "b; a"),
+        ({"status": "done", "warnings": [{"text": "a"}, {"text": "b"}]}, 1, "a; b"),
         ({"status": "refused", "cause": "c"}, 2, "c"),
         ({"status": "failed", "fault": {"cause": "d"}}, 3, "d"),
         ({"status": "stalled"}, 3, "it takes too long: its steps became too small"),
