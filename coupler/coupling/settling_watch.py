@@ -23,7 +23,7 @@ SPAN = 8  # windows that count most: each older one by 1 - 1/SPAN less
 FEWEST = 6  # changes before a link is judged
 SWINGS = -0.8  # correlation of changes that follow each other, below which a link swings
 LOUD = 0.2  # of the range so far: smaller swings do not matter
-# Mean of y - u at the end, of the range of y. Of a bar begun 30 % off, in 2, 4, 8, 16 windows: 0.46,
+# Mean of y - u at the end, of the range of y. A bar begun 30 % off, in 2, 4, 8, 16 windows: 0.46,
 # 0.23, 0.11 and 0.03, where the mean temperature of its second half is 16, 4, 4 and 1 % off.
 UNSETTLED = 0.2
 Key = tuple[str, str, str]  # link, component and field
