@@ -9,10 +9,12 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
 from quintet.components.sph_solid.build import initial_state, materials, nearest, pair_law
 from quintet.components.sph_solid.diagnostics import bodies, failure, gauges, levels, totals, view
+from quintet.components.sph_solid.features import pair_sums
 from quintet.components.sph_solid.judgement import (
     BONDS_EVERY,
     ENERGY_EVERY,
     bonds,
+    is_elastic,
     note_energies,
     note_torn,
     note_viscous,
@@ -32,7 +34,6 @@ from quintet.components.sph_solid.kernels.motion import (
 from quintet.components.sph_solid.kernels.pairs import Forces
 from quintet.components.sph_solid.method import viscosity_note
 from quintet.components.sph_solid.neighbours import SolidLists
-from quintet.components.sph_solid.pair_sums import pair_sums
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS
 from quintet.components.sph_solid.state import Array, State, Whole
@@ -165,7 +166,8 @@ class SphSolid(Component):
         glued = self._glued_rows()[state.active > 0.0]
         found = totals(state, self._masses(), glued, self.params.gravity)
         note_energies(state, found.kinetic, found.potential, found.internal)
-        contact = self.sums.contact_energy(state, self.density[state.material])
+        elastic = np.array([is_elastic(law) for law in self.laws], float)[state.material]
+        contact = self.sums.contact_energy(state, self.density[state.material], elastic)
         note_viscous(state, self.of_material, self.laws, contact)
         if state.steps % BONDS_EVERY == 0 and not self.lists.are_for_good:
             note_torn(state, self.bonds, self.laws, self.params)

@@ -60,7 +60,7 @@ def is_elastic(law: Solid) -> bool:
 def note_viscous(state: State, rows: list[Whole], laws: list[Solid], contact: float) -> None:
     """Take down the heat [J] of viscosity in elastic bodies, of the rows of each material.
 
-    The energy [J] of contact is in their internal energy, and no heat.
+    The energy [J] that they store in contact is in their internal energy, and no heat.
     """
     heat = -contact
     for mine, law in zip(rows, laws, strict=True):

@@ -1,81 +1,75 @@
 """Sums over pairs of particles, from the lists of what is near."""
 
+from collections.abc import Callable
 from typing import Protocol
 
+from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
+from quintet.components.sph_solid.kernels.azimuthal_images import AzimuthalImages
 from quintet.components.sph_solid.kernels.pairs import Forces, accelerations, velocity_gradients
 from quintet.components.sph_solid.laws import PairLaw
-from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.neighbours import SolidLists
-from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, Rows, State
-
-PENALTY = 1.0  # α of Ganzenmüller's force against motion that no deformation sees
 
 
 class PairSums(Protocol):
-    """What a step asks of pairs: of particles, or of rings about an axis.
+    """Sums over pairs that a step needs.
 
-    `heats` (n, 3) m/s2 is what conservative forces beside stresses accelerate by; None without.
+    `heats` (n, 3) m/s2 are accelerations by forces that heat (viscosity, penalty, contact) and that
+    act beside those of stresses; None where no such forces are summed by themselves.
     """
 
     heats: Array | None
 
-    def contact_energy(self, state: State, density: Array) -> float:
-        """Energy [J] that is stored in contact, of densities (n,) kg/m3 at the start."""
+    def contact_energy(self, state: State, density: Array, share: Array) -> float:
+        """Energy [J] stored in contact, of each particle a share (n,); see `Touching.energy`."""
 
     def make(self, state: State, lists: SolidLists) -> None:
         """Take lists that were just made."""
 
     def write_gradients(self, rows: Rows, law: PairLaw) -> None:
-        """Gradients of velocity."""
+        """Write gradients of velocity."""
 
     def write_accelerations(self, rows: Rows, law: PairLaw, forces: Forces) -> float:
-        """Accelerations and heating; return the step [s] that all bear."""
+        """Write accelerations and heating; return the greatest stable step [s]."""
 
 
-class ParticleSums:
-    """Sums over pairs of particles, and of their images."""
+class CurrentSums:
+    """Sums over particles that are near now.
+
+    Parameters
+    ----------
+    neighbours
+        Makes what kernels take from the lists: the lists, or azimuthal images of rings.
+    team
+    """
 
     heats: Array | None = None
 
-    def contact_energy(self, state: State, density: Array) -> float:
-        """None: all pairs are alike."""
-        return 0.0
+    def __init__(
+        self, neighbours: Callable[[State, SolidLists], Lists | AzimuthalImages], team: Team
+    ) -> None:
+        self.neighbours, self.team = neighbours, team
 
-    def __init__(self, team: Team) -> None:
-        self.team = team
+    def contact_energy(self, state: State, density: Array, share: Array) -> float:
+        """None: stresses alone act in contact."""
+        return 0.0
 
     def make(self, state: State, lists: SolidLists) -> None:
         """Take lists that were just made."""
-        self.lists = lists.arrays
+        self.lists = self.neighbours(state, lists)
 
     def write_gradients(self, rows: Rows, law: PairLaw) -> None:
-        """Gradients of velocity."""
+        """Write gradients of velocity."""
         self.team.run(
             velocity_gradients, len(rows.gradient), rows.place, rows.motion, self.lists, law,
             rows.gradient, rows.correction,
         )  # fmt: skip
 
     def write_accelerations(self, rows: Rows, law: PairLaw, forces: Forces) -> float:
-        """Accelerations and heating; return the step [s] that all bear."""
-        found = self.team.run(
+        """Write accelerations and heating; return the greatest stable step [s]."""
+        shares = self.team.run(
             accelerations, len(rows.gradient), rows.place, rows.motion, rows.stress, self.lists,
             law, forces,
         )  # fmt: skip
-        return min(slowest for slowest, _ in found)
-
-
-def pair_sums(params: SphSolidParams, team: Team) -> PairSums:
-    """Sums over particles, over rings, or over the neighbours of the start."""
-    if params.axisymmetric:
-        # Rings are left out of scenes that have none.
-        from quintet.components.sph_solid.rings import Rings
-
-        return Rings(params.length, team)
-    if method(params).total_lagrangian:
-        # So are sums over the neighbours of the start.
-        from quintet.components.sph_solid.reference_sums import ReferenceSums
-
-        return ReferenceSums(PENALTY, params.spacing, team)
-    return ParticleSums(team)
+        return min(slowest for slowest, _ in shares)

@@ -42,9 +42,9 @@ class ReferenceSums:
         self.heats = np.zeros((state.particles, 3))
         self.touching.make(state, lists)
 
-    def contact_energy(self, state: State, density: Array) -> float:
-        """Energy [J] that is stored in contact, of densities (n,) kg/m3 at the start."""
-        return self.touching.energy(state, density)
+    def contact_energy(self, state: State, density: Array, share: Array) -> float:
+        """Energy [J] stored in contact, of each particle a share (n,); see `Touching.energy`."""
+        return self.touching.energy(state, density, share)
 
     def write_gradients(self, rows: Rows, law: PairLaw) -> None:
         """Gradients of velocity."""

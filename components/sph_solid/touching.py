@@ -45,17 +45,22 @@ class Touching:
                 self.spacing, forces,
             )  # fmt: skip
 
-    def energy(self, state: State, density: Array) -> float:
-        """Energy [J] that contact stores, of densities (n,) kg/m3 at the start."""
+    def energy(self, state: State, density: Array, share: Array) -> float:
+        """Energy [J] that contact stores in particles, each with a share (n,) of its own part.
+
+        Densities (n,) kg/m3 are those at the start; two particles of a pair store half each.
+        """
         place, stiff = state.position, density * state.sound**2
         i, j = self._pairs(place, 1.0).T
         depth = 1.0 - np.linalg.norm(place[i] - place[j], axis=1) / self.spacing
         volume = np.sqrt(state.volume[i] * state.volume[j])
-        stored = 0.25 * float(((stiff[i] + stiff[j]) * volume * depth**2).sum())
-        for plane, mine in self.planes:
-            apart = 2.0 * plane.inward * (place[mine, plane.axis] - plane.position)
+        shares = 0.5 * (share[i] + share[j])
+        stored = 0.25 * float((shares * (stiff[i] + stiff[j]) * volume * depth**2).sum())
+        for plane, rows in self.planes:
+            apart = 2.0 * plane.inward * (place[rows, plane.axis] - plane.position)
             depth = np.maximum(1.0 - apart / self.spacing, 0.0)
-            stored += 0.25 * float((stiff[mine] * state.volume[mine] * depth**2).sum())
+            energies = share[rows] * stiff[rows] * state.volume[rows] * depth**2
+            stored += 0.25 * float(energies.sum())
         return stored
 
     def _list(self, place: Array) -> None:

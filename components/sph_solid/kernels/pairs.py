@@ -1,4 +1,7 @@
-"""Sums over pairs: the gradient of velocity, and accelerations. Each row is written by one call."""
+"""Sums over pairs: the gradient of velocity, and accelerations. Each row is written by one call.
+
+Neighbours are particles near in space, or azimuthal images of rings: `lists` says which.
+"""
 
 import math
 from typing import NamedTuple
@@ -7,16 +10,14 @@ from numba import njit
 
 from quintet.components.shared.float_bits import number_of
 from quintet.components.shared.numba_options import FAST
-from quintet.components.shared.packing import (
-    empty_rows,
-    longest_list,
-    out_of_reach,
-    pack_rows,
-)
+from quintet.components.shared.packing import empty_rows, longest_list
 from quintet.components.shared.search.neighbours import Lists
+from quintet.components.sph_solid.kernels.azimuthal_images import AzimuthalImages
+from quintet.components.sph_solid.kernels.packing import across, pack_particles, pack_stresses
 from quintet.components.sph_solid.kernels.sums import (
     corrected,
-    own_stress,
+    densities,
+    stress_row,
     sum_forces,
     sum_gradients,
 )
@@ -33,8 +34,8 @@ class Forces(NamedTuple):
 
 @njit(**FAST)
 def velocity_gradients(
-    first: int, last: int, place: Array, motion: Array, lists: Lists, law: PairLaw,
-    velocity_gradient: Array, correction: Array,
+    first: int, last: int, place: Array, motion: Array, lists: Lists | AzimuthalImages,
+    law: PairLaw, velocity_gradient: Array, correction: Array,
 ) -> None:  # fmt: skip
     """Write η L of particles, and L of those whose gradients are corrected.
 
@@ -54,29 +55,32 @@ def velocity_gradients(
     ----------
     Bonet & Lok, Comput. Methods Appl. Mech. Eng. 180 (1999) 97, eq. (41).
     """
-    begin, _, end, neighbour = lists
-    rows = longest_list(first, last, begin, end)
+    rows = longest_list(first, last, lists.begin, lists.end)
     near, moves = empty_rows(rows, 4, place.dtype), empty_rows(rows, 4, place.dtype)
+    y = across(lists)
     for i in range(first, last):
-        x, y, z = place[i, 0], place[i, 1], place[i, 2]
-        u, v, w = motion[i, 0], motion[i, 1], motion[i, 2]
-        outside = out_of_reach(x, law.smoothing.length), y, z, 0.0
-        count = pack_rows(begin[i], end[i], neighbour, place, outside, near)
-        pack_rows(begin[i], end[i], neighbour, motion, (u, v, w, 0.0), moves)
-        found, matrix, broken = sum_gradients(count, x, y, z, u, v, w, near, moves, law)
+        particle = (
+            place[i, 0], y * place[i, 1], place[i, 2],
+            motion[i, 0], y * motion[i, 1], motion[i, 2],
+        )  # fmt: skip
+        count = pack_particles(i, lists, place, motion, law, near, moves)
+        sums, matrix, broken = sum_gradients(count, particle, near, moves, law)
+        xx, xy, xz, yx, yy, yz, zx, zy, zz = sums
+        sums = xx, y * xy, xz, y * yx, yy, y * yz, zx, y * zy, zz
         if law.corrected is not None:
+            kxx, kyy, kzz, kxy, kyz, kzx = matrix
             whole = motion[i, 3] == 0.0 and broken == 0.0
-            found, matrix = corrected(found, matrix, whole, law)
+            sums, matrix = corrected(sums, (kxx, kyy, kzz, y * kxy, y * kyz, kzx), whole, law)
             for d in range(6):
                 correction[i, d] = matrix[d]
         for d in range(9):
-            velocity_gradient[i, d] = found[d]
+            velocity_gradient[i, d] = sums[d]
 
 
 @njit(**FAST)
 def accelerations(
-    first: int, last: int, place: Array, motion: Array, stress: Array, lists: Lists, law: PairLaw,
-    forces: Forces,
+    first: int, last: int, place: Array, motion: Array, stress: Array,
+    lists: Lists | AzimuthalImages, law: PairLaw, forces: Forces,
 ) -> tuple[float, float]:  # fmt: skip
     """Write accelerations of particles and what the artificial viscosity heats them by.
 
@@ -101,44 +105,24 @@ def accelerations(
     ----------
     Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, section 10.3 (step).
     """
-    begin, _, end, neighbour = lists
     acceleration, heating = forces
-    rows = longest_list(first, last, begin, end)
+    rows = longest_list(first, last, lists.begin, lists.end)
     near, moves = empty_rows(rows, 4, place.dtype), empty_rows(rows, 4, place.dtype)
     # Numbers that the compiler knows.
     width = 16 if law.artificial is not None else 8 if law.corrected is None else 12
     tension = empty_rows(rows, width, place.dtype)
-    slowest, greatest = math.inf, 0.0
+    y, slowest, greatest = across(lists), math.inf, 0.0
     for i in range(first, last):
-        x, y, z = place[i, 0], place[i, 1], place[i, 2]
-        u, v, w, sound = motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3]
-        outside = out_of_reach(x, law.smoothing.length), y, z, 0.0
-        count = pack_rows(begin[i], end[i], neighbour, place, outside, near)
-        pack_rows(begin[i], end[i], neighbour, motion, (u, v, w, sound), moves)
-        own, density, start, filling = own_stress(stress, i, law.corrected, law.artificial)
-        pack_rows(begin[i], end[i], neighbour, stress, filling, tension)
-        fx, fy, fz, heat, fastest = sum_forces(
-            count,
-            x,
-            y,
-            z,
-            u,
-            v,
-            w,
-            sound,
-            density,
-            start,
-            own,
-            near,
-            moves,
-            tension,
-            law,
-            law.corrected,
-            law.artificial,
-        )
-        mu = number_of(fastest)
-        per = 1.0 / start
-        fx, fy, fz = fx * per, fy * per, fz * per
+        sound, row = motion[i, 3], stress_row(stress, i, law)
+        particle = (
+            place[i, 0], y * place[i, 1], place[i, 2],
+            motion[i, 0], y * motion[i, 1], motion[i, 2], sound,
+        )  # fmt: skip
+        count = pack_particles(i, lists, place, motion, law, near, moves)
+        pack_stresses(i, lists, stress, row, count, tension)
+        fx, fy, fz, heat, fastest = sum_forces(count, particle, row, near, moves, tension, law)
+        mu, per = number_of(fastest), 1.0 / densities(row, law)[1]
+        fx, fy, fz = fx * per, y * fy * per, fz * per
         acceleration[i, 0], acceleration[i, 1], acceleration[i, 2] = fx, fy, fz
         heating[i] = 0.5 * heat * per
         drag = law.linear * sound + law.quadratic * mu

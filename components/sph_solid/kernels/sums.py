@@ -1,4 +1,9 @@
-"""Sums over the neighbours of one particle, which stand side by side; inlined into the loops."""
+"""Sums over the neighbours of one particle, whose rows stand side by side; inlined into the loops.
+
+Rows of stress have six numbers of τ (xx yy zz xy yz zx), ρ and ρ₀; where gradients are corrected
+nine (by rows), ρ and ρ₀; with artificial stresses six more follow. The functions that read them are
+chosen by the types of `PairLaw.corrected` and `PairLaw.artificial`.
+"""
 
 import math
 
@@ -20,12 +25,28 @@ from quintet.components.sph_solid.laws import (
 
 
 @njit(inline="always")
-def sum_gradients(count, x, y, z, u, v, w, near, moves, law):  # type: ignore[no-untyped-def]
-    """Σ V_j (v_j - v_i) ⊗ ∇W_ij over so many neighbours, side by side, and what corrects it.
+def sum_gradients(count, particle, near, moves, law):  # type: ignore[no-untyped-def]
+    """Σ V_j (v_j - v_i) ⊗ ∇W_ij over neighbours, and what its correction needs.
 
-    The correction is of the matrix Σ V_j (x_j - x_i) ⊗ ∇W_ij, xx yy zz xy yz zx, and of how much
-    of the neighbours has failed.
+    Parameters
+    ----------
+    count : int
+        Rows of neighbours.
+    particle : six floats
+        x, y, z, u, v, w.
+    near : (any, 4) float array
+        x, y, z, V of the neighbours.
+    moves : (any, 4) float array
+        u, v, w, and whether they have failed.
+    law : PairLaw
+
+    Returns
+    -------
+    nine floats : the gradient
+    six floats : Σ V_j (x_j - x_i) ⊗ ∇W_ij, xx yy zz xy yz zx
+    float : 0 if no neighbour has failed
     """
+    x, y, z, u, v, w = particle
     m00, m01, m02, m10, m11, m12, m20, m21, m22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     kxx, kyy, kzz, kxy, kyz, kzx, broken = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(count):
@@ -57,168 +78,136 @@ def sum_gradients(count, x, y, z, u, v, w, near, moves, law):  # type: ignore[no
 
 
 @njit(inline="always")
-def corrected(found, matrix, whole, law):  # type: ignore[no-untyped-def]
+def corrected(velocity_gradient, matrix, whole, law):  # type: ignore[no-untyped-def]
     """Gradient of velocity, exact for linear fields, and the inverse matrix; zeros without."""
     inverted, determinant = inverse(matrix, law)
     if whole and determinant > SINGULAR:
-        return times(found, inverted), inverted
-    return found, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return times(velocity_gradient, inverted), inverted
+    return velocity_gradient, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(inline="always")
-def sum_six(  # type: ignore[no-untyped-def]
-    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
-):
-    """Σ V_j (τ_i + τ_j - q_ij) ∇W_ij over so many neighbours, its heat, and bits of max|μ|."""
+def sum_forces(count, particle, row, near, moves, tension, law):  # type: ignore[no-untyped-def]
+    """Σ V_j (τ_i + τ_j - q_ij) ∇W_ij over neighbours, its heat, and bits of max|μ|.
+
+    Parameters
+    ----------
+    count : int
+        Rows of neighbours.
+    particle : seven floats
+        x, y, z, u, v, w, c.
+    row : floats
+        The particle's row of stress.
+    near, moves, tension : (any, 4), (any, 4) and (any, 8, 12 or 16) float arrays
+        x, y, z, V; u, v, w, c; rows of stress.
+    law : PairLaw
+    """
+    x, y, z, u, v, w, sound = particle
     fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, np.int64(0)
-    t0, t1, t2, t3, t4, t5 = own
+    column = 6 if law.corrected is None else 9  # of ρ; that of ρ₀ follows
+    density, start = densities(row, law)
     for k in range(count):
         dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
         du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
         r2 = dx * dx + dy * dy + dz * dz
         dot = dx * du + dy * dv + dz * dw
-        per_r, per_r2, per_density = inverses(r2, density + tension[k, 6], law)
+        per_r, per_r2, per_density = inverses(r2, density + tension[k, column], law)
         weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
         mu = law.smoothing.length * max(-dot, ZERO) * per_r2
-        q = viscous_pressure(mu, sound + moves[k, 3], per_density, start * tension[k, 7], law)
+        starts = start * tension[k, column + 1]
+        q = viscous_pressure(mu, sound + moves[k, 3], per_density, starts, law)
         fastest = max(fastest, bits_of(mu))
-        xx, yy, zz = t0 + tension[k, 0] - q, t1 + tension[k, 1] - q, t2 + tension[k, 2] - q
-        xy, yz, zx = t3 + tension[k, 3], t4 + tension[k, 4], t5 + tension[k, 5]
-        fx += weight * (xx * dx + xy * dy + zx * dz)
-        fy += weight * (xy * dx + yy * dy + yz * dz)
-        fz += weight * (zx * dx + yz * dy + zz * dz)
-        heat += weight * q * dot
-    return fx, fy, fz, heat, fastest
-
-
-@njit(inline="always")
-def sum_nine(  # type: ignore[no-untyped-def]
-    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
-):
-    """The same of corrected tensors, which are not symmetric."""
-    fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, np.int64(0)
-    t0, t1, t2, t3, t4, t5, t6, t7, t8 = own
-    for k in range(count):
-        dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
-        du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
-        r2 = dx * dx + dy * dy + dz * dz
-        dot = dx * du + dy * dv + dz * dw
-        per_r, per_r2, per_density = inverses(r2, density + tension[k, 9], law)
-        weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
-        mu = law.smoothing.length * max(-dot, ZERO) * per_r2
-        q = viscous_pressure(mu, sound + moves[k, 3], per_density, start * tension[k, 10], law)
-        fastest = max(fastest, bits_of(mu))
-        a0, a1, a2 = t0 + tension[k, 0] - q, t1 + tension[k, 1], t2 + tension[k, 2]
-        a3, a4, a5 = t3 + tension[k, 3], t4 + tension[k, 4] - q, t5 + tension[k, 5]
-        a6, a7, a8 = t6 + tension[k, 6], t7 + tension[k, 7], t8 + tension[k, 8] - q
-        fx += weight * (a0 * dx + a1 * dy + a2 * dz)
-        fy += weight * (a3 * dx + a4 * dy + a5 * dz)
-        fz += weight * (a6 * dx + a7 * dy + a8 * dz)
-        heat += weight * q * dot
-    return fx, fy, fz, heat, fastest
-
-
-@njit(inline="always")
-def sum_repelled(  # type: ignore[no-untyped-def]
-    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
-):
-    """The same of symmetric tensors, with artificial ones that act between the nearest."""
-    fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, np.int64(0)
-    t0, t1, t2, t3, t4, t5, r0, r1, r2, r3, r4, r5 = own
-    for k in range(count):
-        dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
-        du, dv, dw = u - moves[k, 0], v - moves[k, 1], w - moves[k, 2]
-        square = dx * dx + dy * dy + dz * dz
-        dot = dx * du + dy * dv + dz * dw
-        per_r, per_r2, per_density = inverses(square, density + tension[k, 6], law)
-        weight = gradient(square, per_r, law.smoothing) * near[k, 3]
-        mu = law.smoothing.length * max(-dot, ZERO) * per_r2
-        q = viscous_pressure(mu, sound + moves[k, 3], per_density, start * tension[k, 7], law)
-        fastest = max(fastest, bits_of(mu))
-        f = nearness(square, law)
-        xx, yy, zz = f * (r0 + tension[k, 8]), f * (r1 + tension[k, 9]), f * (r2 + tension[k, 10])
-        xy, yz, zx = f * (r3 + tension[k, 11]), f * (r4 + tension[k, 12]), f * (r5 + tension[k, 13])
-        ax = xx * dx + xy * dy + zx * dz
-        ay = xy * dx + yy * dy + yz * dz
-        az = zx * dx + yz * dy + zz * dz
+        t00, t01, t02, t10, t11, t12, t20, t21, t22 = summed_stress(row, tension, k, law)
+        t00, t11, t22 = t00 - q, t11 - q, t22 - q
+        ax, ay, az = repulsion(row, tension, k, (dx, dy, dz), r2, law)
+        fx += weight * (t00 * dx + t01 * dy + t02 * dz + ax)
+        fy += weight * (t10 * dx + t11 * dy + t12 * dz + ay)
+        fz += weight * (t20 * dx + t21 * dy + t22 * dz + az)
         heat += weight * (q * dot - (ax * du + ay * dv + az * dw))
-        xx, yy, zz = t0 + tension[k, 0] - q, t1 + tension[k, 1] - q, t2 + tension[k, 2] - q
-        xy, yz, zx = t3 + tension[k, 3], t4 + tension[k, 4], t5 + tension[k, 5]
-        fx += weight * (xx * dx + xy * dy + zx * dz + ax)
-        fy += weight * (xy * dx + yy * dy + yz * dz + ay)
-        fz += weight * (zx * dx + yz * dy + zz * dz + az)
     return fx, fy, fz, heat, fastest
 
 
-def own_stress(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
-    """Row of stress of a particle: its tensor, ρ, ρ₀, and all of it, to fill up neighbours with."""
+def _has(law, name):  # type: ignore[no-untyped-def]
+    """Whether an optional number of a law's type is not None."""
+    return not isinstance(law.types[law.fields.index(name)], types.NoneType)
 
 
-@overload(own_stress, inline="always")
-def _own_stress(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
-    def six(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
-        t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
-        t4, t5, density, start = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
-        row = t0, t1, t2, t3, t4, t5, density, start
-        return (t0, t1, t2, t3, t4, t5), density, start, row
-
-    def nine(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
-        t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
-        t4, t5, t6, t7 = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
-        t8, density, start = stress[i, 8], stress[i, 9], stress[i, 10]
-        row = t0, t1, t2, t3, t4, t5, t6, t7, t8, density, start, 0.0
-        return (t0, t1, t2, t3, t4, t5, t6, t7, t8), density, start, row
-
-    def twelve(stress, i, corrected, artificial):  # type: ignore[no-untyped-def]
-        t0, t1, t2, t3 = stress[i, 0], stress[i, 1], stress[i, 2], stress[i, 3]
-        t4, t5, density, start = stress[i, 4], stress[i, 5], stress[i, 6], stress[i, 7]
-        r0, r1, r2, r3 = stress[i, 8], stress[i, 9], stress[i, 10], stress[i, 11]
-        r4, r5 = stress[i, 12], stress[i, 13]
-        own = t0, t1, t2, t3, t4, t5, r0, r1, r2, r3, r4, r5
-        row = t0, t1, t2, t3, t4, t5, density, start, r0, r1, r2, r3, r4, r5, 0.0, 0.0
-        return own, density, start, row
-
-    if not isinstance(artificial, types.NoneType):
-        return twelve
-    return six if isinstance(corrected, types.NoneType) else nine
+def stress_row(stress, i, law):  # type: ignore[no-untyped-def]
+    """Row of stress of a particle, as a tuple: also what neighbours are filled up with."""
 
 
-def sum_forces(  # type: ignore[no-untyped-def]
-    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
-    artificial,
-):  # fmt: skip
-    """The sums of symmetric tensors, or of corrected ones, or with artificial ones."""
+@overload(stress_row, inline="always")
+def _stress_row(stress, i, law):  # type: ignore[no-untyped-def]
+    def eight(stress, i, law):  # type: ignore[no-untyped-def]
+        s = stress[i]
+        return s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]
+
+    def twelve(stress, i, law):  # type: ignore[no-untyped-def]
+        s = stress[i]
+        return s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], s[10], 0.0
+
+    def sixteen(stress, i, law):  # type: ignore[no-untyped-def]
+        s = stress[i]
+        return (
+            s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12], s[13],
+            0.0, 0.0,
+        )  # fmt: skip
+
+    if _has(law, "artificial"):
+        return sixteen
+    return twelve if _has(law, "corrected") else eight
 
 
-@overload(sum_forces, inline="always")
-def _sum_forces(  # type: ignore[no-untyped-def]
-    count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
-    artificial,
-):  # fmt: skip
-    def six(  # type: ignore[no-untyped-def]
-        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
-        artificial,
-    ):  # fmt: skip
-        return sum_six(
-            count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
+def densities(row, law):  # type: ignore[no-untyped-def]
+    """ρ and ρ₀ [kg/m3] of a particle, from its row of stress."""
+
+
+@overload(densities, inline="always")
+def _densities(row, law):  # type: ignore[no-untyped-def]
+    if _has(law, "corrected"):
+        return lambda row, law: (row[9], row[10])
+    return lambda row, law: (row[6], row[7])
+
+
+def summed_stress(row, tension, k, law):  # type: ignore[no-untyped-def]
+    """τ_i + τ_j [Pa], nine numbers by rows, of a particle's row and row k of its neighbours."""
+
+
+@overload(summed_stress, inline="always")
+def _summed_stress(row, tension, k, law):  # type: ignore[no-untyped-def]
+    def symmetric(row, tension, k, law):  # type: ignore[no-untyped-def]
+        xx, yy, zz = row[0] + tension[k, 0], row[1] + tension[k, 1], row[2] + tension[k, 2]
+        xy, yz, zx = row[3] + tension[k, 3], row[4] + tension[k, 4], row[5] + tension[k, 5]
+        return xx, xy, zx, xy, yy, yz, zx, yz, zz
+
+    def general(row, tension, k, law):  # type: ignore[no-untyped-def]
+        return (
+            row[0] + tension[k, 0], row[1] + tension[k, 1], row[2] + tension[k, 2],
+            row[3] + tension[k, 3], row[4] + tension[k, 4], row[5] + tension[k, 5],
+            row[6] + tension[k, 6], row[7] + tension[k, 7], row[8] + tension[k, 8],
+        )  # fmt: skip
+
+    return general if _has(law, "corrected") else symmetric
+
+
+def repulsion(row, tension, k, offset, r2, law):  # type: ignore[no-untyped-def]
+    """f⁴ (R_i + R_j)·r_ij [Pa m] of the artificial stresses; zeros without."""
+
+
+@overload(repulsion, inline="always")
+def _repulsion(row, tension, k, offset, r2, law):  # type: ignore[no-untyped-def]
+    def artificial(row, tension, k, offset, r2, law):  # type: ignore[no-untyped-def]
+        dx, dy, dz = offset
+        f = nearness(r2, law)
+        xx, yy = f * (row[8] + tension[k, 8]), f * (row[9] + tension[k, 9])
+        zz, xy = f * (row[10] + tension[k, 10]), f * (row[11] + tension[k, 11])
+        yz, zx = f * (row[12] + tension[k, 12]), f * (row[13] + tension[k, 13])
+        return (
+            xx * dx + xy * dy + zx * dz,
+            xy * dx + yy * dy + yz * dz,
+            zx * dx + yz * dy + zz * dz,
         )
 
-    def nine(  # type: ignore[no-untyped-def]
-        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
-        artificial,
-    ):  # fmt: skip
-        return sum_nine(
-            count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
-        )
-
-    def twelve(  # type: ignore[no-untyped-def]
-        count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law, corrected,
-        artificial,
-    ):  # fmt: skip
-        return sum_repelled(
-            count, x, y, z, u, v, w, sound, density, start, own, near, moves, tension, law
-        )
-
-    if not isinstance(artificial, types.NoneType):
-        return twelve
-    return six if isinstance(corrected, types.NoneType) else nine
+    if _has(law, "artificial"):
+        return artificial
+    return lambda row, tension, k, offset, r2, law: (0.0, 0.0, 0.0)

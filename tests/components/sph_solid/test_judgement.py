@@ -59,13 +59,13 @@ def test_a_law_of_failure_that_never_acts_does_not_hide_a_tear():
 
 
 def test_an_isolated_body_that_gains_energy_is_told():
-    solid = stretch(strip(total_lagrangian=False, courant=2.05), 5.0)
+    solid = stretch(strip(total_lagrangian=False, courant=1.0), 5.0)
     for _ in range(400):
         solid.step(solid.stable_dt())
         if solid.warnings():
             break
     assert "gained" in solid.warnings()["energy"]
-    assert "Lower courant (now 2.05)" in solid.warnings()["energy"]
+    assert "Lower courant (now 1)" in solid.warnings()["energy"]
 
 
 def test_motion_that_the_artificial_viscosity_takes_from_elastic_bodies_is_told():

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from quintet.components.shared.materials.params import Material
-from quintet.components.sph_solid import rings as rings_module
+from quintet.components.sph_solid import axisymmetric as image_lists
 from quintet.components.sph_solid.component import SphSolid
-from quintet.components.sph_solid.kernels.rotated import cuts
+from quintet.components.sph_solid.kernels.azimuthal_images import image_counts
 from quintet.components.sph_solid.params import Body, SphSolidParams, SymmetryPlane
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
@@ -145,10 +145,10 @@ def test_lists_that_are_kept_miss_no_pair(axisymmetric, monkeypatch):
         fresh.load(made.save())
         fresh.lists.sort(fresh.state, fresh.state.position)
         numbers = np.empty(made.items(), np.int64)
-        numbers[made.state.identity] = cuts(made.state.reference[:, 0], params.length)
+        numbers[made.state.identity] = image_counts(made.state.reference[:, 0], params.length)
         with monkeypatch.context() as patch:
             patch.setattr(
-                rings_module, "cuts", lambda *_, one=fresh, n=numbers: n[one.state.identity]
+                image_lists, "image_counts", lambda *_, one=fresh, n=numbers: n[one.state.identity]
             )
             fresh._list()
         fresh._fill_rows()
