@@ -77,8 +77,8 @@ class Port:
     """A named bundle of fields that all have one row per item.
 
     ``static`` fields go once, with the port, before the first step (a body's mass);
-    ``states`` go once, against it (the spacing at which the taker wants surfaces sampled); a
-    direct link refuses what exceeds a state ``largest_X`` of one row in a field ``X`` at the start.
+    ``requests`` go once, against it (the spacing at which the taker wants surfaces sampled); a
+    direct link refuses a field ``X`` that exceeds a request ``largest_X`` of one row at the start.
     ``items`` says whose they are: what several links bring to a component's own items is
     added up, what they bring as the partner's items stands in rows one after another. Their
     number never changes: items that may die have a field ``active`` (`ports.ACTIVE`), which is 0
@@ -91,7 +91,7 @@ class Port:
     fields: tuple[Field, ...]
     items: Literal["own", "partner"] = "own"
     static: tuple[Field, ...] = ()
-    states: tuple[Field, ...] = ()
+    requests: tuple[Field, ...] = ()
     lacks: tuple[tuple[str, str], ...] = ()
 
 
@@ -161,7 +161,7 @@ class Component(ABC):
         return takes, gives
 
     def describe(self) -> Fields:
-        """Static fields of the ports it gives, and what it states at those it takes."""
+        """Static fields of the ports it gives, and its requests at those it takes."""
         return {}
 
     def bind(self, static: Fields, joined: AbstractSet[str]) -> None:  # noqa: B027  (most need none)

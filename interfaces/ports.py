@@ -29,7 +29,7 @@ SURFACE = Port(
         Field("volume", (), "m3"),  # that the sample stands for
         Field("body", (), "1", labels=True),  # number of the body (or mesh) it belongs to
     ),
-    states=(
+    requests=(
         Field("spacing", (), "m"),
         Field("depth", (), "m"),  # how far below the surface samples are wanted
         Field("inset", (), "m"),  # how far below it the outermost lie; half a spacing if not said
@@ -157,16 +157,20 @@ def only_fields(ports: Iterable[Port], keys: Container[str]) -> tuple[Port, ...]
     return tuple(kept)
 
 
+# Attributes of a port that a recording holds.
+RECORDED = ("name", "fields", "items", "static")
+
+
 def to_json(ports: Iterable[Port]) -> str:
-    """Write ports as text, for a recording: what they have, not what they lack."""
+    """Write ports that a component gives as text, for a recording."""
     tables = [asdict(port) for port in ports]
-    return json.dumps([{k: v for k, v in one.items() if k != "lacks"} for one in tables])
+    return json.dumps([{key: table[key] for key in RECORDED} for table in tables])
 
 
 def from_json(text: str) -> tuple[Port, ...]:
-    """Read ports that were written as text; what is a list is a list of fields."""
+    """Read ports that were written as text."""
     tables = json.loads(text)
-    return tuple(Port(**{k: _fields(v) for k, v in table.items()}) for table in tables)
+    return tuple(Port(**{key: _fields(table[key]) for key in RECORDED}) for table in tables)
 
 
 def _fields(value: Any) -> Any:

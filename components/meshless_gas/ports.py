@@ -146,7 +146,7 @@ SURFACE = Port(
 # Spheres that nodes do not resolve, as the partner has them, and what the gas does to them; a point
 # is not turned, its torque is 0.
 # The largest that the gas can take for points: the spacing of its nodes where they are coarsest.
-PARTICLES = replace(SPHERES, name="particles", states=(Field("largest_diameter", (), "m"),))
+PARTICLES = replace(SPHERES, name="particles", requests=(Field("largest_diameter", (), "m"),))
 PARTICLE_LOAD = replace(LOAD, name="particle_load")
 PARTICLE_HEAT = replace(HEAT, name="particle_heat")
 

@@ -42,7 +42,7 @@ def surface(params: SphFluidParams) -> Port:
     Dynamic boundary particles know no other contact; films know no potential.
     """
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
-    port = replace(port, states=(*port.states, *BEGINNING))
+    port = replace(port, requests=(*port.requests, *BEGINNING))
     if params.dimensions == 2:
         port = planar_surface(port)
     fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films is True

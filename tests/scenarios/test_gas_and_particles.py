@@ -109,7 +109,7 @@ LARGE = "components.dust.spheres.1.diameter=0.02"  # nodes are 0.01 m apart
 
 
 def test_spheres_larger_than_the_spacing_are_refused_as_the_scene_is_checked() -> None:
-    with pytest.raises(SceneError, match=r"largest_diameter states; found 0\.02 m of item 16"):
+    with pytest.raises(SceneError, match=r"largest_diameter requests; found 0\.02 m of item 16"):
         load("dust_in_stream", settings=[LARGE])
 
 

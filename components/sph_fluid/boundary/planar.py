@@ -19,7 +19,7 @@ NEARLY = 1e-9  # m
 
 def planar_surface(port: Port) -> Port:
     """Port of surfaces that says that the fluid has two dimensions."""
-    return replace(port, states=(*port.states, DIMENSIONS, THICKNESS))
+    return replace(port, requests=(*port.requests, DIMENSIONS, THICKNESS))
 
 
 def require_one_metre(params: SphFluidParams) -> None:

@@ -41,7 +41,7 @@ def names_are_told_apart(trial: Trial) -> None:
         for port in ports:
             where = f"{verb} {port.name}"
             _require_distinct(
-                where, [one.name for one in (*port.fields, *port.static, *port.states)]
+                where, [one.name for one in (*port.fields, *port.static, *port.requests)]
             )
             known = {one.name for one in port.fields}
             for one in port.fields:
@@ -67,7 +67,7 @@ def units_fit_each_other(trial: Trial) -> None:
         across = {one.name: one for port in others for one in port.fields}
         for port in ports:
             own = {one.name: one for one in port.fields}
-            for one in (*port.fields, *port.static, *port.states):
+            for one in (*port.fields, *port.static, *port.requests):
                 check_unit(one.unit, f"{port.name}.{one.name}", one.centring)
             for one in port.fields:
                 _check_rate(port, one, own.get(one.rate))
@@ -109,11 +109,11 @@ def _product(one: dict[str, int], other: dict[str, int]) -> dict[str, int]:
 
 
 def describe_tells_what_its_ports_announce(trial: Trial) -> None:
-    """Static fields of the ports given, states of those taken: all of them, in their shapes."""
+    """Static fields of the ports given, requests of those taken: all of them, in their shapes."""
     component = trial.make()
     static = {f"{port.name}.{one.name}": one for port in trial.gives for one in port.static}
-    states = {f"{port.name}.{one.name}": one for port in trial.takes for one in port.states}
-    announced, described = static | states, component.describe()
+    requests = {f"{port.name}.{one.name}": one for port in trial.takes for one in port.requests}
+    announced, described = static | requests, component.describe()
     for key in sorted(announced.keys() - described.keys()):
         raise LawBroken(
             f"describe: every static field that a port announces must be told; {key} is missing. "

@@ -140,22 +140,22 @@ class Direct:
         return Demands()
 
     def refuses(self, initial: Mapping[str, Fields]) -> list[str]:
-        """See `exchange.refused_starts`: what is larger than the taker states that it can take."""
+        """See `exchange.refused_starts`: what is larger than the taker requests."""
         wrong = []
         for giver, given, taker, taken in self.joined:
-            for stated in taken.states:
-                if not stated.name.startswith(LARGEST):
+            for request in taken.requests:
+                if not request.name.startswith(LARGEST):
                     continue
-                place = f"{given.name}.{stated.name.removeprefix(LARGEST)}"
-                limit = initial.get(taker, {}).get(f"{taken.name}.{stated.name}")
+                place = f"{given.name}.{request.name.removeprefix(LARGEST)}"
+                limit = initial.get(taker, {}).get(f"{taken.name}.{request.name}")
                 values = initial.get(giver, {}).get(place)
                 if limit is None or values is None or not values.size:
                     continue
                 if (largest := float(values.max())) > (most := float(limit[0])):
                     wrong.append(
                         f"link {self.name}: {giver}.{place} must be at most {most:.4g} "
-                        f"{stated.unit}, as {taker}.{taken.name}.{stated.name} states; found "
-                        f"{largest:.4g} {stated.unit} of item {int(values.argmax())}. Correct "
+                        f"{request.unit}, as {taker}.{taken.name}.{request.name} requests; found "
+                        f"{largest:.4g} {request.unit} of item {int(values.argmax())}. Correct "
                         f"{giver} or {taker}."
                     )
         return wrong

@@ -105,7 +105,7 @@ def _same_dimensions(name: str, ports: Mapping[str, Port]) -> None:
     planar = [
         one
         for one, port in ports.items()
-        if any(field.name == DIMENSIONS.name for field in (*port.static, *port.states))
+        if any(field.name == DIMENSIONS.name for field in (*port.static, *port.requests))
     ]
     if len(planar) == 1:
         (solid,) = set(ports) - set(planar)

@@ -154,10 +154,10 @@ def test_samples_are_in_the_plane_of_the_fluid_wherever_theirs_is():
 
 def test_a_fluid_says_that_it_has_two_dimensions():
     flat = SphFluid(fluid_params(**DROP))
-    assert DIMENSIONS in flat.takes[0].states
+    assert DIMENSIONS in flat.takes[0].requests
     assert flat.describe()["surface.dimensions"].tolist() == [2.0]
     deep = SphFluid(fluid_params(**(DROP | {"dimensions": 3})))
-    assert DIMENSIONS not in deep.takes[0].states
+    assert DIMENSIONS not in deep.takes[0].requests
     assert "surface.dimensions" not in deep.describe()
 
 

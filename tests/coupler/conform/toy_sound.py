@@ -33,7 +33,7 @@ CLOUD = Port(
     (POSITION, VELOCITY, ACTIVE),
     items="partner",
     static=(Field("volume", (), "m3"),),
-    states=(Field("spacing", (), "m"),),
+    requests=(Field("spacing", (), "m"),),
 )
 CLOUD_LOAD = Port("cloud_load", (FORCE,), items="partner")
 FLIGHT = Port("flight", (POSITION, VELOCITY, ORIENTATION, ANGULAR_VELOCITY, ACTIVE), static=(MASS,))

@@ -1,4 +1,4 @@
-"""A taker states how large a partner's items may be; a direct link refuses larger ones."""
+"""A taker requests how large a partner's items may be; a direct link refuses larger ones."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from quintet.interfaces.component import Field, Port
 WIDTH, LARGEST = Field("width", (), "m"), Field("largest_width", (), "m")
 PORTS = {
     "a": ((), (Port("grains", (WIDTH,)),)),
-    "b": ((Port("grains", (WIDTH,), "partner", states=(LARGEST,)),), ()),
+    "b": ((Port("grains", (WIDTH,), "partner", requests=(LARGEST,)),), ()),
 }
 
 
@@ -27,8 +27,8 @@ def _refused(widths, largest):
 def test_items_larger_than_the_taker_can_take_are_refused():
     (said,) = _refused([0.1, 0.3, 0.2], 0.25)
     assert said == (
-        "link rope: a.grains.width must be at most 0.25 m, as b.grains.largest_width states; found "
-        "0.3 m of item 1. Correct a or b."
+        "link rope: a.grains.width must be at most 0.25 m, as b.grains.largest_width requests; "
+        "found 0.3 m of item 1. Correct a or b."
     )
 
 

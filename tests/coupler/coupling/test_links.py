@@ -122,7 +122,7 @@ def test_fsi_refuses_bodies_smaller_than_a_spacing(shape, surface, inset, least)
 
 PLANAR = {
     **PORTS,
-    "flume": ((replace(SURFACE, states=(*SURFACE.states, DIMENSIONS)),), (SURFACE_LOAD,)),
+    "flume": ((replace(SURFACE, requests=(*SURFACE.requests, DIMENSIONS)),), (SURFACE_LOAD,)),
     "discs": ((LOAD,), (PLANAR_MOTION,)),
 }
 
