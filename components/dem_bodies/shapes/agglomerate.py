@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.shared.geometry.lattice import lattice_points
-from quintet.components.shared.geometry.mesh_files import Shape, inside, nearest, read
+from quintet.components.shared.geometry.mesh_files import Solid, inside, nearest, read
 from quintet.interfaces.component import Array
 
 MOST = 2000  # spheres of one body
@@ -107,7 +107,7 @@ def require_fit(file: str, scale: float, size: Array, dim: int, radius: float) -
         )
 
 
-def covering(places: Array, shape: Shape, radius: float, spacing: float) -> Array:
+def covering(places: Array, shape: Solid, radius: float, spacing: float) -> Array:
     """Centres (n, 3) m of the outermost layer: lattice places, and outer ones moved in."""
     foot, away = distances(places, shape)
     near = away < radius + spacing * (1.0 - CLOSE)  # others are too deep or outside
@@ -123,18 +123,18 @@ def covering(places: Array, shape: Shape, radius: float, spacing: float) -> Arra
     return kept
 
 
-def distances(points: Array, shape: Shape) -> tuple[Array, Array]:
+def distances(points: Array, shape: Solid) -> tuple[Array, Array]:
     """Nearest points (n, 3) m of the surface, and how far (n,) m they are."""
     foot = nearest(points, shape.triangles)
     return foot, np.linalg.norm(points - foot, axis=1)
 
 
-def signed(points: Array, away: Array, shape: Shape) -> Array:
+def signed(points: Array, away: Array, shape: Solid) -> Array:
     """Depths (n,) m of points so far away from the surface, negative outside."""
     return np.where(inside(points, shape.triangles), away, -away)
 
 
-def moved_in(points: Array, foot: Array, depth: Array, shape: Shape, radius: float) -> Array:
+def moved_in(points: Array, foot: Array, depth: Array, shape: Solid, radius: float) -> Array:
     """Move points along their normals to a depth of R; return those that come to it."""
     found = [np.zeros((0, 3))]
     for _ in range(ROUNDS):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.interfaces.component import Array
 
@@ -18,7 +19,7 @@ MOST_WRONG = 1e-3  # of the length within a surface that is not enclosed once
 PAIRS = ((1, 2), (2, 0), (0, 1))  # the corners opposite each corner
 
 
-class Shape(NamedTuple):
+class Solid(NamedTuple):
     """A closed surface of triangles that look outwards, and what it encloses."""
 
     triangles: Array  # (t, 3, 3) m
@@ -27,13 +28,13 @@ class Shape(NamedTuple):
     inertia: Array  # (3, 3) m5, about it, at unit density
 
 
-def read(file: str, scale: float) -> Shape:
+def read(file: str, scale: float) -> Solid:
     """Read a shape; one unit of length in the file, or one voxel, stands for `scale` [m]."""
     path = Path(file)
     return voxels(path, scale) if path.suffix == ".npy" else surface(path, scale)
 
 
-def surface(path: Path, scale: float) -> Shape:
+def surface(path: Path, scale: float) -> Solid:
     """Read a closed surface of triangles; trimesh measures it exactly."""
     # Scenes without meshes do not import the reader of meshes.
     import trimesh
@@ -58,7 +59,7 @@ def surface(path: Path, scale: float) -> Shape:
         mesh.invert()
     corners = np.asarray(mesh.triangles, np.float64)
     _require_simple(path.name, corners)
-    return Shape(
+    return Solid(
         scale * corners,
         scale**3 * float(mesh.volume),
         scale * np.asarray(mesh.center_mass),
@@ -97,23 +98,23 @@ def winding_lengths(triangles: Array) -> dict[int, float]:
     for y, z in itertools.product(*lines.T):
         place = np.array([y, z])
         met = triangles[((low <= place) & (place <= high)).all(axis=1)]
-        part, whole = _areas(met, place)
-        through = np.flatnonzero((part * whole[:, None] > 0.0).all(axis=1))
-        x = (met[through, :, 0] * part[through]).sum(axis=1) / whole[through]
+        x, outwards = _crossings(met, place)
         order = np.argsort(x)
-        # Along x a ray enters where triangles look against it.
-        depth = np.cumsum(-np.sign(whole[through][order]))[:-1]
+        depth = np.cumsum(-outwards[order])[:-1]
         for number, length in zip(depth.tolist(), np.diff(x[order]).tolist(), strict=True):
             if number:
                 lengths[int(number)] = lengths.get(int(number), 0.0) + length
     return lengths
 
 
-def _areas(triangles: Array, place: Array) -> tuple[Array, Array]:
-    """Twice the areas, across x, of a place with each pair of corners (t, 3), and their sums."""
+def _crossings(triangles: Array, place: Array) -> tuple[Array, Array]:
+    """Where a ray along x at y and z (2,) meets triangles, and 1 where it leaves, -1 it enters."""
     y, z = (triangles[:, :, 1:] - place).transpose(2, 0, 1)
     part = np.column_stack([y[:, i] * z[:, j] - z[:, i] * y[:, j] for i, j in PAIRS])
-    return part, part.sum(axis=1)
+    whole = part.sum(axis=1)
+    through = (part * whole[:, None] > 0.0).all(axis=1)
+    x = (triangles[through, :, 0] * part[through]).sum(axis=1) / whole[through]
+    return x, np.sign(whole[through])
 
 
 def open_edges(mesh: object) -> int:
@@ -124,7 +125,7 @@ def open_edges(mesh: object) -> int:
     return int((~np.isin(there, back)).sum())
 
 
-def voxels(path: Path, width: float) -> Shape:
+def voxels(path: Path, width: float) -> Solid:
     """Read voxels of a width [m]; their sides towards what is not solid are the surface."""
     try:
         array = np.load(path, allow_pickle=False)
@@ -149,7 +150,7 @@ def voxels(path: Path, width: float) -> Shape:
     centre = middles.mean(axis=0)
     second = (middles - centre).T @ (middles - centre) * width**3
     second = second + np.eye(3) * (width**2 / 12.0 * volume)  # of each about its own middle
-    return Shape(triangles, volume, centre, np.trace(second) * np.eye(3) - second)
+    return Solid(triangles, volume, centre, np.trace(second) * np.eye(3) - second)
 
 
 def sides(cells: Array, axis: int, side: int) -> Array:
@@ -161,20 +162,23 @@ def sides(cells: Array, axis: int, side: int) -> Array:
     return cells[:, None] + (ring if side else ring[::-1])
 
 
-def inside(points: Array, triangles: Array) -> Array:
-    """Whether points (n, 3) lie in a surface: a ray along x leaves it once more than it enters."""
+def inside(points: Array, triangles: Array) -> NDArray[np.bool_]:
+    """Whether points (n, 3) lie in a surface: a ray along x leaves it once more than it enters.
+
+    Points with the same y and z share a ray.
+    """
     low, high = triangles[:, :, 1:].min(axis=1), triangles[:, :, 1:].max(axis=1)
     # A little off the lattice, so that no ray meets an edge.
     aside = AWRY * float(np.ptp(triangles, axis=(0, 1)).max()) * np.sqrt([2.0, 3.0])
-    found = np.zeros(len(points), bool)
-    for k, point in enumerate(points):
-        place = point[1:] + aside
+    contained = np.zeros(len(points), bool)
+    order = np.lexsort(points.T[1:])
+    starts = np.flatnonzero((np.diff(points[order, 1:], axis=0) != 0.0).any(axis=1)) + 1
+    for rows in np.split(order, starts) if len(order) else ():
+        place = points[rows[0], 1:] + aside
         met = triangles[((low <= place) & (place <= high)).all(axis=1)]
-        part, whole = _areas(met, place)
-        through = (part * whole[:, None] > 0.0).all(axis=1)
-        beyond = ((met[:, :, 0] - point[0]) * part).sum(axis=1) * whole > 0.0
-        found[k] = np.sign(whole[through & beyond]).sum() > 0.0
-    return found
+        x, outwards = _crossings(met, place)
+        contained[rows] = ((x > points[rows, :1]) * outwards).sum(axis=1) > 0.0
+    return contained
 
 
 def nearest(points: Array, triangles: Array) -> Array:
