@@ -25,10 +25,10 @@ def lattice(nx: int, ny: int, nz: int) -> dict[str, Any]:
     position = (numbers + 0.5) * DIAMETER * (1.0 + 1e-9)  # (n, 3) m
     random = np.random.default_rng(1)
     velocity = UNEVEN * random.uniform(-1.0, 1.0, position.shape) - SQUEEZE * position  # m/s
-    sphere = {"shape": "sphere", "diameter": DIAMETER, "density": 2500.0, "material": "grain"}
+    sphere = {"shape": "sphere", "radius": 0.5 * DIAMETER, "density": 2500.0, "material": "grain"}
     motions = zip(position.tolist(), velocity.tolist(), strict=True)
     return {
-        "bodies": [{**sphere, "position": x, "velocity": v} for x, v in motions],
+        "bodies": [{**sphere, "centre": x, "velocity": v} for x, v in motions],
         "planes": [{"point": [0.0] * 3, "normal": list(n), "material": "grain"} for n in CORNER],
         "materials": {"grain": STUFF},
         "gravity": [-4.0, -4.0, -8.0],

@@ -9,7 +9,6 @@ import numpy as np
 from quintet.components.dem_bodies.contact import materials
 from quintet.components.dem_bodies.params import (
     DIRECTIONS,
-    Body,
     DemBodiesParams,
     Material,
 )
@@ -22,6 +21,7 @@ from quintet.components.dem_bodies.shapes.placement import (
     edge_radius,
     rotation_matrix,
 )
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.dem_bodies.state import (
     COLUMNS,
@@ -60,7 +60,7 @@ def solids(params: DemBodiesParams) -> list[Solid]:
     return [one for body, count in each for one in count * [solid(body)]]
 
 
-def solid(body: Body) -> Solid:
+def solid(body: RigidBody) -> Solid:
     """Measure a body: a union of spheres by voxels, all others exactly."""
     if body.size is not None:
         size = np.array(body.size)
@@ -76,9 +76,10 @@ def solid(body: Body) -> Solid:
             if body.corners is not None:
                 size[[0, 2]] = np.ptp(planar.corners(body), axis=0)
             size[1] = 1.0
-        elif body.diameter is not None:
-            volume = np.pi / 6.0 * body.diameter**3
-            inertia = np.eye(3) * volume * body.diameter**2 / 10.0
+        elif body.radius is not None:
+            diameter = 2.0 * body.radius
+            volume = np.pi / 6.0 * diameter**3
+            inertia = np.eye(3) * volume * diameter**2 / 10.0
         elif (covered := cover(body)) is not None:
             volume, inertia = covered.volume, covered.inertia
         else:
@@ -89,16 +90,17 @@ def solid(body: Body) -> Solid:
     return Solid(density * volume, density * inertia, centres, radii, size)
 
 
-def planar_inertia(body: Body) -> tuple[float, Numbers]:
+def planar_inertia(body: RigidBody) -> tuple[float, Numbers]:
     """Volume [m3] of 1 m along y, and inertia at unit density: about all axes that about y."""
-    if body.diameter is not None:
-        area, moment = np.pi / 4.0 * body.diameter**2, np.pi / 32.0 * body.diameter**4
+    if body.radius is not None:
+        diameter = 2.0 * body.radius
+        area, moment = np.pi / 4.0 * diameter**2, np.pi / 32.0 * diameter**4
     else:
         area, _, moment = area_moments(planar.corners(body))
     return area, moment * np.eye(3)
 
 
-def skin(bodies: Sequence[Body], solids: Sequence[Solid]) -> float:
+def skin(bodies: Sequence[RigidBody], solids: Sequence[Solid]) -> float:
     """Distance [m] within which pairs are listed.
 
     It follows the smallest contact radius; but the edge radius of a sharp box, or of a thin plate,
@@ -107,7 +109,7 @@ def skin(bodies: Sequence[Body], solids: Sequence[Solid]) -> float:
     return SKIN * min(map(contact_length, bodies, solids))
 
 
-def contact_length(body: Body, one: Solid) -> float:
+def contact_length(body: RigidBody, one: Solid) -> float:
     """Smallest radius [m] by which a body bears; of a box at least that of a less slender one."""
     radius = float(one.radii.min())
     if body.corners is not None:
@@ -117,14 +119,14 @@ def contact_length(body: Body, one: Solid) -> float:
     return max(radius, ROUNDED * max(min(body.size), THIN * max(body.size)))
 
 
-def contact_radii(body: Body, one: Solid) -> Numbers:
+def contact_radii(body: RigidBody, one: Solid) -> Numbers:
     """Radii (s,) m by which the spheres of a body bear: of corners, that of a blunt edge."""
     if body.size is None and body.corners is None:
         return one.radii
     return np.full(len(one.radii), contact_length(body, one))
 
 
-def half_thickness(body: Body) -> float:
+def half_thickness(body: RigidBody) -> float:
     """Half the least width [m] of a box or polygon."""
     if body.size is not None:
         return 0.5 * min(body.size)
@@ -163,22 +165,22 @@ def material_pair(a: Material, b: Material) -> Numbers:
     )
 
 
-def balls_first(bodies: Sequence[Body]) -> list[int]:
+def balls_first(bodies: Sequence[RigidBody]) -> list[int]:
     """Bodies in the order of their rows at the start."""
     return sorted(range(len(bodies)), key=lambda k: not is_ball(bodies[k]))
 
 
-def is_ball(body: Body) -> bool:
+def is_ball(body: RigidBody) -> bool:
     """Whether a body is one sphere and free: those have a list and kernels of their own."""
-    return body.diameter is not None and not body.locked
+    return body.radius is not None and not body.locked
 
 
-def free_motion(body: Body) -> list[float]:
+def free_motion(body: RigidBody) -> list[float]:
     """Write 1 for each direction along and about which a body may move, 0 where it is locked."""
     return [float(one not in body.locked) for one in DIRECTIONS]
 
 
-def model(params: DemBodiesParams, bodies: Sequence[Body], solids: list[Solid]) -> Model:
+def model(params: DemBodiesParams, bodies: Sequence[RigidBody], solids: list[Solid]) -> Model:
     """Arrays of all that never changes, of bodies in the order of their rows."""
     planes = params.planes
     names = {name: k for k, name in enumerate(params.materials)}
@@ -261,7 +263,7 @@ def isotropic(inertia: Numbers) -> bool:
     return bool(np.abs(inertia - inertia[0, 0] * np.eye(3)).max() <= 1e-14 * inertia[0, 0])
 
 
-def state(bodies: Sequence[Body], number: list[int], solids: list[Solid]) -> State:
+def state(bodies: Sequence[RigidBody], number: list[int], solids: list[Solid]) -> State:
     """Arrays of all that moves, as it is at the start; `number` is that of each row's body."""
     n = len(bodies) + 1
     spheres = sum(len(one.radii) for one in solids)
@@ -308,7 +310,7 @@ def inverse_of_free(inertia: Numbers, free: Numbers) -> Numbers:
 
 
 def expected_frequency(
-    params: DemBodiesParams, bodies: Sequence[Body], solids: Sequence[Solid]
+    params: DemBodiesParams, bodies: Sequence[RigidBody], solids: Sequence[Solid]
 ) -> float:
     """Bound of √(S_n/m*) [rad/s] in impacts at the expected speed.
 

@@ -79,7 +79,7 @@ class DemBodies(Component):
 
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
-        self.bodies, self.solids = list(params.bodies), build.solids(params)
+        self.bodies, self.solids = list(params.placed), build.solids(params)
         number = build.balls_first(self.bodies)
         bodies, solids = [self.bodies[k] for k in number], [self.solids[k] for k in number]
         self.model = build.model(params, bodies, solids)

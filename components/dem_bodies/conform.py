@@ -7,16 +7,16 @@ import numpy as np
 from quintet.interfaces.manifest import ConformCase
 
 WOOD = {"youngs_modulus": 1e7, "poissons_ratio": 0.3, "restitution": 0.5, "friction": 0.4}
-BOX = {"shape": "box", "size": [0.1, 0.1, 0.1], "density": 500.0, "material": "wood"}
-BALL = {"shape": "sphere", "diameter": 0.1, "density": 500.0, "material": "wood"}
+BOX = {"shape": "box", "density": 500.0, "material": "wood"}
+BALL = {"shape": "sphere", "radius": 0.05, "density": 500.0, "material": "wood"}
 WEDGE = {
     "shape": "polygon",
     "corners": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]],
     "density": 500.0,
     "material": "wood",
-    "position": [1.0, 2.0, 3.0],
+    "origin": [1.0, 2.0, 3.0],
 }
-WHEEL = {**BALL, "shape": "disc", "position": [1.0, 2.0, 3.12]}
+WHEEL = {**BALL, "shape": "disc", "centre": [1.0, 2.0, 3.12]}
 NONE = np.zeros((2, 3))
 
 
@@ -27,7 +27,7 @@ def cases() -> tuple[ConformCase, ...]:
     first, second = (dict(one) for one in balls["bodies"])
     strike["bodies"] = [
         {**first, "velocity": [0.0, 0.0, 2.0], "angular_velocity": [3.0, 0.0, 0.0]},
-        {**second, "position": [1.0, 2.0, 3.1001]},
+        {**second, "centre": [1.0, 2.0, 3.1001]},
     ]
     plane = {**boxes, "dimensions": 2, "bodies": [WEDGE, WHEEL]}
     return (
@@ -39,12 +39,18 @@ def cases() -> tuple[ConformCase, ...]:
     )
 
 
+def _at(z: float, body: dict[str, Any]) -> dict[str, Any]:
+    if body["shape"] == "sphere":
+        return {**body, "centre": [1.0, 2.0, z]}
+    return {**body, "lowest": [0.95, 1.95, z - 0.05], "highest": [1.05, 2.05, z + 0.05]}
+
+
 def _above_floor(body: dict[str, Any], height: float) -> dict[str, Any]:
     floor = {"point": [0.0, 0.0, 2.9], "normal": [0.0, 0.0, 1.0], "material": "wood"}
     return {
         "gravity": [0.0, 0.0, 0.0],
         "materials": {"wood": WOOD},
-        "bodies": [{**body, "position": [1.0, 2.0, z]} for z in (3.0, height)],
+        "bodies": [_at(z, body) for z in (3.0, height)],
         "planes": [floor],
     }
 

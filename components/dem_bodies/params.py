@@ -7,15 +7,19 @@ from pydantic import Field
 
 from quintet.components.dem_bodies.shapes import overlaps
 from quintet.components.dem_bodies.shapes.copies import Bodies
-from quintet.components.dem_bodies.shapes.description import check_body
+from quintet.components.dem_bodies.shapes.description import rigid_body
 from quintet.components.dem_bodies.shapes.planar import check_plane
+from quintet.components.dem_bodies.shapes.rigid_body import Agglomerate, Copies, Quaternion
+from quintet.components.shared.geometry.shape_keys import (
+    RENAMED,
+    BoxKeys,
+    MeshKeys,
+    PolygonKeys,
+    RoundKeys,
+)
 from quintet.interfaces.params import (
-    Count,
-    DataFile,
     NotNegative,
-    Number,
     Positive,
-    PositiveVector,
     Vector,
     parameters,
 )
@@ -87,85 +91,34 @@ class Pair:
 
 
 @parameters
-class Copies:
-    """A lattice of equal bodies; they count as bodies in its order, x slowest.
-
-    Parameters
-    ----------
-    number : 1
-        How many along x, y and z.
-    spacing : m
-        From one copy to the next.
-    scatter : m
-        By which each copy at most is moved along each axis.
-    seed : 1
-        Of the random numbers of the scatter.
-    """
-
-    number: tuple[Count, Count, Count]
-    spacing: PositiveVector
-    scatter: NotNegative = 0.0
-    seed: int = 0
-
-
-@parameters
-class Agglomerate:
-    """The shape in a file, its surface covered by equal spheres on a lattice.
-
-    Parameters
-    ----------
-    file
-        STL, OBJ, PLY, or voxels as .npy; named from the scene's folder on.
-    scale : m
-        What one unit of length in the file, or one voxel, stands for.
-    dim : 1
-        Places of the lattice along the longest edge.
-    sphere_radius : m
-        Of the spheres that cover the surface.
-    """
-
-    file: DataFile
-    scale: Positive = 1.0
-    dim: Annotated[int, Field(ge=2)]
-    sphere_radius: Positive
-
-
-@parameters
-class Body:
+class Body(BoxKeys, RoundKeys, PolygonKeys, MeshKeys):
     """One rigid body, or a lattice of equal ones.
 
     Parameters
     ----------
     shape
         Disc and polygon in two dimensions, the others in three.
-    size : m
-        Edges of a box.
     edge_radius : m
         Radius of a box's edges and corners, or of a polygon's corners; less than half the shortest
         edge of a box. 5 % of the shortest edge if not given. However sharp an edge or thin a body
         is, it bears as one of 5 % of the shortest edge, or of 0.5 % of the longest.
-    diameter : m
-        Of a sphere or disc.
-    corners : m
-        x and z of a convex polygon's corners, three or more, in order round it, in any frame along
-        the body's axes: they are moved so that the centre of mass is the origin.
     centres : m
-        Of spheres that are one body, in any frame along the body's axes: they are moved so that
-        the centre of mass of their union is the origin.
+        Of spheres that are one body.
     radii : m
         Of the same spheres.
     agglomerate
-        A shape in a file; its centre of mass is the origin too.
+        How spheres cover the surface of a mesh.
+    origin : m
+        Where the origin of a polygon's corners, of the centres of spheres or of a mesh's file is,
+        before the body is turned; that of the world if not given.
     density : kg/m3
         This or the mass.
     mass : kg
         This or the density; in two dimensions the mass of 1 m along y.
     material
         One of the materials.
-    position : m
-        Of the centre of mass.
     orientation : 1
-        Unit quaternion w, x, y, z, body to world.
+        Unit quaternion w, x, y, z, by which the shape is turned about its centre of mass.
     velocity : m/s
         Of the centre of mass at the start.
     angular_velocity : rad/s
@@ -176,33 +129,27 @@ class Body:
         locked axis needs all three rotations locked. With all six it is a wall, a plate, a piston
         or a drum. A sphere that is locked in any way has no rolling resistance.
     copies
-        A lattice of such bodies, the first at `position`.
+        A lattice of such bodies, the first where the shape is.
     """
 
     RENAMED: ClassVar = {
+        **RENAMED,
         "rounding": "edge_radius",
         "copies": "copies.number",
         "apart": "copies.spacing",
         "scatter": "copies.scatter",
         "seed": "copies.seed",
-        "file": "agglomerate.file",
-        "scale": "agglomerate.scale",
         "dim": "agglomerate.dim",
-        "radius": "diameter of a sphere (twice it), or agglomerate.sphere_radius",
     }
-    shape: Literal["box", "sphere", "spheres", "agglomerate", "disc", "polygon"]
-    size: PositiveVector | None = None
+    shape: Literal["box", "sphere", "spheres", "mesh", "disc", "polygon"]
     edge_radius: Positive | None = None
-    diameter: Positive | None = None
-    corners: tuple[tuple[Number, Number], ...] | None = None
     centres: tuple[Vector, ...] | None = None
     radii: tuple[Positive, ...] | None = None
     agglomerate: Agglomerate | None = None
     density: Positive | None = None
     mass: Positive | None = None
     material: str
-    position: Vector
-    orientation: tuple[Number, Number, Number, Number] = (1.0, 0.0, 0.0, 0.0)
+    orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Vector = (0.0, 0.0, 0.0)
     locked: tuple[Direction, ...] = ()
@@ -275,7 +222,6 @@ class DemBodiesParams:
     def __post_init__(self) -> None:
         """Refuse what cannot be run, and put every copy among the bodies."""
         for k, body in enumerate(self.bodies):
-            check_body(f"bodies[{k}]", body)
             self._known(f"bodies[{k}].material", body.material)
         for k, plane in enumerate(self.planes):
             if not np.linalg.norm(plane.normal) > 0.0:
@@ -287,7 +233,8 @@ class DemBodiesParams:
         for k, pair in enumerate(self.pairs):
             for name in pair.between:
                 self._known(f"pairs[{k}].between", name)
-        object.__setattr__(self, "bodies", Bodies(self.bodies))
+        bodies = [rigid_body(f"bodies[{k}]", body) for k, body in enumerate(self.bodies)]
+        object.__setattr__(self, "bodies", Bodies(bodies))
         check_plane(self)
         check_pairs(self.pairs)
         overlaps.check(self.placed, self.planes)

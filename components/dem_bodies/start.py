@@ -3,13 +3,14 @@
 import numpy as np
 
 from quintet.components.dem_bodies import build
-from quintet.components.dem_bodies.params import Body, DemBodiesParams
+from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.interfaces.component import Array
 from quintet.interfaces.ports import BOX, DISC, OTHER, POLYGON, SPHERE
 
 SHAPES = {
-    "sphere": SPHERE, "box": BOX, "spheres": OTHER, "agglomerate": OTHER,
+    "sphere": SPHERE, "box": BOX, "spheres": OTHER, "mesh": OTHER,
     "disc": DISC, "polygon": POLYGON,
 }  # fmt: skip
 MOST = 100_000  # bodies; of more, nothing is told before they are built
@@ -19,7 +20,7 @@ def initial(params: DemBodiesParams) -> dict[str, Array]:
     """Fields of the port `motion` at the start, static ones first; none of very many bodies."""
     if len(params.bodies) > MOST:
         return {}
-    bodies, solids = list(params.bodies), build.solids(params)
+    bodies, solids = list(params.placed), build.solids(params)
     turns = np.array([body.orientation for body in bodies])
     return described(params, bodies, solids) | {
         "motion.position": np.array([body.position for body in bodies]),
@@ -30,7 +31,7 @@ def initial(params: DemBodiesParams) -> dict[str, Array]:
 
 
 def described(
-    params: DemBodiesParams, bodies: list[Body], solids: list[build.Solid]
+    params: DemBodiesParams, bodies: list[RigidBody], solids: list[build.Solid]
 ) -> dict[str, Array]:
     """Shapes, sizes, masses, corners; unions of spheres have the box around them."""
     stated: dict[str, Array] = {

@@ -10,7 +10,7 @@ from quintet.interfaces.manifest import ConformCase
 from quintet.interfaces.ports import MOTION, to_json
 from quintet.interfaces.recordings import seal, seal_rows
 
-BODY = {"shape": "box", "size": [0.1, 0.1, 0.1], "position": [1.0, 2.0, 3.0]}
+BODY = {"shape": "box", "lowest": [0.95, 1.95, 2.95], "highest": [1.05, 2.05, 3.05]}
 TURNING = {**BODY, "velocity": [1.0, 0.0, 0.0], "angular_velocity": [0.0, 2.0, 1.0]}
 ROWS, WINDOW = 16, 0.01  # s
 
@@ -26,7 +26,8 @@ def prescribed() -> tuple[ConformCase, ...]:
     load = {"load.force": np.zeros((1, 3)), "load.torque": np.zeros((1, 3))}
     moved = {**TURNING, "amplitude": [0.0, 0.0, 0.1], "frequency": 2.0}
     wedge = {"shape": "polygon", "corners": [[0.0, 0.0], [0.2, 0.0], [0.0, 0.1]]}
-    plane = [{**BODY, "shape": "disc"}, {**wedge, "position": [2.0, 0.0, 1.0]}]
+    disc = {"shape": "disc", "centre": [1.0, 2.0, 3.0], "radius": 0.05}
+    plane = [disc, {**wedge, "origin": [2.0, 0.0, 1.0]}]
     return (
         ConformCase("at rest", {"bodies": [BODY]}),
         ConformCase("moving", {"bodies": [moved]}, still=False),

@@ -2,9 +2,17 @@
 
 from typing import ClassVar, Literal
 
+from quintet.components.shared.geometry.polygons import require_convex
+from quintet.components.shared.geometry.shape_keys import (
+    RENAMED,
+    BoxKeys,
+    PolygonKeys,
+    RoundKeys,
+    shape_of,
+)
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.params import Count, Number, Positive, PositiveVector, Vector, parameters
+from quintet.interfaces.params import Count, Number, Positive, Vector, parameters
 from quintet.interfaces.ports import LOAD, MOTION, PLANAR_MOTION
 
 PLANAR = ("disc", "polygon")
@@ -31,21 +39,15 @@ class ReplayParams:
 
 
 @parameters
-class PrescribedBody:
+class PrescribedBody(BoxKeys, RoundKeys, PolygonKeys):
     """One rigid body on its path: steady motion and rotation, and a sine on top.
+
+    A polygon moves and turns with its origin, other shapes with their centre.
 
     Parameters
     ----------
     shape
         Disc and polygon in two dimensions, the others in three.
-    size : m
-        Edges; of a sphere its diameter three times, of a disc with 1 m between them. Of all shapes
-        but polygons.
-    corners : m
-        x and z of a convex polygon's corners from its position on, three or more, in order round
-        it.
-    position : m
-        Of the centre at the start.
     velocity : m/s
         Of the steady motion.
     angular_velocity : rad/s
@@ -58,10 +60,8 @@ class PrescribedBody:
         Of the sine.
     """
 
+    RENAMED: ClassVar = RENAMED
     shape: Literal["box", "sphere", "disc", "polygon"]
-    size: PositiveVector | None = None
-    corners: tuple[tuple[Number, Number], ...] | None = None
-    position: Vector
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Vector = (0.0, 0.0, 0.0)
     mass: Positive = 1.0
@@ -104,18 +104,8 @@ def check_body(where: str, body: PrescribedBody, planar: bool) -> None:
             f"{where}.shape must have two dimensions ({', '.join(PLANAR)}) as that of all others, "
             f"or none of theirs; found {body.shape}. Put it in a component of its own."
         )
-    known = {"size": body.size, "corners": body.corners}
-    wanted = "corners" if body.shape == "polygon" else "size"
-    found = [name for name, value in known.items() if value is not None]
-    if found != [wanted]:
-        raise ValueError(
-            f"{where}: a {body.shape} is described by {wanted} alone; found "
-            f"{' and '.join(found) or 'none'}. Give {wanted}."
-        )
+    shape_of(body, where)
     if body.corners is not None:
-        # Polygons are left out of scenes that have none.
-        from quintet.components.shared.geometry.polygons import require_convex
-
         require_convex(f"{where}.corners", body.corners)
     across, normal = body.angular_velocity[::2], (body.velocity[1], body.amplitude[1])
     if planar and any((*across, *normal)):

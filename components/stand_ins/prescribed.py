@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 
+from quintet.components.shared.geometry.shape_keys import shape_of
+from quintet.components.shared.geometry.shapes import Box, Disc, Polygon, Shape, Sphere
 from quintet.components.stand_ins.params import (
-    PrescribedBody,
     PrescribedParams,
     prescribed_ports,
 )
 from quintet.interfaces.component import Array, Component, Fields, Keys
+from quintet.interfaces.params import Vector
 from quintet.interfaces.ports import BOX, DISC, POLYGON, SPHERE
 
 LOADS = ("force", "torque")
@@ -26,11 +28,11 @@ class Prescribed(Component):
         bodies = params.bodies
         self.planar = params.planar
         self.shape = np.array([float(SHAPES[one.shape]) for one in bodies])
-        self.corners = [corners_of(one) for one in bodies]
-        sizes = zip(bodies, self.corners, strict=True)
-        self.size = np.array([size_of(one, corner) for one, corner in sizes])  # (n, 3) m
+        shapes = [shape_of(body, "bodies") for body in bodies]
+        self.corners = [one.outline if isinstance(one, Polygon) else NONE for one in shapes]
+        self.size = np.array([size_of(shape) for shape in shapes])  # (n, 3) m
         self.mass = np.array([one.mass for one in bodies])  # (n,) kg
-        self.origin = np.array([one.position for one in bodies])  # (n, 3) m
+        self.origin = np.array([centre_of(shape) for shape in shapes])  # (n, 3) m
         self.velocity = np.array([one.velocity for one in bodies])  # (n, 3) m/s
         self.angular_velocity = np.array([one.angular_velocity for one in bodies])  # (n, 3) rad/s
         self.amplitude = np.array([one.amplitude for one in bodies])  # (n, 3) m
@@ -91,23 +93,24 @@ class Prescribed(Component):
         return len(self.mass)
 
 
-def corners_of(body: PrescribedBody) -> Array:
-    """Corners (k, 2) m, x and z, of a polygon, going round from x to z; none of other shapes."""
-    if body.corners is None:
-        return NONE
-    # Polygons are left out of scenes that have none.
-    from quintet.components.shared.geometry.polygons import in_order
-
-    return in_order(body.corners)
+def centre_of(shape: Shape) -> Vector:
+    """Place [m] that moves on the path."""
+    if isinstance(shape, Polygon):
+        return shape.origin
+    assert isinstance(shape, Box | Sphere | Disc)
+    return shape.centre
 
 
-def size_of(body: PrescribedBody, corner: Array) -> Array:
-    """Size (3,) m as `ports.MOTION` and `ports.PLANAR_MOTION` give it; corners (k, 2) m."""
-    if body.size is None:
-        x, z = np.ptp(corner, axis=0)
-        return np.array([x, 1.0, z])
-    x, y, z = body.size
-    return np.array([x, 1.0 if body.shape == "disc" else y, z])
+def size_of(shape: Shape) -> Vector:
+    """Size [m] as `ports.MOTION` and `ports.PLANAR_MOTION` give it."""
+    if isinstance(shape, Polygon):
+        x, z = np.ptp(shape.outline, axis=0).tolist()
+        return x, 1.0, z
+    if isinstance(shape, Box):
+        return shape.size
+    assert isinstance(shape, Sphere | Disc)
+    diameter = 2.0 * shape.radius
+    return diameter, 1.0 if isinstance(shape, Disc) else diameter, diameter
 
 
 def steady_rotation(angular_velocity: Array, time: float) -> Array:

@@ -32,8 +32,9 @@ class Run:
         scene = tomllib.loads((folder / "scene.toml").read_text())
         water, bodies = scene["components"]["water"], scene["components"]["blocks"]["bodies"]
         self.name, self.spacing = folder.name, float(water["spacing"])
-        self.size = np.array(bodies[0]["size"])  # m
-        self.place = np.array([body["position"] for body in bodies])  # m
+        lowest = np.array([body["lowest"] for body in bodies])  # m
+        highest = np.array([body["highest"] for body in bodies])  # m
+        self.size, self.place = highest[0] - lowest[0], 0.5 * (lowest + highest)
         left, right = self.place[0::2], self.place[1::2]
         self.width = (right - left)[:, 0] - self.size[0]  # m
         file = folder / "water.vtkhdf"

@@ -69,7 +69,7 @@ def test_check_tells_how_long_windows_will_be_and_why(tmp_path, capsys):
 
 def test_a_path_beside_a_fluid_is_exchanged_as_often_as_the_fluid_needs(tmp_path):
     """A body that allows any step does not make one window of the whole run."""
-    body = {"shape": "box", "size": [0.3, 0.3, 0.3], "position": [0.0, 0.0, 0.0]}
+    body = {"shape": "box", "lowest": [-0.15] * 3, "highest": [0.15] * 3}
     components = {
         "gust": {**GUST, "dt": 0.01},
         "path": {"kind": "prescribed", "bodies": [{**body, "frequency": 10.0}]},

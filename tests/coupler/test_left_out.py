@@ -60,6 +60,7 @@ def modules(tmp_path, *arguments):
 def solvers(names):
     """Solver packages, and whatever of one is more than its manifest."""
     parts = [name.split(".") for name in names if name.startswith("quintet.components.")]
+    parts = [part for part in parts if part[2] != "shared"]
     return {part[2] for part in parts}, {part[3] for part in parts if len(part) > 3}
 
 
@@ -75,7 +76,7 @@ def test_one_component_in_memory_imports_no_transport_and_no_other_solver(tmp_pa
 
 
 def test_a_scene_imports_the_component_that_it_names_and_no_other(tmp_path):
-    settings = 'bodies = [{shape = "box", size = [1, 1, 1], position = [0, 0, 0]}]'
+    settings = 'bodies = [{shape = "box", lowest = [0, 0, 0], highest = [1, 1, 1]}]'
     scene = tmp_path / "scene.toml"
     scene.write_text(ALONE.format(name="box", kind="prescribed", settings=settings))
     names = modules(tmp_path, "run", str(scene))

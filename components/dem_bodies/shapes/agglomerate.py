@@ -37,6 +37,7 @@ class Agglomerate(NamedTuple):
     """A body of equal spheres, about its centre of mass."""
 
     volume: float  # m3
+    centre: Array  # (3,) m, of mass, from the origin of the file
     inertia: Array  # (3, 3) m5, at unit density
     centres: Array  # (n, 3) m
     radius: float  # m
@@ -76,7 +77,9 @@ def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate
             f"file {Path(file).name}: the shape must have room for a sphere within; at "
             f"sphere_radius {radius:g} m it has none. Make sphere_radius smaller."
         )
-    return Agglomerate(shape.volume, shape.inertia, centres - shape.centre, radius, size)
+    return Agglomerate(
+        shape.volume, shape.centre, shape.inertia, centres - shape.centre, radius, size
+    )
 
 
 def require_few(file: str, dim: int, radius: float, count: int) -> None:

@@ -5,21 +5,19 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import accumulate
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.shared.geometry.lattice import lattice_points
 from quintet.interfaces.component import Array
-
-if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import Body
 
 MOST = 2**31 - 1  # bodies: so many can be numbered
 
 
-class Bodies(Sequence["Body"]):
+class Bodies(Sequence[RigidBody]):
     """All bodies, copies in their lattices' order, as a sequence that holds descriptions alone.
 
     Parameters
@@ -28,7 +26,7 @@ class Bodies(Sequence["Body"]):
         Bodies as they are described, each with its lattice of copies.
     """
 
-    def __init__(self, templates: "Sequence[Body]") -> None:
+    def __init__(self, templates: Sequence[RigidBody]) -> None:
         self.templates = tuple(templates)
         self.counts = [number(body) for body in self.templates]
         self.first = [0, *accumulate(self.counts)]  # number of the first body of each, and of all
@@ -41,15 +39,15 @@ class Bodies(Sequence["Body"]):
     def __len__(self) -> int:
         return self.first[-1]
 
-    def __iter__(self) -> "Iterator[Body]":
+    def __iter__(self) -> Iterator[RigidBody]:
         for body in self.templates:
             yield from copies(body)
 
     @overload
-    def __getitem__(self, k: int) -> "Body": ...
+    def __getitem__(self, k: int) -> RigidBody: ...
     @overload
-    def __getitem__(self, k: slice) -> "Sequence[Body]": ...
-    def __getitem__(self, k: int | slice) -> "Body | Sequence[Body]":
+    def __getitem__(self, k: slice) -> Sequence[RigidBody]: ...
+    def __getitem__(self, k: int | slice) -> RigidBody | Sequence[RigidBody]:
         if isinstance(k, slice):
             return tuple(self)[k]
         number = k + len(self) if k < 0 else k
@@ -60,12 +58,12 @@ class Bodies(Sequence["Body"]):
         return at(body, places(body)[number - self.first[group]])
 
 
-def number(body: "Body") -> int:
+def number(body: RigidBody) -> int:
     """Count a body and its copies."""
     return 1 if body.copies is None else math.prod(body.copies.number)
 
 
-def at(body: "Body", place: Array) -> "Body":
+def at(body: RigidBody, place: Array) -> RigidBody:
     """Make a body that stands at a place (3,) m, and has no copies."""
     if body.copies is None:
         return body
@@ -73,7 +71,7 @@ def at(body: "Body", place: Array) -> "Body":
     return replace(body, position=(x, y, z), copies=None)
 
 
-def copies(body: "Body") -> "Iterator[Body]":
+def copies(body: RigidBody) -> Iterator[RigidBody]:
     """Yield one body, or all that stand on its lattice."""
     if body.copies is None:
         yield body
@@ -82,7 +80,7 @@ def copies(body: "Body") -> "Iterator[Body]":
         yield at(body, place)
 
 
-def places(body: "Body") -> Array:
+def places(body: RigidBody) -> Array:
     """Where a body and its copies stand; (n, 3) m, x slowest."""
     if body.copies is None:
         return np.array([body.position])
@@ -99,7 +97,7 @@ def places(body: "Body") -> Array:
     return found
 
 
-def some_places(body: "Body", low: Array, high: Array) -> tuple[Array, Array]:
+def some_places(body: RigidBody, low: Array, high: Array) -> tuple[Array, Array]:
     """Numbers (n,) and places (n, 3) m of those of a body's copies that may stand in a box.
 
     Parameters

@@ -1,27 +1,38 @@
-"""Whether the description of a body is complete and does not contradict itself."""
+"""Rigid bodies from their descriptions, which must be complete and not contradict themselves."""
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
 
 from quintet.components.dem_bodies.shapes.placement import cover, edge_radius
-from quintet.components.dem_bodies.shapes.planar import check_polygon
+from quintet.components.dem_bodies.shapes.planar import leaves_edges
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.sphere_union import measure_union
+from quintet.components.shared.geometry import shape_keys
+from quintet.components.shared.geometry.polygons import area_moments, in_space, require_convex
+from quintet.components.shared.geometry.shapes import ORIGIN, Box, Disc, Polygon, Sphere
+from quintet.interfaces.component import Array
 
-if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import Body
-
-SIZES = {  # what describes a body of each shape
-    "box": ("size",),
-    "sphere": ("diameter",),
+NEEDS = {
+    **{name: shape_keys.NEEDS[name] for name in ("box", "sphere", "disc", "polygon")},
     "spheres": ("centres", "radii"),
-    "agglomerate": ("agglomerate",),
-    "disc": ("diameter",),
-    "polygon": ("corners",),
+    "mesh": ("file", "agglomerate"),
+}
+MAY = {
+    **{name: ("edge_radius", *shape_keys.MAY.get(name, ())) for name in ("box", "polygon")},
+    "spheres": ("origin",),
+    "mesh": ("scale", "origin"),
 }
 
 
-def check_body(where: str, body: "Body") -> None:
-    """Refuse a body whose description is incomplete or contradicts itself."""
-    check_shape(where, body)
+def rigid_body(where: str, body: Any) -> RigidBody:
+    """Return the body that a table describes; refuse one that is incomplete or contradictory."""
+    shape_keys.require_keys(body, where, NEEDS, MAY)
+    values = {f.name: getattr(body, f.name) for f in fields(RigidBody) if hasattr(body, f.name)}
+    placed = RigidBody(**values, **_place(where, body))
+    check_shape(where, placed)
     if (body.density is None) == (body.mass is None):
         raise ValueError(
             f"{where}: exactly one of density and mass must be given; found density "
@@ -33,14 +44,42 @@ def check_body(where: str, body: "Body") -> None:
             f"{where}.orientation must be a unit quaternion (w, x, y, z); found "
             f"{body.orientation} of length {length:.6g}. Divide it by its length."
         )
-    check_locked(where, body)
-    try:
-        cover(body)
-    except ValueError as error:  # the mistakes that are in the file
-        raise ValueError(f"{where}: {error}") from error
+    check_locked(where, placed)
+    return placed
 
 
-def check_locked(where: str, body: "Body") -> None:
+def _place(where: str, body: Any) -> dict[str, Any]:
+    """Centre of mass, and the edges of a box."""
+    if body.shape == "spheres":
+        if len(body.centres) != len(body.radii) or not body.radii:
+            raise ValueError(
+                f"{where}: spheres need one radius for each centre, and at least one; found "
+                f"{len(body.centres)} centres and {len(body.radii)} radii. Complete them."
+            )
+        return _from_origin(body, measure_union((body.centres, body.radii))[1])
+    if body.shape == "mesh":
+        try:
+            covered = cover(body)
+        except ValueError as error:  # the mistakes that are in the file
+            raise ValueError(f"{where}: {error}") from error
+        assert covered is not None
+        return _from_origin(body, covered.centre)
+    shape = shape_keys.shape_of(body, where)
+    if isinstance(shape, Box):
+        return {"position": shape.centre, "size": shape.size}
+    if isinstance(shape, Polygon):
+        require_convex(f"{where}.corners", shape.corners)
+        return _from_origin(body, in_space(area_moments(shape.outline).centre[None])[0])
+    assert isinstance(shape, Sphere | Disc)
+    return {"position": shape.centre}
+
+
+def _from_origin(body: Any, centre: Array) -> dict[str, Any]:
+    x, y, z = (np.array(body.origin or ORIGIN) + centre).tolist()
+    return {"position": (x, y, z)}
+
+
+def check_locked(where: str, body: RigidBody) -> None:
     """Refuse locks that are named twice, and a rotation that locks would have to force."""
     if len(set(body.locked)) < len(body.locked):
         raise ValueError(
@@ -57,31 +96,16 @@ def check_locked(where: str, body: "Body") -> None:
             )
 
 
-def check_shape(where: str, body: "Body") -> None:
-    """Refuse a shape that is described by too little or too much."""
-    wanted = SIZES[body.shape]
-    known = {name for names in SIZES.values() for name in names}
-    found = sorted(name for name in known if getattr(body, name) is not None)
-    if found != sorted(wanted):
+def check_shape(where: str, body: RigidBody) -> None:
+    """Refuse edges that are rounder than the shape allows."""
+    radius = edge_radius(body) if body.shape in ("box", "polygon") else 0.0
+    if body.corners is not None and not leaves_edges(body, radius):
         raise ValueError(
-            f"{where}: a {body.shape} is described by {' and '.join(wanted)} alone; "
-            f"found {', '.join(found) or 'none'}. Give {' and '.join(wanted)}."
+            f"{where}.edge_radius must leave something of each edge; found {radius:.6g} m. Make it "
+            "smaller."
         )
-    if body.edge_radius is not None and body.shape not in ("box", "polygon"):
-        raise ValueError(
-            f"{where}.edge_radius is for boxes and polygons; found it on a {body.shape}. Leave it "
-            "out."
-        )
-    if body.corners is not None:
-        check_polygon(where, body, edge_radius(body))
-    if body.size is not None and not edge_radius(body) < 0.5 * min(body.size):
+    if body.size is not None and not radius < 0.5 * min(body.size):
         raise ValueError(
             f"{where}.edge_radius must be less than half the smallest edge, "
-            f"{0.5 * min(body.size):.6g} m; found {edge_radius(body):.6g} m. Make it smaller."
+            f"{0.5 * min(body.size):.6g} m; found {radius:.6g} m. Make it smaller."
         )
-    if body.centres is not None and body.radii is not None:
-        if len(body.centres) != len(body.radii) or not body.radii:
-            raise ValueError(
-                f"{where}: spheres need one radius for each centre, and at least one; found "
-                f"{len(body.centres)} centres and {len(body.radii)} radii. Complete them."
-            )

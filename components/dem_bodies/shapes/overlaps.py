@@ -15,10 +15,11 @@ import numpy as np
 from quintet.components.dem_bodies.shapes import placement, planar
 from quintet.components.dem_bodies.shapes.copies import Bodies, at, places, some_places
 from quintet.components.dem_bodies.shapes.near_pairs import near_pairs
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import Body, Plane
+    from quintet.components.dem_bodies.params import Plane
 
 MOST_SCATTERED = 400_000  # copies whose places are looked at one by one
 MOST_NEIGHBOURS = 20_000  # of a copy, within whose reach it stands
@@ -35,7 +36,7 @@ def check(bodies: Bodies, planes: "Sequence[Plane]") -> None:
     check_others(bodies)
 
 
-def require_above(first: int, body: "Body", m: int, plane: "Plane") -> None:
+def require_above(first: int, body: RigidBody, m: int, plane: "Plane") -> None:
     """Refuse a body, or the lowest of its copies, that reaches below a plane."""
     reach = placement.bounding_radius(body)
     if body.copies is None and placement.height(body, plane) > reach:
@@ -62,13 +63,13 @@ def require_above(first: int, body: "Body", m: int, plane: "Plane") -> None:
         )
 
 
-def scatter(body: "Body") -> Array:
+def scatter(body: RigidBody) -> Array:
     """By how much each copy at most is moved along each axis; (3,) m."""
     assert body.copies is not None
     return body.copies.scatter * np.array([1.0, body.shape not in planar.SHAPES, 1.0])
 
 
-def extent(body: "Body") -> Array:
+def extent(body: RigidBody) -> Array:
     """How far a body reaches from its position along each axis, to either side; (2, 3) m."""
     if body.size is not None:
         turned = np.abs(placement.rotation_matrix(body.orientation))
@@ -79,7 +80,7 @@ def extent(body: "Body") -> Array:
     return np.array([(arms - radii[:, None]).min(axis=0), (arms + radii[:, None]).max(axis=0)])
 
 
-def require_apart(first: int, body: "Body") -> None:
+def require_apart(first: int, body: RigidBody) -> None:
     """Refuse copies of a body that overlap each other."""
     assert body.copies is not None
     lattice, moved = body.copies, 2.0 * scatter(body)
@@ -87,9 +88,10 @@ def require_apart(first: int, body: "Body") -> None:
     room = float(np.linalg.norm(moved))
     for index in neighbours(body, np.ptp(extent(body), axis=0) + moved):
         step = index * np.array(lattice.spacing)
-        if body.diameter is not None:  # round ones keep the distance that the step leaves
-            gap = float(np.linalg.norm(step)) - body.diameter
-            least = float(np.linalg.norm(np.maximum(np.abs(step) - moved, 0.0))) - body.diameter
+        if body.radius is not None:  # round ones keep the distance that the step leaves
+            gap = float(np.linalg.norm(step)) - 2.0 * body.radius
+            nearest = np.maximum(np.abs(step) - moved, 0.0)
+            least = float(np.linalg.norm(nearest)) - 2.0 * body.radius
         else:
             x, y, z = (step + body.position).tolist()
             gap = placement.body_gap(body, replace(body, position=(x, y, z)))
@@ -111,7 +113,7 @@ def require_apart(first: int, body: "Body") -> None:
         return
 
 
-def neighbours(body: "Body", reach: Array) -> Iterator[Array]:
+def neighbours(body: RigidBody, reach: Array) -> Iterator[Array]:
     """Steps (3,) to the copies within reach of one, each pair of copies once; axes first."""
     assert body.copies is not None
     counts, step = np.array(body.copies.number), np.array(body.copies.spacing)
@@ -129,13 +131,13 @@ def neighbours(body: "Body", reach: Array) -> Iterator[Array]:
             yield np.array(index)
 
 
-def refuse_pairs(first: int, body: "Body") -> None:
+def refuse_pairs(first: int, body: RigidBody) -> None:
     """Refuse scattered copies of which two overlap, as they stand."""
     where = places(body)
     radius = np.full(len(where), placement.bounding_radius(body))
     for i, j in near_pairs(where, radius):
-        if body.diameter is not None:
-            gap = np.linalg.norm(where[i] - where[j], axis=1) - body.diameter
+        if body.radius is not None:
+            gap = np.linalg.norm(where[i] - where[j], axis=1) - 2.0 * body.radius
         else:
             pairs = zip(where[i], where[j], strict=True)
             gap = np.array([placement.body_gap(at(body, a), at(body, b)) for a, b in pairs])
@@ -160,7 +162,7 @@ def check_others(bodies: Bodies) -> None:
             compare_lattice(bodies, k, [j])
 
 
-def bounds(body: "Body") -> Array:
+def bounds(body: RigidBody) -> Array:
     """Lowest and highest corner (2, 3) m of what holds a body and its copies."""
     ends = np.array(body.position) + extent(body)
     if body.copies is not None:
@@ -198,7 +200,7 @@ def compare_lattice(bodies: Bodies, k: int, others: list[int]) -> None:
 def compare(bodies: Bodies, group: Array, number: Array, where: Array, radius: Array) -> None:
     """Refuse two of these bodies that overlap: their templates, numbers, places (n, 3) m, radii."""
     first = np.array(bodies.first)[group] + number
-    round_ = np.array([bodies.templates[k].diameter is not None for k in group])
+    round_ = np.array([bodies.templates[k].radius is not None for k in group])
     for i, j in near_pairs(where, radius):
         kept = (group[i] != group[j]) | (np.array(bodies.counts)[group[i]] == 1)
         i, j = i[kept], j[kept]

@@ -7,12 +7,13 @@ import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import Body, Plane
+    from quintet.components.dem_bodies.params import Plane
 
 ROUNDED = 0.05  # of a box's shortest edge: radius of its edges unless a scene says otherwise
 ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what touches exactly
@@ -20,19 +21,19 @@ ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what to
 Spheres = tuple[Array, Array]  # centres (n, 3) m, radii (n,) m
 
 
-def edge_radius(body: "Body") -> float:
+def edge_radius(body: RigidBody) -> float:
     """Radius of the edges of a box, or of the corners of a polygon [m]."""
     if body.edge_radius is not None:
         return body.edge_radius
     return ROUNDED * (planar.shortest_edge(body) if body.size is None else min(body.size))
 
 
-def cover(body: "Body") -> Agglomerate | None:
-    """Read and cover the shape of a body that is an agglomerate."""
-    if body.agglomerate is None:
+def cover(body: RigidBody) -> Agglomerate | None:
+    """Read and cover the shape of a body that is a mesh."""
+    if body.file is None or body.agglomerate is None:
         return None
-    one = body.agglomerate
-    return agglomerate(one.file, one.scale, one.dim, one.sphere_radius)
+    spheres = body.agglomerate
+    return agglomerate(body.file, body.scale or 1.0, spheres.dim, spheres.sphere_radius)
 
 
 def rotation_matrix(orientation: tuple[float, float, float, float]) -> Array:
@@ -42,13 +43,13 @@ def rotation_matrix(orientation: tuple[float, float, float, float]) -> Array:
     return np.asarray(np.eye(3) + 2.0 * w * skew + 2.0 * skew @ skew)
 
 
-def contact_spheres(body: "Body") -> Spheres:
+def contact_spheres(body: RigidBody) -> Spheres:
     """Contact spheres of a body that is not a box, in body axes about its centre of mass.
 
     Those of a polygon sit in its corners, in order.
     """
-    if body.diameter is not None:
-        return np.zeros((1, 3)), np.array([0.5 * body.diameter])
+    if body.radius is not None:
+        return np.zeros((1, 3)), np.array([body.radius])
     if body.corners is not None:
         radius = edge_radius(body)
         centres = in_space(planar.inner_corners(planar.corners(body), radius))
@@ -62,23 +63,23 @@ def contact_spheres(body: "Body") -> Spheres:
     )
 
 
-def world_spheres(body: "Body") -> Spheres:
+def world_spheres(body: RigidBody) -> Spheres:
     """Find the same spheres in the world."""
     centres, radii = contact_spheres(body)
     return np.array(body.position) + centres @ rotation_matrix(body.orientation).T, radii
 
 
-def bounding_radius(body: "Body") -> float:
+def bounding_radius(body: RigidBody) -> float:
     """Radius [m] about the centre of mass that holds the body."""
     if body.size is not None:
         return 0.5 * float(np.linalg.norm(body.size))
-    if body.diameter is not None:
-        return 0.5 * body.diameter
+    if body.radius is not None:
+        return body.radius
     centres, radii = contact_spheres(body)
     return float((np.linalg.norm(centres, axis=1) + radii).max())
 
 
-def height(body: "Body", plane: "Plane") -> float:
+def height(body: RigidBody, plane: "Plane") -> float:
     """Distance [m] of a body's centre of mass from a plane."""
     rise = sum(
         (a - b) * n for a, b, n in zip(body.position, plane.point, plane.normal, strict=True)
@@ -86,7 +87,7 @@ def height(body: "Body", plane: "Plane") -> float:
     return rise / math.hypot(*plane.normal)
 
 
-def plane_gap(body: "Body", plane: "Plane") -> float:
+def plane_gap(body: RigidBody, plane: "Plane") -> float:
     """Distance [m] of a body's lowest point from a plane."""
     normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
     origin = np.array(plane.point)
@@ -97,7 +98,7 @@ def plane_gap(body: "Body", plane: "Plane") -> float:
     return float(((centres - origin) @ normal - radii).min())
 
 
-def body_gap(a: "Body", b: "Body") -> float:
+def body_gap(a: RigidBody, b: RigidBody) -> float:
     """Gap [m] between two bodies, negative where they overlap."""
     if a.size is not None and b.size is not None:
         return box_gap(a, b)
@@ -115,7 +116,7 @@ def body_gap(a: "Body", b: "Body") -> float:
     return float((np.linalg.norm(c[:, None] - d, axis=2) - r[:, None] - s).min())
 
 
-def box_distance(box: "Body", points: Array) -> Array:
+def box_distance(box: RigidBody, points: Array) -> Array:
     """Signed distances (n,) m of points (n, 3) m from a box."""
     local = (points - np.array(box.position)) @ rotation_matrix(box.orientation)
     beyond = np.abs(local) - 0.5 * np.array(box.size)
@@ -123,7 +124,7 @@ def box_distance(box: "Body", points: Array) -> Array:
     return np.asarray(far + np.minimum(beyond.max(axis=1), 0.0))
 
 
-def box_gap(a: "Body", b: "Body") -> float:
+def box_gap(a: RigidBody, b: RigidBody) -> float:
     """Widest gap [m] of two boxes over the 15 axes that can separate them (Gottschalk 1996)."""
     R, S = rotation_matrix(a.orientation), rotation_matrix(b.orientation)
     crossed = np.cross(R.T[:, None], S.T[None]).reshape(9, 3)

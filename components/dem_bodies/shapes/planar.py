@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.shared.geometry.polygons import (
     area_moments,
     edges,
     in_order,
     in_space,
-    require_convex,
 )
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import Body, DemBodiesParams
+    from quintet.components.dem_bodies.params import DemBodiesParams
 
 SHAPES = ("disc", "polygon")
 
 
-def corners(body: "Body") -> Array:
+def corners(body: RigidBody) -> Array:
     """Corners (k, 2) m of a polygon about its centre of mass."""
     assert body.corners is not None
     found = in_order(body.corners)
@@ -40,12 +40,12 @@ def inner_corners(corner: Array, radius: float) -> Array:
     return np.array([np.linalg.solve([n, m], [a, b]) for n, m, a, b in pairs])
 
 
-def shortest_edge(body: "Body") -> float:
+def shortest_edge(body: RigidBody) -> float:
     """Length [m] of a polygon's shortest edge."""
     return float(np.linalg.norm(edges(np.array(body.corners)), axis=1).min())
 
 
-def describe(bodies: "Sequence[Body]") -> dict[str, Array]:
+def describe(bodies: Sequence[RigidBody]) -> dict[str, Array]:
     """State what `ports.PLANAR_MOTION` asks for beyond shape, size and mass."""
     each = [np.zeros((0, 2)) if body.corners is None else corners(body) for body in bodies]
     return {
@@ -87,17 +87,10 @@ def _separation(a: Array, b: Array) -> float:
     return float((b @ away.T - (away * a).sum(axis=1)).min(axis=0).max())
 
 
-def check_polygon(where: str, body: "Body", radius: float) -> None:
-    """Refuse corners that are not those of a convex polygon, or too round for it."""
-    assert body.corners is not None
-    require_convex(f"{where}.corners", body.corners)
+def leaves_edges(body: RigidBody, radius: float) -> bool:
+    """Whether circles of a radius [m] in a polygon's corners leave something of each edge."""
     corner = corners(body)
-    kept = (edges(inner_corners(corner, radius)) * edges(corner)).sum(axis=1) > 0.0
-    if not kept.all():
-        raise ValueError(
-            f"{where}.edge_radius must leave something of each edge; found {radius:.6g} m. Make it "
-            "smaller."
-        )
+    return bool(((edges(inner_corners(corner, radius)) * edges(corner)).sum(axis=1) > 0.0).all())
 
 
 def check_plane(params: "DemBodiesParams") -> None:
@@ -124,7 +117,7 @@ def check_plane(params: "DemBodiesParams") -> None:
             where, y = f"bodies[{k + body.copies.number[2]}]", y + body.copies.spacing[1]
         if y != first:
             raise ValueError(
-                f"{where}.position must have the y of all others, {first:g} m, in two dimensions; "
+                f"{where} must have the y of all others, {first:g} m, in two dimensions; "
                 f"found {y:g} m. Correct it."
             )
         _require_plane(f"{where}.velocity", body.velocity, (1,))

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from quintet.components.dem_bodies.build import Solid
-from quintet.components.dem_bodies.params import Body, Plane
+from quintet.components.dem_bodies.params import Plane
 from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.state import State
 from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array, Fields
@@ -16,7 +17,7 @@ REACH = 1.0  # sizes of what holds bodies and planes, by which planes are shown 
 ON = 1e-9  # of that size: what lies on a plane is not beyond it
 
 
-def view(bodies: Sequence[Body], solids: Sequence[Solid], state: State) -> Fields:
+def view(bodies: Sequence[RigidBody], solids: Sequence[Solid], state: State) -> Fields:
     """Corners and faces of boxes and polygons, centres and radii of spheres, and velocities."""
     points: list[Array] = []
     radii: list[Array] = []

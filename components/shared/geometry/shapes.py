@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from quintet.components.shared.geometry.mesh_files import Solid
 
 Bounds = tuple[Vector, Vector]  # lowest and highest corner, m
-Corners = Annotated[tuple[tuple[Number, Number], ...], Field(min_length=3, max_length=1000)]
+Corners = Annotated[tuple[tuple[Number, Number], ...], Field(max_length=1000)]
 Mask = NDArray[np.bool_]
 ORIGIN = (0.0, 0.0, 0.0)
 ROUNDING = 1e-9  # of a cylinder's length: how far its axis may lean

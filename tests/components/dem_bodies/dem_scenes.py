@@ -1,6 +1,7 @@
 """Small scenes for the tests of rigid bodies."""
 
 import math
+from decimal import Decimal
 
 import numpy as np
 
@@ -26,23 +27,34 @@ def material(**given):
 
 
 def sphere(position, diameter=0.02, **given):
-    plain = {"shape": "sphere", "diameter": diameter, "density": 2500.0, "material": "a"}
-    return plain | {"position": position} | given
+    plain = {"shape": "sphere", "radius": 0.5 * diameter, "density": 2500.0, "material": "a"}
+    return plain | {"centre": list(position)} | given
 
 
 def box(position, size=(0.15, 0.15, 0.15), **given):
-    plain = {"shape": "box", "size": list(size), "density": 800.0, "material": "a"}
-    return plain | {"position": position} | given
+    plain = {"shape": "box", "density": 800.0, "material": "a"}
+    return plain | corners(position, size) | given
+
+
+def _decimal(number):
+    return Decimal(repr(float(number)))
+
+
+def corners(position, size):
+    """Corners of a box about a place, such that decimal numbers have the same size and middle."""
+    pairs = list(zip(map(_decimal, position), map(_decimal, size), strict=True))
+    low, high = [float(x - s / 2) for x, s in pairs], [float(x + s / 2) for x, s in pairs]
+    return {"lowest": low, "highest": high}
 
 
 def disc(position, diameter=0.2, **given):
-    plain = {"shape": "disc", "diameter": diameter, "density": 1000.0, "material": "a"}
-    return plain | {"position": position} | given
+    plain = {"shape": "disc", "radius": 0.5 * diameter, "density": 1000.0, "material": "a"}
+    return plain | {"centre": list(position)} | given
 
 
 def polygon(position, corners, **given):
     plain = {"shape": "polygon", "corners": corners, "density": 800.0, "material": "a"}
-    return plain | {"position": position} | given
+    return plain | {"origin": list(position)} | given
 
 
 def rectangle(position, width=0.15, height=0.15, **given):

@@ -36,9 +36,8 @@ def files(tmp_path):
 
 
 def body(file, dim=8, radius=0.0125, scale=1.0, **given):
-    plain = {"shape": "agglomerate", "density": 800.0, "material": "a", "position": NOTHING}
-    one = {"file": str(file), "scale": scale, "dim": dim, "sphere_radius": radius}
-    return plain | {"agglomerate": one} | given
+    plain = {"shape": "mesh", "file": str(file), "scale": scale, "density": 800.0, "material": "a"}
+    return plain | {"agglomerate": {"dim": dim, "sphere_radius": radius}} | given
 
 
 def exact_l():
@@ -121,8 +120,8 @@ def test_spheres_of_one_body_never_touch(files):
 
 def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
     stuff = {"a": material(youngs_modulus=1e7, restitution=0.2, friction=0.4)}
-    bodies = [body(files / "ball.ply", position=[0.0, 0.0, 0.0755])]
-    bodies += [body(files / "cube.stl", scale=1e-3, position=[0.16, 0.0, 0.0755])]
+    bodies = [body(files / "ball.ply", origin=[0.0, 0.0, 0.0755])]
+    bodies += [body(files / "cube.stl", scale=1e-3, origin=[0.16, 0.0, 0.0755])]
     pile = build(bodies, stuff, planes=[FLOOR], contact_forces=True, impact_speed=0.5)
     run(pile, 0.3)
     given = outputs_of(pile)
@@ -166,8 +165,8 @@ def test_what_is_wrong_with_a_file_is_told(files):
         "Make dim 6000 or larger, or sphere_radius larger, or correct": body(files / "cube.stl"),
         "must have at most 2000 spheres; dim 40": body(files / "l.npy", 40, scale=0.05),
         "must have room for a sphere within": body(files / "pyramid.ply", 3, 0.3),
-        "is described by agglomerate alone; found agglomerate, diameter": body(
-            files / "ball.ply", diameter=1.0
+        "is described by file and agglomerate alone; found agglomerate, centre": body(
+            files / "ball.ply", centre=[0.0, 0.0, 0.0]
         ),
         "bodies.0.agglomerate.dim should be greater than or equal to 2": body("x", 1),
     }  # fmt: skip
@@ -180,13 +179,13 @@ def test_a_file_is_looked_for_in_the_scenes_folder_only(files, monkeypatch):
     elsewhere.mkdir()
     scene = {"bodies": [body("ball.ply")], "materials": {"a": material()}}
     found, wrong = read(DemBodiesParams, scene, "bodies", files)
-    assert not wrong and found.bodies[0].agglomerate.file == str(files / "ball.ply")
+    assert not wrong and found.bodies[0].file == str(files / "ball.ply")
     monkeypatch.chdir(files)
     monkeypatch.syspath_prepend(files)
     assert "must lie beside the scene" in read(DemBodiesParams, scene, "bodies", elsewhere)[1][0]
 
 
 def test_bodies_that_start_in_one_another_are_refused(files):
-    pair = [body(files / "ball.ply"), body(files / "ball.ply", position=[0.14, 0.0, 0.0])]
+    pair = [body(files / "ball.ply"), body(files / "ball.ply", origin=[0.14, 0.0, 0.0])]
     assert "bodies[0] and bodies[1] must not overlap" in " ".join(mistakes(pair))
-    assert not mistakes([pair[0], pair[1] | {"position": [0.16, 0.0, 0.0]}])
+    assert not mistakes([pair[0], pair[1] | {"origin": [0.16, 0.0, 0.0]}])

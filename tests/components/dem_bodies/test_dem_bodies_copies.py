@@ -10,6 +10,7 @@ from quintet.components.dem_bodies import MANIFEST
 from quintet.components.dem_bodies.params import Body
 from quintet.components.dem_bodies.shapes import placement
 from quintet.components.dem_bodies.shapes.copies import Bodies
+from quintet.components.dem_bodies.shapes.description import rigid_body
 from quintet.components.dem_bodies.shapes.near_pairs import near_pairs
 from quintet.interfaces.params import read
 
@@ -62,7 +63,7 @@ def scattered_scene(random):
 
 def overlap(bodies):
     """Whether any two bodies overlap, each compared with each."""
-    made = [read(Body, one, "body")[0] for one in bodies]
+    made = [rigid_body("body", read(Body, one, "body")[0]) for one in bodies]
     sizes = [placement.bounding_radius(one) for one in Bodies(made)]
     pairs = combinations(zip(Bodies(made), sizes, strict=True), 2)
     return any(placement.body_gap(a, b) < -1e-6 * min(r, s) for (a, r), (b, s) in pairs)

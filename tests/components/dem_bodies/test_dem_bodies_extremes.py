@@ -132,7 +132,7 @@ def test_many_dampers_on_one_body_are_stable():
     """A slab lies on 64 spheres of its own, strongly damped, and is borne with its weight."""
     places = [[0.03 * i, 0.03 * j, 0.0] for i in range(8) for j in range(8)]
     slab = {"shape": "spheres", "centres": places, "radii": [0.0125] * 64, "material": "a"}
-    slab |= {"density": 800.0, "position": [0.0, 0.0, 0.0126]}
+    slab |= {"density": 800.0, "origin": [-0.105, -0.105, 0.0126]}
     stuff = {"a": material(youngs_modulus=1e7, restitution=0.05)}
     body = build([slab], stuff, planes=[FLOOR], impact_speed=0.5, contact_forces=True)
     run(body, 0.3)

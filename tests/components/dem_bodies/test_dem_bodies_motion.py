@@ -152,8 +152,8 @@ def test_union_of_spheres_counts_overlaps_once():
 
 
 def test_clump_of_one_sphere_is_that_sphere_and_moves_alike():
-    clump = {"shape": "spheres", "centres": [[7.0, 0.0, 0.0]], "radii": [0.05], "material": "a"}
-    clump |= {"density": 2500.0, "position": [0.0, 0.0, 0.06]}
+    clump = {"shape": "spheres", "centres": [[0.0, 0.0, 0.0]], "radii": [0.05], "material": "a"}
+    clump |= {"density": 2500.0, "origin": [0.0, 0.0, 0.06]}
     found = []
     for body in (clump, sphere([0.0, 0.0, 0.06], 0.1)):
         scene = build([body | {"velocity": [1.0, 0.0, 0.0]}], planes=[FLOOR])

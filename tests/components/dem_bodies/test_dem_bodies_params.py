@@ -12,7 +12,7 @@ from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.ports import CONTACT
 from quintet.interfaces.ports import LOAD, MOTION
 
-LOOSE = {"shape": "spheres", "density": 1.0, "material": "a", "position": [0.0, 0.0, 0.0]}
+LOOSE = {"shape": "spheres", "density": 1.0, "material": "a"}
 
 
 TWO = {"number": [2, 1, 1], "spacing": [0.01] * 3}
@@ -30,8 +30,12 @@ TWO = {"number": [2, 1, 1], "spacing": [0.01] * 3}
         ([box([0, 0, 0]), sphere([0.08, 0, 0])], {}, "they do by 0.005 m"),
         ([sphere([0, 0, 0]), sphere([0.01, 0, 0])], {}, "they do by 0.01 m"),
         ([box([0, 0, 0], orientation=[1.0, 1.0, 0.0, 0.0])], {}, "must be a unit quaternion"),
-        ([box([0, 0, 0], diameter=1.0)], {}, "a box is described by size alone"),
-        ([sphere([0, 0, 0], edge_radius=0.1)], {}, "edge_radius is for boxes"),
+        ([box([0, 0, 0], radius=1.0)], {}, "a box is described by lowest and highest alone"),
+        (
+            [sphere([0, 0, 0], edge_radius=0.1)],
+            {},
+            "a sphere is described by centre and radius alone",
+        ),
         ([box([0, 0, 0], edge_radius=0.08)], {}, "edge_radius must be less than half"),
         ([box([0, 0, 0], mass=1.0)], {}, "exactly one of density and mass"),
         ([LOOSE | {"centres": [[0, 0, 0]], "radii": [1.0, 2.0]}], {}, "one radius for each centre"),
@@ -57,11 +61,13 @@ def test_wrong_scenes_are_refused(bodies, given, sentence):
         ([box([0, 0, 0], rounding=0.1)], {}, "bodies.0.rounding is now edge_radius."),
         ([sphere([0, 0, 0], copies=[2, 1, 1])], {}, "bodies.0.copies is now copies.number."),
         ([sphere([0, 0, 0], apart=[1, 1, 1])], {}, "bodies.0.apart is now copies.spacing."),
-        ([sphere([0, 0, 0], file="a.stl")], {}, "bodies.0.file is now agglomerate.file."),
+        ([sphere([0, 0, 0], dim=3)], {}, "bodies.0.dim is now agglomerate.dim."),
+        ([sphere([0, 0, 0]) | {"diameter": 0.1}], {}, "bodies.0.diameter is now radius, half"),
+        ([box([0, 0, 0]) | {"size": [1, 1, 1]}], {}, "bodies.0.size is now lowest and highest"),
         (
-            [sphere([0, 0, 0], radius=0.1)],
+            [box([0, 0, 0]) | {"position": [0, 0, 0]}],
             {},
-            "radius is now diameter of a sphere (twice it), or agglomerate",
+            "bodies.0.position is now centre",
         ),
     ],
 )

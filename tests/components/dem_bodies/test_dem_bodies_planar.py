@@ -316,8 +316,12 @@ def test_touching_is_allowed_and_overlaps_are_found_for_every_pair():
         ([polygon(NOTHING, [[0, 0], [1, 0], [0, 1], [1, 1]])], {}, "round a convex polygon"),
         ([polygon(NOTHING, ring(5, 1.0)[::2] + ring(5, 1.0)[1::2])], {}, "once round a convex"),
         ([polygon(NOTHING, WEDGE, edge_radius=0.08)], {}, "leave something of each edge"),
-        ([disc(NOTHING, edge_radius=0.01)], {}, "edge_radius is for boxes and polygons"),
-        ([disc(NOTHING, corners=WEDGE)], {}, "a disc is described by diameter alone"),
+        (
+            [disc(NOTHING, edge_radius=0.01)],
+            {},
+            "found centre, edge_radius, radius",
+        ),
+        ([disc(NOTHING, corners=WEDGE)], {}, "a disc is described by centre and radius alone"),
     ],
 )
 def test_mistakes_are_told(bodies, given, sentence):

@@ -11,13 +11,13 @@ from quintet.coupler.coupling.rigid_samples import asked_sampling, sample_bodies
 from quintet.interfaces.params import read
 from quintet.interfaces.ports import DISC, PLANAR_MOTION, POLYGON
 
-DISC_BODY = {"shape": "disc", "size": [0.2, 1.0, 0.2], "position": [0.0, 0.0, 0.0]}
+DISC_BODY = {"shape": "disc", "centre": [0.0, 0.0, 0.0], "radius": 0.1}
 WEDGE = {
     "shape": "polygon",
     "corners": [[0.0, 0.0], [0.0, 0.2], [0.3, 0.0]],  # the other way round: it is turned
-    "position": [1.0, 0.0, 0.0],
+    "origin": [1.0, 0.0, 0.0],
 }
-BOX = {"shape": "box", "size": [0.1, 0.1, 0.1], "position": [2.0, 0.0, 0.0]}
+BOX = {"shape": "box", "lowest": [2.0, 0.0, 0.0], "highest": [2.1, 0.1, 0.1]}
 
 
 def told(*bodies):
@@ -44,8 +44,8 @@ def test_discs_and_polygons_are_sampled_as_they_describe_themselves():
     [
         ((DISC_BODY, BOX), "bodies[1].shape must have two dimensions (disc, polygon) as that of"),
         ((BOX, WEDGE), "bodies[1].shape must have two dimensions (disc, polygon) as that of"),
-        (({**WEDGE, "size": [1.0, 1.0, 1.0]},), "a polygon is described by corners alone"),
-        (({**BOX, "size": None},), "a box is described by size alone; found none"),
+        (({**WEDGE, "radius": 1.0},), "a polygon is described by corners alone"),
+        (({"shape": "box"},), "a box is described by lowest and highest alone; found none"),
         (({**WEDGE, "corners": [[0, 0], [1, 0]]},), "must go once round a convex polygon"),
         (({**DISC_BODY, "velocity": [0, 1, 0]},), "must move in the plane of x and z"),
         (({**DISC_BODY, "angular_velocity": [1, 0, 0]},), "must move in the plane of x and z"),

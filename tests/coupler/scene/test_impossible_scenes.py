@@ -13,6 +13,14 @@ from quintet.coupler.cli import main
 
 HUGE = "must be below 1e+30 in size, in SI units; found"
 BODY, CUBE = "components.spheres.bodies.0", "components.cube.bodies.0"
+
+
+def at(body, lowest, highest):
+    """Settings that put a box elsewhere."""
+    return ["--set", f"{body}.lowest={lowest}", "--set", f"{body}.highest={highest}"]
+
+
+CUBE_IN_WATER = at(CUBE, "[0.15,0.15,0.125]", "[0.3,0.3,0.275]")
 CASES = {
     "components that are none": (
         ["two_springs", "--set", "components=5"],
@@ -38,8 +46,8 @@ CASES = {
         "links.0.name should be a valid string; found 3. Correct it.",
     ),
     "a size of 1e30": (
-        ["sphere_rebound", "--set", f"{BODY}.diameter=1e30"],
-        f"{BODY}.diameter {HUGE} 1e+30. Correct it.",
+        ["sphere_rebound", "--set", f"{BODY}.radius=1e30"],
+        f"{BODY}.radius {HUGE} 1e+30. Correct it.",
     ),
     "an end of 1e300": (["two_springs", "--set", "end=1e300"], f"end {HUGE} 1e+300. Correct it."),
     "a stiffness of 1e308": (
@@ -64,7 +72,7 @@ CASES = {
         "components.water: it must come to scene.end, 1e+20 s, in at most 9e+15 steps; its step",
     ),
     "numbers that leave what can be computed": (
-        ["sphere_rebound", "--set", f"{BODY}.diameter=1e-200"],
+        ["sphere_rebound", "--set", f"{BODY}.radius=1e-200"],
         "components.spheres: its numbers must be such that what follows from them can be computed;",
     ),
     "threads without number": (
@@ -92,22 +100,22 @@ CASES = {
         "components must fit into this machine's memory of ",
     ),
     "a body in the water": (
-        ["floating_cube", "--set", f"{CUBE}.position=[0.225,0.225,0.2]"],
+        ["floating_cube", *CUBE_IN_WATER],
         "link water-cube: body 0 of cube must begin outside the water of water; it reaches 0.085 m "
         "into box 0 of it, x 0 to 0.45 m, y 0 to 0.45 m, z 0 to 0.21 m. ",
     ),
     "a body outside the tank": (
-        ["floating_cube", "--set", f"{CUBE}.position=[0.525,0.225,0.4]"],
+        ["floating_cube", *at(CUBE, "[0.45,0.15,0.325]", "[0.6,0.3,0.475]")],
         "link water-cube: body 0 of cube must begin within the tank of water, x 0 to 0.45 m, y 0 to"
         " 0.45 m, z 0 to 0.45 m; it reaches 0.15 m beyond face x+. Move it, or open that face.",
     ),
     "a square in the water": (
-        ["floating_square", "--set", "components.square.bodies.0.position=[0.225,0.5,0.2]"],
+        ["floating_square", "--set", "components.square.bodies.0.origin=[0.225,0.5,0.2]"],
         "link water-square: body 0 of square must begin outside the water of water; it reaches ",
     ),
     "a body on a path in the water": (
-        ["dam_break_cubes", "--swap", "cubes=prescribed", "--set",
-         "components.cubes.bodies.0.position=[3.4,0.35,0.1]"],
+        ["dam_break_cubes", "--swap", "cubes=prescribed",
+         *at("components.cubes.bodies.0", "[3.325,0.275,0.025]", "[3.475,0.425,0.175]")],
         "link water-cubes: body 0 of cubes must begin outside the water of water; it reaches 0.175",
     ),
     "a body thinner than the spacing": (
@@ -244,7 +252,7 @@ def test_a_replay_without_a_run_is_of_the_latest_one(capsys, tmp_path):
 
 def test_water_that_leaves_room_for_bodies_may_hold_them(capsys):
     """What cannot begin says how it can: with the key that it names the same scene is sound."""
-    place = ["floating_cube", "--set", f"{CUBE}.position=[0.225,0.225,0.2]"]
+    place = ["floating_cube", *CUBE_IN_WATER]
     assert "or let the fluid set remove_inside_bodies." in refused(capsys, "check", *place)
     with pytest.raises(SystemExit) as ended:
         main(["check", *place, "--set", "components.water.remove_inside_bodies=true"])

@@ -128,10 +128,10 @@ gravity = [0.0, 0.0, 0.0]
 materials.steel = {{ youngs_modulus = 2e11, poissons_ratio = 0.3, friction = 0, restitution = 1 }}
 [[components.thrown.bodies]]
 shape = "sphere"
-diameter = 0.1
+centre = [0.0, 0.0, 0.0]
+radius = 0.05
 density = 7850.0
 material = "steel"
-position = [0.0, 0.0, 0.0]
 [output]
 fields = ["thrown.motion.position"]
 """

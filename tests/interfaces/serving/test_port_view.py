@@ -62,9 +62,9 @@ def test_boxes_turn_and_spheres_have_their_radius():
     quarter = [0.0, 0.0, np.pi / 2.0]
     bodies = _prescribed(
         [
-            {"shape": "box", "size": [2.0, 4.0, 6.0], "position": [1.0, 0.0, 0.0],
+            {"shape": "box", "lowest": [0.0, -2.0, -3.0], "highest": [2.0, 2.0, 3.0],
              "angular_velocity": quarter},
-            {"shape": "sphere", "size": [0.4, 0.4, 0.4], "position": [9.0, 0.0, 0.0]},
+            {"shape": "sphere", "centre": [9.0, 0.0, 0.0], "radius": 0.2},
         ]
     )  # fmt: skip
     bodies.step(1.0)
@@ -85,9 +85,9 @@ def test_polygons_and_discs_are_one_face_and_one_circle():
     bodies = _prescribed(
         [
             {"shape": "polygon", "corners": [[0, 0], [2, 0], [2, 1], [1, 2], [0, 1]],
-             "position": [0.0, 0.0, 1.0]},
-            {"shape": "disc", "size": [0.4, 1.0, 0.4], "position": [5.0, 0.0, 0.0]},
-            {"shape": "polygon", "corners": [[0, 0], [1, 0], [0, 1]], "position": [7.0, 0.0, 0.0]},
+             "origin": [0.0, 0.0, 1.0]},
+            {"shape": "disc", "centre": [5.0, 0.0, 0.0], "radius": 0.2},
+            {"shape": "polygon", "corners": [[0, 0], [1, 0], [0, 1]], "origin": [7.0, 0.0, 0.0]},
         ]
     )  # fmt: skip
     shown, _ = look_at(bodies)
