@@ -133,6 +133,13 @@ def _cloud(
     return cloud, cure.stencils, notes, ()
 
 
+def reaches(domain: Domain) -> Array:
+    """Distance (n,) m of each node's farthest neighbour: layers are thinner than they are wide."""
+    rows, positions = domain.every, domain.cloud.positions
+    arms = positions[domain.stencils.neighbours[rows]] - positions[rows][:, None]
+    return np.asarray(np.sqrt((arms**2).sum(axis=2)).max(axis=1))
+
+
 def transport_of(gas: Gas) -> Transport:
     """Viscosity and conduction of a gas."""
     heat = gas.gamma * gas.gas_constant / (gas.gamma - 1.0)  # J/(kg K), c_p

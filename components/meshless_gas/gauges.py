@@ -1,7 +1,7 @@
 """What is read at places: states of the nearest nodes, and fronts along lines."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +12,8 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.diagnostics import mach, temperature
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.parts import Part, Reader
 from quintet.components.meshless_gas.readings import Front
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
@@ -32,6 +34,24 @@ class SampledLine(NamedTuple):
     direction: Array  # (3,) 1
     column: int  # of the primitive states
     level: float
+
+
+class Gauges(Part):
+    """Probes, and fronts along lines."""
+
+    def __init__(self, params: MeshlessGasParams, domain: Domain, team: Team) -> None:
+        ends = [end for front in params.fronts for end in (front.begin, front.end)]
+        refuse_far(domain, (*params.probes, *ends), team)
+        self.gas, self.cloud = params.gas, domain.cloud
+        self.probed = nearest_nodes(domain.cloud, params.probes, team)
+        self.lines = [line(domain.cloud, front, team) for front in params.fronts]
+
+    def readers(self, primitive: Array) -> Mapping[str, Reader]:
+        """Readers of the ports `probes` and `fronts`."""
+        return {
+            "probes": lambda: probes(self.probed, self.cloud, primitive, self.gas),
+            "fronts": lambda: fronts(self.lines, primitive),
+        }
 
 
 def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]], team: Team) -> Rows:

@@ -15,7 +15,7 @@ CHANGE, FORCE = 2e-5, 2e-4  # of a flow that counts as settled: with 1e-4 it may
 OF_SHOCK = 6  # between a sphere and its bow shock
 
 
-def doubts(params: MeshlessGasParams, domain: Domain) -> dict[str, str]:
+def coarse_clouds(params: MeshlessGasParams, domain: Domain) -> dict[str, str]:
     """Say why results are wrong by 10 % and more, however long the run is."""
     said = {}
     if params.order == 1:

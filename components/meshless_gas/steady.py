@@ -1,53 +1,48 @@
-"""When a flow has settled: densities hardly change any more, nor does the force on walls."""
+"""When a flow has settled: neither densities nor the force on walls change any more."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
+from quintet.components.meshless_gas.parts import Monitor, Reader, Walls
 from quintet.components.meshless_gas.readings import Steady
 from quintet.interfaces.component import Array, Fields
 
 STEPS, SETTLED, SINCE, FORCE = 0, 1, 2, 3  # in the memory; the last has three numbers
 
 
-class Settling:
-    """Looks, every so many steps, whether a flow has settled."""
+class SteadyMonitor(Monitor):
+    """Judges, every so many steps, whether a flow has settled."""
 
-    def __init__(self, says: Steady) -> None:
-        self.says = says
+    def __init__(self, criteria: Steady, walls: Walls) -> None:
+        self.criteria, self.walls = criteria, walls
         self.memory = np.zeros(6)
 
     @property
-    def is_settled(self) -> bool:
-        """Whether it has."""
+    def is_settled(self) -> bool:  # type: ignore[override]
+        """Whether the flow has settled."""
         return bool(self.memory[SETTLED])
 
-    def is_due(self) -> bool:
-        """Count a step; whether to look after it."""
+    def update(self, primitive: Array, change: float, time: float) -> None:
+        """Count a step; every so many, compare the force on walls with that at the last check."""
         self.memory[STEPS] += 1.0
-        return self.memory[STEPS] % self.says.steps == 0.0
-
-    def look(self, change: float, force: Array, scale: float, time: float) -> None:
-        """Compare with the last look.
-
-        Parameters
-        ----------
-        change : float, 1
-            Root mean square of the densities' relative change in the last step.
-        force : (3,) N
-            On all walls together.
-        scale : float, N
-            Sum of the sizes of the forces on their nodes.
-        time : float, s
-        """
+        if self.memory[STEPS] % self.criteria.steps != 0.0:
+            return
+        force = self.walls.force(primitive)
         moved = np.sqrt(((force - self.memory[FORCE:]) ** 2).sum())
-        is_still = moved <= self.says.force * scale
+        is_still = moved <= self.criteria.force * self.walls.scale(primitive)
         self.memory[FORCE:] = force
-        if change <= self.says.change and is_still:
+        if change <= self.criteria.change and is_still:
             self.memory[SETTLED], self.memory[SINCE] = 1.0, time
 
+    def readers(self, primitive: Array) -> Mapping[str, Reader]:
+        """Whether the flow has settled, beside the loads on the body."""
+        return {"body": lambda: {"body.settled": np.array([float(self.is_settled)])}}
+
     def save(self) -> dict[str, Array]:
-        """Copy out what is remembered."""
+        """Copy out the memory."""
         return {"settling": self.memory.copy()}
 
-    def load(self, state: Fields) -> None:
-        """Come back to what was saved."""
-        self.memory[:] = state["settling"]
+    def restore(self, saved: Fields) -> None:
+        """Return to a saved memory."""
+        self.memory[:] = saved["settling"]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from quintet.components.meshless_gas.boundaries import NO_SLIP
-from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.build import Domain, reaches
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
@@ -91,13 +91,6 @@ def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams
         "schlieren": schlieren(np.sqrt((gradient * gradient).sum(axis=1))),
         "shadowgraph": shadowgraph(laplacian(domain, fluxes.gradients[:, 0])),
     }
-
-
-def reaches(domain: Domain) -> Array:
-    """Distance (n,) m of each node's farthest neighbour: layers are thinner than they are wide."""
-    rows, positions = domain.every, domain.cloud.positions
-    arms = positions[domain.stencils.neighbours[rows]] - positions[rows][:, None]
-    return np.asarray(np.sqrt((arms**2).sum(axis=2)).max(axis=1))
 
 
 def walls(params: MeshlessGasParams) -> Fields:

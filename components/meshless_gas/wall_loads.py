@@ -1,6 +1,7 @@
 """What a gas does to walls: pressure, friction and heat, node by node and as sums."""
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.polynomial.polynomial import polyfit
@@ -17,16 +18,17 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import WALLS, own_areas
 from quintet.components.meshless_gas.clouds.params import PlateCloud
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.parts import Reader, WallFriction, Walls
 from quintet.interfaces.component import Array, Fields
 
 SHOCK_RAYS = 0.44  # rad, within which the shock is fitted
 NEAR_AXIS = 0.25  # rad from the direction against the flow, over which values at it are fitted
 
 
-class WallLoads:
-    """What the walls of a gas feel."""
+class WallLoads(Walls):
+    """Pressure, friction and heat on the walls of a gas."""
 
-    def __init__(self, params: MeshlessGasParams, domain: Domain) -> None:
+    def __init__(self, params: MeshlessGasParams, domain: Domain, walls: WallFriction) -> None:
         self.params = params
         cloud = domain.cloud
         patch = cloud.patch[: cloud.nodes]
@@ -43,7 +45,8 @@ class WallLoads:
         self.sizes = np.sqrt((self.areas**2).sum(axis=1))
         if params.box is not None:
             self.areas = cloud.areas[self.rows] * no_slip_faces(params, cloud.areas[self.rows])
-        self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
+        self.no_slip = walls
+        _, self.at, self.among = np.intersect1d(self.rows, walls.rows, return_indices=True)
         self.stream = free_stream(params)
         if params.sphere is not None:
             self.nodes = cloud.nodes
@@ -53,12 +56,19 @@ class WallLoads:
             foot = away[self.rows]
             self.angle = np.arctan2(np.hypot(foot[:, 1], foot[:, 2]), -foot[:, 0])  # (w,) rad
 
-    def take(self, rows: NDArray[np.int32], friction: Array, heat: Array) -> None:
-        """Take friction (w, 3) Pa and heat flux (w,) W/m2 of nodes that hold the gas."""
-        at = np.searchsorted(rows, self.rows)
-        held = at < len(rows)
-        held[held] = rows[at[held]] == self.rows[held]
-        self.friction[held], self.heat[held] = friction[at[held]], heat[at[held]]
+    @property
+    def friction(self) -> Array:
+        """Friction (w, 3) Pa now."""
+        friction = np.zeros((len(self.rows), 3))
+        friction[self.at] = self.no_slip.friction[self.among]
+        return friction
+
+    @property
+    def heat(self) -> Array:
+        """Heat flux (w,) W/m2 into the walls now."""
+        heat = np.zeros(len(self.rows))
+        heat[self.at] = self.no_slip.heat[self.among]
+        return heat
 
     def force(self, primitive: Array) -> Array:
         """Force (3,) N on all walls together, less that of the stream's pressure."""
@@ -82,13 +92,20 @@ class WallLoads:
         pressure = primitive[self.rows, 4] - (self.stream.pressure if self.stream else 0.0)
         return np.asarray(self.sizes[:, None] * self.friction - pressure[:, None] * self.areas)
 
+    def readers(self, primitive: Array) -> Mapping[str, Reader]:
+        """Readers of the ports `wall` and `body`."""
+        return {
+            "wall": lambda: self.wall(primitive),
+            "body": lambda: self.body(primitive),
+        }
+
     def wall(self, primitive: Array) -> Fields:
         """Fields of the port `wall`."""
         return {
             "wall.position": self.places.copy(),
             "wall.pressure": primitive[self.rows, 4],
-            "wall.friction": self.friction.copy(),
-            "wall.heat_flux": self.heat.copy(),
+            "wall.friction": self.friction,
+            "wall.heat_flux": self.heat,
         }
 
     def body(self, primitive: Array) -> Fields:

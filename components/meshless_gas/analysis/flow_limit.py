@@ -21,6 +21,7 @@ from quintet.components.meshless_gas.analysis.von_neumann import Fluid, Lattice,
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.laws.fluxes import smoothness
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.viscous.terms import Viscous
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
@@ -35,9 +36,9 @@ OFF = 1e-3  # speeds of sound by which velocities are moved off the kinks of the
 
 def flow_limit(gas: MeshlessGas) -> tuple[float, int]:
     """Return the largest Courant number of a flow as it is now, and the node that limits it."""
-    gas._write_gradients()
+    gas.scheme.write_gradients()
     bounds = gas.fluxes.bounds
-    rows = gas.domain.inner[np.argsort(bounds[gas.domain.inner], kind="stable")]
+    rows = gas.motion.domain.inner[np.argsort(bounds[gas.motion.domain.inner], kind="stable")]
     least = bounds[rows[0]]
     if not gas.params.local_steps:
         rows = rows[bounds[rows] < SPREAD * least]
@@ -58,19 +59,19 @@ def is_disturbed(gas: MeshlessGas, rows: Rows) -> Flags:
 
 def longest_step(gas: MeshlessGas, row: int) -> float:
     """Return the longest stable step [s] of a lattice whose nodes are all as this one."""
-    state, gamma = gas.fluxes.primitive[row], gas.gamma
+    state, gamma = gas.fluxes.primitive[row], gas.params.gas.gamma
     sound = float(np.sqrt(gamma * state[4] / state[0]))
-    speed = state[1:4] - (0.0 if gas.frame is None else gas.frame[row])
-    near = gas.domain.stencils.neighbours[row]
-    arms = gas.domain.cloud.positions[near] - gas.domain.cloud.positions[row]
+    speed = state[1:4] - (0.0 if gas.motion.frame is None else gas.motion.frame[row])
+    near = gas.motion.domain.stencils.neighbours[row]
+    arms = gas.motion.domain.cloud.positions[near] - gas.motion.domain.cloud.positions[row]
     kept = (arms != 0.0).any(axis=1)
-    arms, coefficients = arms[kept], gas.domain.stencils.coefficients[row][kept]
+    arms, coefficients = arms[kept], gas.motion.domain.stencils.coefficients[row][kept]
     lattice = Lattice(  # even: as many and as far on either side
         np.concatenate([arms, -arms]), 0.5 * np.concatenate([coefficients, -coefficients])
     )
     fluid = Fluid(gamma)
-    if gas.viscous is not None:
-        viscosity = float(gas.viscous.transported[row, 1]) / (state[0] * sound)
+    if isinstance(gas.friction, Viscous):
+        viscosity = float(gas.friction.transported[row, 1]) / (state[0] * sound)
         fluid = Fluid(gamma, viscosity, gas.params.gas.prandtl)
     moved = speed / sound + OFF * np.array([1.0, 0.0, 0.7])
     return largest_step(lattice, moved, slopes(gas, row, near[kept]), fluid) / sound
@@ -121,7 +122,7 @@ def main(words: list[str]) -> None:
     while gas.state.time < limit["end"] and np.isfinite(dt := gas.stable_dt()):
         gas.step(dt)
     found, row = flow_limit(gas)
-    place = np.array2string(gas.domain.cloud.positions[row], precision=3)
+    place = np.array2string(gas.motion.domain.cloud.positions[row], precision=3)
     print(f"{limit['name']}: {found:.2f}, by the node at {place} m")
 
 

@@ -6,7 +6,9 @@ from quintet.components.meshless_gas.build import domain, transport_of
 from quintet.components.meshless_gas.clouds.cloud import INNER
 from quintet.components.meshless_gas.kernels.stencils import write_coefficients
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
-from quintet.components.meshless_gas.moving.layout import layout, with_bodies
+from quintet.components.meshless_gas.moving.friction import BodyFriction, SlipBodies
+from quintet.components.meshless_gas.moving.layout import CloudLayout, layout, with_bodies
+from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.refusals import refuse_scene
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.stencils import Stencils
@@ -50,16 +52,17 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
         bounding=np.concatenate([ground.bounding, own.leaving.astype(np.int32)]),
         weights=_padded(ground.weights, many),
     )
-    moving = MovingClouds(params, joint, own, team)
-    if params.viscous:
-        # Compiled only where the gas has friction.
-        from quintet.components.meshless_gas.moving.friction import AxisStresses, Friction
+    return MovingClouds(params, joint, own, _friction(params, keys, own), team)
 
-        law = transport_of(params.gas)
-        moving.friction = Friction(keys, own, law)
-        if keys.axisymmetric:
-            moving.stresses = AxisStresses(whole, law.conduction)
-    return moving
+
+def _friction(params: MeshlessGasParams, keys: Moving, clouds: CloudLayout) -> BodyFriction:
+    """Friction at the bodies' walls, where the gas has any."""
+    if not params.viscous:
+        return SlipBodies(len(clouds.walls))
+    # Left out of scenes without friction.
+    from quintet.components.meshless_gas.moving.no_slip import NoSlipBodies
+
+    return NoSlipBodies(keys, clouds, transport_of(params.gas))
 
 
 def _padded(weights: Array, many: int) -> Array:

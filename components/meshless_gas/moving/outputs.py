@@ -1,50 +1,70 @@
-"""What is given of bodies that carry clouds."""
+"""Fields of the ports of bodies that carry clouds."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.blunt_bodies import Stream, fay_riddell
-from quintet.components.meshless_gas.moving.layout import CloudLayout
+from quintet.components.meshless_gas.moving.friction import BodyFriction
+from quintet.components.meshless_gas.moving.kernels.walls import FORCE, HEAT, TORQUE
+from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.interfaces.component import Array
-
-if TYPE_CHECKING:
-    from quintet.components.meshless_gas.moving.clouds import MovingClouds
+from quintet.interfaces.component import Array, Fields
 
 
-def outputs(moving: "MovingClouds", primitive: Array) -> dict[str, Array]:
-    """Fields of the ports `bodies`, `surface`, `load` and `heat`."""
-    own, pose, driven = moving.layout, moving.pose, moving.driven
-    pressure, force = primitive[own.walls, 4], moving.summed[:, :3] + moving.base_force
-    bodies, held, count = range(len(own.radii)), moving.friction, len(own.walls)
-    heat = np.zeros(count) if held is None else held.heat.copy()
-    return {
-        "bodies.position": pose.centre.copy(),
-        "bodies.velocity": pose.velocity.copy(),
-        "bodies.force": force.copy(),
-        "bodies.torque": moving.summed[:, 3:6].copy(),
-        "bodies.heat": moving.summed[:, 7].copy(),
-        "bodies.coefficient": force / moving.unit_force[:, None],
-        "bodies.highest_pressure": np.array([pressure[own.body == b].max() for b in bodies]),
-        "bodies.uncovered": np.full(len(bodies), float(moving.holes.uncovered)),
-        "surface.position": moving.domain.cloud.positions[own.walls],
-        "surface.body": own.body.astype(float),
-        "surface.angle": np.arctan2(_aside(own.arms, own.planar), -own.arms[:, 0]),
-        "surface.pressure": pressure.copy(),
-        "surface.friction": np.zeros((count, 3)) if held is None else held.friction.copy(),
-        "surface.heat_flux": heat,
-        "surface.heat_ratio": heat / moving.unit_heat[own.body],
-        "load.force": force[driven],
-        "load.torque": moving.summed[driven, 3:6],
-        "heat.heat_flow": moving.summed[driven, 7],
-    }
+class BodyOutputs:
+    """Loads on bodies and on their surfaces, with the scales of their coefficients."""
 
+    def __init__(
+        self,
+        params: MeshlessGasParams,
+        layout: CloudLayout,
+        areas: Array,
+        driven: NDArray[np.int64],
+    ) -> None:
+        self.layout, self.driven = layout, driven
+        self.unit_force, self.unit_heat = unit_force(params), unit_heat(params)
+        self.base_force = base_force(params, layout, areas)  # (b, 3) N
 
-def _aside(arms: Array, planar: bool) -> Array:
-    """Distance (w,) m from the line along x through the centre; in a plane signed."""
-    return np.asarray(arms[:, 2] if planar else np.hypot(arms[:, 1], arms[:, 2]))
+    def bodies(self, pose: Pose, loads: Array, primitive: Array, fresh: int) -> Fields:
+        """Fields of the port `bodies`, with mean loads (b, 8) and the number of fresh nodes."""
+        layout, count = self.layout, len(self.layout.radii)
+        force, pressure = loads[:, FORCE] + self.base_force, primitive[layout.walls, 4]
+        highest = [pressure[layout.body == b].max() for b in range(count)]
+        return {
+            "bodies.position": pose.centre.copy(),
+            "bodies.velocity": pose.velocity.copy(),
+            "bodies.force": force,
+            "bodies.torque": loads[:, TORQUE].copy(),
+            "bodies.heat": loads[:, HEAT].copy(),
+            "bodies.coefficient": force / self.unit_force[:, None],
+            "bodies.highest_pressure": np.array(highest),
+            "bodies.uncovered": np.full(count, float(fresh)),
+        }
+
+    def surface(self, positions: Array, primitive: Array, friction: BodyFriction) -> Fields:
+        """Fields of the port `surface`."""
+        layout, arms = self.layout, self.layout.arms
+        aside = arms[:, 2] if layout.planar else np.hypot(arms[:, 1], arms[:, 2])
+        return {
+            "surface.position": positions[layout.walls],
+            "surface.body": layout.body.astype(float),
+            "surface.angle": np.arctan2(aside, -arms[:, 0]),
+            "surface.pressure": primitive[layout.walls, 4],
+            "surface.friction": friction.friction.copy(),
+            "surface.heat_flux": friction.heat.copy(),
+            "surface.heat_ratio": friction.heat / self.unit_heat[layout.body],
+        }
+
+    def load(self, loads: Array) -> Fields:
+        """Fields of the port `load`, of mean loads (b, 8)."""
+        force = loads[self.driven, FORCE] + self.base_force[self.driven]
+        return {"load.force": force, "load.torque": loads[self.driven, TORQUE]}
+
+    def heat(self, loads: Array) -> Fields:
+        """Fields of the port `heat`, of mean loads (b, 8)."""
+        return {"heat.heat_flow": loads[self.driven, HEAT]}
 
 
 def unit_force(params: MeshlessGasParams) -> Array:

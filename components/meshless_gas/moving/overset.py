@@ -6,8 +6,7 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER as INNER_NODE
 from quintet.components.meshless_gas.clouds.cloud import (
-    NO_SLIP_ADIABATIC,
-    NO_SLIP_ISOTHERMAL,
+    NO_SLIP_KINDS,
     Cloud,
 )
 from quintet.components.meshless_gas.clouds.nearest import nearest
@@ -36,7 +35,7 @@ class FringeStencils:
         self.fitted = np.zeros((len(layout.radii), 3))  # m, centres when coefficients were written
         self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
         self.across = np.zeros(0, np.int64)  # of these, those that reach over a seam
-        self.no_slip = np.isin(cloud.kind[: cloud.nodes], (NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC))
+        self.no_slip = np.isin(cloud.kind[: cloud.nodes], NO_SLIP_KINDS)
         self.edges, self.weights = domain.edges, domain.weights  # of boundary nodes of the box
         self.place = np.full(len(cloud.positions), -1)  # of nodes among these
         self.place[domain.edges] = np.arange(len(domain.edges))

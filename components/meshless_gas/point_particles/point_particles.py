@@ -1,10 +1,13 @@
-"""Point particles of a partner: what it tells of them, and what the gas does to them."""
+"""Point particles of a partner, and their exchange of momentum and heat with the gas."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
-from quintet.components.meshless_gas.build import Domain, transport_of
+from quintet.components.meshless_gas.build import Domain, reaches, transport_of
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.parts import Part, Reader, Stage
 from quintet.components.meshless_gas.point_particles.half_plane import (
     azimuths_of,
     from_half_plane,
@@ -13,28 +16,28 @@ from quintet.components.meshless_gas.point_particles.half_plane import (
 from quintet.components.meshless_gas.point_particles.interphase import InterphaseExchange
 from quintet.components.meshless_gas.point_particles.kernels import OUTSIDE
 from quintet.components.meshless_gas.point_particles.particles import Particles
-from quintet.components.meshless_gas.view import reaches
-from quintet.interfaces.component import Array, Fields
+from quintet.components.meshless_gas.state import Fluxes
+from quintet.interfaces.component import Array, Fields, Keys
 from quintet.interfaces.errors import SceneError, StepError
 
-TOLD = ("position", "velocity", "acceleration", "temperature", "diameter", "launched")
+RECEIVED = ("position", "velocity", "acceleration", "temperature", "diameter", "launched")
 SUMS = ("force", "heat", "power", "rates")
 STATIC = ("mass", "heat_capacity", "number")
 
 
 def periods(params: MeshlessGasParams) -> list[tuple[int, float, float]]:
     """Axes along which the gas repeats: number, lowest place [m] and length [m]."""
-    found, box = [], params.box
+    axes, box = [], params.box
     if box is None:
         return []
     for axis, name in enumerate("xyz"):
         if params.kind_of(f"{name}-") == "periodic" and not (params.planar and name == "y"):
-            found.append((axis, box.lowest[axis], box.highest[axis] - box.lowest[axis]))
-    return found
+            axes.append((axis, box.lowest[axis], box.highest[axis] - box.lowest[axis]))
+    return axes
 
 
-class CoupledParticles:
-    """Particles as they were last told, and their exchange with the nodes."""
+class CoupledParticles(Part):
+    """Particles as last received from the partner, and their exchange with the nodes."""
 
     def __init__(self, params: MeshlessGasParams, domain: Domain) -> None:
         assert params.particles is not None
@@ -54,30 +57,35 @@ class CoupledParticles:
         images = advanced[domain.cloud.owner]
         self.exchange.look_among(np.flatnonzero(np.concatenate([advanced, images])))
         self.periods = periods(params)
-        one = params.sphere
-        self.axis = np.array(one.centre) if one is not None and params.axisymmetric else None
-        self.hold(0)
+        sphere = params.sphere
+        self.axis = np.array(sphere.centre) if sphere is not None and params.axisymmetric else None
+        self._resize(0)
 
-    def hold(self, count: int) -> None:
-        """Make room for so many particles, of which nothing is known."""
+    def _resize(self, count: int) -> None:
+        """Make room for particles, of which nothing is known."""
         self.exchange.resize(count)
         self.particles = self.exchange.particles
         self.azimuths = np.tile([1.0, 0.0], (count, 1))  # (p, 2) 1, cosines and sines
 
-    def bind(self, static: Fields) -> None:
-        """Learn how heavy they are, how much heat they hold, and how many each stands for."""
+    def describe(self) -> Fields:
+        """State the largest diameter of a point particle."""
+        return {"particles.largest_diameter": np.array([self.coarsest])}
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Take the mass and heat capacity of parcels, and the number of particles in each."""
         if "particles.mass" not in static:
             return
-        self.hold(len(static["particles.mass"]))
-        found = {name: np.array(static[f"particles.{name}"], float) for name in STATIC}
-        self.particles = self.particles._replace(**found)
+        self._resize(len(static["particles.mass"]))
+        fixed = {name: np.array(static[f"particles.{name}"], float) for name in STATIC}
+        self.particles = self.particles._replace(**fixed)
 
     def prime(self, fields: Fields, primitive: Array) -> None:
-        """Learn where they are at the start, and how stiffly they are held there."""
+        """Take their places at the start, and find how stiff the exchange is there."""
         self.take(fields)
         self._refuse_resolved()
-        self.place()
-        self._find_rates(primitive)
+        self._place()
+        self.exchange.add(primitive, None, 0.0, STAGES[0])  # rates alone, without any exchange
+        self._place()
 
     def _refuse_resolved(self) -> None:
         """Refuse particles that are larger than the spacing of nodes: they are no points."""
@@ -90,85 +98,81 @@ class CoupledParticles:
                 "or let the particle be a body with nodes of its own, moving.bodies."
             )
 
-    def _find_rates(self, primitive: Array) -> None:
-        """Find how stiff the exchange is, without any exchange."""
-        self.exchange.add(primitive, None, 0.0, STAGES[0])
-        self.place()
-
     def take(self, fields: Fields) -> None:
-        """Take what is told of them for the coming step."""
-        found = {
+        """Set their places, velocities and temperatures for the coming step."""
+        received = {
             name: np.array(fields[f"particles.{name}"], float)
-            for name in TOLD
+            for name in RECEIVED
             if f"particles.{name}" in fields
         }
-        self.particles = self.particles._replace(**found)
-        if found and not self.particles.temperature.min(initial=1.0) > 0.0:
+        self.particles = self.particles._replace(**received)
+        if received and not self.particles.temperature.min(initial=1.0) > 0.0:
             coldest = int(self.particles.temperature.argmin())
             raise StepError(
                 f"particles must be warmer than 0 K; particle {coldest} has "
                 f"{self.particles.temperature[coldest]:.4g} K. Shorten the window."
             )
 
-    def place(self) -> None:
-        """Begin a step: find the nodes around them, or around their images.
+    def begin(self, dt: float, primitive: Array, conservative: Array) -> None:
+        """Find the nodes around the particles."""
+        self._place()
 
-        These are in a periodic box, or about an axis in the half-plane that has nodes.
+    def _place(self) -> None:
+        """Find the nodes around particles, or around their images among the nodes.
+
+        These lie in a periodic box, or about an axis in the half-plane that has nodes.
         """
-        one, x = self.particles, self.particles.position.copy()
+        particles, x = self.particles, self.particles.position.copy()
         for axis, low, length in self.periods:
             x[:, axis] = low + np.mod(x[:, axis] - low, length)
         if self.axis is not None:
             azimuths = self.azimuths = azimuths_of(x, self.axis)
             x = self.axis + to_half_plane(azimuths, x - self.axis)
-            velocity, acceleration = (
-                to_half_plane(azimuths, one.velocity),
-                to_half_plane(azimuths, one.acceleration),
+            particles = particles._replace(
+                velocity=to_half_plane(azimuths, particles.velocity),
+                acceleration=to_half_plane(azimuths, particles.acceleration),
             )
-            one = one._replace(velocity=velocity, acceleration=acceleration)
-        self.exchange.place(one._replace(position=x))
+        self.exchange.place(particles._replace(position=x))
 
-    def add(
-        self, primitive: Array, residual: Array, dt: float, stage: tuple[float, float, float]
-    ) -> None:
+    def add_rates(self, domain: Domain, work: Fluxes, dt: float, stage: Stage) -> None:
         """Exchange momentum and heat in a stage of a step [s]."""
-        self.exchange.add(primitive, residual, dt, stage)
+        self.exchange.add(work.primitive, work.residual, dt, stage)
 
     def given(self) -> Array:
-        """Mass, momentum and energy (5,) kg/s, N, W that the gas gave in the last step."""
+        """Mass, momentum and energy (5,) kg/s, N, W that the gas gave up in the last step."""
         if not self.exchange.reaction:
             return np.zeros(5)
-        one = self.exchange.loads
-        return np.array([0.0, *one.force.sum(axis=0), one.power.sum()])
+        loads = self.exchange.loads
+        return np.array([0.0, *loads.force.sum(axis=0), loads.power.sum()])
 
-    def loads(self) -> Fields:
+    def readers(self, primitive: Array) -> Mapping[str, Reader]:
         """Mean force [N] and heat [W] on each in the last step."""
+        return {"particle_load": self._load, "particle_heat": self._heat}
+
+    def _load(self) -> Fields:
         force = from_half_plane(self.azimuths, self.exchange.loads.force)
-        return {
-            "particle_load.force": force,
-            "particle_load.torque": np.zeros_like(force),
-            "particle_heat.heat_flow": self.exchange.loads.heat.copy(),
-        }
+        return {"particle_load.force": force, "particle_load.torque": np.zeros_like(force)}
+
+    def _heat(self) -> Fields:
+        return {"particle_heat.heat_flow": self.exchange.loads.heat.copy()}
 
     def stable_dt(self, primitive: Array) -> float:
         """Step [s] that their stiffness allows."""
         return self.exchange.stable_dt(primitive)
 
     def save(self) -> dict[str, Array]:
-        """Copy out what was told, and the last loads; they stand where they were placed."""
-        kept = {f"particles.{name}": getattr(self.particles, name).copy() for name in TOLD + STATIC}
-        kept["particles.placed"] = self.exchange.particles.position.copy()
-        kept["particles.azimuths"] = self.azimuths.copy()
-        for name in SUMS:
-            kept[f"particles.{name}"] = getattr(self.exchange.loads, name).copy()
-        return kept
+        """Copy out what was received, where particles were placed, and the last loads."""
+        saved = {name: getattr(self.particles, name) for name in RECEIVED + STATIC}
+        saved |= {"placed": self.exchange.particles.position, "azimuths": self.azimuths}
+        saved |= {name: getattr(self.exchange.loads, name) for name in SUMS}
+        return {f"particles.{name}": array.copy() for name, array in saved.items()}
 
-    def load(self, state: Fields) -> None:
-        """Come back to it."""
-        told = {name: np.array(state[f"particles.{name}"]) for name in TOLD + STATIC}
-        self.particles = Particles(**told)
-        placed = self.particles._replace(position=np.array(state["particles.placed"]))
-        self.azimuths = np.array(state["particles.azimuths"])
-        self.exchange.place(placed)
+    def restore(self, saved: Fields) -> None:
+        """Return to a saved state."""
+        received = {name: np.array(saved[f"particles.{name}"]) for name in RECEIVED + STATIC}
+        self.particles = Particles(**received)
+        self.azimuths = np.array(saved["particles.azimuths"])
+        placed = np.array(saved["particles.placed"])
+        self.exchange.place(self.particles._replace(position=placed))
         for name in SUMS:
-            getattr(self.exchange.loads, name)[:] = state[f"particles.{name}"]
+            getattr(self.exchange.loads, name)[:] = saved[f"particles.{name}"]

@@ -5,13 +5,13 @@ import numpy as np
 from quintet.components.meshless_gas.build import Domain, transport_of
 from quintet.components.meshless_gas.clouds.cloud import (
     INNER,
-    NO_SLIP_ADIABATIC,
-    NO_SLIP_ISOTHERMAL,
+    NO_SLIP_KINDS,
     Whole,
     own_areas,
 )
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.parts import Stage, WallFriction
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.thread_grain import LIGHT, SUMS
 from quintet.components.meshless_gas.viscous.kernels.flux import (
@@ -30,14 +30,12 @@ from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
-NO_SLIP_KINDS = (NO_SLIP_ISOTHERMAL, NO_SLIP_ADIABATIC)
 
-
-class Viscous:
-    """What viscosity adds to a gas; it remembers nothing from one step to the next."""
+class Viscous(WallFriction):
+    """Terms of viscosity; it remembers nothing from one step to the next."""
 
     def __init__(self, params: MeshlessGasParams, domain: Domain, team: Team) -> None:
-        self.domain, self.team, self.law = domain, team, transport_of(params.gas)
+        self.team, self.law = team, transport_of(params.gas)
         self.gamma = params.gas.gamma
         cloud, (neighbours, coefficients) = domain.cloud, domain.stencils
         held = np.isin(cloud.kind[: cloud.nodes], NO_SLIP_KINDS)
@@ -59,49 +57,43 @@ class Viscous:
         self.temperature = np.array([one.temperature or -1.0 for one in walls])
         self.areas = own_areas(cloud, self.rows)
         self.above = nodes_above(self.rows, domain)
-        self.rarefied = None
-        if any(one.accommodation is not None for one in walls):
+        self.rarefied = []
+        if any(wall.accommodation is not None for wall in walls):
             # Compiled only where a gas slips along walls.
             from quintet.components.meshless_gas.viscous.rarefied import RarefiedWalls
 
-            self.rarefied = RarefiedWalls(params, walls, self.rows, self.above, self.law)
+            self.rarefied = [RarefiedWalls(params, walls, self.rows, self.above, self.law)]
         whole = len(cloud.positions)
         self.transported, self.gradients = np.ones((whole, 2)), np.zeros((whole, 3))
         self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
 
-    def hold(self, primitive: Array) -> None:
+    def write_walls(self, domain: Domain, primitive: Array) -> None:
         """Write the states of walls: their velocity and temperature, the gas's pressure."""
         write_no_slip_walls(
-            self.rows, self.domain.stencils.neighbours, self.weights, self.domain.cloud.normals,
+            self.rows, domain.stencils.neighbours, self.weights, domain.cloud.normals,
             self.velocity, self.temperature, self.gamma, self.law, primitive,
         )  # fmt: skip
-        if self.rarefied is not None:
-            self.rarefied.slide(self.domain, self.velocity, self.temperature, primitive)
+        for slipping in self.rarefied:
+            slipping.slide(domain, self.velocity, self.temperature, primitive)
 
-    def add_flows(self, primitive: Array, flows: Array) -> None:
+    def add_flows(self, domain: Domain, primitive: Array, flows: Array) -> None:
         """Find friction and heat flux at walls, and take them from what enters the gas."""
-        cloud = self.domain.cloud
+        cloud = domain.cloud
         write_tractions(
             self.rows, self.above, cloud.positions, cloud.normals, self.velocity, primitive,
             self.law, self.friction, self.heat,
         )  # fmt: skip
-        if self.rarefied is not None:
-            self.rarefied.write_tractions(
-                self.domain, self.velocity, primitive, self.friction, self.heat
-            )
+        for slipping in self.rarefied:
+            slipping.write_tractions(domain, self.velocity, primitive, self.friction, self.heat)
         self.heat[self.temperature < 0.0] = 0.0
         add_wall_flows(self.areas, self.velocity, self.friction, self.heat, flows)
 
-    def add(self, work: Fluxes) -> None:
+    def add_rates(self, domain: Domain, work: Fluxes, dt: float, stage: Stage) -> None:
         """Add rates of momentum and energy, by the gradients of this stage."""
-        own, cloud = self.domain, self.domain.cloud
-        neighbours, coefficients = own.stencils
+        cloud = domain.cloud
+        self._write_transport(work.primitive)
         self.team.run(
-            write_transport, len(cloud.positions), work.primitive, self.law, self.transported,
-            fewest=LIGHT,
-        )  # fmt: skip
-        self.team.run(
-            write_temperature_gradients, len(own.every), own.every, neighbours, coefficients,
+            write_temperature_gradients, len(domain.every), domain.every, *domain.stencils,
             self.transported, self.gradients, fewest=SUMS,
         )  # fmt: skip
         self.team.run(
@@ -109,23 +101,26 @@ class Viscous:
             fewest=LIGHT,
         )  # fmt: skip
         self.team.run(
-            add_viscous, len(own.inner), own.inner, cloud.positions, work.primitive,
-            self.transported, neighbours, coefficients, work.gradients, self.gradients, self.law,
+            add_viscous, len(domain.inner), domain.inner, cloud.positions, work.primitive,
+            self.transported, *domain.stencils, work.gradients, self.gradients, self.law,
             work.residual,
         )  # fmt: skip
 
-    def shorten(self, work: Fluxes) -> float:
-        """Shorten the steps [s] that nodes bear; return the least."""
-        own, cloud = self.domain, self.domain.cloud
+    def shorten(self, domain: Domain, work: Fluxes, shortest: float) -> float:
+        """Shorten the stable steps of nodes by what diffusion needs; return the shortest [s]."""
+        self._write_transport(work.primitive)
+        steps = self.team.run(
+            shorten_bounds, len(domain.inner), domain.inner, domain.cloud.positions,
+            work.primitive, self.transported, *domain.stencils, self.gamma, self.law, work.bounds,
+        )  # fmt: skip
+        return float(min(steps))
+
+    def _write_transport(self, primitive: Array) -> None:
+        """Write temperature and viscosity of all nodes."""
         self.team.run(
-            write_transport, len(cloud.positions), work.primitive, self.law, self.transported,
+            write_transport, len(self.transported), primitive, self.law, self.transported,
             fewest=LIGHT,
         )  # fmt: skip
-        least = self.team.run(
-            shorten_bounds, len(own.inner), own.inner, cloud.positions, work.primitive,
-            self.transported, *own.stencils, self.gamma, self.law, work.bounds,
-        )  # fmt: skip
-        return float(min(least))
 
 
 def nodes_above(rows: Whole, domain: Domain) -> Whole:

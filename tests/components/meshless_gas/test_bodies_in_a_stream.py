@@ -6,14 +6,27 @@ import numpy as np
 import pytest
 
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.parts import Walls
 from quintet.components.meshless_gas.readings import Steady
-from quintet.components.meshless_gas.steady import Settling
+from quintet.components.meshless_gas.steady import SteadyMonitor
 from quintet.components.meshless_gas.wall_loads import sums
 from quintet.interfaces.component import fields_of
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.params import read
 
 STREAM = {"density": 1.0, "pressure": 1.0 / 1.4, "velocity": [3.0, 0.0, 0.0]}
+
+
+class PushedWall(Walls):
+    """A wall under a force along x."""
+
+    push = 1.0
+
+    def force(self, primitive: np.ndarray) -> np.ndarray:
+        return np.array([self.push, 0.0, 0.0])
+
+    def scale(self, primitive: np.ndarray) -> float:
+        return 1.0
 
 
 def sphere(**keys: object) -> MeshlessGas:
@@ -80,14 +93,15 @@ def test_nothing_tells_whether_a_flow_has_settled_where_no_steady_says_when() ->
 
 
 def test_a_flow_settles_only_when_densities_and_forces_do() -> None:
-    one = Settling(Steady(steps=1, change=1e-3, force=1e-2))
-    push = np.array([1.0, 0.0, 0.0])
-    one.look(1e-4, push, 1.0, 0.1)  # the force was 0 before
-    assert not one.is_settled
-    one.look(1e-2, push, 1.0, 0.2)
-    assert not one.is_settled
-    one.look(1e-4, 1.001 * push, 1.0, 0.3)
-    assert one.is_settled
+    walls = PushedWall()
+    monitor, states = SteadyMonitor(Steady(steps=1, change=1e-3, force=1e-2), walls), np.zeros(0)
+    monitor.update(states, 1e-4, 0.1)  # the force was 0 before
+    assert not monitor.is_settled
+    monitor.update(states, 1e-2, 0.2)
+    assert not monitor.is_settled
+    walls.push = 1.001
+    monitor.update(states, 1e-4, 0.3)
+    assert monitor.is_settled
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform_in_space(cross):
     gas = made(scene(share=1.0, gas=-MACH * OBLIQUE, way=2.0, direction=OBLIQUE, cross=cross))
     for _ in range(8):
         gas.step(gas.stable_dt())
-    inner = gas.domain.inner
+    inner = gas.motion.domain.inner
     assert gas.motion.holes.uncovered > 20
     same = [1.0, *(-MACH * OBLIQUE), PRESSURE]
     assert np.abs(gas.state.primitive[inner] - same).max() < 1e-12
@@ -114,7 +114,7 @@ def test_of_first_order_at_seams_states_are_constant_around_nodes_that_reach_ove
     assert len(across) > 100
     assert not other.fluxes.gradients[across].any()
     assert gas.fluxes.gradients[across].any()
-    assert other.fluxes.gradients[other.domain.inner].any()
+    assert other.fluxes.gradients[other.motion.domain.inner].any()
 
 
 @pytest.mark.full

@@ -23,7 +23,7 @@ def test_a_cylinder_that_flies_at_mach_20_is_computed_without_floors():
     settings = scene(share=1.0, way=way, gas=[0.0, 0.0, 0.0])
     settings["moving"]["bodies"][0]["velocity"] = [-mach, 0.0, 0.0]
     gas = flown(settings, way * RADIUS / mach)
-    inner = gas.domain.inner
+    inner = gas.motion.domain.inner
     assert (gas.state.primitive[inner][:, [0, 4]] > 0.0).all()
     found = gas.give(frozenset(["bodies.highest_pressure"]))["bodies.highest_pressure"][0]
     assert found == pytest.approx(pitot_pressure(mach, 1.4) * PRESSURE, rel=0.1)
@@ -40,7 +40,7 @@ def test_a_blast_of_1e5_times_the_pressure_passes_over_a_body():
         }
     ]
     gas = flown(settings, 7e-3)
-    assert (gas.state.primitive[gas.domain.inner][:, [0, 4]] > 0.0).all()
+    assert (gas.state.primitive[gas.motion.domain.inner][:, [0, 4]] > 0.0).all()
     found = gas.give(frozenset(["bodies.force", "bodies.highest_pressure"]))
     assert found["bodies.highest_pressure"][0] > 1e4 * PRESSURE
     assert found["bodies.force"][0, 0] > 0.0
@@ -50,7 +50,7 @@ def test_a_step_beyond_the_limit_ends_with_where_and_what_to_do():
     gas = made(scene(share=1.0))
     with pytest.raises(StepError, match=r"the node at .* m has .* Lower courant"):
         for _ in range(20):
-            gas.step(4.0 * gas.bound)
+            gas.step(4.0 * gas.scheme.shortest_step)
 
 
 def test_a_partner_that_says_a_body_is_elsewhere_is_refused():

@@ -42,7 +42,7 @@ def test_gas_at_rest_between_planes_of_symmetry_stays_so_in_space():
 
 def rates(made, primitive, frame):
     """Gradients, then residuals of some states."""
-    own, cloud = made.domain, made.domain.cloud
+    own, cloud = made.motion.domain, made.motion.domain.cloud
     gradients, lowest = np.zeros((len(primitive), 5, 3)), np.zeros(len(primitive))
     rows = np.arange(len(primitive), dtype=np.int32)
     write_gradients(0, len(rows), rows, primitive, *own.stencils, None, gradients, lowest)

@@ -13,14 +13,14 @@ def test_a_wave_leaves_through_an_inflow_that_is_slower_than_sound():
     left, right = (1.0, 0.0, 1.5), (1.0, 0.0, 1.0)
     made = run(tube(100, left, right, box={"jitter": 0.0}), 1.2)  # both waves have left
     pressure, velocity = star(Side(*left), Side(*right), GAMMA)
-    within = made.state.primitive[made.domain.inner]
+    within = made.state.primitive[made.motion.domain.inner]
     assert np.abs(within[:, 4] - pressure).max() < 0.02 * (pressure - 1.0)  # 0.19 if it is held
     assert within[:, 1] == pytest.approx(velocity, abs=0.02 * velocity)
 
 
 def test_gas_at_the_state_of_an_inflow_keeps_its_bits():
     made = tube(50, (1.0, 0.5, 1.0), (1.0, 0.5, 1.0), box={"jitter": 0.0})
-    edges = made.domain.edges
+    edges = made.motion.domain.edges
     run(made, 0.2)
     assert (made.state.primitive[edges] == made.state.primitive[edges[0]]).all()
 

@@ -65,7 +65,7 @@ def test_sods_tube_is_of_first_order_and_does_not_overshoot():
     for nodes in (100, 200, 400):
         made = run(tube(nodes, *SOD, limiter="superbee"), 0.2)
         errors.append(given(made, "error.density")[0])
-        place, state = made.domain.cloud.positions[: made.items(), 0], made.state.primitive
+        place, state = made.motion.domain.cloud.positions[: made.items(), 0], made.state.primitive
         for q, low, high in ((0, SOD[1][0], SOD[0][0]), (4, SOD[1][2], SOD[0][2])):
             assert low - 1e-3 < state[:, q].min() and state[:, q].max() < high + 1e-3
         assert state[:, 1].min() > -2e-3 and state[:, 1].max() < velocity + 0.02

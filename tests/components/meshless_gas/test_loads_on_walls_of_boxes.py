@@ -22,11 +22,11 @@ def test_a_floor_feels_no_pressure_of_the_outflow_nor_of_a_lid_that_slips():
     assert (given(made, "wall.position")[:, 2] == 0.0).all()
     # The node at the inflow is the inflow's, and half a spacing with it.
     assert given(made, "body.force")[0] == pytest.approx([0.0, 0.0, -2.0 * 0.95], abs=1e-12)
-    made.wall_loads.friction[:, 0], made.wall_loads.heat[:] = 1e-3, 4.0
+    made.friction.friction[:, 0], made.friction.heat[:] = 1e-3, 4.0
     felt = made.wall_loads.body(made.fluxes.primitive)
     assert felt["body.force"][0, 0] == pytest.approx(1e-3 * 0.95, rel=1e-12)
     assert felt["body.heat"] == pytest.approx(4.0 * 0.95, rel=1e-12)
-    assert np.sqrt((made.viscous.areas**2).sum(axis=1)).sum() == pytest.approx(0.95, rel=1e-12)
+    assert np.sqrt((made.friction.areas**2).sum(axis=1)).sum() == pytest.approx(0.95, rel=1e-12)
 
 
 def test_a_uniform_pressure_pushes_a_closed_cavity_nowhere():

@@ -17,15 +17,15 @@ def stream(speed: float) -> MeshlessGas:
 
 def continued(made: MeshlessGas, states: Array) -> tuple[Array, Array]:
     """States (o, 5) that outflow nodes have among others, and those that they should have."""
-    nodes, rows = made.domain.cloud.nodes, made.domain.outflows.rows
+    nodes, rows = made.motion.domain.cloud.nodes, made.motion.domain.outflows.rows
     made.fluxes.primitive[:nodes] = states
-    made._fill()
+    made.scheme.apply_boundaries()
     return made.fluxes.primitive[rows], states[rows]
 
 
 def test_what_leaves_faster_than_sound_goes_on_as_a_plane() -> None:
     made = stream(3.0)
-    x = made.domain.cloud.positions[: made.domain.cloud.nodes, 0]
+    x = made.motion.domain.cloud.positions[: made.motion.domain.cloud.nodes, 0]
     plane = np.stack([1.0 + 0.1 * x, 3.0 + 0.2 * x, 0.0 * x, 0.1 * x, 1.0 - 0.1 * x], axis=1)
     found, wanted = continued(made, plane)
     assert found == pytest.approx(wanted, abs=1e-12)
@@ -33,7 +33,7 @@ def test_what_leaves_faster_than_sound_goes_on_as_a_plane() -> None:
 
 def test_a_wave_against_slower_gas_is_not_continued() -> None:
     made = stream(0.5)
-    x = made.domain.cloud.positions[: made.domain.cloud.nodes, 0]
+    x = made.motion.domain.cloud.positions[: made.motion.domain.cloud.nodes, 0]
     sound = np.sqrt(1.4)
     slope = 0.01 * (x - 1.0)
     rest = np.stack([1.0 + 0.0 * x, 0.5 + 0.0 * x, 0.0 * x, 0.0 * x, 1.0 + 0.0 * x], axis=1)
@@ -47,7 +47,7 @@ def test_a_wave_against_slower_gas_is_not_continued() -> None:
 
 def test_behind_a_shock_states_stay_within_those_near() -> None:
     made = stream(3.0)
-    x = made.domain.cloud.positions[: made.domain.cloud.nodes, 0]
+    x = made.motion.domain.cloud.positions[: made.motion.domain.cloud.nodes, 0]
     before, behind = np.array([1.0, 3.0, 0.0, 0.0, 1.0]), np.array([3.0, 1.0, 0.0, 0.0, 9.0])
     found, _ = continued(made, np.where((x > 0.87)[:, None], behind, before))
     assert (found[:, 4] >= 1.0 - 1e-12).all() and (found[:, 4] <= 9.0 + 1e-12).all()

@@ -97,7 +97,7 @@ def errors(kind: str, nodes: int) -> dict[str, float]:
 
 def at_bottom(gas: MeshlessGas) -> np.ndarray:
     """Nodes (n,) of the lower wall."""
-    return np.asarray(gas.domain.cloud.positions[: gas.domain.cloud.nodes, 2] < 1e-9)
+    return np.asarray(gas.motion.domain.cloud.positions[: gas.motion.domain.cloud.nodes, 2] < 1e-9)
 
 
 @pytest.mark.parametrize("kind", UPPER)

@@ -32,13 +32,13 @@ def test_spacings_double_level_by_level_and_volumes_fill_the_box():
     made = gas(
         initial=AIR, box={"spacing": 0.05, "refinements": [part(0.45, 0.55, levels=3)], "jitter": 0}
     )
-    cloud, params = made.domain.cloud, made.params
+    cloud, params = made.motion.domain.cloud, made.params
     spacing = cloud.spacing[: made.items()]
     assert cloud.volumes.sum() == pytest.approx(1.0, rel=1e-12)
     assert np.unique(spacing) == pytest.approx([0.00625, 0.0125, 0.025, 0.05])
     middle = np.abs(cloud.positions[: made.items(), ::2] - 0.5).max(axis=1) < 0.05
     assert spacing[middle] == pytest.approx(0.00625)
-    beside = cloud.spacing[made.domain.stencils.neighbours[: made.items()]]
+    beside = cloud.spacing[made.motion.domain.stencils.neighbours[: made.items()]]
     assert beside.max() / beside.min() > 7.0
     assert (beside <= 2.001 * spacing[:, None]).all()
     assert (beside >= 0.499 * spacing[:, None]).all()
@@ -51,7 +51,7 @@ def test_nodes_beside_finer_ones_are_surrounded():
         initial=AIR, box={"spacing": 0.05, "refinements": [part(0.3, 0.7)], "jitter": 0},
         neighbours=9,
     )  # fmt: skip
-    cloud, near = made.domain.cloud, made.domain.stencils.neighbours
+    cloud, near = made.motion.domain.cloud, made.motion.domain.stencils.neighbours
     arms = cloud.positions[near[: made.items()]] - cloud.positions[: made.items(), None]
     for axis in (0, 2):
         for sign in (-1.0, 1.0):
@@ -59,7 +59,7 @@ def test_nodes_beside_finer_ones_are_surrounded():
 
 
 def test_neighbours_are_those_of_the_whole_cloud_however_many_are_ordered_at_a_time(monkeypatch):
-    cloud = gas(initial=AIR, box={"refinements": [part(0.3, 0.7)]}).domain.cloud
+    cloud = gas(initial=AIR, box={"refinements": [part(0.3, 0.7)]}).motion.domain.cloud
     assert len(cloud.owner) > 0
     whole = graded_neighbours(cloud, 9, Team(1))
     monkeypatch.setattr(stencils, "BLOCK", 37)
@@ -94,7 +94,7 @@ def test_a_stream_in_space_stays_as_it_is_where_the_spacing_doubles():
         dimensions=3, neighbours=14, initial=wind,
         box={"spacing": 0.1, "refinements": [part(0.35, 0.65)]},
     )  # fmt: skip
-    assert made.domain.cloud.volumes.sum() == pytest.approx(1.0, rel=1e-12)
+    assert made.motion.domain.cloud.volumes.sum() == pytest.approx(1.0, rel=1e-12)
     run(made, 0.1)
     exact = np.tile([1.0, 1.5, 0.5, -0.3, 1.0], (made.items(), 1))
     assert made.state.primitive == pytest.approx(exact, abs=1e-12)

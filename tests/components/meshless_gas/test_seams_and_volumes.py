@@ -1,4 +1,4 @@
-"""Volumes about bodies with clouds, weights at faces of the box, coefficients across seams."""
+"""Volumes about bodies with clouds, weights at faces of the box, coefficients across fringe."""
 
 import numpy as np
 import pytest
@@ -9,15 +9,15 @@ from quintet.interfaces.errors import SceneError, StepError
 
 def test_coefficients_are_written_anew_only_where_clouds_have_moved(monkeypatch):
     gas = made(scene(bodies=two(0.5), gas=[0.0, 0.0, 0.0]))
-    one, seams, written = gas.motion, gas.motion.fringe, []
+    one, fringe, written = gas.motion, gas.motion.fringe, []
     before, region = one.domain.stencils.coefficients.copy(), one.domain.cloud.region
-    fit = seams.fit
-    monkeypatch.setattr(seams, "fit", lambda rows: (written.append(rows), fit(rows)))
+    fit = fringe.fit
+    monkeypatch.setattr(fringe, "fit", lambda rows: (written.append(rows), fit(rows)))
     one.place(1, 1e-3)
     near = region[one.domain.stencils.neighbours[written[0]]]
-    assert 0 < len(written[0]) < len(seams.across)
+    assert 0 < len(written[0]) < len(fringe.across)
     assert ((near == 2).any(axis=1) | (region[written[0]] == 2)).all()
-    fit(seams.across)
+    fit(fringe.across)
     every = one.domain.stencils.coefficients.copy()
     assert not np.array_equal(every, before)
     one.domain.stencils.coefficients[:] = before
@@ -47,9 +47,9 @@ def test_volumes_of_nodes_about_bodies_fill_the_box():
         gas = made(settings)
         for _ in range(steps):
             gas.step(gas.stable_dt())
-        assert gas.domain.cloud.volumes.sum() == pytest.approx(whole, rel=2e-3)
-        left_out = ~gas.motion.holes.active[: gas.domain.cloud.nodes]
-        assert not gas.domain.cloud.volumes[: len(left_out)][left_out].any()
+        assert gas.motion.domain.cloud.volumes.sum() == pytest.approx(whole, rel=2e-3)
+        left_out = ~gas.motion.holes.active[: gas.motion.domain.cloud.nodes]
+        assert not gas.motion.domain.cloud.volumes[: len(left_out)][left_out].any()
 
 
 def beside_a_face(room):
@@ -65,7 +65,7 @@ def beside_a_face(room):
 
 def test_weights_of_boundaries_are_of_the_neighbours_that_clouds_leave():
     gas = made(beside_a_face(0.34))
-    own, edges, active = gas.domain, gas.domain.edges, gas.motion.holes.active
+    own, edges, active = gas.motion.domain, gas.motion.domain.edges, gas.motion.holes.active
     home = gas.motion.layout.home[edges]
     moved = (own.stencils.neighbours[edges] != home).any(axis=1)
     assert moved.any()

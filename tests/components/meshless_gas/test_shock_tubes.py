@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from gases import GAMMA, SOD, gas, given, run, state, tube
 
-from quintet.components.meshless_gas import component, diagnostics
+from quintet.components.meshless_gas import component, diagnostics, scheme
 from quintet.components.meshless_gas.exact.riemann import Side, star
 from quintet.components.meshless_gas.view import laplacian
 from quintet.interfaces.component import Resources
@@ -69,13 +69,13 @@ def test_a_step_beyond_the_limit_ends_with_where_and_what_to_do():
     made = tube(50, *SOD)
     with pytest.raises(StepError, match=r"the node at .* m has .* Lower courant"):
         for _ in range(20):
-            made.step(4.0 * made.bound)
+            made.step(4.0 * made.scheme.shortest_step)
 
 
 def test_two_threads_give_the_bits_of_one(monkeypatch):
-    for shared_out in (component, diagnostics):
+    for shared_out in (component, scheme, diagnostics):
         monkeypatch.setattr(shared_out, "LIGHT", 20)  # also what is too little to be worth it
-    monkeypatch.setattr(component, "SUMS", 20)
+    monkeypatch.setattr(scheme, "SUMS", 20)
     monkeypatch.setattr(diagnostics, "WHOLESALE", 20)
     monkeypatch.setattr("quintet.components.meshless_gas.state.WHOLESALE", 20)
     one, two = (
@@ -110,9 +110,9 @@ def test_a_shock_is_dark_ahead_and_bright_behind_on_a_shadowgraph():
     assert light.min() < 0.1 and light.max() > 0.9
     assert shown["shadowgraph"][place < 0.1] == pytest.approx(0.5, abs=1e-4)
     # Least squares of a linear field are exact.
-    inner = np.isin(made.domain.every, made.domain.inner)
-    field = made.domain.cloud.positions * np.array([2.0, 0.0, 0.0])
-    assert laplacian(made.domain, field)[inner] == pytest.approx(2.0)
+    inner = np.isin(made.motion.domain.every, made.motion.domain.inner)
+    field = made.motion.domain.cloud.positions * np.array([2.0, 0.0, 0.0])
+    assert laplacian(made.motion.domain, field)[inner] == pytest.approx(2.0)
 
 
 @pytest.mark.full  # a kernel of its own

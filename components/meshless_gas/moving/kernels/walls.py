@@ -9,6 +9,9 @@ from numba import njit
 from quintet.components.meshless_gas.laws.fluxes import SENSED, WIDTH, wall_pressure
 from quintet.components.shared.numba_options import EXACT
 
+# Columns of loads (b, 8) on bodies.
+FORCE, TORQUE = slice(0, 3), slice(3, 6)  # N, N m
+POWER, HEAT = 6, 7  # W of the walls on the gas, W into the body
 LEAST = 0.3  # of the first node's density and pressure: what a wall's state must keep
 
 
@@ -74,7 +77,8 @@ def add_loads(
         From the centre.
     velocity : (w, 3) m/s
     primitive : (n, 5)
-    loads : (b, 7) N, N m, W
+    loads : (b, 8) N, N m, W
+        Columns but for the heat are added to.
     """
     for n in range(rows.shape[0]):
         b, p = body[n], primitive[rows[n], 4]
@@ -85,4 +89,4 @@ def add_loads(
         loads[b, 3] += arms[n, 1] * z - arms[n, 2] * y
         loads[b, 4] += arms[n, 2] * x - arms[n, 0] * z
         loads[b, 5] += arms[n, 0] * y - arms[n, 1] * x
-        loads[b, 6] -= x * velocity[n, 0] + y * velocity[n, 1] + z * velocity[n, 2]
+        loads[b, POWER] -= x * velocity[n, 0] + y * velocity[n, 1] + z * velocity[n, 2]
