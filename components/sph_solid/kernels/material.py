@@ -50,6 +50,47 @@ def power(s, m):  # type: ignore[no-untyped-def]
     )
 
 
+@njit(inline="always")
+def times_number(number, m):  # type: ignore[no-untyped-def]
+    """Product of a number and a matrix, nine by rows."""
+    return (
+        number * m[0], number * m[1], number * m[2], number * m[3], number * m[4], number * m[5],
+        number * m[6], number * m[7], number * m[8],
+    )  # fmt: skip
+
+
+@njit(inline="always")
+def nine_of(array, i):  # type: ignore[no-untyped-def]
+    """Row of nine numbers, as a tuple."""
+    a = array[i]
+    return a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8]
+
+
+@njit(inline="always")
+def rates(m, eta, is_corrected, dt):  # type: ignore[no-untyped-def]
+    """η L and L [1/s] in the middle of the step, and the growth of η in it.
+
+    Gradients m are L where they are corrected, and η L elsewhere.
+    """
+    trace = m[0] + m[4] + m[8]
+    if is_corrected:
+        middle = eta / (1.0 + 0.5 * dt * trace)
+        scale, per = middle, 1.0
+    else:
+        middle = eta - 0.5 * dt * trace
+        scale, per = 1.0, 1.0 / middle
+    return times_number(scale, m), times_number(per, m), -dt * scale * trace
+
+
+@njit(inline="always")
+def fails(i, s, pressure, delta, warm, points, law, dt):  # type: ignore[no-untyped-def]
+    """Whether a particle fails now, of a plastic strain delta in the step; damage grows by it."""
+    if delta > 0.0:
+        points.damage[i] += damage_growth(s, pressure, delta, warm, dt, law)
+    tears = points.strain[i] >= law.failure_strain or points.damage[i] >= 1.0
+    return tears or is_torn(s, pressure, law.spall)
+
+
 @njit(**FAST)
 def advance(
     first: int, last: int, rows: Whole, points: Points, gradient: Array, correction: Array,
@@ -78,24 +119,9 @@ def advance(
     per_start = 1.0 / law.density
     for place in range(first, last):
         i = rows[place]
-        eta = ratios[i]
-        m = (
-            gradient[i, 0], gradient[i, 1], gradient[i, 2],
-            gradient[i, 3], gradient[i, 4], gradient[i, 5],
-            gradient[i, 6], gradient[i, 7], gradient[i, 8],
-        )  # fmt: skip
-        trace = m[0] + m[4] + m[8]
-        if correction.shape[0] > 0 and correction[i, 0] != 0.0:
-            middle = eta / (1.0 + 0.5 * dt * trace)
-            k, n = middle, 1.0
-        else:
-            middle = eta - 0.5 * dt * trace
-            k, n = 1.0, 1.0 / middle
-        rate = (k * m[0], k * m[1], k * m[2], k * m[3], k * m[4], k * m[5], k * m[6], k * m[7],
-                k * m[8])  # fmt: skip
-        strain_rate = (n * m[0], n * m[1], n * m[2], n * m[3], n * m[4], n * m[5], n * m[6],
-                       n * m[7], n * m[8])  # fmt: skip
-        grows = -dt * k * trace
+        eta, m = ratios[i], nine_of(gradient, i)
+        is_corrected = correction.shape[0] > 0 and correction[i, 0] != 0.0
+        rate, strain_rate, grows = rates(m, eta, is_corrected, dt)
         after = max(eta + grows, LEAST)
         before2, after2 = 1.0 / (eta * eta), 1.0 / (after * after)
         s = (deviator[i, 0], deviator[i, 1], deviator[i, 2], deviator[i, 3], deviator[i, 4],
@@ -115,15 +141,10 @@ def advance(
         mu, change = after - 1.0, -grows * after2 * per_start
         deviatoric = half * after2 * power(s, rate)
         pressure, whole = pressure_and_energy(mu, energy + deviatoric, change, law)
-        if not failed:
-            if delta > 0.0:
-                damages[i] += damage_growth(s, pressure, delta, warm, dt, law)
-            tears = strains[i] >= law.failure_strain or damages[i] >= 1.0
-            failed = tears or is_torn(s, pressure, law.spall)
-            if failed:
-                failures[i], damages[i] = 1.0, 1.0
-                s, deviatoric = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0
-                pressure, whole = pressure_and_energy(mu, energy, change, law)
+        if not failed and fails(i, s, pressure, delta, warm, points, law, dt):
+            failed, failures[i], damages[i] = True, 1.0, 1.0
+            s = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            pressure, whole = pressure_and_energy(mu, energy, change, law)
         if failed and pressure < 0.0:
             pressure, whole = 0.0, energy
         energies[i], ratios[i], pressures[i] = whole, after, pressure

@@ -45,39 +45,56 @@ def transposed(m):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def deformation(i, start, place, lists, law):  # type: ignore[no-untyped-def]
-    """F of a particle, and the matrix that corrects its gradients, xx yy zz xy yz zx.
+def offset(points, i, j):  # type: ignore[no-untyped-def]
+    """x_i - x_j, three numbers, of points (any, 3 or more)."""
+    return points[i, 0] - points[j, 0], points[i, 1] - points[j, 1], points[i, 2] - points[j, 2]
 
-    F = Σ V_j (x_j - x_i) ⊗ ∇W B, exact for linear deformations.
+
+@njit(inline="always")
+def sum_reference(i, values, start, place, lists, law):  # type: ignore[no-untyped-def]
+    """Σ V_j (u_j - u_i) ⊗ ∇W of values u (any, 3 or more), and Σ V_j (X_j - X_i) ⊗ ∇W, symmetric.
+
+    The first are nine numbers by rows, the second xx yy zz xy yz zx.
     """
     begin, _, end, neighbour = lists
     kxx, kyy, kzz, kxy, kyz, kzx = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    f0, f1, f2, f3, f4, f5, f6, f7, f8 = 0.0, 0.0, 0.0, 0.0, law.plane, 0.0, 0.0, 0.0, 0.0
+    m0, m1, m2, m3, m4, m5, m6, m7, m8 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for q in range(begin[i], end[i]):
         j = neighbour[q]
-        ax, ay, az = start[i, 0] - start[j, 0], start[i, 1] - start[j, 1], start[i, 2] - start[j, 2]
+        ax, ay, az = offset(start, i, j)
         square = ax * ax + ay * ay + az * az
         per = 1.0 / math.sqrt(square + law.smoothing.tiny)
         weight = -gradient(square, per, law.smoothing) * place[j, 3]
         gx, gy, gz = weight * ax, weight * ay, weight * az
-        dx, dy, dz = place[i, 0] - place[j, 0], place[i, 1] - place[j, 1], place[i, 2] - place[j, 2]
+        du, dv, dw = offset(values, i, j)
         kxx += ax * gx
         kyy += ay * gy
         kzz += az * gz
         kxy += ax * gy
         kyz += ay * gz
         kzx += az * gx
-        f0 += dx * gx
-        f1 += dx * gy
-        f2 += dx * gz
-        f3 += dy * gx
-        f4 += dy * gy
-        f5 += dy * gz
-        f6 += dz * gx
-        f7 += dz * gy
-        f8 += dz * gz
-    corrects, _ = inverse((kxx, kyy, kzz, kxy, kyz, kzx), law)
-    return times((f0, f1, f2, f3, f4, f5, f6, f7, f8), corrects), corrects
+        m0 += du * gx
+        m1 += du * gy
+        m2 += du * gz
+        m3 += dv * gx
+        m4 += dv * gy
+        m5 += dv * gz
+        m6 += dw * gx
+        m7 += dw * gy
+        m8 += dw * gz
+    return (m0, m1, m2, m3, m4, m5, m6, m7, m8), (kxx, kyy, kzz, kxy, kyz, kzx)
+
+
+@njit(inline="always")
+def deformation(i, start, place, lists, law):  # type: ignore[no-untyped-def]
+    """F of a particle, and the matrix that corrects its gradients, xx yy zz xy yz zx.
+
+    F = Σ V_j (x_j - x_i) ⊗ ∇W B, exact for linear deformations.
+    """
+    sums, matrix = sum_reference(i, place, start, place, lists, law)
+    f0, f1, f2, f3, f4, f5, f6, f7, f8 = sums
+    corrects, _ = inverse(matrix, law)
+    return times((f0, f1, f2, f3, f4 + law.plane, f5, f6, f7, f8), corrects), corrects
 
 
 @njit(**FAST)
@@ -102,33 +119,12 @@ def reference_gradients(
     correction : (n, 6) float array
         Ones: gradients are corrected.
     """
-    begin, _, end, neighbour = lists
     for i in range(first, last):
         f, corrects = deformation(i, start, place, lists, law)
-        m0, m1, m2, m3, m4, m5, m6, m7, m8 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for q in range(begin[i], end[i]):
-            j = neighbour[q]
-            ax = start[i, 0] - start[j, 0]
-            ay, az = start[i, 1] - start[j, 1], start[i, 2] - start[j, 2]
-            square = ax * ax + ay * ay + az * az
-            per = 1.0 / math.sqrt(square + law.smoothing.tiny)
-            weight = -gradient(square, per, law.smoothing) * place[j, 3]
-            gx, gy, gz = weight * ax, weight * ay, weight * az
-            du = motion[i, 0] - motion[j, 0]
-            dv, dw = motion[i, 1] - motion[j, 1], motion[i, 2] - motion[j, 2]
-            m0 += du * gx
-            m1 += du * gy
-            m2 += du * gz
-            m3 += dv * gx
-            m4 += dv * gy
-            m5 += dv * gz
-            m6 += dw * gx
-            m7 += dw * gy
-            m8 += dw * gz
-        rate = times((m0, m1, m2, m3, m4, m5, m6, m7, m8), corrects)
-        found = product(rate, inverse_of(f))
+        sums, _ = sum_reference(i, motion, start, place, lists, law)
+        rate = product(times(sums, corrects), inverse_of(f))
         for d in range(9):
-            velocity_gradient[i, d] = found[d]
+            velocity_gradient[i, d] = rate[d]
         for d in range(6):
             correction[i, d] = 1.0
 
@@ -160,22 +156,73 @@ def write_nominal_stresses(
             stress[i, 7],
         )
         eta = density / rest
-        tau = (
-            xx * eta,
-            xy * eta,
-            zx * eta,
-            xy * eta,
-            yy * eta,
-            yz * eta,
-            zx * eta,
-            yz * eta,
+        kirchhoff = (
+            xx * eta, xy * eta, zx * eta, xy * eta, yy * eta, yz * eta, zx * eta, yz * eta,
             zz * eta,
-        )
-        found = times(product(tau, transposed(inverse_of(f))), corrects)
+        )  # fmt: skip
+        corrected = times(product(kirchhoff, transposed(inverse_of(f))), corrects)
         for d in range(9):
-            nominal[i, d] = found[d]
+            nominal[i, d] = corrected[d]
             deformed[i, d] = f[d]
         nominal[i, 9], nominal[i, 10] = density, rest
+
+
+@njit(inline="always")
+def along(tensor, i, j, ax, ay, az):  # type: ignore[no-untyped-def]
+    """(T_i + T_j)·a of tensors (any, 9 or more), nine by rows."""
+    t = tensor
+    t0, t1, t2 = t[i, 0] + t[j, 0], t[i, 1] + t[j, 1], t[i, 2] + t[j, 2]
+    t3, t4, t5 = t[i, 3] + t[j, 3], t[i, 4] + t[j, 4], t[i, 5] + t[j, 5]
+    t6, t7, t8 = t[i, 6] + t[j, 6], t[i, 7] + t[j, 7], t[i, 8] + t[j, 8]
+    return (
+        t0 * ax + t1 * ay + t2 * az,
+        t3 * ax + t4 * ay + t5 * az,
+        t6 * ax + t7 * ay + t8 * az,
+    )
+
+
+@njit(inline="always")
+def sum_reference_forces(  # type: ignore[no-untyped-def]
+    i, start, place, motion, nominal, deformed, lists, law, penalty
+):
+    """Forces of stresses, and of viscosity and penalty, over V_i; the heat of these, and max|μ|."""
+    begin, _, end, neighbour = lists
+    fx, fy, fz, px, py, pz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    heat, fastest, length = 0.0, 0.0, law.smoothing.length
+    density, rest, sound = nominal[i, 9], nominal[i, 10], motion[i, 3]
+    for q in range(begin[i], end[i]):
+        j = neighbour[q]
+        if j == i:
+            continue
+        ax, ay, az = offset(start, i, j)
+        square = ax * ax + ay * ay + az * az
+        per = 1.0 / math.sqrt(square + law.smoothing.tiny)
+        weight = gradient(square, per, law.smoothing) * place[j, 3]
+        tx, ty, tz = along(nominal, i, j, ax, ay, az)
+        fx += weight * tx
+        fy += weight * ty
+        fz += weight * tz
+        dx, dy, dz = offset(place, i, j)
+        du, dv, dw = offset(motion, i, j)
+        now = dx * dx + dy * dy + dz * dz
+        dot = dx * du + dy * dv + dz * dw
+        mu = length * max(-dot, 0.0) / (now + law.softening)
+        sounds, per_density = sound + motion[j, 3], 1.0 / (density + nominal[j, 9])
+        q_ij = viscous_pressure(mu, sounds, per_density, rest * nominal[j, 10], law)
+        per_now = 1.0 / math.sqrt(now + law.smoothing.tiny)
+        drag = weight * per_now / per * q_ij
+        # The distance that F of both would give the two, less the distance that they have.
+        ux, uy, uz = along(deformed, i, j, ax, ay, az)
+        excess = (ux * dx + uy * dy + uz * dz) * per_now - 2.0 * now * per_now
+        stiff = 0.5 * (rest + nominal[j, 10]) * sound * motion[j, 3]
+        push = 0.5 * penalty * stiff * place[j, 3] * kernel(square, law.smoothing)
+        push *= excess * per * per * per_now
+        heat += (drag - push) * dot
+        px += (push - drag) * dx
+        py += (push - drag) * dy
+        pz += (push - drag) * dz
+        fastest = max(fastest, mu)
+    return (fx, fy, fz), (px, py, pz), heat, fastest
 
 
 @njit(**FAST)
@@ -206,88 +253,18 @@ def reference_accelerations(
     ----------
     Ganzenmüller, Comput. Methods Appl. Mech. Eng. 286 (2015) 87 (penalty).
     """
-    begin, _, end, neighbour = lists
     acceleration, heating = forces
     slowest, greatest = math.inf, 0.0
-    length = law.smoothing.length
     for i in range(first, last):
-        fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, 0.0
-        px, py, pz = 0.0, 0.0, 0.0
-        density, rest, sound = nominal[i, 9], nominal[i, 10], motion[i, 3]
-        for q in range(begin[i], end[i]):
-            j = neighbour[q]
-            if j == i:
-                continue
-            ax = start[i, 0] - start[j, 0]
-            ay, az = start[i, 1] - start[j, 1], start[i, 2] - start[j, 2]
-            square = ax * ax + ay * ay + az * az
-            per = 1.0 / math.sqrt(square + law.smoothing.tiny)
-            weight = gradient(square, per, law.smoothing) * place[j, 3]
-            t0, t1, t2 = (
-                nominal[i, 0] + nominal[j, 0],
-                nominal[i, 1] + nominal[j, 1],
-                nominal[i, 2] + nominal[j, 2],
-            )
-            t3, t4, t5 = (
-                nominal[i, 3] + nominal[j, 3],
-                nominal[i, 4] + nominal[j, 4],
-                nominal[i, 5] + nominal[j, 5],
-            )
-            t6, t7, t8 = (
-                nominal[i, 6] + nominal[j, 6],
-                nominal[i, 7] + nominal[j, 7],
-                nominal[i, 8] + nominal[j, 8],
-            )
-            fx += weight * (t0 * ax + t1 * ay + t2 * az)
-            fy += weight * (t3 * ax + t4 * ay + t5 * az)
-            fz += weight * (t6 * ax + t7 * ay + t8 * az)
-            dx = place[i, 0] - place[j, 0]
-            dy, dz = place[i, 1] - place[j, 1], place[i, 2] - place[j, 2]
-            du = motion[i, 0] - motion[j, 0]
-            dv, dw = motion[i, 1] - motion[j, 1], motion[i, 2] - motion[j, 2]
-            now = dx * dx + dy * dy + dz * dz
-            dot = dx * du + dy * dv + dz * dw
-            mu = length * max(-dot, 0.0) / (now + law.softening)
-            drag = viscous_pressure(
-                mu,
-                sound + motion[j, 3],
-                1.0 / (density + nominal[j, 9]),
-                rest * nominal[j, 10],
-                law,
-            )
-            per_now = 1.0 / math.sqrt(now + law.smoothing.tiny)
-            along = weight * per_now / per * drag
-            # What F of both would have between the two, over what there is.
-            ux = (
-                (deformed[i, 0] + deformed[j, 0]) * ax
-                + (deformed[i, 1] + deformed[j, 1]) * ay
-                + (deformed[i, 2] + deformed[j, 2]) * az
-            )
-            uy = (
-                (deformed[i, 3] + deformed[j, 3]) * ax
-                + (deformed[i, 4] + deformed[j, 4]) * ay
-                + (deformed[i, 5] + deformed[j, 5]) * az
-            )
-            uz = (
-                (deformed[i, 6] + deformed[j, 6]) * ax
-                + (deformed[i, 7] + deformed[j, 7]) * ay
-                + (deformed[i, 8] + deformed[j, 8]) * az
-            )
-            excess = (ux * dx + uy * dy + uz * dz) * per_now - 2.0 * now * per_now
-            stiff = 0.5 * (rest + nominal[j, 10]) * sound * motion[j, 3]
-            push = 0.5 * penalty * stiff * place[j, 3] * kernel(square, law.smoothing)
-            push *= excess * per * per * per_now
-            heat += (along - push) * dot
-            px += (push - along) * dx
-            py += (push - along) * dy
-            pz += (push - along) * dz
-            fastest = max(fastest, mu)
-        each = 1.0 / rest
-        fx, fy, fz = fx * each, fy * each, fz * each
+        force, push, heat, fastest = sum_reference_forces(
+            i, start, place, motion, nominal, deformed, lists, law, penalty
+        )
+        sound, per = motion[i, 3], 1.0 / nominal[i, 10]
+        fx, fy, fz = force[0] * per, force[1] * per, force[2] * per
         acceleration[i, 0], acceleration[i, 1], acceleration[i, 2] = fx, fy, fz
-        heats[i, 0], heats[i, 1], heats[i, 2] = each * px, each * py, each * pz
-        heating[i] = 0.5 * heat * each
+        heats[i, 0], heats[i, 1], heats[i, 2] = per * push[0], per * push[1], per * push[2]
+        heating[i] = 0.5 * heat * per
         drag = law.linear * sound + law.quadratic * fastest
-        slowest = min(slowest, length / (sound + 1.2 * drag))
+        slowest = min(slowest, law.smoothing.length / (sound + 1.2 * drag))
         greatest = max(greatest, fx * fx + fy * fy + fz * fz)
     return slowest, greatest

@@ -156,18 +156,18 @@ def test_bodies_that_meet_push_each_other_off_and_exchange_their_momentum():
 
 
 def test_contact_of_shocked_bodies_gains_no_energy():
-    flyer = Body(lowest=(0.0, 0.0, -20 * DX), highest=(3 * DX, 1.0, 0.0), material="aluminium",
+    flyer = Body(lowest=(0.0, 0.0, -25 * DX), highest=(3 * DX, 1.0, 0.0), material="aluminium",
                  velocity=(0.0, 0.0, 1000.0))  # fmt: skip
-    target = Body(lowest=(0.0, 0.0, 0.0), highest=(3 * DX, 1.0, 40 * DX), material="aluminium")
+    target = Body(lowest=(0.0, 0.0, 0.0), highest=(3 * DX, 1.0, 75 * DX), material="aluminium")
     planes = SymmetryPlane(axis="x"), SymmetryPlane(axis="x", position=3 * DX, side="-")
     plates = SphSolid(
         SphSolidParams(
             spacing=DX, dimensions=2, bodies=(flyer, target), symmetry=planes, total_lagrangian=True
         )
     )
-    for _ in range(129):
+    for _ in range(100):
         plates.step(plates.stable_dt())
-    assert not plates.warnings()
+        assert not plates.warnings()
 
 
 def test_a_body_that_meets_a_plane_moves_as_one_that_meets_its_image():
