@@ -21,6 +21,7 @@ from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.coupler.coupling.run_warnings import RunWarnings
 from quintet.coupler.coupling.settling_watch import SettlingWatch
 from quintet.coupler.coupling.stability_watch import StabilityWatch
+from quintet.coupler.coupling.start_check import StartCheck
 from quintet.coupler.coupling.time_error import TimeErrors
 from quintet.coupler.files.table_file import TableFile
 from quintet.interfaces.component import Array, Fields
@@ -85,6 +86,7 @@ class Ledger:
         self.watch = StabilityWatch(self.accounts)
         self.warnings = RunWarnings()
         self.time_errors = TimeErrors()
+        self.start = StartCheck()
         self.settling = SettlingWatch()
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
@@ -235,6 +237,7 @@ class Ledger:
             "watch": self.watch.save(),
             "warnings": self.warnings.save(),
             "time_errors": self.time_errors.save(),
+            "start": self.start.save(),
             "settling": self.settling.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
@@ -250,6 +253,7 @@ class Ledger:
         self.watch.load(state["watch"])
         self.warnings.load(state["warnings"])
         self.time_errors.load(state["time_errors"])
+        self.start.load(state["start"])
         self.settling.load(state["settling"])
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])

@@ -61,6 +61,8 @@ class TimeCheck:
     def look(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
         """Compare the window with its pieces, if it was stepped so; warn early of large errors."""
         pieces, self._pieces = self._pieces, None
+        if coupling.windows.done <= 2:
+            coupling.ledger.start.look(coupling, _moves(coupling))
         if pieces is None:
             return {}
         samples = {}
@@ -72,8 +74,23 @@ class TimeCheck:
         return _coarse_windows(coupling, EARLY, FEWEST)
 
     def final_warnings(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
-        """Warn of every link whose estimated error is above its limit."""
-        return _coarse_windows(coupling)
+        """Warn of every link whose estimated error is above its limit, or whose start is late."""
+        texts, errors = _coarse_windows(coupling), coupling.ledger.time_errors
+        for key, link in _moves(coupling).items():
+            extent = errors.fields[key].extent if key in errors.fields else 0.0
+            if text := coupling.ledger.start.warning(key, extent, coupling.last_dt):
+                texts.setdefault(link, {})["start"] = text
+        return texts
+
+
+def _moves(coupling: "Coupling") -> dict[Key, str]:
+    """Positions by which links are judged whose windows are those of the run, and the links."""
+    fields = {key: coupling.exchange.gives[key[0]][key[1]] for key in judged(coupling)}
+    return {
+        key: link
+        for key, link in judged(coupling).items()
+        if fields[key].rate and fields[key].kind == "value" and coupling.carries(link) is coupling
+    }
 
 
 def _coarse_windows(

@@ -110,8 +110,13 @@ class FieldError:
     @property
     def drift(self) -> float:
         """Bias of a motion added up over its way, relative to its range."""
-        extent = norm(self.high - self.low)
+        extent = self.extent
         return self.bias * max(1.0, self.change / extent) if extent > 0.0 else 0.0
+
+    @property
+    def extent(self) -> float:
+        """Norm of the range that a motion had at the ends of the windows looked at."""
+        return norm(self.high - self.low)
 
 
 class TimeErrors:

@@ -130,3 +130,17 @@ def test_a_wave_on_few_particles_is_refused() -> None:
     tank = ((0.0, 0.0, 0.0), (1.0, 0.1, 0.5))
     with pytest.raises(ValueError, match="wave needs 8 particles or more in the depth; found 5"):
         fluid_params(spacing=0.1, sound_speed=30.0, dimensions=2, fluid=(tank,), wave=wave)
+
+
+@pytest.mark.parametrize(
+    ("kernel", "smoothing", "warned"),
+    [("wendland", 1.5, False), ("wendland", 1.3, True), ("cubic", 1.5, True)],
+)
+def test_kernels_that_damp_a_wave_are_warned_of(
+    kernel: str, smoothing: float, warned: bool
+) -> None:
+    """Measured on standing_wave: 5, 10 and 70 % too much."""
+    tank = ((0.0, 0.0, 0.0), (1.0, 0.1, 0.5))
+    scene = {"spacing": 0.05, "sound_speed": 22.2, "dimensions": 2, "fluid": (tank,)}
+    scene["wave"] = {"amplitude": 0.02, "length": 1.0}
+    assert ("smoothing" in made(**scene, kernel=kernel, smoothing=smoothing)) == warned
