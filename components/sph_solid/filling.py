@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
+from quintet.components.shared.geometry.shapes import Cylinder, Mesh, Sphere
 from quintet.components.sph_solid.body import Body
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array
@@ -24,7 +25,7 @@ def filling(body: Body, params: SphSolidParams) -> Filling:
 
     Particles share the body's volume, what planes of symmetry cut off included.
     """
-    points, share = FILLINGS[body.shape](body, params)
+    points, share = (_tube if body.inner_radius else FILLINGS[body.shape])(body, params)
     if params.axisymmetric:
         points = points[points[:, 0] > 0.0]
         share = points[:, 0]  # of a ring, by its circumference
@@ -39,7 +40,7 @@ def filling(body: Body, params: SphSolidParams) -> Filling:
 def _box(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     axes = [
         cell_centres(low, high, max(1, round((high - low) / params.spacing)))
-        for low, high in zip(*body.box, strict=True)
+        for low, high in zip(*body.bounds, strict=True)
     ]
     if params.dimensions == 2:
         axes[1] = np.zeros(1)
@@ -49,12 +50,14 @@ def _box(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
 
 def _round(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     """Points of a lattice about the centre that are in a sphere or cylinder."""
-    low, high = body.box
-    radius, along = 0.5 * (body.diameter or 0.0), "xyz".index(body.axis)
+    low, high = body.bounds
+    shape = body.geometry
+    assert isinstance(shape, Sphere | Cylinder)
+    radius, along = shape.radius, shape.axis if isinstance(shape, Cylinder) else None
     centre = np.array(low) / 2.0 + np.array(high) / 2.0
     axes = []
     for axis in range(3):
-        if body.shape == "cylinder" and axis == along:
+        if axis == along:
             edge = high[axis] - low[axis]
             axes.append(cell_centres(-0.5 * edge, 0.5 * edge, max(1, round(edge / params.spacing))))
         else:
@@ -64,7 +67,7 @@ def _round(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
         axes[1], centre[1] = np.zeros(1), 0.0
     points = lattice_points(axes)
     squares = points**2
-    if body.shape == "cylinder":
+    if along is not None:
         squares[:, along] = 0.0
     points = points[squares.sum(axis=1) <= radius * radius] + centre
     return points, np.ones(len(points))
@@ -72,10 +75,10 @@ def _round(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
 
 def _tube(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     """Points on circles, alike before the two planes through the axis, and volumes of each."""
-    assert body.diameter is not None and body.inner_diameter is not None
-    low, high = body.box
-    along = "xyz".index(body.axis)
-    inner, outer = 0.5 * body.inner_diameter, 0.5 * body.diameter
+    shape = body.geometry
+    assert isinstance(shape, Cylinder) and shape.inner_radius is not None
+    low, high = shape.bounds
+    along, inner, outer = shape.axis, shape.inner_radius, shape.radius
     layers = max(1, round((outer - inner) / params.spacing))
     edges = np.linspace(inner, outer, layers + 1)
     circles, shares = [], []
@@ -99,22 +102,19 @@ def _tube(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
 
 def _mesh(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     """Points of a lattice in a closed surface."""
-    # Scenes without meshes do not import the reader of meshes.
-    from quintet.components.shared.geometry.mesh_files import inside, read
-
-    assert body.file is not None
+    shape = body.geometry
+    assert isinstance(shape, Mesh)
     points, share = _box(body, params)
-    triangles = read(body.file, body.scale or 1.0).triangles + np.array(body.position or (0.0,) * 3)
-    within = inside(points, triangles)
+    within = shape.contains(*points.T)
     return points[within], share[within]
 
 
-FILLINGS = {"box": _box, "sphere": _round, "cylinder": _round, "tube": _tube, "mesh": _mesh}
+FILLINGS = {"box": _box, "sphere": _round, "cylinder": _round, "mesh": _mesh}
 
 
 def starting_velocity(body: Body, points: Array) -> Array:
     """Velocity (n, 3) m/s at points (n, 3) m: of the middle, of rotation and of strain about it."""
-    low, high = body.box
+    low, high = body.bounds
     arms = points - 0.5 * (np.array(low) + np.array(high))
     strain = arms @ np.array(body.velocity_gradient).T
     return np.array(body.velocity) + np.cross(np.array(body.angular_velocity), arms) + strain

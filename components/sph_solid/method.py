@@ -112,7 +112,7 @@ def _impact(params: SphSolidParams) -> float:
 
 def _inner_speed(body: Body) -> float:
     """Greatest speed [m/s] within a body, to its middle, at the start."""
-    half = 0.5 * math.dist(*body.box)
+    half = 0.5 * math.dist(*body.bounds)
     return half * (
         math.hypot(*body.angular_velocity) + math.hypot(*sum(body.velocity_gradient, ()))
     )

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from quintet.components.shared.geometry.shapes import Cylinder
 from quintet.components.shared.materials.params import material
 from quintet.components.sph_solid.body import Axis, Body
 from quintet.interfaces.params import (
@@ -17,7 +18,6 @@ from quintet.interfaces.params import (
 )
 
 LEAST_SMOOTHING, MOST_SMOOTHING = 0.9, 4.0
-ROUND = ("cylinder", "tube")
 NARROW = 2.4  # smoothing lengths between planes: nothing is as near to the images of images
 
 
@@ -187,10 +187,11 @@ class SphSolidParams:
                 self.dimensions == 2
                 and not self.axisymmetric
                 and any(
-                    one.shape in ("sphere", "mesh") or (one.shape in ROUND and one.axis != "y")
+                    one.shape in ("sphere", "mesh")
+                    or (isinstance(one.geometry, Cylinder) and one.geometry.axis != 1)
                     for one in self.bodies
                 ),
-                "bodies: in two dimensions they must be boxes, or cylinders or tubes along y; "
+                "bodies: in two dimensions they must be boxes, or cylinders along y; "
                 "axisymmetric ones boxes or spheres.",
             ),
             (
@@ -212,7 +213,7 @@ class SphSolidParams:
             (
                 self.axisymmetric
                 and any(
-                    one.shape in (*ROUND, "mesh")
+                    one.shape in ("cylinder", "mesh")
                     or (one.shape == "sphere" and one.centre is not None and any(one.centre[:2]))
                     for one in self.bodies
                 ),
@@ -284,7 +285,7 @@ def _computed_volume(body: Body, params: SphSolidParams) -> float:
     volume = body.volume(params.dimensions)
     for plane in params.symmetry:
         k = "xyz".index(plane.axis)
-        low, high = body.box[0][k], body.box[1][k]
+        low, high = body.bounds[0][k], body.bounds[1][k]
         kept = high - plane.position if plane.side == "+" else plane.position - low
         volume *= min(max(kept / (high - low), 0.0), 1.0)
     return volume
@@ -292,6 +293,6 @@ def _computed_volume(body: Body, params: SphSolidParams) -> float:
 
 def _half_plane(body: Body) -> float:
     """Area [m2] of a body of rings in the half-plane."""
-    (low, _, bottom), (high, _, top) = body.box
+    (low, _, bottom), (high, _, top) = body.bounds
     share = 0.25 * math.pi if body.shape == "sphere" else 1.0
     return share * (high - max(low, 0.0)) * (top - bottom)

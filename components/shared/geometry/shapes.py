@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from quintet.components.shared.geometry.polygons import in_order
+from quintet.components.shared.geometry.polygons import area_moments, in_order
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import Number, Positive, Vector, parameters
 
@@ -227,6 +227,11 @@ class Polygon:
         (x, y, z), outline = self.origin, self.outline
         (a, c), (b, d) = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
         return (x + a, y - 0.5, z + c), (x + b, y + 0.5, z + d)
+
+    @property
+    def share(self) -> float:
+        """Part of the box of its bounds that it fills."""
+        return area_moments(self.outline).area / math.prod(np.ptp(self.outline, axis=0).tolist())
 
 
 @parameters

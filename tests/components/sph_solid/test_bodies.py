@@ -13,14 +13,14 @@ from quintet.components.sph_solid.params import SphSolidParams, SymmetryPlane
 DX = 1e-3  # m
 E, NU, RHO = 1e7, 0.3, 1000.0
 RUBBER = Material(density=RHO, youngs_modulus=E, poissons_ratio=NU)
-BALL = {"shape": "sphere", "centre": (0.0, 0.0, 0.0), "diameter": 6 * DX, "material": RUBBER}
+BALL = {"shape": "sphere", "centre": (0.0, 0.0, 0.0), "radius": 3 * DX, "material": RUBBER}
 
 
 def ring(outer=0.020, inner=0.016, spacing=DX, **motion):
     """A ring in plane strain."""
     body = Body(
-        shape="tube", axis="y", centre=(0.0, 0.5, 0.0), diameter=2 * outer,
-        inner_diameter=2 * inner, height=1.0, material=RUBBER, **motion,
+        shape="cylinder", base=(0.0, 0.0, 0.0), top=(0.0, 1.0, 0.0), radius=outer,
+        inner_radius=inner, material=RUBBER, **motion,
     )  # fmt: skip
     return SphSolid(SphSolidParams(spacing=spacing, dimensions=2, bodies=(body,)))
 
@@ -49,8 +49,8 @@ def test_a_body_falls_freely():
 def test_rings_and_tubes_have_their_volumes(planes):
     symmetry = tuple(SymmetryPlane(axis=axis) for axis in planes)
     shape = {
-        "shape": "tube", "axis": "y", "diameter": 0.020, "inner_diameter": 0.012,
-        "height": 0.005, "centre": (0.0, 0.5, 0.0), "material": RUBBER,
+        "shape": "cylinder", "base": (0.0, 0.4975, 0.0), "top": (0.0, 0.5025, 0.0),
+        "radius": 0.010, "inner_radius": 0.006, "material": RUBBER,
     }  # fmt: skip
     area = 0.25 * math.pi * (0.020**2 - 0.012**2) / 2 ** len(planes)
     for dimensions, depth in ((2, 1.0), (3, 0.005)):
@@ -67,7 +67,7 @@ def test_a_mesh_is_filled_with_its_volume_and_its_motion(tmp_path):
     ball = trimesh.creation.icosphere(subdivisions=3, radius=4.0)
     ball.export(tmp_path / "ball.stl")
     body = Body(
-        shape="mesh", file=str(tmp_path / "ball.stl"), scale=DX, position=(0.1, 0.0, 0.0),
+        shape="mesh", file=str(tmp_path / "ball.stl"), scale=DX, origin=(0.1, 0.0, 0.0),
         material=RUBBER, velocity=(1.0, 2.0, 3.0), angular_velocity=(0.0, 0.0, 50.0),
     )  # fmt: skip
     solid = SphSolid(SphSolidParams(spacing=DX, bodies=(body,)))
@@ -127,15 +127,17 @@ def test_a_ring_breathes_at_its_frequency():
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"inner_diameter": 0.03}, "inner_diameter of a tube must be below"),
-        ({"inner_diameter": None}, "a tube needs centre and diameter and inner_diameter"),
-        ({"file": "a.stl"}, "a tube needs"),
+        ({"inner_radius": 0.03}, "inner_radius of a cylinder must be below"),
+        ({"top": None}, "a cylinder is described by base and top and radius alone"),
+        ({"top": (0.01, 0.0, 0.01)}, "up to its top along x, y or z"),
+        ({"top": (0.0, 0.0, -0.01)}, "up to its top along x, y or z"),
+        ({"file": "a.stl"}, "a cylinder is described by"),
     ],
 )
 def test_tubes_that_are_none_are_refused(given, sentence):
     shape = {
-        "shape": "tube", "diameter": 0.02, "inner_diameter": 0.01, "height": 0.01,
-        "centre": (0.0, 0.0, 0.0), "material": RUBBER,
+        "shape": "cylinder", "base": (0.0, 0.0, 0.0), "top": (0.0, 0.0, 0.01), "radius": 0.01,
+        "inner_radius": 0.005, "material": RUBBER,
     }  # fmt: skip
     if "file" in given:
         given = {"file": __file__}

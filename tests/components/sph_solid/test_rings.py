@@ -28,7 +28,7 @@ def rings(size, **given):
 
 def strike(**given):
     """A ball of aluminium that strikes a plate at 7400 m/s."""
-    ball = Body(shape="sphere", centre=(0, 0, 3 * DX), diameter=6 * DX, material="aluminium",
+    ball = Body(shape="sphere", centre=(0, 0, 3 * DX), radius=3 * DX, material="aluminium",
                 velocity=(0.0, 0.0, -7400.0))  # fmt: skip
     plate = Body(lowest=(0, 0, -8 * DX), highest=(20 * DX, 1.0, 0), material="aluminium")
     return SphSolid(SphSolidParams(bodies=(ball, plate), **RINGS, **given))
@@ -38,7 +38,7 @@ def test_rings_have_the_mass_of_what_they_are_cut_from():
     assert rings((7, 5)).totals().mass == pytest.approx(
         RHO * math.pi * (7 * DX) ** 2 * 5 * DX, rel=1e-12
     )
-    ball = Body(shape="sphere", centre=(0, 0, 0), diameter=8 * DX, material=ELASTIC)
+    ball = Body(shape="sphere", centre=(0, 0, 0), radius=4 * DX, material=ELASTIC)
     made = SphSolid(SphSolidParams(bodies=(ball,), **RINGS))
     assert made.totals().mass == pytest.approx(RHO * math.pi / 6.0 * (8 * DX) ** 3, rel=1e-12)
 
@@ -83,7 +83,7 @@ def test_a_ball_of_rings_rings_as_one_in_three_dimensions():
     """A free elastic ball that was pulled along its axis: same period of its first mode."""
     ends = []
     for axisymmetric in (True, False):
-        ball = Body(shape="sphere", centre=(0, 0, 0), diameter=10 * DX, material=ELASTIC)
+        ball = Body(shape="sphere", centre=(0, 0, 0), radius=5 * DX, material=ELASTIC)
         given = {"dimensions": 2, "axisymmetric": True} if axisymmetric else {}
         planes = () if axisymmetric else (SymmetryPlane(axis="x"), SymmetryPlane(axis="y"))
         made = SphSolid(
@@ -126,7 +126,7 @@ def test_lists_that_are_kept_miss_no_pair(axisymmetric, monkeypatch):
 
     Rings keep as many cuts as they had when they were listed.
     """
-    ball = Body(shape="sphere", centre=(0, 0, 2 * DX), diameter=4 * DX, material="aluminium",
+    ball = Body(shape="sphere", centre=(0, 0, 2 * DX), radius=2 * DX, material="aluminium",
                 velocity=(0.0, 0.0, -2000.0))  # fmt: skip
     plate = Body(lowest=(0, 0, -4 * DX), highest=(10 * DX, 10 * DX, 0), material="aluminium")
     given = {"dimensions": 2, "axisymmetric": True} if axisymmetric else {}

@@ -114,7 +114,7 @@ def test_energy_of_waves_is_kept_at_second_order():
 
 
 def test_a_rotation_strains_nothing():
-    body = Body(shape="cylinder", axis="y", centre=(0, 0, 0), diameter=12 * DX, height=1.0,
+    body = Body(shape="cylinder", base=(0, -0.5, 0), top=(0, 0.5, 0), radius=6 * DX,
                 material=ELASTIC)  # fmt: skip
     made = SphSolid(
         SphSolidParams(spacing=DX, bodies=(body,), dimensions=2, kernel_correction=True, **CALM)
@@ -217,7 +217,7 @@ def test_half_a_body_before_its_plane_moves_as_the_whole():
                 Body(
                     shape="sphere",
                     centre=(0.0, 0.0, 5e-3),
-                    diameter=4e-3,
+                    radius=2e-3,
                     material="aluminium",
                     velocity=(0.0, 0.0, -900.0),
                 ),
