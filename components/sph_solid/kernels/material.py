@@ -67,13 +67,14 @@ def nine_of(array, i):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def rates(m, eta, is_corrected, dt):  # type: ignore[no-untyped-def]
-    """η L and L [1/s] in the middle of the step, and the growth of η in it.
+def rates(i, eta, gradient, correction, dt):  # type: ignore[no-untyped-def]
+    """η L and L [1/s] of a particle in the middle of the step, and the growth of η in it.
 
-    Gradients m are L where they are corrected, and η L elsewhere.
+    Gradients are L where they are corrected, and η L elsewhere.
     """
+    m = nine_of(gradient, i)
     trace = m[0] + m[4] + m[8]
-    if is_corrected:
+    if correction.shape[0] > 0 and correction[i, 0] != 0.0:
         middle = eta / (1.0 + 0.5 * dt * trace)
         scale, per = middle, 1.0
     else:
@@ -119,9 +120,8 @@ def advance(
     per_start = 1.0 / law.density
     for place in range(first, last):
         i = rows[place]
-        eta, m = ratios[i], nine_of(gradient, i)
-        is_corrected = correction.shape[0] > 0 and correction[i, 0] != 0.0
-        rate, strain_rate, grows = rates(m, eta, is_corrected, dt)
+        eta = ratios[i]
+        rate, strain_rate, grows = rates(i, eta, gradient, correction, dt)
         after = max(eta + grows, LEAST)
         before2, after2 = 1.0 / (eta * eta), 1.0 / (after * after)
         s = (deviator[i, 0], deviator[i, 1], deviator[i, 2], deviator[i, 3], deviator[i, 4],
