@@ -17,11 +17,13 @@ class EnergyBalance:
     def __init__(self) -> None:
         self._range: dict[str, list[float]] = {}  # J, by component and kind: least, most
         self._sums: list[float] = []  # J, at the start, the largest since and the last
+        self._times = 0  # at which totals were noted
         self._masses: dict[str, list[float]] = {}  # kg, by component: at the start and the last
 
     def note(self, totals: Mapping[str, Mapping[str, Any]]) -> None:
         """Take down the energies [J] and masses [kg] of all components at one time."""
         total = 0.0
+        self._times += 1
         for name, one in totals.items():
             for kind in KINDS:
                 energy = float(one[kind])
@@ -44,15 +46,16 @@ class EnergyBalance:
     def change(self) -> dict[str, float] | None:
         """Largest rise and final loss [J] of the sum, less works, and what was turned over.
 
-        Both are told from the start; that is turned over which is the largest change [J] of one
-        kind of energy of one component. None where nothing was turned over but rounding: there is
-        nothing to tell a change against.
+        Both count from the start. Turned over is the largest change [J] of one kind of energy of
+        one component at the `times` at which totals were noted. None where that is rounding.
         """
         turned = max((most - least for least, most in self._range.values()), default=0.0)
         if not turned > NEGLIGIBLE * self.largest(*KINDS):
             return None
         start, largest, last = self._sums
-        return {"gained": largest - start, "lost": max(start - last, 0.0), "turned_over": turned}
+        lost = max(start - last, 0.0)
+        gained, times = largest - start, self._times
+        return {"gained": gained, "lost": lost, "turned_over": turned, "times": times}
 
     def drift(self) -> float | None:
         """Largest rise of the sum, less works, above its start over the energy turned over."""
@@ -73,10 +76,11 @@ class EnergyBalance:
 
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
-        return {"range": self._range, "sums": self._sums, "masses": self._masses}
+        saved = {"range": self._range, "sums": self._sums, "masses": self._masses}
+        return {**saved, "times": self._times}
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
         self._range = {key: list(pair) for key, pair in state["range"].items()}
-        self._sums = list(state["sums"])
+        self._sums, self._times = list(state["sums"]), int(state["times"])
         self._masses = {name: list(pair) for name, pair in state["masses"].items()}

@@ -17,6 +17,7 @@ from quintet.interfaces.errors import SceneError
 NAME = "results.json"
 UNWRAPPED = 10_000  # characters, more than any line has
 MASS_TOLD = 1e-3  # of a component's mass, a change that is told
+START_AND_END = 2  # totals of a run
 ROUNDING = 1e-9  # of the energy that was turned over
 Row = list[Any]
 
@@ -155,6 +156,8 @@ def _balance(found: Mapping[str, Any]) -> str:
     if not change:
         return ""
     gained, lost, turned = (change[key] for key in ("gained", "lost", "turned_over"))
+    if change.get("times") == START_AND_END:  # what was turned over between them is not known
+        return f"Energy: rose by {_number(gained)} J, lost {_number(lost)} J from start to end"
     return (
         f"Energy: rose by at most {_per_cent(gained / turned)} %, lost {_per_cent(lost / turned)} %"
         f" ({_number(lost)} J of {_number(turned)} J turned over)"

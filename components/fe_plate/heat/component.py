@@ -166,13 +166,11 @@ class FeHeat(Component):
             array[:] = state[name]
 
     def totals(self) -> Totals:
-        """Mass, and heat above 0 K; of what is steady none, for it stores none."""
+        """Mass, heat above 0 K, and heat of sources and held nodes; steady parts store none."""
         parts = np.bincount(self.model.part, self.model.volume)  # m3
         mass = float(parts @ [one.density or 0.0 for one in self.params.parts])
-        if self.params.steady:
-            return Totals(mass=mass)
-        heat = float(self.model.capacity @ self.state.temperature)
-        return Totals(mass=mass, internal=heat, work=float(self.state.outside[0]))
+        stored = 0.0 if self.params.steady else float(self.model.capacity @ self.state.temperature)
+        return Totals(mass=mass, internal=stored, work=float(self.state.outside[0]))
 
     def warnings(self) -> dict[str, str]:
         """Steps that pass over the transient of a part."""

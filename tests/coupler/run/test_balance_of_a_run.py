@@ -33,9 +33,9 @@ def test_a_run_tells_the_energy_and_mass_that_it_lost(tmp_path, capfd, end):
     path.write_text(text)
     assert command("run", path, "--out", tmp_path / "out") == 0
     ledger = json.loads((tmp_path / "out" / "results.json").read_text())["ledger"]
-    lost = {"gained": 0.0, "lost": 12.0 * end, "turned_over": 12.0 * end}
+    lost = {"gained": 0.0, "lost": 12.0 * end, "turned_over": 12.0 * end, "times": 2}
     assert ledger["energy_change"] == pytest.approx(lost)
     assert ledger["mass_drift"]["spring"] == pytest.approx({"kg": -end, "relative": -0.02 * end})
     printed = capfd.readouterr().out
-    assert f"lost 100 % ({12 * end:g} J of {12 * end:g} J turned over)" in printed
+    assert f"Energy: rose by 0 J, lost {12 * end:g} J from start to end\n" in printed
     assert f"mass of spring changed by {-2 * end:g} % ({-end:g} kg)" in printed
