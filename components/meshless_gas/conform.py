@@ -93,7 +93,7 @@ def _body() -> ConformCase:
     """A body with a cloud of its own, which a partner moves, in a gas at rest."""
     closed = {"kind": "slip"}
     body = {
-        "position": [0.0, 0.0, 0.0],
+        "centre": [0.0, 0.0, 0.0],
         "radius": 0.2,
         "is_driven": True,
         "rays": 16,

@@ -39,12 +39,12 @@ def spheres(side: int) -> dict[str, Any]:
 
     A lattice of them and another in the middles of its cells fly through each other along x.
     """
-    half = {"diameter": 0.72, "density": 1.0}
+    half = {"radius": 0.36, "density": 1.0}
     return {
         "spheres": [
             {
                 **half,
-                "position": [0.5 * k, 0.4 * k, 0.3 * k],
+                "centre": [0.5 * k, 0.4 * k, 0.3 * k],
                 "velocity": [1.0 - 2.0 * k, 0.1 * k, 0.0],
                 "copies": {"number": [side // 2, side, side], "spacing": [2.0, 1.0, 1.0]},
             }

@@ -40,7 +40,7 @@ def cases() -> tuple[ConformCase, ...]:
     still = {"wall_temperature.temperature": np.zeros(WALL)}
     warm = {**LATTICE["lattice"], "cells": [6, 6, 6], "periodic": ["x", "y", "z"]}
     row = [[0.1 * k, 0.0, 0.0] for k in range(3)]
-    spheres = [{"position": one, "diameter": 0.05, "density": 800.0} for one in row]
+    spheres = [{"centre": one, "radius": 0.025, "density": 800.0} for one in row]
     loads = {
         "load.force": np.zeros((3, 3)),
         "load.torque": np.zeros((3, 3)),

@@ -13,5 +13,5 @@ def initial(params: ParticleDynamicsParams) -> Fields:
     count = [one.count for one in params.spheres]
     if not 0 < sum(count) <= MOST:
         return {}
-    diameter = np.array([one.diameter for one in params.spheres])
+    diameter = np.array([2.0 * one.radius for one in params.spheres])
     return {"spheres.diameter": np.repeat(diameter, count)}

@@ -33,9 +33,9 @@ LINK = {
 
 
 def _scene(folder, window, ratio=1, scheme="iterated", **settings):
-    one = {"diameter": SIZE, "density": DENSITY, "specific_heat": CAPACITY}
-    still = {**one, "position": [0.0, 0.0, 0.0], "angular_velocity": SPIN.tolist()}
-    parcel = {**one, "position": [0.0, 1.0, 0.0], "velocity": [0.0, 3.0, 0.0], "parcel": 50.0}
+    one = {"radius": 0.5 * SIZE, "density": DENSITY, "specific_heat": CAPACITY}
+    still = {**one, "centre": [0.0, 0.0, 0.0], "angular_velocity": SPIN.tolist()}
+    parcel = {**one, "centre": [0.0, 1.0, 0.0], "velocity": [0.0, 3.0, 0.0], "parcel": 50.0}
     components = {
         "balls": {
             "kind": "particle_dynamics",

@@ -83,7 +83,8 @@ def test_no_window_is_too_long_for_a_cube_heavier_than_its_added_mass(
 def test_a_cube_dropped_at_20_m_per_s_is_slowed_by_the_water_that_it_takes_along(go: Run) -> None:
     fall = {
         f"{BODY}.density": 800.0,
-        f"{BODY}.position": [0.175, 0.175, 0.4],
+        f"{BODY}.lowest": [0.1, 0.1, 0.325],
+        f"{BODY}.highest": [0.25, 0.25, 0.475],
         f"{BODY}.velocity": [0.0, 0.0, -20.0],
         "components.water.sound_speed": 200.0,
         "window": 1e-4,
@@ -113,7 +114,8 @@ def test_a_cube_that_leaves_the_domain_flies_on_freely(go: Run) -> None:
 def test_stiff_cubes_rest_on_the_floor_under_water(go: Run, young: float) -> None:
     sunk = {
         f"{BODY}.density": 7800.0,
-        f"{BODY}.position": [0.175, 0.175, 0.0751],
+        f"{BODY}.lowest": [0.1, 0.1, 0.0001],
+        f"{BODY}.highest": [0.25, 0.25, 0.1501],
         "components.cube.materials.plastic.youngs_modulus": young,
         "components.water.fluid": [[[0.0, 0.0, 0.2], [0.35, 0.35, 0.4]]],
         "end": 0.1,

@@ -105,7 +105,7 @@ def test_two_processes_and_a_resumption_give_the_bits_of_one_process(
     assert compare(tmp_path / "memory", again) is None
 
 
-LARGE = "components.dust.spheres.1.diameter=0.02"  # nodes are 0.01 m apart
+LARGE = "components.dust.spheres.1.radius=0.01"  # nodes are 0.01 m apart
 
 
 def test_spheres_larger_than_the_spacing_are_refused_as_the_scene_is_checked() -> None:

@@ -9,8 +9,8 @@ from quintet.coupler.files.recording import Recording
 
 Run = Callable[..., dict]
 SCENE = str(Path(__file__).parent / "small_flume.toml")
-DRY = ["--set", "components.bodies.bodies.0.position=[0.3, 0.0, 5.0]"]
-DRY += ["--set", "components.bodies.bodies.1.position=[0.33, 0.0, 6.0]"]
+DRY = ["--set", "components.bodies.bodies.0.centre=[0.3, 0.0, 5.0]"]
+DRY += ["--set", "components.bodies.bodies.1.origin=[0.26, 0.0, 6.0]"]
 
 
 @pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])

@@ -62,7 +62,7 @@ class MovingClouds(NodeMotion):
         self.outflows = domain.outflows  # of the box, whether left out or not
         bodies, cloud = self.params.bodies, domain.cloud
         self.pose = Pose(
-            np.array([body.position for body in bodies]),
+            np.array([body.centre for body in bodies]),
             np.array([body.velocity for body in bodies]),
             np.array([(0.0, body.angular_velocity, 0.0) for body in bodies]),
         )

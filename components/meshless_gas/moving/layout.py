@@ -70,7 +70,7 @@ def with_bodies(
         for b, one in enumerate(params.bodies)
     ]
     moved = [
-        one.cloud._replace(positions=one.cloud.positions + np.array(body.position))
+        one.cloud._replace(positions=one.cloud.positions + np.array(body.centre))
         for one, body in zip(rings, params.bodies, strict=True)
     ]
     if params.axisymmetric:

@@ -1,7 +1,7 @@
 """What a scene says about bodies that carry clouds of nodes."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -18,10 +18,10 @@ class Body:
 
     Parameters
     ----------
-    position : m
-        Of its centre at the start.
-    radius : m
-        Of the body.
+    shape
+        A cylinder is written as a sphere, too.
+    centre, radius : m
+        Of the body at the start.
     velocity : m/s
         Of one that is not driven; of one that is, at the start.
     angular_velocity : rad/s
@@ -59,7 +59,9 @@ class Body:
         1/dᵖ.
     """
 
-    position: Vector
+    RENAMED: ClassVar = {"position": "centre", "diameter": "radius, half of it"}
+    shape: Literal["sphere"] = "sphere"
+    centre: Vector
     radius: Positive
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Number = 0.0
@@ -177,10 +179,10 @@ class Moving:
     def __post_init__(self) -> None:
         if self.axisymmetric:
             for one in self.bodies:
-                if any(one.position[1:]) or any(one.velocity[1:]):
+                if any(one.centre[1:]) or any(one.velocity[1:]):
                     raise ValueError(
-                        "bodies of an axisymmetric flow lie and move on the axis; found position "
-                        f"{list(one.position)} m, velocity {list(one.velocity)} m/s. Leave y and "
+                        "bodies of an axisymmetric flow lie and move on the axis; found centre "
+                        f"{list(one.centre)} m, velocity {list(one.velocity)} m/s. Leave y and "
                         "z at 0."
                     )
                 if one.angular_velocity:

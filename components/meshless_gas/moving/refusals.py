@@ -89,10 +89,10 @@ def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
         )
     refuse_sector(params)
     for one in keys.bodies:
-        if params.planar and (one.position[1] or one.velocity[1]):
+        if params.planar and (one.centre[1] or one.velocity[1]):
             raise SceneError(
-                "bodies in two dimensions lie and move in the plane y = 0; found position "
-                f"{list(one.position)} m, velocity {list(one.velocity)} m/s. Leave y at 0."
+                "bodies in two dimensions lie and move in the plane y = 0; found centre "
+                f"{list(one.centre)} m, velocity {list(one.velocity)} m/s. Leave y at 0."
             )
 
 
@@ -101,9 +101,9 @@ def refuse_sector(params: MeshlessGasParams) -> None:
     assert params.moving is not None and params.box is not None
     end = params.box.highest[0]
     for b, one in enumerate(params.moving.bodies):
-        if one.is_cut and (one.position[0] != end or params.kind_of("x+") != "outflow"):
+        if one.is_cut and (one.centre[0] != end or params.kind_of("x+") != "outflow"):
             raise SceneError(
-                f"the cloud of body {b} ends in the plane x = {one.position[0]:g} m, as its sector "
+                f"the cloud of body {b} ends in the plane x = {one.centre[0]:g} m, as its sector "
                 f"says; the box must end there too, as an outflow. Found {end:g} m and "
                 f'{params.kind_of("x+")}. Correct box.highest, or boundaries."x+".'
             )
@@ -157,7 +157,7 @@ def refuse_partner(static: Fields, radii: Array, bodies: NDArray[np.int64]) -> N
         raise SceneError(
             f"moving.bodies.{bodies[k]}: the partner's body must be at least as large as that in "
             f"the gas, {own[k]:.6g} m across, as they would overlap in contact; found "
-            f"{sizes[k]:.6g} m. Give both the same diameter; the partner's may be larger, that "
+            f"{sizes[k]:.6g} m. Give both the same radius; the partner's may be larger, that "
             "layers of nodes fit between bodies that strike each other."
         )
 

@@ -34,9 +34,9 @@ def build(given: Sequence[Sphere]) -> Spheres:
     def of(name: str) -> Array:
         return np.repeat(np.array([getattr(one, name) for one in given], float), count, axis=0)
 
-    radius, parcel = 0.5 * of("diameter"), of("parcel")
+    radius, parcel = of("radius"), of("parcel")
     mass = parcel * of("density") * 4.0 / 3.0 * math.pi * radius**3
-    start, launch = of("position"), of("launch")
+    start, launch = of("centre"), of("launch")
     first = 0
     for one in given:
         if one.copies is not None:

@@ -1,5 +1,7 @@
 """What a scene says about spheres."""
 
+from typing import ClassVar, Literal
+
 from quintet.interfaces.params import (
     Count,
     NotNegative,
@@ -36,15 +38,15 @@ class Sphere:
 
     Parameters
     ----------
-    position : m
-        Of its centre at the start.
-    diameter : m
+    centre : m
+        At the start.
+    radius : m
         Of the sphere: what it strikes with, and what loads and heat act on. That of a body with
         nodes in a gas is no smaller than the body, and larger if it strikes others: two layers of
         nodes on each must fit between.
     density : kg/m3
         Of its material. The mass is that of a sphere, also where it moves a cylinder 1 m long in a
-        gas of two dimensions: 1.5 m/d of the cylinder's density, d the diameter of both, makes it
+        gas of two dimensions: 0.75 m/r of the cylinder's density, r the radius of both, makes it
         the cylinder's.
     velocity : m/s
         With which it is launched.
@@ -58,15 +60,17 @@ class Sphere:
     specific_heat : J/(kg K)
         Of its temperature.
     tether : N/m
-        Of a spring that pulls it back to its first position.
+        Of a spring that pulls it back to where it started.
     parcel : 1
         How many equal ones it stands for: mass, loads and heat are those of all of them.
     copies
-        A lattice of such spheres, the first at `position`.
+        A lattice of such spheres, the first at `centre`.
     """
 
-    position: Vector
-    diameter: Positive
+    RENAMED: ClassVar = {"position": "centre", "diameter": "radius, half of it"}
+    shape: Literal["sphere"] = "sphere"
+    centre: Vector
+    radius: Positive
     density: Positive
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Vector = (0.0, 0.0, 0.0)

@@ -20,7 +20,7 @@ OBLIQUE = np.array([0.8, 0.36, 0.48])  # of length 1
 
 @pytest.mark.parametrize(("is_cross", "most"), [(False, 20), (True, 8)])
 def test_shells_fill_their_space_and_nodes_have_those_around_them(is_cross, most):
-    body = Body(position=(0.0, 0.0, 0.0), radius=1.0, rays=24, thickness=0.5, spacing=0.2)
+    body = Body(centre=(0.0, 0.0, 0.0), radius=1.0, rays=24, thickness=0.5, spacing=0.2)
     made = shell(body, 1, 0, is_cross)
     nodes, outer = made.cloud.nodes, 1.0 + body.heights[-1]
     assert nodes == 162 * len(body.heights)
@@ -43,7 +43,7 @@ def scene(share=0.0, gas=None, way=4.0, direction=(1.0, 0.0, 0.0), cross=True, *
     free = {"density": 1.0, "pressure": PRESSURE, "velocity": list(wind)}
     begin = share * way * along
     body = {
-        "position": list(begin),
+        "centre": list(begin),
         "radius": 1.0,
         "velocity": list(-share * MACH * along),
         "rays": 24,
@@ -158,7 +158,7 @@ def test_what_clouds_in_space_do_not_go_with_is_refused(change, sentence):
 
 def test_shells_that_end_in_a_plane_fill_half_of_their_space():
     body = Body(
-        position=(0.0, 0.0, 0.0), radius=1.0, rays=40, thickness=0.5, spacing=0.2, first=0.05,
+        centre=(0.0, 0.0, 0.0), radius=1.0, rays=40, thickness=0.5, spacing=0.2, first=0.05,
         sector=0.5 * math.pi, first_at_sector=0.06,
     )  # fmt: skip
     made = shell(body, 1, 0, True)

@@ -8,8 +8,8 @@ from quintet.interfaces.params import read
 REST = {"density": 1.0, "pressure": 1.0}
 BOX = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.0, 1.0], "spacing": 0.1}
 PLATE = {"length": 1.0, "ahead": 0.2, "height": 0.5, "rays": 20, "finest": 0.01}
-BODY = {"radius": 0.1, "position": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1, "spacing": 0.05}
-FORE = BODY | {"sector": 1.5707963267948966, "position": [1.0, 0.0, 0.0]}
+BODY = {"radius": 0.1, "centre": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1, "spacing": 0.05}
+FORE = BODY | {"sector": 1.5707963267948966, "centre": [1.0, 0.0, 0.0]}
 DRIVEN, THICK = {"is_driven": True}, {"first_at_sector": 0.09}
 CUT = {"axisymmetric": True, "bodies": [FORE]}
 TUBE = {"position": 0.5, "left": REST, "right": REST}

@@ -29,7 +29,7 @@ def scene(share=0.0, way=WAY, gas=None, bodies=None, **keys):
     free = {"density": 1.0, "pressure": PRESSURE, "velocity": wind}
     begin = share * way * RADIUS
     body = {
-        "position": [begin, 0.0, 0.0],
+        "centre": [begin, 0.0, 0.0],
         "radius": RADIUS,
         "velocity": [-share * MACH, 0.0, 0.0],
         "rays": 48,
@@ -137,7 +137,7 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
 
 def in_a_stream(**body):
     """A sphere about an axis, in a box that ends where its cloud is cut off."""
-    settings = about_an_axis(velocity=[0.0, 0.0, 0.0], position=[0.0, 0.0, 0.0], **body)
+    settings = about_an_axis(velocity=[0.0, 0.0, 0.0], centre=[0.0, 0.0, 0.0], **body)
     wind = {"density": 1.0, "pressure": PRESSURE, "velocity": [MACH, 0.0, 0.0]}
     settings |= {"initial": wind}
     leave = {"kind": "outflow"}
@@ -300,7 +300,7 @@ def test_a_body_that_leaves_the_box_is_refused():
 def two(gap):
     return [
         {
-            "position": [x, 0.0, 0.0],
+            "centre": [x, 0.0, 0.0],
             "radius": 0.25,
             "rays": 32,
             "thickness": 0.35,

@@ -28,7 +28,7 @@ def turning(rays=24, **body):
         "initial": {"density": 1.0, "pressure": PRESSURE},
         "moving": {
             "bodies": [
-                {"position": [0.0, 0.0, 0.0], "radius": RADIUS, "first": 0.5 * spacing}
+                {"centre": [0.0, 0.0, 0.0], "radius": RADIUS, "first": 0.5 * spacing}
                 | {"temperature": 1.0, "angular_velocity": SPIN} | round_it | body,
             ]
         },

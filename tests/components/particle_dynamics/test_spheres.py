@@ -19,12 +19,12 @@ G = (0.0, 0.0, -9.81)  # m/s2
 
 
 def spheres(*given, **keys):
-    made = tuple(Sphere(**({"diameter": 0.02, "density": 1000.0} | one)) for one in given)
+    made = tuple(Sphere(**({"radius": 0.01, "density": 1000.0} | one)) for one in given)
     return ParticleDynamics(ParticleDynamicsParams(spheres=made, **keys))
 
 
 def test_flight_under_constant_loads_is_exact_at_any_step():
-    made = spheres({"position": (0.0, 0.0, 1.0), "velocity": (2.0, 0.0, 3.0)}, gravity=G)
+    made = spheres({"centre": (0.0, 0.0, 1.0), "velocity": (2.0, 0.0, 3.0)}, gravity=G)
     mass = made.totals().mass
     made.take({"load.force": np.array([[mass, 0.0, 0.0]]), "heat.heat_flow": np.array([5.0])})
     for _ in range(3):
@@ -36,7 +36,7 @@ def test_flight_under_constant_loads_is_exact_at_any_step():
 
 
 def test_a_torque_turns_a_sphere_by_its_moment_of_inertia():
-    made = spheres({"position": (0.0, 0.0, 0.0)})
+    made = spheres({"centre": (0.0, 0.0, 0.0)})
     inertia = 0.4 * made.totals().mass * 0.01**2
     made.take({"load.torque": np.array([[0.0, 0.0, 2.0 * inertia]])})
     for _ in range(10):
@@ -49,7 +49,7 @@ def test_a_torque_turns_a_sphere_by_its_moment_of_inertia():
 
 
 def test_a_sphere_rests_until_it_is_launched_within_a_step():
-    made = spheres({"position": (0.0, 0.0, 0.0), "velocity": (1.0, 0.0, 0.0), "launch": 0.25})
+    made = spheres({"centre": (0.0, 0.0, 0.0), "velocity": (1.0, 0.0, 0.0), "launch": 0.25})
     made.take({"load.force": np.array([[1.0, 0.0, 0.0]]) * 0.0})
     made.step(0.2)
     assert made.give({"motion.velocity"})["motion.velocity"][0, 0] == 0.0
@@ -62,8 +62,8 @@ def test_a_sphere_rests_until_it_is_launched_within_a_step():
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 def test_impacts_keep_momentum_and_lose_what_restitution_says(restitution):
     made = spheres(
-        {"position": (0.0, 0.0, 0.0), "velocity": (1.0, 0.2, 0.0)},
-        {"position": (0.03, 0.0, 0.0), "velocity": (-1.0, 0.0, 0.0), "density": 3000.0},
+        {"centre": (0.0, 0.0, 0.0), "velocity": (1.0, 0.2, 0.0)},
+        {"centre": (0.03, 0.0, 0.0), "velocity": (-1.0, 0.0, 0.0), "density": 3000.0},
         restitution=restitution,
     )
     start = made.totals()
@@ -81,7 +81,7 @@ def test_impacts_keep_momentum_and_lose_what_restitution_says(restitution):
 
 def test_a_sphere_bounces_from_a_wall():
     made = spheres(
-        {"position": (0.0, 0.0, 0.1), "velocity": (0.5, 0.0, -1.0)},
+        {"centre": (0.0, 0.0, 0.1), "velocity": (0.5, 0.0, -1.0)},
         walls=(Wall(normal=(0.0, 0.0, 2.0)),),
         restitution=0.6,
     )
@@ -94,7 +94,7 @@ def crowd(restitution, spacing, gravity=(0.0, 0.0, 0.0)):
     """27 spheres at random velocities in a box of walls, `spacing` diameters apart."""
     random, side = np.random.default_rng(0), 3 * 0.02 * spacing
     places = (np.stack(np.meshgrid(*[np.arange(3)] * 3), -1).reshape(-1, 3) + 0.5) * side / 3
-    given = [{"position": tuple(x), "velocity": tuple(random.normal(size=3))} for x in places]
+    given = [{"centre": tuple(x), "velocity": tuple(random.normal(size=3))} for x in places]
     normals = [tuple(sign * row) for row in np.eye(3) for sign in (1.0, -1.0)]
     walls = tuple(Wall(normal=n, offset=-side if sum(n) < 0.0 else 0.0) for n in normals)
     return spheres(*given, walls=walls, restitution=restitution, gravity=gravity)
@@ -130,9 +130,9 @@ def test_spheres_overlap_by_less_than_1_percent_at_the_natural_step(restitution,
 
 def test_impacts_have_their_own_times_within_a_step():
     made = spheres(
-        {"position": (0.0, 0.0, 0.0), "velocity": (1.0, 0.0, 0.0)},
-        *({"position": (0.0213 + 0.02 * k, 0.0, 0.0)} for k in range(5)),
-        {"position": (0.1250, 0.0, 0.0), "velocity": (0.5, 0.0, 0.0)},
+        {"centre": (0.0, 0.0, 0.0), "velocity": (1.0, 0.0, 0.0)},
+        *({"centre": (0.0213 + 0.02 * k, 0.0, 0.0)} for k in range(5)),
+        {"centre": (0.1250, 0.0, 0.0), "velocity": (0.5, 0.0, 0.0)},
     )
     for _ in range(7):
         made.step(1e-3)
@@ -150,7 +150,7 @@ def test_impacts_have_their_own_times_within_a_step():
 
 @pytest.mark.parametrize("step", [0.01, 0.1, 0.3])
 def test_a_fall_and_a_bounce_are_exact_at_any_step(step):
-    made = spheres({"position": (0.0, 0.0, 1.01)}, walls=(Wall(normal=(0, 0, 1.0)),), gravity=G)
+    made = spheres({"centre": (0.0, 0.0, 1.01)}, walls=(Wall(normal=(0, 0, 1.0)),), gravity=G)
     fall = np.sqrt(2.0 / 9.81)  # s, one metre
     for k in range(round(0.6 / step)):
         made.step(step)
@@ -166,7 +166,7 @@ def test_a_fall_and_a_bounce_are_exact_at_any_step(step):
 
 def test_spheres_that_fall_meet_though_they_are_at_rest_at_the_start():
     made = spheres(
-        {"position": (0.0, 0.0, 0.0), "launch": 10.0}, {"position": (0.0, 0.0, 0.5)}, gravity=G
+        {"centre": (0.0, 0.0, 0.0), "launch": 10.0}, {"centre": (0.0, 0.0, 0.5)}, gravity=G
     )
     list(advance(made, 1.0))
     assert made.give({"motion.position"})["motion.position"][1, 2] >= 0.02 * 0.99
@@ -185,13 +185,13 @@ def test_a_pile_that_hard_spheres_cannot_make_is_warned_of():
 
 def test_spheres_that_begin_within_another_are_refused():
     places = [(0.1, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.017)]
-    given = [{"position": one, "launch": 0.1 * k} for k, one in enumerate(places)]
+    given = [{"centre": one, "launch": 0.1 * k} for k, one in enumerate(places)]
     said = r"centres of 1 and 2 must be 0.018 m apart .* found 0.017 m. Move them apart"
     with pytest.raises(SceneError, match=said):
         spheres(*given)
     spheres(*given, collisions=False)
-    spheres(given[1], given[2] | {"position": (0.0, 0.0, 0.0181)})  # a tenth may overlap
-    twice = {"position": (0.0, 0.0, 0.0), "copies": Copies(number=(2, 1, 1), spacing=(0.01,) * 3)}
+    spheres(given[1], given[2] | {"centre": (0.0, 0.0, 0.0181)})  # a tenth may overlap
+    twice = {"centre": (0.0, 0.0, 0.0), "copies": Copies(number=(2, 1, 1), spacing=(0.01,) * 3)}
     with pytest.raises(SceneError, match=r"0 and 1 must be 0.018 m apart .* found 0.01 m"):
         spheres(twice)
 
@@ -201,13 +201,13 @@ def test_spheres_that_begin_behind_a_wall_are_refused(height, found):
     walls = Wall(normal=(1.0, 0.0, 0.0), offset=-1.0), Wall(normal=(0.0, 0.0, 2.0), offset=0.5)
     said = rf"walls.1: the centre of sphere 1 must be 0.009 m in front .* found {found}. Move"
     with pytest.raises(SceneError, match=said):
-        spheres({"position": (0.0, 0.0, 1.0)}, {"position": (0.0, 0.0, height)}, walls=walls)
+        spheres({"centre": (0.0, 0.0, 1.0)}, {"centre": (0.0, 0.0, height)}, walls=walls)
 
 
 def test_parameters_are_of_a_lattice_or_of_spheres():
     lattice = Lattice(cells=(1, 1, 1), spacing=1.0, mass=1.0)
     force = SevenRootForce(top_frequency=1.0)
-    one = Sphere(position=(0.0, 0.0, 0.0), diameter=1.0, density=1.0)
+    one = Sphere(centre=(0.0, 0.0, 0.0), radius=0.5, density=1.0)
     with pytest.raises(ValueError, match="give lattice or spheres"):
         ParticleDynamicsParams()
     with pytest.raises(ValueError, match="give lattice or spheres"):
@@ -228,7 +228,7 @@ def test_a_tethered_sphere_swings_with_the_order_of_its_scheme(integrator, order
     errors = []
     for steps in (40, 80, 160):
         made = spheres(
-            {"position": (1.0, 0.0, 0.0), "velocity": (0.0, 2.0, 0.0), "tether": 3.0},
+            {"centre": (1.0, 0.0, 0.0), "velocity": (0.0, 2.0, 0.0), "tether": 3.0},
             integrator=integrator,
         )
         mass = made.totals().mass
@@ -248,7 +248,7 @@ def test_a_tethered_sphere_swings_with_the_order_of_its_scheme(integrator, order
 @pytest.mark.parametrize("integrator", ["velocity_verlet", "yoshida"])
 def test_energy_of_a_tethered_sphere_swings_and_does_not_drift(integrator):
     made = spheres(
-        {"position": (0.0, 0.0, 0.0), "velocity": (0.0, 2.0, 0.0), "tether": 3.0},
+        {"centre": (0.0, 0.0, 0.0), "velocity": (0.0, 2.0, 0.0), "tether": 3.0},
         integrator=integrator,
         courant=0.3,
     )
@@ -273,7 +273,7 @@ def test_a_sphere_whose_axis_turns_is_followed_to_fourth_order():
         exact = rotation.product(rotation.exponential(angle[None]), exact)
     errors = []
     for steps in (4, 8, 16):
-        made = spheres({"position": (0.0, 0.0, 0.0), "angular_velocity": tuple(spin)})
+        made = spheres({"centre": (0.0, 0.0, 0.0), "angular_velocity": tuple(spin)})
         inertia = 0.4 * made.totals().mass * 0.01**2
         made.take({"load.torque": inertia * turning[None]})
         for _ in range(steps):
@@ -307,12 +307,12 @@ def test_a_list_made_anew_changes_no_bit():
     def gas():
         return spheres(
             {
-                "position": (0.0, 0.0, 0.0),
+                "centre": (0.0, 0.0, 0.0),
                 "velocity": (1.0, 0.0, 0.0),
                 "copies": Copies(number=(3, 3, 3), spacing=(0.05, 0.03, 0.03)),
             },
             {
-                "position": (0.021, 0.004, 0.003),
+                "centre": (0.021, 0.004, 0.003),
                 "copies": Copies(number=(3, 3, 3), spacing=(0.05, 0.03, 0.03)),
             },
             restitution=0.8,
@@ -333,7 +333,7 @@ def test_a_list_made_anew_changes_no_bit():
 def test_copies_are_launched_one_after_another():
     made = spheres(
         {
-            "position": (0.0, 0.0, 0.0),
+            "centre": (0.0, 0.0, 0.0),
             "velocity": (0.0, 0.0, 1.0),
             "copies": Copies(number=(3, 1, 1), spacing=(0.1, 0.1, 0.1), interval=0.5),
         }
@@ -346,7 +346,7 @@ def test_copies_are_launched_one_after_another():
 
 
 def test_a_parcel_moves_as_one_of_its_spheres():
-    keys = {"position": (0.0, 0.0, 0.0), "angular_velocity": (0.0, 1.0, 0.0)}
+    keys = {"centre": (0.0, 0.0, 0.0), "angular_velocity": (0.0, 1.0, 0.0)}
     one = spheres(keys)
     many = spheres(keys | {"parcel": 1e4}, collisions=False)
     load = {
@@ -369,12 +369,12 @@ def test_a_parcel_moves_as_one_of_its_spheres():
 
 def test_no_sphere_may_cross_another_in_a_step():
     made = spheres(
-        {"position": (0.0, 0.0, 0.0), "velocity": (10.0, 0.0, 0.0)},
-        {"position": (0.0, 1.0, 0.0), "velocity": (9.0, 0.0, 0.0)},
+        {"centre": (0.0, 0.0, 0.0), "velocity": (10.0, 0.0, 0.0)},
+        {"centre": (0.0, 1.0, 0.0), "velocity": (9.0, 0.0, 0.0)},
     )
     assert made.stable_dt() == pytest.approx(0.25 * 0.02 / 1.0)
     walled = spheres(
-        {"position": (0.0, 0.0, 1.0), "velocity": (0.0, 0.0, -4.0)},
+        {"centre": (0.0, 0.0, 1.0), "velocity": (0.0, 0.0, -4.0)},
         walls=(Wall(normal=(0.0, 0.0, 1.0)),),
     )
     assert walled.stable_dt() == pytest.approx(0.25 * 0.02 / 4.0)
