@@ -1,22 +1,15 @@
-"""What is found by looking over all particles: totals, bodies, gauges, pictures, failures."""
+"""Totals over all particles, and the report of a failed step."""
 
 import numpy as np
 
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, State, Whole
-from quintet.interfaces.component import Fields, Totals
+from quintet.interfaces.component import Totals
 from quintet.interfaces.params import Vector
 
 
-def von_mises(deviator: Array) -> Array:
-    """Equivalent stress (n,) Pa of deviators (n, 6) Pa."""
-    xx, yy, zz, xy, yz, zx = deviator.T
-    squares = 1.5 * (xx * xx + yy * yy + zz * zz) + 3.0 * (xy * xy + yz * yz + zx * zx)
-    return np.asarray(np.sqrt(squares))
-
-
 def totals(state: State, mass: Array, carried: Whole, gravity: Vector) -> Totals:
-    """Mass, momentum and energies; not of motion of glued particles, which a mesh carries.
+    """Mass, momentum and energies; a mesh carries mass and motion of glued particles.
 
     Parameters
     ----------
@@ -26,94 +19,17 @@ def totals(state: State, mass: Array, carried: Whole, gravity: Vector) -> Totals
         Rows of glued particles.
     gravity : Vector, m/s2
     """
-    own = mass.copy()
-    own[carried] = 0.0
-    momentum = own[:, None] * state.velocity
+    free = mass.copy()
+    free[carried] = 0.0
+    momentum = free[:, None] * state.velocity
     return Totals(
-        mass=float(own.sum()),
+        mass=float(free.sum()),
         momentum=momentum.sum(axis=0),
         angular_momentum=np.cross(state.position, momentum).sum(axis=0),
         kinetic=0.5 * float((momentum * state.velocity).sum()),
-        potential=-float(own @ (state.position @ np.array(gravity))),
+        potential=-float(free @ (state.position @ np.array(gravity))),
         internal=float((mass * state.energy).sum()),
     )
-
-
-def bodies(state: State, mass: Array, params: SphSolidParams) -> Fields:
-    """Motion, energies and extent of each body, in the fields of the port `bodies`."""
-    count = len(params.bodies)
-
-    def total(values: Array) -> Array:
-        """Sums (bodies,) of values (n,) times masses."""
-        return np.bincount(state.body, mass * values, count).astype(np.float64)
-
-    whole = total(np.ones(len(mass)))
-
-    def mean(values: Array) -> Array:
-        """Means (bodies, k) of values (n, k)."""
-        return np.stack([total(column) / whole for column in values.T], axis=1)
-
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, state.body, state.position)
-    np.maximum.at(high, state.body, state.position)
-    half = 0.5 * params.spacing
-    return {
-        "bodies.position": mean(state.position),
-        "bodies.velocity": mean(state.velocity),
-        "bodies.kinetic": 0.5 * total((state.velocity**2).sum(axis=1)),
-        "bodies.internal": total(state.energy),
-        "bodies.failed": total(state.failed) / whole,
-        "bodies.lowest": low - half,
-        "bodies.highest": high + half,
-    }
-
-
-def gauges(state: State, rows: Whole, density: Array) -> Fields:
-    """Motion and stress of the particles in some rows, in the fields of the port `gauges`."""
-    deviator, pressure = state.deviator[rows], state.pressure[rows]
-    return {
-        "gauges.position": state.position[rows],
-        "gauges.velocity": state.velocity[rows],
-        "gauges.stress": deviator[:, :3] - pressure[:, None],
-        "gauges.pressure": pressure,
-        "gauges.von_mises": von_mises(deviator),
-        "gauges.density": density[state.material[rows]] * state.density_ratio[rows],
-        "gauges.plastic_strain": state.strain[rows],
-        "gauges.failed": state.failed[rows],
-        "gauges.temperature": state.temperature[rows],
-    }
-
-
-def levels(state: State, params: SphSolidParams) -> Fields:
-    """Ends of whole material along lines through bodies, in the fields of the port `levels`.
-
-    Of particles within a smoothing length of the line, or if there are none of the nearest one.
-    """
-    ends = []
-    for level in params.levels:
-        mine = np.flatnonzero((state.body == level.body) & (state.failed == 0.0))
-        if not len(mine):
-            mine = np.flatnonzero(state.body == level.body)
-        away = np.hypot(*(state.position[mine, :2] - np.array(level.place)).T)
-        heights = state.position[mine, 2][away <= max(params.length, float(away.min()))]
-        ends.append((heights.max(), heights.min()))
-    highest, lowest = np.array(ends).T
-    return {"levels.highest": highest, "levels.lowest": lowest}
-
-
-def view(state: State) -> Fields:
-    """Copy particles in the order of their birth."""
-    rows = np.argsort(state.identity)
-    return {
-        "points": state.position[rows],
-        "von_mises": von_mises(state.deviator[rows]),
-        "velocity": state.velocity[rows],
-        "pressure": state.pressure[rows],
-        "plastic_strain": state.strain[rows],
-        "damage": np.minimum(state.damage[rows], 1.0),
-        "temperature": state.temperature[rows],
-        "body": state.body[rows].astype(np.float64),
-    }
 
 
 def failure(state: State, params: SphSolidParams, dt: float) -> str:

@@ -16,9 +16,13 @@ from scipy.spatial import cKDTree
 
 from quintet.components.shared.materials.solid import NEVER, Solid
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
+from quintet.components.sph_solid.diagnostics import totals
+from quintet.components.sph_solid.glue import glued_rows
 from quintet.components.sph_solid.method import method, viscosity_warning
+from quintet.components.sph_solid.pair_sums import PairSums
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, State, Whole
+from quintet.interfaces.params import Vector
 
 ENERGY_EVERY, BONDS_EVERY = 32, 64  # steps
 NEAREST = 1.2  # spacings: bonds at the start are no longer
@@ -57,24 +61,65 @@ def is_elastic(law: Solid) -> bool:
     return law.hard >= NEVER and not law.shocks and law.spall >= NEVER
 
 
-def note_viscous(state: State, rows: list[Whole], laws: list[Solid], contact: float) -> None:
-    """Take down the heat [J] of viscosity in elastic bodies, of the rows of each material.
-
-    The energy [J] that they store in contact is in their internal energy, and no heat.
-    """
-    heat = -contact
-    for mine, law in zip(rows, laws, strict=True):
-        if is_elastic(law):
-            internal = law.density * state.volume[mine] * state.energy[mine]
-            heat += float((internal - stored_energy(state, mine, law)).sum())
-    state.viscous[:] = heat, min(heat, state.viscous[1])
-
-
-def bonds(state: State, params: SphSolidParams) -> Whole:
+def bonds(state: State, spacing: float) -> Whole:
     """Pairs (b, 2) of particles of one body that are nearest neighbours, by their identities."""
-    pairs = cKDTree(state.position).query_pairs(NEAREST * params.spacing, output_type="ndarray")
+    pairs = cKDTree(state.position).query_pairs(NEAREST * spacing, output_type="ndarray")
     same = state.body[pairs[:, 0]] == state.body[pairs[:, 1]]
     return np.asarray(state.identity[pairs[same]])
+
+
+class Judge:
+    """Takes down signs of wrong results in the state, at steps of certain numbers.
+
+    Parameters
+    ----------
+    state : State
+        At the start.
+    laws : list of Solid
+        Of the materials.
+    params : SphSolidParams
+    """
+
+    def __init__(self, state: State, laws: list[Solid], params: SphSolidParams) -> None:
+        self.laws, self.params = laws, params
+        self.bonds = bonds(state, params.spacing)
+        self.is_elastic = np.array([is_elastic(law) for law in laws])
+        self.density = np.array([law.density for law in laws])
+        self.can_tear = not method(params).total_lagrangian
+
+    def note(self, state: State, mass: Array, sums: PairSums, gravity: Vector) -> None:
+        """Take down energies and lost bonds, with masses (n,) kg."""
+        now = totals(state, mass, glued_rows(state, attached=True), gravity)
+        note_energies(state, now.kinetic, now.potential, now.internal)
+        self._note_viscous(state, mass, sums)
+        if state.steps % BONDS_EVERY == 0 and self.can_tear:
+            note_torn(state, self.bonds, self.laws, self.params)
+
+    def _note_viscous(self, state: State, mass: Array, sums: PairSums) -> None:
+        """Take down the heat [J] of viscosity in elastic bodies.
+
+        The energy that they store in contact is in their internal energy, and no heat.
+        """
+        share = self.is_elastic[state.material].astype(np.float64)
+        heat = -sums.contact_energy(state, self.density[state.material], share)
+        for k in np.flatnonzero(self.is_elastic):
+            rows = np.flatnonzero(state.material == k)
+            internal = self.laws[k].density * state.volume[rows] * state.energy[rows]
+            heat += float((internal - stored_energy(state, rows, self.laws[k])).sum())
+        state.viscous[:] = heat, min(heat, state.viscous[1])
+
+    def warnings(self, state: State) -> dict[str, str]:
+        """Reasons why the results may be wrong, by subject."""
+        viscosity = viscosity_warning(self.params)
+        texts = {"viscosity": viscosity} if viscosity else {}
+        turned = float((state.ranges[:, 1] - state.ranges[:, 0]).max())
+        stiff = state.volume * state.sound**2 * self.density[state.material]
+        least = STILL * float(stiff.sum())
+        if turned > max(least, NEGLIGIBLE * float(np.abs(state.ranges).max())):
+            texts |= _of_energy(state, turned, self.params)
+        if state.torn[0] > FEWEST_LOST * len(self.bonds):
+            texts["fracture"] = _of_fracture(state, self.params)
+        return texts
 
 
 def note_torn(state: State, pairs: Whole, laws: list[Solid], params: SphSolidParams) -> None:
@@ -103,21 +148,6 @@ def note_torn(state: State, pairs: Whole, laws: list[Solid], params: SphSolidPar
     if len(lost) and state.torn[0] == 0.0:
         state.torn[1], state.torn[2:] = state.time, middle[lost[0]]
     state.torn[0] = max(state.torn[0], float(len(lost)))
-
-
-def warnings(
-    state: State, density: Array, params: SphSolidParams, bond_count: int
-) -> dict[str, str]:
-    """Reasons why the results may be wrong, by subject; of densities (materials,) kg/m3."""
-    viscosity = viscosity_warning(params)
-    texts = {"viscosity": viscosity} if viscosity else {}
-    turned = float((state.ranges[:, 1] - state.ranges[:, 0]).max())
-    least = STILL * float((state.volume * state.sound**2 * density[state.material]).sum())
-    if turned > max(least, NEGLIGIBLE * float(np.abs(state.ranges).max())):
-        texts |= _of_energy(state, turned, params)
-    if state.torn[0] > FEWEST_LOST * bond_count:
-        texts["fracture"] = _of_fracture(state, params)
-    return texts
 
 
 def _of_energy(state: State, turned: float, params: SphSolidParams) -> dict[str, str]:

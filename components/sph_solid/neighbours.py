@@ -41,15 +41,17 @@ class SolidLists:
     def __init__(self, params: SphSolidParams, team: Team) -> None:
         self.support = SUPPORT * params.length
         self.team = team
-        way = method(params)
-        self.are_for_good = way.total_lagrangian
-        self.corrected = way.kernel_correction or way.total_lagrangian
+        settings = method(params)
+        self.are_for_good = settings.total_lagrangian
+        self.corrected = settings.kernel_correction or settings.total_lagrangian
         # Of rows of stress: a tensor of six or nine numbers, two densities, an artificial tensor.
-        self.width = 16 if params.artificial_stress > 0.0 else 12 if way.kernel_correction else 8
+        self.width = (
+            16 if params.artificial_stress > 0.0 else 12 if settings.kernel_correction else 8
+        )
         planes = [
-            Plane(one.axis + ("-" if one.side == "+" else "+"), "xyz".index(one.axis),
-                  one.position, 1.0 if one.side == "+" else -1.0)
-            for one in params.symmetry
+            Plane(plane.axis + ("-" if plane.side == "+" else "+"), "xyz".index(plane.axis),
+                  plane.position, 1.0 if plane.side == "+" else -1.0)
+            for plane in params.symmetry
         ]  # fmt: skip
         self.images = SymmetryImages(planes)
         axis = [Plane("x-", 0, 0.0, 1.0)] if params.axisymmetric else []
@@ -75,39 +77,42 @@ class SolidLists:
             low[k], high[k] = min(low[k], -high[k]), max(high[k], -low[k])
         return float(np.linalg.norm(high - low))
 
-    def are_outworn(self, state: State, spread: float) -> bool:
-        """Whether pairs may act that the lists lack, by how far two have come apart or near [m]."""
-        return not (self.are_for_good or spread <= state.reach - self.support)
+    def may_miss(self, state: State, spread: float, middle: Array, dt: float) -> bool:
+        """Whether the lists may lack a pair that acts in a step.
 
-    def still_hold(self, state: State, middle: Array, dt: float) -> bool:
-        """Whether lists hold though particles have gone far: a few, which meet no others.
+        They lack none if two particles approached by less than the skin, or if only a few moved
+        beyond the skin and none of these has new neighbours.
 
         Parameters
         ----------
         state : State
             With velocities of the step's middle.
+        spread : float, m
+            By which two particles may have approached.
         middle : (n, 4) float array, m
-            Places there.
+            Places in the step's middle.
         dt : float, s
         """
+        if self.are_for_good or spread <= state.reach - self.support:
+            return False
         places = np.ascontiguousarray(middle[:, :3]), state.position + dt * state.velocity
         moved = [place - state.reference for place in places]
         if not self.mirrors:
-            moved = [one - one.mean(axis=0) for one in moved]
-        furthest = np.maximum(*((one * one).sum(axis=1) for one in moved))
+            moved = [shift - shift.mean(axis=0) for shift in moved]
+        furthest = np.maximum(*((shift * shift).sum(axis=1) for shift in moved))
         skin = state.reach - self.support
         fast = np.flatnonzero(furthest > 0.25 * skin * skin)
         if len(fast) > FEW:
-            return False
+            return True
         for plane in self.mirrors:
             for place in places:
                 depth = plane.inward * (place[fast, plane.axis] - plane.position)
                 if (depth < self.support).any():
-                    return False
+                    return True
         if self.is_axisymmetric:  # rings have their cuts of the radius that they had
             if (np.abs(moved[1][fast, 0]) > WIDER * state.reference[fast, 0]).any():
-                return False
-        return not meets_unlisted(fast, *places, state.reference, self.support, skin)
+                return True
+        return meets_unlisted(fast, *places, state.reference, self.support, skin)
 
     def is_unstable(self, spread: float) -> bool:
         """Whether no stable step lets two particles approach each other by so much [m]."""
@@ -171,5 +176,5 @@ class SolidLists:
 
 def joined(params: SphSolidParams) -> Whole:
     """Number (bodies,) of the bodies that move alike at the start: they are one where they meet."""
-    motions = [one.motion for one in params.bodies]
-    return np.array([motions.index(one) for one in motions])
+    motions = [body.motion for body in params.bodies]
+    return np.array([motions.index(motion) for motion in motions])

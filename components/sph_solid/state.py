@@ -66,9 +66,9 @@ class State:
     @classmethod
     def load(cls, saved: Fields) -> "State":
         """Make the state that was saved."""
-        kept = {part.name: np.array(saved[part.name]) for part in fields(cls)}
-        own: dict[str, Any] = {name: a if a.ndim else a.item() for name, a in kept.items()}
-        return cls(**own)
+        arrays = {part.name: np.array(saved[part.name]) for part in fields(cls)}
+        values: dict[str, Any] = {name: a if a.ndim else a.item() for name, a in arrays.items()}
+        return cls(**values)
 
 
 OF_ALL = (
@@ -99,3 +99,9 @@ class Rows:
             gradient=np.zeros((particles, 9)),
             correction=np.zeros((particles if corrected else 0, 6)),
         )
+
+    def fill(self, state: State, place: Array, last: Array) -> None:
+        """Copy places (n, 3) m, volumes and velocities; `last` (n,) ends the rows of motion."""
+        count = state.particles
+        self.place[:count, :3], self.place[:count, 3] = place, state.volume
+        self.motion[:count, :3], self.motion[:count, 3] = state.velocity, last

@@ -71,7 +71,7 @@ def test_a_mesh_is_filled_with_its_volume_and_its_motion(tmp_path):
         material=RUBBER, velocity=(1.0, 2.0, 3.0), angular_velocity=(0.0, 0.0, 50.0),
     )  # fmt: skip
     solid = SphSolid(SphSolidParams(spacing=DX, bodies=(body,)))
-    mass, total = solid._masses(), solid.totals()
+    mass, total = solid.materials.mass(solid.state), solid.totals()
     assert total.mass == pytest.approx(RHO * ball.volume * DX**3, rel=1e-6)
     middle = mass @ solid.state.position / total.mass
     np.testing.assert_allclose(middle, [0.1, 0.0, 0.0], atol=0.02 * DX)
@@ -98,7 +98,7 @@ def test_a_spinning_ring_keeps_its_angular_momentum_and_grows_by_its_stress():
     # It swings about the strain of equilibrium: the mean over whole periods.
     modulus = E / (1.0 - NU**2)
     period = 2.0 * math.pi * radius / math.sqrt(modulus / RHO)
-    mass, sizes = solid._masses(), []
+    mass, sizes = solid.materials.mass(solid.state), []
     for _ in range(round(2.0 * period / dt)):
         solid.step(dt)
         sizes.append(mass @ np.hypot(*solid.state.position[:, ::2].T) / mass.sum())

@@ -94,7 +94,7 @@ def test_a_ball_of_rings_rings_as_one_in_three_dimensions():
         x, y, z = made.state.position.T
         shape = np.stack([-0.5 * x, -0.5 * y, z], axis=1)
         made.state.velocity[:] = 100.0 * shape
-        mass, moved = made._masses(), []
+        mass, moved = made.materials.mass(made.state), []
         for _ in range(140):
             made.step(4e-8)
             x, y, z = made.state.position.T
@@ -151,8 +151,8 @@ def test_lists_that_are_kept_miss_no_pair(axisymmetric, monkeypatch):
                 image_lists, "image_counts", lambda *_, one=fresh, n=numbers: n[one.state.identity]
             )
             fresh._list()
-        fresh._fill_rows()
-        fresh._write_stresses()
+        fresh.rows.fill(fresh.state, fresh.state.position, fresh.state.sound)
+        fresh.materials.write_stresses(fresh.state, fresh.rows, fresh.law)
         fresh._write_accelerations()
         one, other = (
             one.state.acceleration[np.argsort(one.state.identity)] for one in (made, fresh)

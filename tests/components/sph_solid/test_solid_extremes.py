@@ -8,8 +8,8 @@ import pytest
 
 from quintet.components.shared.materials.params import material
 from quintet.components.sph_solid.component import SphSolid
-from quintet.components.sph_solid.diagnostics import von_mises
 from quintet.components.sph_solid.params import Body, SphSolidParams, SymmetryPlane
+from quintet.components.sph_solid.view import von_mises
 from quintet.interfaces.errors import StepError
 
 DX = 1e-3  # m

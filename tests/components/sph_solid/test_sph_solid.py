@@ -8,7 +8,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 from quintet.components.shared.materials.params import Material
 from quintet.components.sph_solid.component import SphSolid
-from quintet.components.sph_solid.diagnostics import von_mises
+from quintet.components.sph_solid.glue import glued_rows
 from quintet.components.sph_solid.params import (
     Body,
     Fixed,
@@ -16,6 +16,7 @@ from quintet.components.sph_solid.params import (
     SphSolidParams,
     SymmetryPlane,
 )
+from quintet.components.sph_solid.view import von_mises
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
 
@@ -286,16 +287,16 @@ def test_glued_particles_move_as_told_and_say_what_they_bear():
         given = made.give(frozenset({"glued_load.force"}))["glued_load.force"]
         forces.append(given.sum(axis=0))
         impulse += 0.5 * dt * (forces[-1] + forces[-2])
-    moved = made.state.position[made._glued_rows()] - start
+    moved = made.state.position[glued_rows(made.state)] - start
     np.testing.assert_allclose(moved, np.tile([25 * dt * 30.0, 0.0, 0.0], (count, 1)), atol=1e-15)
     # What the mesh gets the free particles lose.
     np.testing.assert_allclose(made.totals().momentum, -impulse, atol=1e-12 * abs(impulse[0]))
-    assert made.totals().mass == pytest.approx(made._masses().sum() * 5.0 / 6.0)
+    assert made.totals().mass == pytest.approx(made.materials.mass(made.state).sum() * 5.0 / 6.0)
     made.take({**told, "glue_activity.active": (np.arange(count) > 3).astype(float)})
     made.step(dt)
     given = made.give(frozenset({"glued_load.force"}))["glued_load.force"]
     assert not given[:4].any() and given[4:].any()
-    assert made.totals().mass == pytest.approx(made._masses().sum() * 84.0 / 96.0)
+    assert made.totals().mass == pytest.approx(made.materials.mass(made.state).sum() * 84.0 / 96.0)
 
 
 def test_fixed_particles_keep_their_places():

@@ -1,0 +1,46 @@
+"""Particles glued to a partner's mesh: they move with it, and it carries their mass.
+
+Their rows in ports keep the order of the start. All functions do nothing without such particles.
+"""
+
+import numpy as np
+
+from quintet.components.sph_solid.state import Array, State, Whole
+
+
+def glued_rows(state: State, attached: bool = False) -> Whole:
+    """Rows of all particles that were glued at the start, or of those still attached."""
+    rows = np.flatnonzero(state.glue >= 0)
+    rows = rows[np.argsort(state.glue[rows])]
+    return rows[state.active > 0.0] if attached else rows
+
+
+def release(state: State, active: Array, mass: Array) -> None:
+    """Set which are attached (glued,), with masses (n,) kg; released ones bring their motion."""
+    freed = np.flatnonzero(active < state.active)
+    if len(freed):
+        rows = glued_rows(state)[freed]
+        squares = (state.velocity[rows] ** 2).sum(axis=1)
+        state.work += 0.5 * float(mass[rows] @ squares)
+    state.active[:] = active
+
+
+def pull(state: State) -> None:
+    """Give attached particles the velocities of this step."""
+    if len(state.active):
+        rows = glued_rows(state, attached=True)
+        state.velocity[rows], state.acceleration[rows] = state.pulled[state.active > 0.0], 0.0
+
+
+def add_work(state: State, dt: float) -> None:
+    """Add the work that the mesh does on attached particles in half a step of dt [s]."""
+    if len(state.active):
+        state.work -= 0.5 * dt * float((state.force * state.pulled).sum())
+
+
+def write_forces(state: State, mass: Array) -> None:
+    """Write the forces [N] of attached particles, without gravity, of masses (n,) kg."""
+    if len(state.active):
+        rows = glued_rows(state)
+        force = mass[rows, None] * state.acceleration[rows]
+        state.force[:] = force * state.active[:, None]
