@@ -7,6 +7,7 @@ import numpy as np
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import MANIFEST, build, diagnostics, features, judgement
+from quintet.components.sph_fluid.boundary.method import Films
 from quintet.components.sph_fluid.boundary.planar import in_plane, require_one_metre
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.integration.method import Moved, StepTask
@@ -51,7 +52,7 @@ class SphFluid(Component):
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.team, self.constants = Team(resources.threads), constants(params)
-        self.told = [*mass_notes(params), *viscosity_notes(params)]
+        self._notes = [*mass_notes(params), *viscosity_notes(params)]
         self.state, self.samples = build.state(params), Samples()
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)
@@ -63,7 +64,7 @@ class SphFluid(Component):
         self.pairs = Interaction(params, *joined, precision, self.samples)
         self.integration = features.integration(params)
         self.courant = features.courant_limit(params)
-        self.films: features.Films | None = None  # before there are surfaces
+        self.films: Films | None = None  # before there are surfaces
         self.filter = features.shepard_filter(params)
         self.gauges = features.gauges(params, self.symmetry)
 
@@ -85,7 +86,7 @@ class SphFluid(Component):
     def prime(self, fields: Fields) -> None:
         """Remove fluid inside the bodies joined, where a scene asks for it."""
         if self.params.remove_inside_bodies and len(self.samples.row):
-            self.told += features.remove_inside_bodies(
+            self._notes += features.remove_inside_bodies(
                 self.state, self.samples, fields, self.params
             )
 
@@ -204,7 +205,7 @@ class SphFluid(Component):
 
     def notes(self) -> tuple[str, ...]:
         """What was not as a scene may have meant it: masses, films that are missing."""
-        return (*self.told, *(self.films.notes if self.films else ()))
+        return (*self._notes, *(self.films.notes if self.films else ()))
 
     def warnings(self) -> dict[str, str]:
         """Compression, fluid that leaves its tank, and energy from nowhere."""

@@ -4,11 +4,12 @@ All imports are made where they are asked for: a scene imports, and compiles, no
 leaves out.
 """
 
+from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid.boundary.method import BoundaryMethod
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod, Films
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
 from quintet.components.sph_fluid.integration.method import Integration
@@ -37,7 +38,7 @@ def boundary_method(params: SphFluidParams, samples: Samples) -> BoundaryMethod:
         # Mirrored walls are left out of scenes with other boundaries.
         from quintet.components.sph_fluid.boundary.mirrored import MirroredBoundary
 
-        return MirroredBoundary(params, samples)
+        return MirroredBoundary(params, samples, partial(contact_stiffness, params))
     if params.boundary.method == "potential":
         # The contact potential is left out of scenes with other boundaries.
         from quintet.components.sph_fluid.boundary.potential import PotentialBoundary
@@ -67,31 +68,13 @@ def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
     return Symmetry(params)
 
 
-class Films(Protocol):
-    """Films in narrow gaps, or what waits for a place for one."""
-
-    notes: list[str]  # what the user should read
-
-    def join(self, state: State, static: Fields) -> None:
-        """Make room for films at samples that links bring."""
-
-    def load(self, state: State) -> None:
-        """Follow a state that was loaded."""
-
-    def resize(self, state: State, lists: Lists) -> None:
-        """Find the films of a state with new lists."""
-
-    def advance(self, state: State, lists: Lists, dt: float) -> None:
-        """Advance the films by a step [s], and add their push to the samples' force."""
-
-
 def lubrication_films(params: SphFluidParams, samples: Samples) -> Films | None:
     """Films in narrow gaps: from the start, where they are needed, or never."""
     if params.boundary.lubrication_films == "auto":
         # Left out of scenes that say whether they want films.
-        from quintet.components.sph_fluid.boundary.films_where_needed import FilmsWhereNeeded
+        from quintet.components.sph_fluid.boundary.selective_films import SelectiveFilms
 
-        return FilmsWhereNeeded(params, samples)
+        return SelectiveFilms(params, samples, partial(make_films, params, samples))
     return make_films(params, samples) if params.boundary.lubrication_films else None
 
 

@@ -52,3 +52,21 @@ class BoundaryMethod(Protocol):
 
     def energy(self, state: State, lists: Lists, team: Team) -> float:
         """Energy [J] that it stores."""
+
+
+class Films(Protocol):
+    """Films in narrow gaps, from the start or from when a body needs one."""
+
+    notes: list[str]  # what the user should read
+
+    def join(self, state: State, static: Fields) -> None:
+        """Make room for films at samples that links bring."""
+
+    def load(self, state: State) -> None:
+        """Follow a state that was loaded."""
+
+    def resize(self, state: State, lists: Lists) -> None:
+        """Find the films of a state with new lists."""
+
+    def advance(self, state: State, lists: Lists, dt: float) -> None:
+        """Advance the films by a step [s], and add their push to the samples' force."""

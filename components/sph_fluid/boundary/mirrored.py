@@ -8,13 +8,14 @@ the contact potential for the samples that they bring.
 """
 
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.search.verlet_list import longest
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid import features
 from quintet.components.sph_fluid.boundary.mirrored_kernels import (
     BY_POTENTIAL,
     NOT_LISTED,
@@ -32,12 +33,20 @@ from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import PortError
 
+if TYPE_CHECKING:  # compiled where a link asks for it
+    from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
+
 
 class MirroredBoundary:
     """Walls and samples whose density is mirrored."""
 
-    def __init__(self, params: SphFluidParams, samples: Samples) -> None:
-        self.params, self.samples = params, samples
+    def __init__(
+        self,
+        params: SphFluidParams,
+        samples: Samples,
+        make_stiffness: Callable[[], "ContactStiffness"],
+    ) -> None:
+        self.params, self.samples, self._make_stiffness = params, samples, make_stiffness
         self.contact, self.stable_dt = NO_POTENTIAL, math.inf
         self.mask: Array = np.zeros(0)
         self.by_potential: Whole = np.zeros(0, np.int64)  # (k,) samples under the potential
@@ -54,7 +63,7 @@ class MirroredBoundary:
         state.mirror_point = np.concatenate([state.mirror_point, np.zeros((count, 3))])
         self.by_potential = samples_by_potential(static)
         if len(self.by_potential):
-            self.stiffness = features.contact_stiffness(self.params)
+            self.stiffness = self._make_stiffness()
             self.contact = self.stiffness.numbers._replace(partial=True)
 
     def follow_samples(self, state: State, fields: Fields) -> None:
@@ -84,8 +93,8 @@ class MirroredBoundary:
     def query_points(self, state: State) -> tuple[Array | None, Whole]:
         """Mirror points; samples, which the fluid pushes, look from where they are as well."""
         points, row = state.reference[: state.particles], self.samples.row
-        found = np.concatenate([state.reference[len(points) :], points[row]])
-        return found, len(points) + np.arange(len(row))
+        sources = np.concatenate([state.reference[len(points) :], points[row]])
+        return sources, len(points) + np.arange(len(row))
 
     def resize(self, state: State, symmetry: SymmetryPlanes) -> None:
         """Mark rows under the potential, of a state with new lists."""
@@ -96,23 +105,29 @@ class MirroredBoundary:
 
     def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
         """Write density as if the fluid went on into walls and samples."""
-        own = np.full(len(state.mirror_point), NOT_LISTED)
+        listed = np.full(len(state.mirror_point), NOT_LISTED)
         sample_rows = self.samples.row - state.fluid
-        own[sample_rows] = self.samples.listed
-        own[sample_rows[self.by_potential]] = BY_POTENTIAL
-        arrays = (own, state.mirror_point, state.position_density, state.velocity_pressure, lists)
+        listed[sample_rows] = self.samples.listed
+        listed[sample_rows[self.by_potential]] = BY_POTENTIAL
+        arrays = (
+            listed,
+            state.mirror_point,
+            state.position_density,
+            state.velocity_pressure,
+            lists,
+        )
         numbers = (self.gradient, constants(self.params))
-        team.run(extrapolate_density, len(own), state.fluid, *arrays, *numbers)
+        team.run(extrapolate_density, len(listed), state.fluid, *arrays, *numbers)
 
     def apparent_velocity(self, state: State, lists: Lists, team: Team) -> Array:
         """Velocities that bring the fluid to rest at walls and samples, unless it slips there."""
         if self.params.boundary.wall_viscosity_factor == 0.0:
             return state.velocity_pressure
-        found = state.velocity_pressure.copy()
+        mirrored = state.velocity_pressure.copy()
         arrays = (state.mirror_point, state.position_density, state.velocity_pressure, lists)
-        rows, numbers = len(state.mirror_point), (constants(self.params), found)
+        rows, numbers = len(state.mirror_point), (constants(self.params), mirrored)
         team.run(mirror_velocity, rows, state.fluid, *arrays, *numbers)
-        return found
+        return mirrored
 
     def energy(self, state: State, lists: Lists, team: Team) -> float:
         """Energy [J] of the contact potential, and of the repulsion, where there is one."""

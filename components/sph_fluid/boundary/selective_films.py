@@ -1,9 +1,11 @@
 """Films that begin when a wet body comes near to a wall or another body; numpy until then."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from quintet.components.shared.search.neighbours import Lists
-from quintet.components.sph_fluid import features
+from quintet.components.sph_fluid.boundary.method import Films
 from quintet.components.sph_fluid.boundary.nearby_bodies import (
     bodies_of,
     bounds,
@@ -21,13 +23,15 @@ INSET = 1.0  # spacings, of a body's outermost samples below its surface, on cor
 TOUCHING = 0.5  # spacings, between a body and a wall below which water that they keep out is missed
 
 
-class FilmsWhereNeeded:
-    """The films of one fluid, once there is a place for one; a note where there can be none."""
+class SelectiveFilms:
+    """The films of one fluid, once a body needs one; a note where there can be none."""
 
-    def __init__(self, params: SphFluidParams, samples: Samples) -> None:
-        self.params, self.samples = params, samples
+    def __init__(
+        self, params: SphFluidParams, samples: Samples, make_films: Callable[[], Films]
+    ) -> None:
+        self.params, self.samples, self._make_films = params, samples, make_films
         self.lacking = why_no_films(params)
-        self.made: features.Films | None = None
+        self.films: Films | None = None
         self.notes: list[str] = []
 
     def join(self, state: State, static: Fields) -> None:
@@ -37,17 +41,14 @@ class FilmsWhereNeeded:
 
     def load(self, state: State) -> None:
         """Have films if a state that was loaded has them."""
-        self.made = self._make() if len(state.film) else None
-
-    def _make(self) -> "features.Films":
-        return features.make_films(self.params, self.samples)
+        self.films = self._make_films() if len(state.film) else None
 
     def resize(self, state: State, lists: Lists) -> None:
         """Begin, once a body is near enough; find the films of a state with new lists."""
-        if self.made is None and len(self.samples.row):
+        if self.films is None and len(self.samples.row):
             self._look(state, lists)
-        if self.made is not None:
-            self.made.resize(state, lists)
+        if self.films is not None:
+            self.films.resize(state, lists)
 
     def _look(self, state: State, lists: Lists) -> None:
         """Make films where a body needs one, or say why it has none."""
@@ -65,13 +66,13 @@ class FilmsWhereNeeded:
             near = near_walls(boxes, self.params, reach)
             near |= near_each_other(boxes, reach + INSET * spacing)
             if (near & wet).any():
-                self.made = self._make()
-                self.made.join(state, {})
+                self.films = self._make_films()
+                self.films.join(state, {})
         elif not self.notes:
             reach = (TOUCHING + self.params.boundary.sample_depth) * spacing
-            for one in np.flatnonzero(near_walls(boxes, self.params, reach) & wet)[:1]:
+            for row in np.flatnonzero(near_walls(boxes, self.params, reach) & wet)[:1]:
                 self.notes.append(
-                    f"body {number[one]:g} touches a wall under water, and no film of water "
+                    f"body {number[row]:g} touches a wall under water, and no film of water "
                     f"presses between them, since {self.lacking}: it weighs on the wall what the "
                     "water above it weighs too much. Set boundary.method to mdbc in three "
                     "dimensions without planes of symmetry, or lubrication_films to false if this "
@@ -80,5 +81,5 @@ class FilmsWhereNeeded:
 
     def advance(self, state: State, lists: Lists, dt: float) -> None:
         """Advance the films by a step [s], if there are any, and add their push."""
-        if self.made is not None:
-            self.made.advance(state, lists, dt)
+        if self.films is not None:
+            self.films.advance(state, lists, dt)
