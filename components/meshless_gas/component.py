@@ -1,7 +1,6 @@
 """A gas on a cloud of nodes, stepped by SSP-RK3."""
 
 import math
-from collections import defaultdict
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from quintet.components.meshless_gas.kernels.motion import STAGES, advance
 from quintet.components.meshless_gas.kernels.symmetry import hold_along
 from quintet.components.meshless_gas.monitors import blocked_inflows
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.parts import Reader
+from quintet.components.meshless_gas.port_readers import port_readers
 from quintet.components.meshless_gas.ports import SHOWS
 from quintet.components.meshless_gas.resolution import coarse_clouds
 from quintet.components.meshless_gas.scheme import SpatialScheme
@@ -59,10 +58,13 @@ class MeshlessGas(Component):
         self.parts = [self.friction, self.motion, *axis, *particles]  # in the order of their terms
         self.scheme = SpatialScheme(params, self.motion, self.parts, self.fluxes, self.team)
         self.wall_loads = features.walls(params, self.motion, self.friction)
-        self.monitor = features.monitor(params, self.wall_loads)
+        self.monitor = features.monitor(
+            params, self.wall_loads, self.fluxes.primitive, domain.cloud.nodes
+        )
         self.gauges = Gauges(params, domain, self.team)
         self.coarse = coarse_clouds(params, domain)
-        self.readers = self._readers()
+        parts = (*self.parts, self.gauges, self.wall_loads, self.monitor)
+        self.readers = port_readers(params, self.state, self.fluxes, self.motion, parts, self.team)
         self._continue_from_state()
 
     def describe(self) -> Fields:
@@ -153,21 +155,6 @@ class MeshlessGas(Component):
         self.scheme.apply_boundaries()
         self.scheme.update_stable_step(self.state.time)
 
-    def _readers(self) -> dict[str, list[Reader]]:
-        """Readers of all ports; two share a port whose fields they both know."""
-        params, state, work, team = self.params, self.state, self.fluxes, self.team
-        readers: dict[str, list[Reader]] = defaultdict(list)
-        readers["balance"] = [
-            lambda: diagnostics.balance(params, state, self.motion.domain, work, team)
-        ]
-        readers["error"] = [
-            lambda: diagnostics.errors(params, state, self.motion.domain.cloud, team)
-        ]
-        for part in (*self.parts, self.gauges, self.wall_loads, self.monitor):
-            for port, reader in part.readers(work.primitive).items():
-                readers[port].append(reader)
-        return readers
-
     def give(self, wanted: Keys) -> Fields:
         """Copy out the fields of the ports that are wanted."""
         ports = {key.partition(".")[0] for key in wanted}
@@ -199,6 +186,10 @@ class MeshlessGas(Component):
         doubts = self.motion.domain.doubts
         warnings = self.coarse | ({"neighbours": " ".join(doubts)} if doubts else {})
         return warnings | blocked_inflows(self.params, self.state, self.motion.domain)
+
+    def final_warnings(self) -> dict[str, str]:
+        """Doubts about a flow that was to settle and has not."""
+        return self.monitor.final_warnings(self.fluxes.primitive)
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""

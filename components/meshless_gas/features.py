@@ -18,6 +18,7 @@ from quintet.components.meshless_gas.parts import (
     Walls,
 )
 from quintet.components.shared.threads import Team
+from quintet.interfaces.component import Array
 
 
 def node_motion(params: MeshlessGasParams, team: Team) -> NodeMotion:
@@ -78,11 +79,11 @@ def walls(params: MeshlessGasParams, motion: NodeMotion, no_slip: WallFriction) 
     return WallLoads(params, motion.domain, no_slip)
 
 
-def monitor(params: MeshlessGasParams, loads: Walls) -> Monitor:
+def monitor(params: MeshlessGasParams, loads: Walls, primitive: Array, nodes: int) -> Monitor:
     """Judge of a flow that is to settle."""
     if params.steady is None:
         return TransientFlow()
     # Left out of scenes without `steady`.
     from quintet.components.meshless_gas.steady import SteadyMonitor
 
-    return SteadyMonitor(params.steady, loads)
+    return SteadyMonitor(params.steady, loads, primitive, nodes)

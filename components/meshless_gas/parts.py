@@ -129,6 +129,10 @@ class Walls(Part):
         """Sum [N] of the sizes of the forces on wall nodes."""
         return 0.0
 
+    def forces(self, primitive: Array) -> Array:
+        """Forces (2, w, 3) N on wall nodes: by pressure less the stream's, and by friction."""
+        return np.zeros((2, 0, 3))
+
 
 class NoWalls(Walls):
     """A cloud without walls on which loads are computed."""
@@ -141,6 +145,10 @@ class Monitor(Part):
 
     def update(self, primitive: Array, change: float, time: float) -> None:
         """Count a step of this relative change of densities [1], up to a time [s]."""
+
+    def final_warnings(self, primitive: Array) -> dict[str, str]:
+        """Doubts about a run that has ended."""
+        return {}
 
 
 class TransientFlow(Monitor):

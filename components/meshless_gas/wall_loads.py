@@ -89,8 +89,13 @@ class WallLoads(Walls):
 
     def _each(self, primitive: Array) -> Array:
         """Forces (w, 3) N on nodes."""
+        pressure, friction = self.forces(primitive)
+        return np.asarray(friction + pressure)
+
+    def forces(self, primitive: Array) -> Array:
+        """Forces (2, w, 3) N on wall nodes: by pressure less the stream's, and by friction."""
         pressure = primitive[self.rows, 4] - (self.stream.pressure if self.stream else 0.0)
-        return np.asarray(self.sizes[:, None] * self.friction - pressure[:, None] * self.areas)
+        return np.stack([-pressure[:, None] * self.areas, self.sizes[:, None] * self.friction])
 
     def readers(self, primitive: Array) -> Mapping[str, Reader]:
         """Readers of the ports `wall` and `body`."""

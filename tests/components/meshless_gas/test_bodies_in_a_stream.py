@@ -94,7 +94,10 @@ def test_nothing_tells_whether_a_flow_has_settled_where_no_steady_says_when() ->
 
 def test_a_flow_settles_only_when_densities_and_forces_do() -> None:
     walls = PushedWall()
-    monitor, states = SteadyMonitor(Steady(steps=1, change=1e-3, force=1e-2), walls), np.zeros(0)
+    monitor, states = (
+        SteadyMonitor(Steady(steps=1, change=1e-3, force=1e-2), walls, np.ones((1, 5)), 1),
+        np.ones((1, 5)),
+    )
     monitor.update(states, 1e-4, 0.1)  # the force was 0 before
     assert not monitor.is_settled
     monitor.update(states, 1e-2, 0.2)
@@ -102,6 +105,21 @@ def test_a_flow_settles_only_when_densities_and_forces_do() -> None:
     walls.push = 1.001
     monitor.update(states, 1e-4, 0.3)
     assert monitor.is_settled
+
+
+def test_a_run_that_ends_before_its_flow_has_settled_warns():
+    gas = sphere(steady={"change": 1e-9}, limiter="van_albada")
+    for _ in range(60):
+        gas.step(gas.stable_dt())
+    assert "has not settled" in gas.final_warnings()["steady"]
+    before = gas.save()
+    for _ in range(1200):
+        gas.step(gas.stable_dt())
+    assert (
+        gas.give(frozenset({"body.settled"}))["body.settled"] == 0.0 and gas.final_warnings() == {}
+    )
+    gas.load(before)
+    assert "has not settled" in gas.final_warnings()["steady"]
 
 
 @pytest.mark.parametrize(
