@@ -32,8 +32,8 @@ def filling(body: Body, params: SphSolidParams) -> Filling:
     volume = body.volume(params.dimensions, params.axisymmetric) * share / max(share.sum(), 1e-300)
     for plane in params.symmetry:
         beyond = points[:, "xyz".index(plane.axis)]
-        kept = (beyond > plane.position) == (plane.side == "+")
-        points, volume = points[kept], volume[kept]
+        computed = (beyond > plane.position) == (plane.side == "+")
+        points, volume = points[computed], volume[computed]
     return Filling(points, volume)
 
 

@@ -96,7 +96,7 @@ def inverse(k, law):  # type: ignore[no-untyped-def]
     a, b, c = yy * zz - yz * yz, zx * yz - xy * zz, xy * yz - zx * yy
     determinant = xx * a + xy * b + zx * c
     per = 1.0 / determinant if determinant != 0.0 else 0.0
-    found = (
+    inverted = (
         a * per,
         (xx * zz - zx * zx) * per,
         (xx * yy - xy * xy) * per,
@@ -104,7 +104,7 @@ def inverse(k, law):  # type: ignore[no-untyped-def]
         (xy * zx - xx * yz) * per,
         c * per,
     )
-    return found, determinant
+    return inverted, determinant
 
 
 @njit(inline="always")

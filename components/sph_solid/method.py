@@ -1,8 +1,8 @@
-"""How bodies are computed: what the scene says, and else what suits their materials.
+"""The method of a scene: its own settings, and defaults that suit its materials.
 
-Elastic bodies keep the neighbours of the start, which lose no motion and cannot tear. Bodies that
-flow, but have no equation of state for shocks and meet slowly, have corrected gradients and little
-viscosity: Taylor's bar is 0.4 to 0.7 mm too long with more. Shocks need more.
+Elastic bodies keep the neighbours of the start: they lose no motion and cannot tear. Bodies that
+flow, meet slowly and have no equation of state for shocks get corrected gradients and little
+viscosity: with more, Taylor's bar is 0.4 to 0.7 mm too long. Shocks need more.
 """
 
 import math
@@ -32,8 +32,8 @@ NONE, LITTLE, SHOCKS = (0.0, 0.0), (0.1, 0.5), (1.0, 2.0)  # viscosities
 def method(params: SphSolidParams) -> Method:
     """Settings of a scene, and those that suit its materials where it has none."""
     materials = [material(body.material) for body in params.bodies]
-    is_plain = not any(one.mie_gruneisen or _may_fail(one) for one in materials)
-    is_elastic = is_plain and not any(one.johnson_cook for one in materials)
+    is_plain = not any(law.mie_gruneisen or _may_fail(law) for law in materials)
+    is_elastic = is_plain and not any(law.johnson_cook for law in materials)
     is_calm = is_elastic or (is_plain and not is_fast(params))
     total, corrected = params.total_lagrangian, params.kernel_correction
     repels = params.artificial_stress > 0.0
@@ -58,55 +58,55 @@ def is_fast(params: SphSolidParams) -> bool:
 
 
 def viscosity_warning(params: SphSolidParams) -> str:
-    """What is wrong with the viscosities for bodies that meet so fast; empty if nothing is."""
+    """Why the viscosities do not suit the speed of the impact; empty if they do."""
     total, _, linear, quadratic = method(params)
     usual = "Shocks need about 1 and 2 (viscosity_linear, viscosity_quadratic)"
-    found = f"found {linear:g} and {quadratic:g}."
+    values = f"found {linear:g} and {quadratic:g}."
     materials = [material(body.material) for body in params.bodies]
-    flows = any(one.johnson_cook for one in materials)
+    flows = any(law.johnson_cook for law in materials)
     if is_fast(params) and linear < LEAST_LINEAR and not total:
         return (
             "bodies meet at more than a tenth of the speed of sound, where particles run through "
-            f"each other with too little artificial viscosity; {found} {usual}."
+            f"each other with too little artificial viscosity; {values} {usual}."
         )
     is_slow = not is_fast(params) and _impact(params) > 0.0
-    is_plain = not any(one.mie_gruneisen or _may_fail(one) for one in materials)
+    is_plain = not any(law.mie_gruneisen or _may_fail(law) for law in materials)
     most = MOST_SLOW if is_slow and is_plain and flows else MOST_LINEAR
     if linear > most or quadratic > MOST_QUADRATIC:
         return (
-            "so much artificial viscosity holds the material back and smears its waves; "
-            f"{found} {usual}, slower bodies 0.1 and 0.5, elastic ones with total_lagrangian none."
+            "so much artificial viscosity slows the material and smears its waves; "
+            f"{values} {usual}, slower bodies 0.1 and 0.5, elastic ones with total_lagrangian none."
         )
     return ""
 
 
 def viscosity_note(params: SphSolidParams) -> str:
-    """What is better for a slow impact of a material that flows; empty if nothing is."""
+    """Better settings for a slow impact of a material that flows; empty if these are good."""
     said = params.viscosity_linear is not None or is_fast(params)
     flows = all(material(body.material).johnson_cook for body in params.bodies)
     if said or not flows or method(params).linear < SHOCKS[0] or not _impact(params):
         return ""
     return (
-        "bodies meet below a tenth of the speed of sound. The viscosities 1 and 2 that they have, "
-        "for their equation of state or law of failure, make a bar that strikes a wall about 2 % "
-        "too long; viscosity_linear = 0.1, viscosity_quadratic = 0.5 and kernel_correction = true "
-        "are better without shocks."
+        "bodies meet below a tenth of the speed of sound. The viscosities 1 and 2, taken for their "
+        "equation of state or law of failure, leave a bar that strikes a wall about 2 % too long; "
+        "without shocks viscosity_linear = 0.1, viscosity_quadratic = 0.5 and kernel_correction = "
+        "true are better."
     )
 
 
-def _may_fail(one: Material) -> bool:
-    return not (one.spall_stress is None and one.failure_strain is None and one.damage is None)
+def _may_fail(law: Material) -> bool:
+    return not (law.spall_stress is None and law.failure_strain is None and law.damage is None)
 
 
-def _wave(one: Material) -> float:
+def _wave(law: Material) -> float:
     """Speed [m/s] of longitudinal waves at rest."""
-    return math.sqrt((one.bulk + 4.0 / 3.0 * one.shear) / one.density)
+    return math.sqrt((law.bulk + 4.0 / 3.0 * law.shear) / law.density)
 
 
 def _impact(params: SphSolidParams) -> float:
     """Greatest speed [m/s] at which bodies begin to meet each other or what stands still."""
     motions = [(0.0, 0.0, 0.0), *(body.velocity for body in params.bodies)]
-    fastest = max(math.dist(one, other) for one in motions for other in motions)
+    fastest = max(math.dist(a, b) for a in motions for b in motions)
     return fastest + max(map(_inner_speed, params.bodies))
 
 

@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from quintet.components.shared.geometry.shapes import Cylinder
-from quintet.components.shared.materials.params import material
 from quintet.components.sph_solid.body import Axis, Body
 from quintet.interfaces.params import (
     Fraction,
@@ -156,84 +155,81 @@ class SphSolidParams:
     total_lagrangian: bool | None = None
 
     def __post_init__(self) -> None:
-        axes = [one.axis for one in self.symmetry]
-        sides = [one.axis + one.side for one in self.symmetry]
-        for is_wrong, sentence in (
-            (not self.bodies, "bodies must be at least one; found none. Add [[bodies]]."),
-            (
-                not LEAST_SMOOTHING <= self.smoothing <= MOST_SMOOTHING,
-                f"smoothing must lie between {LEAST_SMOOTHING:g} and {MOST_SMOOTHING:g}: with "
-                "less, gradients of a lattice are wrong by more than 5 %, with more each particle "
-                f"has thousands of neighbours; found {self.smoothing:g}. 1.2 is usual.",
-            ),
-            (
-                any(one.body >= len(self.bodies) for one in self.levels),
-                f"levels: body must be below {len(self.bodies)}, their number.",
-            ),
-            (
-                len(set(sides)) < len(sides),
-                f"symmetry: a side must have one plane at most; found {', '.join(sides)}.",
-            ),
-            (
-                self._narrowest < NARROW * self.length,
-                f"symmetry: two planes must be {NARROW} smoothing lengths apart, "
-                f"{NARROW * self.length:g} m; found {self._narrowest:g} m.",
-            ),
-            (
-                self.dimensions == 2 and "y" in axes,
-                "symmetry: in two dimensions no plane can stand across y. Leave it out.",
-            ),
-            (
-                self.dimensions == 2
-                and not self.axisymmetric
-                and any(
-                    one.shape in ("sphere", "mesh")
-                    or (isinstance(one.geometry, Cylinder) and one.geometry.axis != 1)
-                    for one in self.bodies
-                ),
-                "bodies: in two dimensions they must be boxes, or cylinders along y; "
-                "axisymmetric ones boxes or spheres.",
-            ),
-            (
-                self.total_lagrangian
-                and (self.kernel_correction or self.axisymmetric or self.artificial_stress > 0.0),
-                "total_lagrangian has corrected gradients and needs no artificial stress, and is "
-                "not of rings: leave out kernel_correction, artificial_stress and axisymmetric.",
-            ),
-            (
-                self.artificial_stress > 0.0 and (self.kernel_correction or self.axisymmetric),
-                "artificial_stress is of plain gradients of particles: leave it out, or leave out "
-                "kernel_correction and axisymmetric.",
-            ),
-            (
-                self.axisymmetric and (self.dimensions != 2 or "x" in axes or self.glued),
-                "axisymmetric bodies need dimensions = 2, have no symmetry across x, and are not "
-                "glued.",
-            ),
-            (
-                self.axisymmetric
-                and any(
-                    one.shape in ("cylinder", "mesh")
-                    or (one.shape == "sphere" and one.centre is not None and any(one.centre[:2]))
-                    for one in self.bodies
-                ),
-                "bodies: axisymmetric ones must be boxes, or spheres with their centre on the "
-                "axis z.",
-            ),
-            (
-                self.dimensions == 2 and any(map(self._leaves_the_plane, self.bodies)),
-                "bodies: in two dimensions angular_velocity is about y alone, and 0 of "
-                "axisymmetric ones; velocity_gradient has nothing along y. Correct it.",
-            ),
-            (
-                (self.dimensions == 2 and self.gravity[1] != 0.0)
-                or (self.axisymmetric and self.gravity[0] != 0.0),
-                "gravity must lie in the plane of two dimensions, and along z of axisymmetric "
-                f"bodies; found {self.gravity} m/s2. Correct it.",
-            ),
-        ):
-            if is_wrong:
-                raise ValueError(sentence)
+        _require(self.bodies, "bodies must be at least one; found none. Add [[bodies]].")
+        _require(
+            LEAST_SMOOTHING <= self.smoothing <= MOST_SMOOTHING,
+            f"smoothing must lie between {LEAST_SMOOTHING:g} and {MOST_SMOOTHING:g}: with "
+            "less, gradients of a lattice are wrong by more than 5 %, with more each particle "
+            f"has thousands of neighbours; found {self.smoothing:g}. 1.2 is usual.",
+        )
+        _require(
+            all(level.body < len(self.bodies) for level in self.levels),
+            f"levels: body must be below {len(self.bodies)}, their number.",
+        )
+        self._check_symmetry()
+        self._check_method()
+        if self.dimensions == 2:
+            self._check_plane()
+        if self.axisymmetric:
+            self._check_axisymmetric()
+
+    def _check_symmetry(self) -> None:
+        sides = [plane.axis + plane.side for plane in self.symmetry]
+        _require(
+            len(set(sides)) == len(sides),
+            f"symmetry: a side must have one plane at most; found {', '.join(sides)}.",
+        )
+        _require(
+            self._narrowest >= NARROW * self.length,
+            f"symmetry: two planes must be {NARROW} smoothing lengths apart, "
+            f"{NARROW * self.length:g} m; found {self._narrowest:g} m.",
+        )
+
+    def _check_method(self) -> None:
+        others = self.kernel_correction or self.axisymmetric
+        _require(
+            not (self.total_lagrangian and (others or self.artificial_stress > 0.0)),
+            "total_lagrangian has corrected gradients, needs no artificial stress, and cannot be "
+            "axisymmetric: leave out kernel_correction, artificial_stress and axisymmetric.",
+        )
+        _require(
+            not (self.artificial_stress > 0.0 and others),
+            "artificial_stress works with uncorrected gradients, and not in axisymmetric bodies: "
+            "leave it out, or leave out kernel_correction and axisymmetric.",
+        )
+
+    def _check_plane(self) -> None:
+        _require(
+            all(plane.axis != "y" for plane in self.symmetry),
+            "symmetry: in two dimensions no plane can stand across y. Leave it out.",
+        )
+        _require(
+            self.axisymmetric or all(map(_is_planar, self.bodies)),
+            "bodies: in two dimensions they must be boxes, or cylinders along y; "
+            "axisymmetric ones boxes or spheres.",
+        )
+        _require(
+            not any(map(self._leaves_the_plane, self.bodies)),
+            "bodies: in two dimensions angular_velocity is about y alone, and 0 of "
+            "axisymmetric ones; velocity_gradient has nothing along y. Correct it.",
+        )
+        _require(
+            self.gravity[1] == 0.0 and not (self.axisymmetric and self.gravity[0] != 0.0),
+            "gravity must lie in the plane of two dimensions, and along z of axisymmetric "
+            f"bodies; found {self.gravity} m/s2. Correct it.",
+        )
+
+    def _check_axisymmetric(self) -> None:
+        across_x = any(plane.axis == "x" for plane in self.symmetry)
+        _require(
+            self.dimensions == 2 and not across_x and not self.glued,
+            "axisymmetric bodies need dimensions = 2, have no symmetry across x, and are not "
+            "glued.",
+        )
+        _require(
+            all(map(_is_of_rings, self.bodies)),
+            "bodies: axisymmetric ones must be boxes, or spheres with their centre on the axis z.",
+        )
 
     def _leaves_the_plane(self, body: Body) -> bool:
         turn, (along_x, along_y, along_z) = body.angular_velocity, body.velocity_gradient
@@ -243,56 +239,33 @@ class SphSolidParams:
     @property
     def _narrowest(self) -> float:
         """Least distance [m] between two planes that face each other."""
-        found = math.inf
+        narrowest = math.inf
         for axis in "xyz":
-            ends = {one.side: one.position for one in self.symmetry if one.axis == axis}
+            ends = {plane.side: plane.position for plane in self.symmetry if plane.axis == axis}
             if len(ends) == 2:
-                found = min(found, ends["-"] - ends["+"])
-        return found
+                narrowest = min(narrowest, ends["-"] - ends["+"])
+        return narrowest
 
     @property
     def length(self) -> float:
         """Smoothing length h [m]."""
         return self.smoothing * self.spacing
 
-    @property
-    def cell(self) -> float:
-        """Volume [m3] of a particle of a full lattice."""
-        return self.spacing**self.dimensions
 
-    @property
-    def expected_count(self) -> int:
-        """About how many particles there will be."""
-        if self.axisymmetric:
-            whole = sum(_half_plane(one) for one in self.bodies)
-        else:
-            whole = sum(_computed_volume(one, self) for one in self.bodies)
-        return max(1, round(whole / self.cell))
-
-    @property
-    def expected_step(self) -> float:
-        """Step [s] that the stiffest material bears at rest."""
-        speeds = []
-        for one in self.bodies:
-            made = material(one.material)
-            speeds.append(math.sqrt((made.bulk + 4.0 / 3.0 * made.shear) / made.density))
-        drag = 1.0 if self.viscosity_linear is None else self.viscosity_linear
-        return self.courant * self.length / ((1.0 + 1.2 * drag) * max(speeds))
+def _require(rule: object, sentence: str) -> None:
+    if not rule:
+        raise ValueError(sentence)
 
 
-def _computed_volume(body: Body, params: SphSolidParams) -> float:
-    """Volume [m3] of a body's box that planes of symmetry leave, times the body's share of it."""
-    volume = body.volume(params.dimensions)
-    for plane in params.symmetry:
-        k = "xyz".index(plane.axis)
-        low, high = body.bounds[0][k], body.bounds[1][k]
-        kept = high - plane.position if plane.side == "+" else plane.position - low
-        volume *= min(max(kept / (high - low), 0.0), 1.0)
-    return volume
+def _is_planar(body: Body) -> bool:
+    """Whether a body is the same along y: a box, or a cylinder along it."""
+    if body.shape in ("sphere", "mesh"):
+        return False
+    return not isinstance(body.geometry, Cylinder) or body.geometry.axis == 1
 
 
-def _half_plane(body: Body) -> float:
-    """Area [m2] of a body of rings in the half-plane."""
-    (low, _, bottom), (high, _, top) = body.bounds
-    share = 0.25 * math.pi if body.shape == "sphere" else 1.0
-    return share * (high - max(low, 0.0)) * (top - bottom)
+def _is_of_rings(body: Body) -> bool:
+    """Whether a body is one of rings about the axis z."""
+    if body.shape == "sphere" and body.centre is not None:
+        return not any(body.centre[:2])
+    return body.shape not in ("cylinder", "mesh")

@@ -47,14 +47,14 @@ class ReferenceSums:
         return self.touching.energy(state, density, share)
 
     def write_gradients(self, rows: Rows, law: PairLaw) -> None:
-        """Gradients of velocity."""
+        """Write gradients of velocity."""
         self.team.run(
             reference_gradients, len(rows.gradient), self.start, rows.place, rows.motion,
             self.lists, law, rows.gradient, rows.correction,
         )  # fmt: skip
 
     def write_accelerations(self, rows: Rows, law: PairLaw, forces: Forces) -> float:
-        """Accelerations and heating; return the step [s] that all bear."""
+        """Write accelerations and heating; return the greatest stable step [s]."""
         count = len(rows.gradient)
         self.team.run(
             write_nominal_stresses, count, self.start, rows.place, rows.stress, self.lists, law,
@@ -62,7 +62,7 @@ class ReferenceSums:
         )  # fmt: skip
         self.images.write_tensors(self.nominal, count)
         self.images.write_tensors(self.deformed, count)
-        found = self.team.run(
+        shares = self.team.run(
             reference_accelerations, count, self.start, rows.place, rows.motion, self.nominal,
             self.deformed, self.lists, law, self.penalty, forces, self.heats,
         )  # fmt: skip
@@ -70,4 +70,4 @@ class ReferenceSums:
         touch = Forces(self.heats, forces.heating)
         self.touching.add(rows, self.nominal[:, 10], touch)
         np.add(forces.acceleration, self.heats, out=forces.acceleration)
-        return min(slowest for slowest, _ in found)
+        return min(slowest for slowest, _ in shares)

@@ -86,5 +86,5 @@ def test_the_artificial_stress_is_of_the_tensions_along_principal_axes():
 def test_an_artificial_stress_of_corrected_gradients_or_of_rings_is_refused():
     body = Body(lowest=(0.0, 0.0, 0.0), highest=(DX, 1.0, DX), material=RUBBER)
     for other in ({"kernel_correction": True}, {"axisymmetric": True}):
-        with pytest.raises(ValueError, match="artificial_stress is of plain gradients"):
+        with pytest.raises(ValueError, match="artificial_stress works with uncorrected gradients"):
             SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), artificial_stress=0.3, **other)
