@@ -96,7 +96,7 @@ def _body() -> ConformCase:
         "centre": [0.0, 0.0, 0.0],
         "radius": 0.2,
         "is_driven": True,
-        "rays": 16,
+        "points_around": 16,
         "thickness": 0.25,
         "spacing": 0.1,
     }

@@ -42,7 +42,7 @@ def blocked_inflows(params: MeshlessGasParams, state: State, domain: Domain) -> 
             said[f"boundaries.{name}"] = (
                 f"at {where} m gas comes in faster than sound at {pressure:.4g} Pa, but that "
                 f"beside it has {beside[k]:.4g} Pa: a shock stands at the boundary, which cannot "
-                "let it out. Move the boundary further away (a sphere: margin, farthest)."
+                "let it out. Move the boundary further away (a sphere: margin, outer_radius)."
             )
     return said
 

@@ -153,10 +153,11 @@ class MeshlessGasParams:
                 f"layers: jitter is for an axisymmetric sphere; found {layered.layers.jitter:g}. "
                 "Leave it out."
             )
-        if layered is not None and layered.layers.jitter > 0.0 and layered.layers.cross:
+        if layered is not None and layered.layers.jitter > 0.0 and layered.layers.line_stencils:
             found.append(
-                "layers: jitter moves nodes off the lines along which cross takes derivatives; "
-                f"found {layered.layers.jitter:g}. Leave it out, or say cross = false."
+                "layers: jitter moves nodes off the lines along which line_stencils takes "
+                f"derivatives; found {layered.layers.jitter:g}. Leave it out, or say "
+                "line_stencils = false."
             )
         if self.axisymmetric and (self.dimensions == 3 or self.sphere is None):
             found.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")

@@ -43,7 +43,8 @@ def test_a_sphere_in_space_has_the_shock_of_an_axisymmetric_one(run_scene: Run) 
     space = run_scene("blunt_sphere", "--preset", "cap")
     assert all(one["met"] for one in space["expect"]), space["expect"]
     same = (  # as many layers, nodes as far apart along the wall
-        "--set", "components.gas.sphere.rays=17", "--set", "components.gas.sphere.sector=0.8",
+        "--set", "components.gas.sphere.points_around=17",
+        "--set", "components.gas.sphere.sector=0.8",
     )  # fmt: skip
     plane = run_scene("blunt_sphere", "--preset", "quick", *same)
     for name in ("standoff", "pitot"):
@@ -57,7 +58,7 @@ def test_a_sphere_in_space_has_the_shock_of_an_axisymmetric_one(run_scene: Run) 
     [
         (
             "--set", "components.gas.sphere.layers.jitter=0.6",
-            "--set", "components.gas.sphere.layers.cross=false",
+            "--set", "components.gas.sphere.layers.line_stencils=false",
         ),
         (
             "--set", "components.gas.initial.velocity=[20.0, 0.0, 0.0]",

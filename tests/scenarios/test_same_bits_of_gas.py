@@ -24,7 +24,12 @@ SCENES = {
     "flat_plate": ("quick", 0.3, 0.05, ()),
     "blunt_sphere": ("quick", 0.3, 0.05, ()),
     "blunt_sphere hot": ("hot", 0.012, 2e-3, (f"{SPHERE}.layers.count=16",)),
-    "blunt_sphere cap": ("cap", 0.06, 0.01, (f"{SPHERE}.rays=16", f"{SPHERE}.layers.count=12")),
+    "blunt_sphere cap": (
+        "cap",
+        0.06,
+        0.01,
+        (f"{SPHERE}.points_around=16", f"{SPHERE}.layers.count=12"),
+    ),
     "moving_sphere": ("quick", 0.4, 1.0 / 30.0, ()),
     "moving_sphere oblique": ("oblique", 0.2, 1.0 / 30.0, ()),
     "moving_sphere no_slip": ("no_slip", 0.1, 1.0 / 30.0, ()),
@@ -33,11 +38,13 @@ SCENES = {
     "dust_in_stream": ("", 6e-4, 8e-6, ()),
     "dusty_shock": ("quick", 3e-4, 1e-5, ()),
     "newtons_cradle": ("quick", 0.9, 2e-3, ()),
-}  # fmt: skip
+}
 MOVES = {  # what must have changed, or nothing is compared
     "moving_sphere": ("gas", "bodies.uncovered"),
     "shock_layer_particle": ("particle", "motion.position"),
 }
+# Cut so short these warn, with status 1, of a flow that has not settled.
+UNSETTLED = {"flat_plate", "blunt_sphere", "blunt_sphere hot", "blunt_sphere cap"}
 
 
 def settings_of(name: str) -> tuple[str, str, tuple[str, ...]]:
@@ -59,7 +66,7 @@ def in_memory(
         patch.setattr(snapshots, "remove", lambda paths: None)
         made = load(scene, preset, settings, transport="memory")
         make_folder(made, folder)
-        assert simulate(made, folder) == 0
+        assert simulate(made, folder) == (name in UNSETTLED)
     return name, folder
 
 
@@ -95,7 +102,7 @@ def test_from_a_snapshot_it_goes_on_with_the_same_bits(
     kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
     assert len(kept) >= 2
     made = load(scene, preset, settings, transport="memory")
-    assert simulate(made, again, kept[0]) == 0
+    assert simulate(made, again, kept[0]) == (name in UNSETTLED)
     assert compare(first, again) is None
     assert (first / "ledger.csv").read_bytes() == (again / "ledger.csv").read_bytes()
     if scene in MOVES:

@@ -27,7 +27,7 @@ Table = dict[str, Any]
 JITTERS = (0.0, 0.3, 0.6, 0.9)
 FIELDS = ("error.density", "error.pressure", "fronts.", "probes.", "body.")  # of accuracy
 NUMERICS = ("neighbours", "limiter", "limiter_threshold", "order", "courant")
-OF_BOX, OF_LAYERS = ("jitter", "weight"), ("cross", "jitter", "weight")
+OF_BOX, OF_LAYERS = ("jitter", "weight"), ("line_stencils", "jitter", "weight")
 
 
 class Error(NamedTuple):

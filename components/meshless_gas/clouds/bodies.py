@@ -30,11 +30,17 @@ def layered_cloud(params: MeshlessGasParams, sides: Sides) -> LayeredCloud:
 
 
 def _reach(sphere: SphereCloud) -> Reach:
-    return _of(sphere.layers, sphere.rays, min(sphere.sector, math.pi), sphere.margin, sphere.reach)
+    return _of(
+        sphere.layers,
+        sphere.points_around,
+        min(sphere.sector, math.pi),
+        sphere.margin,
+        sphere.reach,
+    )
 
 
 def _plate(one: PlateCloud, sides: Sides) -> LayeredCloud:
-    reach = _of(one.layers, one.rays, 0.0, 1.0, 0.0)
+    reach = _of(one.layers, one.points_along, 0.0, 1.0, 0.0)
     return plate(reach, one.length, one.ahead, one.height, one.finest, sides)
 
 
@@ -42,12 +48,12 @@ def _of(layers: Layers, rays: int, sector: float, margin: float, farthest: float
     return Reach(
         rays=rays,
         layers=layers.count,
-        first=layers.first or math.inf,
+        first=layers.first_spacing or math.inf,
         sector=sector,
         margin=margin,
         farthest=farthest,
         jitter=layers.jitter,
         seed=layers.seed,
         weight=layers.weight,
-        is_cross=layers.cross,
+        is_cross=layers.line_stencils,
     )

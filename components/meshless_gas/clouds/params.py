@@ -1,7 +1,7 @@
 """What a scene says about clouds of nodes."""
 
 import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -102,12 +102,12 @@ class Layers:
     ----------
     count : 1
         Layers between the wall and the far boundary.
-    first : m
+    first_spacing : m
         Thickness of the first; the others grow by one factor. By default all are equal.
     weight : 1
         Of the least squares: 0 for a truncated Gaussian over the distance, else the power p of
         1/dᵖ, of flat and curved layers 2.
-    cross
+    line_stencils
         Whether derivatives are taken along lines of nodes alone: 4 neighbours in the plane, 6 round
         an axis, 8 in space. Without it, with 8, 14 and 20, that along a wall is a mean over three
         layers, which smears boundary layers; jitter needs it.
@@ -117,10 +117,11 @@ class Layers:
         Of the random moves.
     """
 
+    RENAMED: ClassVar = {"first": "first_spacing", "cross": "line_stencils"}
     count: Annotated[int, Field(ge=3)]
-    first: Positive | None = None
+    first_spacing: Positive | None = None
     weight: NotNegative = 2.0
-    cross: bool = True
+    line_stencils: bool = True
     jitter: Annotated[float, Field(ge=0, le=0.9, allow_inf_nan=False)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 1
 
@@ -138,7 +139,7 @@ class SphereCloud:
         On the axis of the flow.
     radius : m
         Of the sphere.
-    rays : 1
+    points_around : 1
         Nodes along a meridian of the sector; in space nodes of the sphere are as far apart.
     layers
         How the cloud is divided.
@@ -146,28 +147,29 @@ class SphereCloud:
         Widest angle from the direction against the flow; π for the whole sphere.
     margin : 1
         Distance of the last layer from the wall, over that of the shock by Billig's correlation.
-    farthest : m
+    outer_radius : m
         Of the last layer from the centre.
     """
 
+    RENAMED: ClassVar = {"rays": "points_around", "farthest": "outer_radius"}
     centre: Vector = (0.0, 0.0, 0.0)
     radius: Positive
-    rays: Annotated[int, Field(ge=8)]
+    points_around: Annotated[int, Field(ge=8)]
     layers: Layers
     sector: Annotated[float, Field(gt=0.2, le=math.pi + 1e-9, allow_inf_nan=False)] = 1.4
     margin: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.35
-    farthest: Positive | None = None
+    outer_radius: Positive | None = None
 
     @property
     def reach(self) -> float:
         """Farthest distance [m] of the last layer from the centre."""
-        return 10.0 * self.radius if self.farthest is None else self.farthest
+        return 10.0 * self.radius if self.outer_radius is None else self.outer_radius
 
     @property
     def finest_spacing(self) -> float:
         """Least distance [m] of nodes, of layers as far as the shock of M = 6."""
         even = 0.15 * self.margin * self.radius / self.layers.count
-        return even if self.layers.first is None else self.layers.first
+        return even if self.layers.first_spacing is None else self.layers.first_spacing
 
     def holds(self, place: Vector, dimensions: int) -> bool:
         """Whether a place (3,) m may lie in the layers: they end before the farthest distance."""
@@ -192,9 +194,11 @@ class SphereCloud:
 
     def expected_count(self, dimensions: int) -> int:
         """About how many nodes there will be."""
-        surface = float(self.rays)
+        surface = float(self.points_around)
         if dimensions == 3:
-            surface *= 2.0 * math.pi * (1.0 - math.cos(self.sector)) / self.sector**2 * self.rays
+            surface *= (
+                2.0 * math.pi * (1.0 - math.cos(self.sector)) / self.sector**2 * self.points_around
+            )
         return round(surface * (self.layers.count + 1))
 
 
@@ -213,7 +217,7 @@ class PlateCloud:
         Of the stretch before it.
     height : m
         Of the cloud above the plate.
-    rays : 1
+    points_along : 1
         Nodes along the plate.
     finest : m
         Distance of nodes at its leading edge; it grows from there to both sides.
@@ -221,10 +225,11 @@ class PlateCloud:
         How the cloud is divided.
     """
 
+    RENAMED: ClassVar = {"rays": "points_along"}
     length: Positive
     ahead: Positive
     height: Positive
-    rays: Annotated[int, Field(ge=8)]
+    points_along: Annotated[int, Field(ge=8)]
     finest: Positive
     layers: Layers
 
@@ -239,8 +244,10 @@ class PlateCloud:
     def finest_spacing(self) -> float:
         """Least distance [m] of nodes."""
         even = self.height / self.layers.count
-        return min(self.finest, even if self.layers.first is None else self.layers.first)
+        return min(
+            self.finest, even if self.layers.first_spacing is None else self.layers.first_spacing
+        )
 
     def expected_count(self, dimensions: int) -> int:
         """About how many nodes there will be."""
-        return (self.rays + self.rays // 4) * (self.layers.count + 1)
+        return (self.points_along + self.points_along // 4) * (self.layers.count + 1)

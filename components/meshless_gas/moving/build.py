@@ -35,12 +35,12 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
     found = ground.stencils.neighbours[:nodes]
     neighbours[:nodes, :near] = np.where(found < nodes, found, found + cloud.nodes - nodes)
     coefficients[:nodes, :near] = ground.stencils.coefficients[:nodes]
-    if keys.cross:  # of a lattice, the nearest first
+    if keys.line_stencils:  # of a lattice, the nearest first
         lines = np.flatnonzero(cloud.kind[:nodes] == INNER)
         neighbours[lines, LINES:] = lines[:, None]
     box = np.array([params.box.lowest, params.box.highest])
     own = layout(cloud, nodes, rings, keys, neighbours, box, kept, planar)
-    rows = np.arange(0 if keys.cross else nodes, cloud.nodes)
+    rows = np.arange(0 if keys.line_stencils else nodes, cloud.nodes)
     made = Stencils(neighbours, coefficients)
     team.run(
         write_coefficients, len(rows), rows, cloud.positions, neighbours, cloud.weight, planar,

@@ -176,7 +176,7 @@ class MovingClouds(NodeMotion):
 
     def flatten(self, gradients: Array) -> None:
         """Set gradients to zero at nodes that reach over a fringe, if the scene asks for it."""
-        if self.params.seam_order == 1:
+        if self.params.fringe_order == 1:
             gradients[self.fringe.across] = 0.0
 
     def sum_loads(self, share: float) -> None:

@@ -75,7 +75,7 @@ class Holes:
         if len(rows) and len(own):
             positions = self.cloud.positions
             _, squares = nearest(positions, own, positions[rows], 1, self.team)
-            part(rows, squares, self.params.seam_distance * h, more, was, active)
+            part(rows, squares, self.params.fringe_distance * h, more, was, active)
 
 
 def without_holes(domain: Domain, holes: Holes, outflows: Outflows) -> Domain:

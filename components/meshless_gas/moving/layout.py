@@ -66,7 +66,7 @@ def with_bodies(
     rings = [
         ring(one, 1 + b, patch, params.axisymmetric)
         if planar
-        else shell(one, 1 + b, patch, params.cross)
+        else shell(one, 1 + b, patch, params.line_stencils)
         for b, one in enumerate(params.bodies)
     ]
     moved = [

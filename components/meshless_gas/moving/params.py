@@ -32,14 +32,14 @@ class Body:
         computed, two layers of nodes on each must fit between. Its mass is the partner's as it is;
         loads are those on 1 m of a cylinder, whose mass a sphere has at 1.5 m over its diameter
         times the density.
-    rays : 1
+    points_around : 1
         Nodes round the whole circle; of an axisymmetric flow half of them are computed. In space
         nodes of a geodesic grid are about as far apart.
     thickness : m
         Of its cloud. The bow shock should lie within it or far beyond it, not at its rim.
     spacing : m
         Between layers, at most; that of the nodes around the cloud.
-    first : m
+    first_spacing : m
         Height of the first layer; if not said, 0.8 of the distance between nodes of the wall.
     growth : 1
         Of one layer over the one below it.
@@ -47,7 +47,7 @@ class Body:
         Widest angle of its cloud from upstream, π for the whole. At π/2, of a body that stands
         still, the cloud ends in the plane across x through the centre, as the box must: gas leaves
         there, and what is behind the body is not computed.
-    first_at_sector : m
+    first_spacing_at_sector : m
         Height of the first layer at the sector's end; if not said, as on the axis. In between it
         grows with (1 - cos θ)², as a boundary layer does about.
     temperature : K
@@ -59,20 +59,26 @@ class Body:
         1/dᵖ.
     """
 
-    RENAMED: ClassVar = {"position": "centre", "diameter": "radius, half of it"}
+    RENAMED: ClassVar = {
+        "position": "centre",
+        "diameter": "radius, half of it",
+        "rays": "points_around",
+        "first": "first_spacing",
+        "first_at_sector": "first_spacing_at_sector",
+    }
     shape: Literal["sphere"] = "sphere"
     centre: Vector
     radius: Positive
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Number = 0.0
     is_driven: bool = False
-    rays: Annotated[int, Field(ge=ROUND)]
+    points_around: Annotated[int, Field(ge=ROUND)]
     thickness: Positive
     spacing: Positive
-    first: Positive | None = None
+    first_spacing: Positive | None = None
     growth: Annotated[float, Field(ge=1, le=2, allow_inf_nan=False)] = 1.08
     sector: Annotated[float, Field(gt=0, le=math.pi + 1e-9, allow_inf_nan=False)] = math.pi
-    first_at_sector: Positive | None = None
+    first_spacing_at_sector: Positive | None = None
     temperature: Positive | None = None
     is_adiabatic: bool = False
     weight: NotNegative = 0.0
@@ -89,10 +95,10 @@ class Body:
                 "temperature, or leave out angular_velocity."
             )
         if not self.is_cut:
-            if self.first_at_sector is not None:
+            if self.first_spacing_at_sector is not None:
                 raise ValueError(
-                    "first_at_sector is of a cloud that ends at a sector; found none. Give a "
-                    "sector of π/2, or leave out first_at_sector."
+                    "first_spacing_at_sector is of a cloud that ends at a sector; found none. Give "
+                    "a sector of π/2, or leave out first_spacing_at_sector."
                 )
             return
         if abs(self.sector - 0.5 * math.pi) > CLOSE:
@@ -105,11 +111,11 @@ class Body:
                 "a body whose cloud ends at a sector must stand still, for its box ends there too; "
                 "found one that moves. Leave out sector, or is_driven and velocity."
             )
-        heights, first = self.heights, self.first_at_sector or 0.0
+        heights, first = self.heights, self.first_spacing_at_sector or 0.0
         thickest = heights[-1] / (len(heights) - 1)
         if first > thickest:
             raise ValueError(
-                f"first_at_sector: {len(heights) - 1} layers over {heights[-1]:g} m are "
+                f"first_spacing_at_sector: {len(heights) - 1} layers over {heights[-1]:g} m are "
                 f"{thickest:.4g} m thick in the mean, and the first can be no thicker; found "
                 f"{first:g} m. Lower it, or growth."
             )
@@ -127,12 +133,12 @@ class Body:
     @property
     def frequency(self) -> int:
         """Parts of an icosahedron's edge in space."""
-        return max(2, round(self.rays * ARC / math.tau))
+        return max(2, round(self.points_around * ARC / math.tau))
 
     @property
     def heights(self) -> list[float]:
         """Heights [m] of its layers above the wall."""
-        step = self.first or 0.8 * math.tau * self.radius / self.rays
+        step = self.first_spacing or 0.8 * math.tau * self.radius / self.points_around
         heights = [0.0]
         while heights[-1] < self.thickness:
             heights.append(heights[-1] + step)
@@ -156,25 +162,30 @@ class Moving:
         Way of a body, over its spacing, after which holes are cut and neighbours found anew.
     hysteresis : 1
         By how many spacings more than it was left out by a node must be uncovered to come back.
-    seam_distance : 1
+    fringe_distance : 1
         Nodes that are nearer than this to one of a body's cloud are left out, in spacings.
     overlap : 1
         By how many spacings clouds overlap.
-    seam_order
+    fringe_order
         Of the scheme at nodes that reach over a seam; 1 where a strong shock crosses it.
-    cross
+    line_stencils
         In space: whether nodes that reach over no seam have neighbours along lines alone, 6 in a
         lattice and 8 in shells; else those of a whole block.
     """
 
+    RENAMED: ClassVar = {
+        "cross": "line_stencils",
+        "seam_distance": "fringe_distance",
+        "seam_order": "fringe_order",
+    }
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
     axisymmetric: bool = False
     threshold: Positive = 0.25
     hysteresis: NotNegative = 0.3
-    seam_distance: NotNegative = 0.5
+    fringe_distance: NotNegative = 0.5
     overlap: Positive = 0.9
-    seam_order: Literal[1, 2] = 2
-    cross: bool = False
+    fringe_order: Literal[1, 2] = 2
+    line_stencils: bool = False
 
     def __post_init__(self) -> None:
         if self.axisymmetric:
@@ -204,11 +215,14 @@ class Moving:
                 for one in self.bodies
             )
         whole = sum(
-            round(one.rays * one.sector / math.pi) * len(one.heights) for one in self.bodies
+            round(one.points_around * one.sector / math.pi) * len(one.heights)
+            for one in self.bodies
         )
         return whole // 2 if self.axisymmetric else whole
 
     @property
     def finest_spacing(self) -> float:
         """Least distance [m] of nodes in bodies' clouds."""
-        return min(min(one.heights[1], math.tau * one.radius / one.rays) for one in self.bodies)
+        return min(
+            min(one.heights[1], math.tau * one.radius / one.points_around) for one in self.bodies
+        )

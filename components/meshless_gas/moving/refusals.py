@@ -78,14 +78,14 @@ def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
             "bodies on an axis of symmetry need two dimensions; found 3. Leave out axisymmetric, "
             "or dimensions."
         )
-    if params.viscous and keys.seam_order == 1:
+    if params.viscous and keys.fringe_order == 1:
         raise SceneError(
-            "friction needs gradients at seams, too; found seam_order = 1. Leave it out."
+            "friction needs gradients at seams, too; found fringe_order = 1. Leave it out."
         )
-    if keys.cross and (params.planar or params.box.jitter > 0.0):
+    if keys.line_stencils and (params.planar or params.box.jitter > 0.0):
         raise SceneError(
             "neighbours along lines alone are for three dimensions and lattices without jitter. "
-            "Leave out cross, or jitter."
+            "Leave out line_stencils, or jitter."
         )
     refuse_sector(params)
     for one in keys.bodies:

@@ -98,24 +98,24 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
 def _angles(body: Body, axisymmetric: bool) -> tuple[Array, Array]:
     """Angles [rad] of rays from upstream, and of the arc that each stands for."""
     if body.is_cut:  # the last ray lies at the sector's end, and stands for half as much
-        count = max(4, round(body.rays * body.sector / math.tau))
+        count = max(4, round(body.points_around * body.sector / math.tau))
         step = body.sector / (count - 0.5)
         arc = np.full(count, step)
         arc[-1] *= 0.5
         return (np.arange(count) + 0.5) * step, arc
     turn = math.pi if axisymmetric else math.tau
-    count = max(4, body.rays // 2) if axisymmetric else body.rays
+    count = max(4, body.points_around // 2) if axisymmetric else body.points_around
     return (np.arange(count) + 0.5) * turn / count, np.full(count, turn / count)
 
 
 def heights_over(body: Body, angle: Array) -> Array:
     """Heights (layers, rays) m of nodes above the wall."""
     heights = np.array(body.heights)
-    if body.first_at_sector is None:
+    if body.first_spacing_at_sector is None:
         return np.repeat(heights[:, None], len(angle), axis=1)
     # Thickness of a boundary layer at a blunt body: about 1/√p, and p falls with the angle.
     share = ((1.0 - np.cos(angle)) / (1.0 - math.cos(body.sector))) ** 2
-    first = heights[1] + share * (body.first_at_sector - heights[1])
+    first = heights[1] + share * (body.first_spacing_at_sector - heights[1])
     return capped(first, heights[-1], len(heights) - 1, body.spacing)
 
 

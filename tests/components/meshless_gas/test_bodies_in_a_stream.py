@@ -35,7 +35,7 @@ def sphere(**keys: object) -> MeshlessGas:
         "axisymmetric": True,
         "gas": {"gas_constant": 1.0 / 1.4},
         "initial": STREAM,
-        "sphere": {"radius": 1.0, "rays": 8, "layers": {"count": 8}},
+        "sphere": {"radius": 1.0, "points_around": 8, "layers": {"count": 8}},
         "boundaries": {
             "wall": {"kind": "slip"},
             "far": {"kind": "inflow", "state": STREAM},
@@ -140,7 +140,7 @@ def test_what_does_not_fit_round_a_sphere_is_refused(
     given = {
         "axisymmetric": True,
         "initial": STREAM,
-        "sphere": {"radius": 1.0, "rays": 8, "layers": {"count": 8}},
+        "sphere": {"radius": 1.0, "points_around": 8, "layers": {"count": 8}},
     }
     _, mistakes = read(MeshlessGas.Params, given | keys, "gas")
     assert any(sentence in one for one in mistakes), mistakes

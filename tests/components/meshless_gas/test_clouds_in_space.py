@@ -20,7 +20,7 @@ OBLIQUE = np.array([0.8, 0.36, 0.48])  # of length 1
 
 @pytest.mark.parametrize(("is_cross", "most"), [(False, 20), (True, 8)])
 def test_shells_fill_their_space_and_nodes_have_those_around_them(is_cross, most):
-    body = Body(centre=(0.0, 0.0, 0.0), radius=1.0, rays=24, thickness=0.5, spacing=0.2)
+    body = Body(centre=(0.0, 0.0, 0.0), radius=1.0, points_around=24, thickness=0.5, spacing=0.2)
     made = shell(body, 1, 0, is_cross)
     nodes, outer = made.cloud.nodes, 1.0 + body.heights[-1]
     assert nodes == 162 * len(body.heights)
@@ -46,10 +46,10 @@ def scene(share=0.0, gas=None, way=4.0, direction=(1.0, 0.0, 0.0), cross=True, *
         "centre": list(begin),
         "radius": 1.0,
         "velocity": list(-share * MACH * along),
-        "rays": 24,
+        "points_around": 24,
         "thickness": 0.7,
         "spacing": 0.3,
-        "first": 0.15,
+        "first_spacing": 0.15,
     }
     inflow = {"kind": "inflow", "state": free}
     outflow = {"kind": "outflow"}
@@ -66,7 +66,7 @@ def scene(share=0.0, gas=None, way=4.0, direction=(1.0, 0.0, 0.0), cross=True, *
         },
         "boundaries": {"x-": inflow} | sides,
         "initial": free,
-        "moving": {"bodies": [body], "cross": cross},
+        "moving": {"bodies": [body], "line_stencils": cross},
     } | keys
 
 
@@ -106,7 +106,7 @@ def test_uncovered_nodes_get_linear_fields_exactly_in_space():
 def test_of_first_order_at_seams_states_are_constant_around_nodes_that_reach_over_them():
     settings = scene()
     gas = made(settings)
-    settings["moving"]["seam_order"] = 1
+    settings["moving"]["fringe_order"] = 1
     other = made(settings)
     gas.step(gas.stable_dt())
     other.step(other.stable_dt())
@@ -138,7 +138,7 @@ def test_a_saved_state_goes_on_with_the_same_bits_in_space():
         ({"moving.axisymmetric": True}, "need two dimensions"),
         ({"dimensions": 2}, "three dimensions and lattices"),
         ({"box.jitter": 0.2}, "lattices without jitter"),
-        ({"viscous": True, "moving.seam_order": 1}, "gradients at seams"),
+        ({"viscous": True, "moving.fringe_order": 1}, "gradients at seams"),
     ],
 )
 def test_what_clouds_in_space_do_not_go_with_is_refused(change, sentence):
@@ -158,8 +158,9 @@ def test_what_clouds_in_space_do_not_go_with_is_refused(change, sentence):
 
 def test_shells_that_end_in_a_plane_fill_half_of_their_space():
     body = Body(
-        centre=(0.0, 0.0, 0.0), radius=1.0, rays=40, thickness=0.5, spacing=0.2, first=0.05,
-        sector=0.5 * math.pi, first_at_sector=0.06,
+        centre=(0.0, 0.0, 0.0), radius=1.0, points_around=40, thickness=0.5, spacing=0.2,
+        first_spacing=0.05,
+        sector=0.5 * math.pi, first_spacing_at_sector=0.06,
     )  # fmt: skip
     made = shell(body, 1, 0, True)
     positions, outer = made.cloud.positions, 1.0 + body.heights[-1]
@@ -181,8 +182,8 @@ def drag(share, direction):
     """Mean coefficient of drag along a direction, over the last two of four radii of way."""
     settings = scene(share=share, direction=direction)
     body = settings["moving"]["bodies"][0]
-    body |= {"rays": 36, "spacing": 0.2, "thickness": 0.75}
-    body.pop("first")
+    body |= {"points_around": 36, "spacing": 0.2, "thickness": 0.75}
+    body.pop("first_spacing")
     settings["box"]["spacing"] = 0.2
     gas, end, found = made(settings), 4.0 / MACH, []
     while gas.state.time < end - 1e-12:

@@ -7,13 +7,19 @@ from quintet.interfaces.params import read
 
 REST = {"density": 1.0, "pressure": 1.0}
 BOX = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.0, 1.0], "spacing": 0.1}
-PLATE = {"length": 1.0, "ahead": 0.2, "height": 0.5, "rays": 20, "finest": 0.01}
-BODY = {"radius": 0.1, "centre": [0.5, 0.0, 0.5], "rays": 16, "thickness": 0.1, "spacing": 0.05}
+PLATE = {"length": 1.0, "ahead": 0.2, "height": 0.5, "points_along": 20, "finest": 0.01}
+BODY = {
+    "radius": 0.1,
+    "centre": [0.5, 0.0, 0.5],
+    "points_around": 16,
+    "thickness": 0.1,
+    "spacing": 0.05,
+}
 FORE = BODY | {"sector": 1.5707963267948966, "centre": [1.0, 0.0, 0.0]}
-DRIVEN, THICK = {"is_driven": True}, {"first_at_sector": 0.09}
+DRIVEN, THICK = {"is_driven": True}, {"first_spacing_at_sector": 0.09}
 CUT = {"axisymmetric": True, "bodies": [FORE]}
 TUBE = {"position": 0.5, "left": REST, "right": REST}
-ROUND = {"radius": 1.0, "rays": 8, "layers": {"count": 6}}
+ROUND = {"radius": 1.0, "points_around": 8, "layers": {"count": 6}}
 POINTS = {"drag": "stokes"}
 
 
@@ -45,7 +51,7 @@ def sphere(velocity, axisymmetric=True, **keys):
         ),
         ({"box": BOX, "moving": CUT | {"bodies": [FORE | {"sector": 1.0}]}}, "or is whole"),
         (
-            {"box": BOX, "moving": CUT | {"bodies": [FORE | {"first_at_sector": 0.09}]}},
+            {"box": BOX, "moving": CUT | {"bodies": [FORE | {"first_spacing_at_sector": 0.09}]}},
             "no thicker",
         ),
         (

@@ -32,7 +32,7 @@ def scene(share=0.0, way=WAY, gas=None, bodies=None, **keys):
         "centre": [begin, 0.0, 0.0],
         "radius": RADIUS,
         "velocity": [-share * MACH, 0.0, 0.0],
-        "rays": 48,
+        "points_around": 48,
         "thickness": 0.7,
         "spacing": 0.125,
     }
@@ -302,9 +302,9 @@ def two(gap):
         {
             "centre": [x, 0.0, 0.0],
             "radius": 0.25,
-            "rays": 32,
+            "points_around": 32,
             "thickness": 0.35,
-            "first": 0.02,
+            "first_spacing": 0.02,
             "spacing": 0.125,
             "velocity": [speed, 0.0, 0.0],
         }
@@ -320,7 +320,7 @@ def test_bodies_that_touch_at_the_start_are_a_mistake_of_the_scene():
 
 def test_a_body_whose_cloud_does_not_fit_into_the_box_is_a_mistake_of_the_scene():
     high = scene()
-    high["moving"]["bodies"][0]["position"][2] = 1.0
+    high["moving"]["bodies"][0]["centre"][2] = 1.0
     with pytest.raises(SceneError, match=r"moving.bodies.0: .* across z. Make the box longer"):
         made(high)
 

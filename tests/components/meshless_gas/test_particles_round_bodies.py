@@ -16,13 +16,13 @@ from quintet.interfaces.params import read
 WIND = {"density": 1.0, "pressure": 1.0 / 1.4, "velocity": [3.0, 0.0, 0.0]}
 INFLOW = {"kind": "inflow", "state": WIND}
 ROUND = {"wall": {"kind": "slip"}, "far": INFLOW, "exit": {"kind": "outflow"}}
-SPHERE = {"radius": 1.0, "rays": 12, "layers": {"count": 10}, "farthest": 2.0}
+SPHERE = {"radius": 1.0, "points_around": 12, "layers": {"count": 10}, "outer_radius": 2.0}
 CLOUDS = {
     "axis": {"axisymmetric": True, "sphere": SPHERE, "boundaries": ROUND},
-    "space": {"dimensions": 3, "sphere": SPHERE | {"rays": 8}, "boundaries": ROUND},
+    "space": {"dimensions": 3, "sphere": SPHERE | {"points_around": 8}, "boundaries": ROUND},
     "plate": {
         "plate": {
-            "length": 2.0, "ahead": 0.5, "height": 1.0, "rays": 10, "finest": 0.1,
+            "length": 2.0, "ahead": 0.5, "height": 1.0, "points_along": 10, "finest": 0.1,
             "layers": {"count": 10},
         },
         "boundaries": {

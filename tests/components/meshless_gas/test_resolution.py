@@ -25,7 +25,7 @@ def vortex(spacing):
 
 
 def sphere(layers, margin):
-    cloud = {"radius": 1.0, "rays": 12, "layers": {"count": layers}, "margin": margin}
+    cloud = {"radius": 1.0, "points_around": 12, "layers": {"count": layers}, "margin": margin}
     params, mistakes = read(MeshlessGasParams, ROUND | {"sphere": cloud}, "gas")
     assert not mistakes
     return MeshlessGas(params)

@@ -103,7 +103,7 @@ def test_a_failed_step_below_the_limit_does_not_advise_a_lower_courant_number():
 
 ROUND = {
     "axisymmetric": True,
-    "sphere": {"radius": 1.0, "rays": 16, "layers": {"count": 12, "cross": False}},
+    "sphere": {"radius": 1.0, "points_around": 16, "layers": {"count": 12, "line_stencils": False}},
     "initial": state(1.0, 6.0, 1.0 / GAMMA),
     "boundaries": {
         "wall": {"kind": "symmetry"},
@@ -129,5 +129,5 @@ def test_layers_moved_far_at_random_are_warned_of():
 
 
 def test_derivatives_along_lines_of_nodes_go_with_nodes_on_these_lines():
-    with pytest.raises(SceneError, match="say cross = false"):
-        layers(cross=True, jitter=0.1)
+    with pytest.raises(SceneError, match="say line_stencils = false"):
+        layers(line_stencils=True, jitter=0.1)

@@ -18,7 +18,7 @@ END = 3.0  # s
 def turning(rays=24, **body):
     """A cylinder that begins to turn in gas at rest, in a box that it does not feel."""
     spacing = math.tau * RADIUS / rays
-    round_it = {"rays": rays, "thickness": 6.0 * spacing, "spacing": spacing}
+    round_it = {"points_around": rays, "thickness": 6.0 * spacing, "spacing": spacing}
     table = {
         "gas": {"gas_constant": PRESSURE, "viscosity": VISCOSITY, "reference_temperature": 1.0},
         "viscous": True,
@@ -28,7 +28,7 @@ def turning(rays=24, **body):
         "initial": {"density": 1.0, "pressure": PRESSURE},
         "moving": {
             "bodies": [
-                {"centre": [0.0, 0.0, 0.0], "radius": RADIUS, "first": 0.5 * spacing}
+                {"centre": [0.0, 0.0, 0.0], "radius": RADIUS, "first_spacing": 0.5 * spacing}
                 | {"temperature": 1.0, "angular_velocity": SPIN} | round_it | body,
             ]
         },

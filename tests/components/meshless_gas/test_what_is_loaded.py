@@ -10,7 +10,7 @@ from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.interfaces.params import read
 params, mistakes = read(MeshlessGas.Params, {{
     "axisymmetric": True, "initial": {STREAM}, "viscous": VISCOUS,
-    "sphere": {{"radius": 1.0, "rays": 8, "layers": {{"count": 6}}}},
+    "sphere": {{"radius": 1.0, "points_around": 8, "layers": {{"count": 6}}}},
     "boundaries": {{"wall": WALL, "far": {{"kind": "inflow", "state": {STREAM}}},
                     "exit": {{"kind": "outflow"}}}},
 }}, "gas")
