@@ -10,7 +10,7 @@ from quintet.components.fe_plate.kernels.blocks import LANES, TEMPERATURE
 from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, mesh
-from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.params import FePlateParams, RigidWall
 from quintet.components.fe_plate.points import points_of
 from quintet.components.fe_plate.state import (
     Array,
@@ -18,6 +18,7 @@ from quintet.components.fe_plate.state import (
     Model,
     Parted,
     Places,
+    Resistance,
     State,
     Whole,
     state_at_rest,
@@ -39,71 +40,107 @@ class Structure(NamedTuple):
     laws: list[Solid]  # of the parts
     first: list[int]  # block of each part, and the end of all
     volume: Array  # (e,) m3
-    mass: Array  # (n,) kg, without what hangs on the nodes
+    mass: Array  # (n,) kg, without added mass
     coupled: Whole  # (f,) numbers of the outer faces that partners see
     pressed: list[Whole]  # for each pressure the outer faces that it acts on
+    element_mass: Array  # (e,) kg
+    resistance: Resistance
+    shortest: float  # m, least edge of cubes, or squares, as large as the elements
 
 
 def structure(
     params: FePlateParams, ends: Callable[[int], list[int]] = lambda blocks: [0, blocks]
 ) -> Structure:
-    """Build a structure; `ends` tells where the shares of a number of blocks end, from 0 on."""
-    made = mesh(params.parts, params.dimensions, params.node_sets)
+    """Build a structure; `ends` gives the ends of the shares of a number of blocks, from 0 on."""
+    grid = mesh(params.parts, params.dimensions, params.node_sets)
     depth = 1.0 if params.dimensions == 2 else 0.0  # m
     laws = [eroding(solid(material(part.material)), params.erosion) for part in params.parts]
-    volume = np.empty(len(made.corner))
-    write_volumes(made.node, made.corner.astype(np.uint32), depth, volume)
-    if not (volume > 0.0).all():
-        worst = int(np.argmin(volume))
-        middle = np.array2string(made.node[made.corner[worst]].mean(axis=0), precision=4)
-        raise SceneError(
-            f"element {worst} at {middle} m must have a volume above 0; found "
-            f"{volume[worst]:.3g} m3: it is inside out. Turn its corners, or mesh it anew."
-        )
-    density = np.array([law.density for law in laws])[made.part]
-    nodes = len(made.node)
-    share = np.repeat(density * volume / 8.0, 8)
-    mass = np.bincount(made.corner.ravel(), share, nodes).astype(np.float64)
+    volume = _volumes(grid, depth)
+    element_mass = np.array([law.density for law in laws])[grid.part] * volume
+    nodes = len(grid.node)
+    share = np.repeat(element_mass / 8.0, 8)
+    mass = np.bincount(grid.corner.ravel(), share, nodes).astype(np.float64)
     points = points_of(params)
-    place, element, first = in_blocks(made.part, len(laws), LANES // points)
-    corner, own = made.corner[element].astype(np.uint32), volume[element]
+    place, element, first = in_blocks(grid.part, len(laws), LANES // points)
+    corner, point_volume = grid.corner[element].astype(np.uint32), volume[element]
     if points == 8:
-        own = np.empty(8 * len(corner))
-        write_point_volumes(made.node, corner, depth, own)
+        point_volume = np.empty(8 * len(corner))
+        write_point_volumes(grid.node, corner, depth, point_volume)
     target, filled, parted = targets(corner, place, first, ends, nodes)
-    walls = np.zeros((len(params.rigid_walls), 4))
-    for row, wall in zip(walls, params.rigid_walls, strict=True):
-        row[:3] = np.array(wall.normal) / np.linalg.norm(wall.normal)
-        row[3] = row[:3] @ wall.point
-    free: Array = np.ones((nodes, 3))
-    for number, held in enumerate(params.fixed):
-        found = chosen(made, held, f"fixed.{number}")
-        _require(found.any(), f"fixed.{number}: it must hold a node; it holds none.")
-        for one in held.directions:
-            free[found, AXES.index(one)] = 0.0
-    if params.dimensions == 2:
-        free[:, 1] = 0.0
-    coupled: Whole = np.arange(len(made.side))
-    if params.coupled_faces:
-        coupled = faces_in(made, params.coupled_faces, "coupled_faces")
-        _require(len(coupled) > 0, "coupled_faces: the boxes must hold an outer face; none does.")
-    pressed = [faces_in(made, [one.faces], "pressures") for one in params.pressures]
-    for number, faces in enumerate(pressed):
-        _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
     model = Model(
         corner=corner,
         target=target,
         filled=filled,
-        volume=own,
+        volume=point_volume,
         depth=depth,
         inverse_mass=1.0 / mass,
-        free=free,
+        free=_free_axes(grid, params),
         gravity=np.array(params.gravity),
-        walls=walls,
+        walls=_walls(params.rigid_walls),
     )
     point = points * place[:, None] + np.arange(points)
-    places = Places(point, own[point] / own[point].sum(axis=1, keepdims=True))
-    return Structure(made, model, parted, places, laws, first, volume, mass, coupled, pressed)
+    volumes = point_volume[point]
+    places = Places(point, volumes / volumes.sum(axis=1, keepdims=True))
+    resistance = Resistance(
+        params.hourglass,
+        params.viscosity_linear,
+        params.viscosity_quadratic,
+        params.stiffness_damping,
+    )
+    coupled, pressed = _loaded_faces(grid, params)
+    shortest = float(volume.min() ** (1.0 / params.dimensions))
+    return Structure(
+        grid, model, parted, places, laws, first, volume, mass, coupled, pressed, element_mass,
+        resistance, shortest,
+    )  # fmt: skip
+
+
+def _volumes(grid: Mesh, depth: float) -> Array:
+    """Volume (e,) m3 of the elements, of a depth [m] along y in a plane; all must be positive."""
+    volume = np.empty(len(grid.corner))
+    write_volumes(grid.node, grid.corner.astype(np.uint32), depth, volume)
+    if not (volume > 0.0).all():
+        worst = int(np.argmin(volume))
+        middle = np.array2string(grid.node[grid.corner[worst]].mean(axis=0), precision=4)
+        raise SceneError(
+            f"element {worst} at {middle} m must have a volume above 0; found "
+            f"{volume[worst]:.3g} m3: it is inside out. Reverse its corners, or remesh it."
+        )
+    return volume
+
+
+def _walls(rigid_walls: Sequence[RigidWall]) -> Array:
+    """Unit normal and offset (w, 4) of rigid walls."""
+    walls = np.zeros((len(rigid_walls), 4))
+    for row, wall in zip(walls, rigid_walls, strict=True):
+        row[:3] = np.array(wall.normal) / np.linalg.norm(wall.normal)
+        row[3] = row[:3] @ wall.point
+    return walls
+
+
+def _free_axes(grid: Mesh, params: FePlateParams) -> Array:
+    """1 or 0 (n, 3): whether a node moves along an axis."""
+    free: Array = np.ones((len(grid.node), 3))
+    for number, support in enumerate(params.fixed):
+        nodes = chosen(grid, support, f"fixed.{number}")
+        _require(nodes.any(), f"fixed.{number}: it must hold a node; it holds none.")
+        for axis in support.directions:
+            free[nodes, AXES.index(axis)] = 0.0
+    if params.dimensions == 2:
+        free[:, 1] = 0.0
+    return free
+
+
+def _loaded_faces(grid: Mesh, params: FePlateParams) -> tuple[Whole, list[Whole]]:
+    """Numbers of the outer faces that partners see, and of those that each pressure acts on."""
+    coupled: Whole = np.arange(len(grid.side))
+    if params.coupled_faces:
+        coupled = faces_in(grid, params.coupled_faces, "coupled_faces")
+        _require(len(coupled) > 0, "coupled_faces: the boxes must hold an outer face; none does.")
+    pressed = [faces_in(grid, [load.faces], "pressures") for load in params.pressures]
+    for number, faces in enumerate(pressed):
+        _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
+    return coupled, pressed
 
 
 def eroding(law: Solid, by: Sequence[str]) -> Solid:
@@ -167,13 +204,13 @@ def initial_state(params: FePlateParams, built: Structure) -> State:
     model, first, node = built.model, built.first, built.mesh.node
     springs = first[-1] if points_of(params) == 1 else 0  # blocks
     rows = max(len(node), int(model.target.max()) + 1)
-    made = state_at_rest(node, first[-1], springs, rows, len(model.walls))
+    state = state_at_rest(node, first[-1], springs, rows, len(model.walls))
     for k, part in enumerate(params.parts):
-        made.points[first[k] : first[k + 1], TEMPERATURE] = built.laws[k].temperature
-        made.velocity[np.unique(built.mesh.corner[built.mesh.part == k])] = part.velocity
-    made.velocity[:] *= model.free
-    made.mean_velocity[:] = made.velocity
-    return made
+        state.points[first[k] : first[k + 1], TEMPERATURE] = built.laws[k].temperature
+        state.velocity[np.unique(built.mesh.corner[built.mesh.part == k])] = part.velocity
+    state.velocity[:] *= model.free
+    state.mean_velocity[:] = state.velocity
+    return state
 
 
 def _require(rule: object, sentence: str) -> None:

@@ -1,9 +1,11 @@
-"""What is measured in a structure: at nodes, in elements, of whole parts."""
+"""Gauges of a structure: at nodes, in elements, of sets and of whole parts."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.kernels.blocks import (
     DAMAGE,
     ENERGY,
@@ -41,9 +43,9 @@ def measured(mesh: Mesh, gauges: Gauges) -> Measured:
                 "another set."
             )
     elements = []
-    for number, one in enumerate(gauges.element_set_gauges):
+    for number, chosen_elements in enumerate(gauges.element_set_gauges):
         where = f"gauges.element_set_gauges.{number}"
-        elements.append(elements_of(mesh, one, where))
+        elements.append(elements_of(mesh, chosen_elements, where))
         if not len(elements[-1]):
             raise SceneError(
                 f"{where}: it must hold an element; it holds none. Correct the box, or name "
@@ -59,8 +61,8 @@ def measured(mesh: Mesh, gauges: Gauges) -> Measured:
 
 def nearest(points: Array, wanted: tuple[tuple[float, float, float], ...]) -> Whole:
     """Which of points (n, 3) m is nearest to each wanted one; the first of several."""
-    found = [int(np.argmin(((points - one) ** 2).sum(axis=1))) for one in wanted]
-    return np.array(found, np.int64)
+    rows = [int(np.argmin(((points - place) ** 2).sum(axis=1))) for place in wanted]
+    return np.array(rows, np.int64)
 
 
 def at_nodes(state: State, node: Whole) -> dict[str, Array]:
@@ -72,23 +74,23 @@ def at_nodes(state: State, node: Whole) -> dict[str, Array]:
 
 
 def in_elements(places: Places, state: State, element: Whole) -> dict[str, Array]:
-    """What some elements bear."""
-    mine = Places(places.point[element], places.share[element])
+    """Stress, strain, temperature and damage of some elements."""
+    subset = Places(places.point[element], places.share[element])
     return {
-        "element_gauge.von_mises": von_mises(mine, state),
-        "element_gauge.pressure": mine.of(state, PRESSURE),
-        "element_gauge.plastic_strain": mine.of(state, STRAIN),
-        "element_gauge.temperature": mine.of(state, TEMPERATURE),
-        "element_gauge.damage": mine.of(state, DAMAGE),
-        "element_gauge.active": mine.active(state),
+        "element_gauge.von_mises": von_mises(subset, state),
+        "element_gauge.pressure": subset.of(state, PRESSURE),
+        "element_gauge.plastic_strain": subset.of(state, STRAIN),
+        "element_gauge.temperature": subset.of(state, TEMPERATURE),
+        "element_gauge.damage": subset.of(state, DAMAGE),
+        "element_gauge.active": subset.active(state),
     }
 
 
 def of_node_sets(state: State, sets: list[Whole]) -> dict[str, Array]:
     """Mean motion of the nodes of each set."""
     return {
-        "node_set_gauge.position": np.stack([state.position[one].mean(axis=0) for one in sets]),
-        "node_set_gauge.velocity": np.stack([state.velocity[one].mean(axis=0) for one in sets]),
+        "node_set_gauge.position": np.stack([state.position[nodes].mean(axis=0) for nodes in sets]),
+        "node_set_gauge.velocity": np.stack([state.velocity[nodes].mean(axis=0) for nodes in sets]),
     }
 
 
@@ -96,16 +98,16 @@ def of_element_sets(
     mesh: Mesh, places: Places, state: State, mass: Array, sets: list[Whole]
 ) -> dict[str, Array]:
     """Mean velocity, energies, mean stress, greatest strain and damage of each set of elements."""
-    found: dict[str, list[Any]] = {}
-    for one in sets:
-        mine = Places(places.point[one], places.share[one])
-        own = mesh._replace(corner=mesh.corner[one], part=np.zeros(len(one), np.int64))
-        for key, value in of_parts(own, mine, state, mass[one]).items():
-            found.setdefault(key.partition(".")[2], []).append(value[0])
-        found.setdefault("von_mises", []).append(von_mises(mine, state).mean())
-        found.setdefault("plastic_strain", []).append(mine.of(state, STRAIN).max())
-        found.setdefault("damage", []).append(mine.of(state, DAMAGE).max())
-    return {f"element_set_gauge.{name}": np.array(values) for name, values in found.items()}
+    means: dict[str, list[Any]] = {}
+    for rows in sets:
+        subset = Places(places.point[rows], places.share[rows])
+        part = mesh._replace(corner=mesh.corner[rows], part=np.zeros(len(rows), np.int64))
+        for key, value in of_parts(part, subset, state, mass[rows]).items():
+            means.setdefault(key.partition(".")[2], []).append(value[0])
+        means.setdefault("von_mises", []).append(von_mises(subset, state).mean())
+        means.setdefault("plastic_strain", []).append(subset.of(state, STRAIN).max())
+        means.setdefault("damage", []).append(subset.of(state, DAMAGE).max())
+    return {f"element_set_gauge.{name}": np.array(values) for name, values in means.items()}
 
 
 def of_parts(mesh: Mesh, places: Places, state: State, mass: Array) -> dict[str, Array]:
@@ -129,6 +131,18 @@ def of_parts(mesh: Mesh, places: Places, state: State, mass: Array) -> dict[str,
     }
 
 
-def wanted_of(port: str, wanted: Keys) -> bool:
-    """Whether any field of a port is wanted."""
-    return any(key.startswith(f"{port}.") for key in wanted)
+def readings(measured: Measured, built: Structure, state: State, wanted: Keys) -> dict[str, Array]:
+    """Fields of the gauges that any partner, expectation or output wants."""
+    mesh, places, mass = built.mesh, built.places, built.element_mass
+    gauges: dict[str, Callable[[], dict[str, Array]]] = {
+        "node_gauge": lambda: at_nodes(state, measured.node),
+        "element_gauge": lambda: in_elements(places, state, measured.element),
+        "node_set_gauge": lambda: of_node_sets(state, measured.node_sets),
+        "element_set_gauge": lambda: of_element_sets(
+            mesh, places, state, mass, measured.element_sets
+        ),
+        "part_gauge": lambda: of_parts(mesh, places, state, mass),
+    }
+    ports = {key.partition(".")[0] for key in wanted}
+    values = {k: v for port in gauges if port in ports for k, v in gauges[port]().items()}
+    return {key: values[key] for key in wanted if key in values}

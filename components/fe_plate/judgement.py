@@ -1,8 +1,7 @@
-"""Signs that results are wrong: energy from nowhere, hourglassing, motion lost to viscosity.
+"""Signs that results are wrong: energy that appears, hourglassing, motion lost to viscosity.
 
-The energy of a structure changes by what is done on it from outside alone. What it changes by
-besides is judged against the energy that was turned over: the largest change of its kinetic,
-potential or internal energy.
+The energy of a structure changes by work from outside alone. Any other change is judged against
+the energy that was turned over: the largest change of its kinetic, potential or internal energy.
 
 One quadrature point sees nothing of the patterns in which an element bends: springs hold them in
 the place of its own stiffness. By their energy E in an elastic element the bending strain of the
@@ -22,7 +21,7 @@ from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.kernels.blocks import DEVIATOR, ENERGY, POINT_ROWS, PRESSURE
 from quintet.components.fe_plate.meshes.mesh import Mesh
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.state import Array, Places, State
+from quintet.components.fe_plate.state import Array, State
 from quintet.components.shared.materials.solid import NEVER, Solid
 
 EVERY = 64  # steps
@@ -62,13 +61,13 @@ def _confined(law: Solid) -> float:
 
 
 class Judge:
-    """What is remembered of a structure's energies, and what it says about its results."""
+    """Takes down a structure's energies, and judges its results by them."""
 
-    def __init__(
-        self, params: FePlateParams, places: Places, mass: Array, built: Structure, weights: Array
-    ) -> None:
-        self.params, self.places, self.mass = params, places, mass
-        self.volume, self.weights = built.volume, weights
+    def __init__(self, params: FePlateParams, built: Structure, has_springs: bool) -> None:
+        self.params, self.places, self.mass = params, built.places, built.element_mass
+        self.volume, self.weights = built.volume, np.zeros(len(built.mesh.corner))
+        if has_springs:
+            self.weights = hourglass_weights(built.mesh, built.laws, params.hourglass)
         laws, part = built.laws, built.mesh.part
         elastic = np.array([is_elastic(law) for law in laws])[part]
         # Who asks for stiffness damping wants motion to become heat.
@@ -122,16 +121,16 @@ class Judge:
         )
         if share > MOST_GAINED:
             texts["energy"] = (
-                "the structure's energy must change by what is done on it alone; it "
+                "the structure's energy must change only by the work done on it; it "
                 f"{verb} {share:.1%} of the {turned:.3g} J that were turned over. Lower courant "
                 f"(now {self.params.courant:g})."
             )
         internal, lack, heat = self.most
         if lack > MOST_HOURGLASS * internal and internal > NEGLIGIBLE * turned:
             texts["hourglass"] = (
-                "the patterns that one quadrature point does not see must have less than "
-                f"{MOST_HOURGLASS:.0%} of the internal energy; they have {lack / internal:.0%} of "
-                f"{internal:.3g} J too much or too little. Take more elements through the "
+                "the error in the energy of hourglass patterns, unseen by one quadrature point, "
+                f"must be below {MOST_HOURGLASS:.0%} of the internal energy; it is "
+                f"{lack / internal:.0%} of {internal:.3g} J. Take more elements through the "
                 'thickness, or integration = "full".'
             )
         if heat > MOST_HEATED * turned:
@@ -144,10 +143,10 @@ class Judge:
         return texts
 
     def save(self) -> Array:
-        """All that is remembered, (12,) J."""
+        """All that was taken down, (12,) J."""
         return np.concatenate([self.ranges.ravel(), self.sums, self.most])
 
     def load(self, saved: Array) -> None:
-        """Come back to what was saved."""
+        """Restore what was saved."""
         self.ranges[:] = saved[:6].reshape(3, 2)
         self.sums[:], self.most[:] = saved[6:9], saved[9:]

@@ -1,5 +1,6 @@
 """All arrays of a structure: what stays as it was built, and what moves."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -21,13 +22,13 @@ Index = NDArray[np.uint32]  # half the bytes of others, and no number from the e
 class Model(NamedTuple):
     """What never changes; n nodes, e elements, b blocks of points.
 
-    Each part's elements fill whole blocks: places that are left over repeat its last element and
+    Each part's elements fill whole blocks: unused places repeat its last element and
     load no node.
     """
 
     corner: Index  # (places, 8) nodes
     target: Index  # (places, 8) rows of forces that corners act on
-    filled: Index  # (b,) places of a block that are not left over
+    filled: Index  # (b,) places of a block that are used
     volume: Array  # (b LANES,) m3, of points at the start
     depth: float  # m, along y, of elements in a plane; 0 of solids
     inverse_mass: Array  # (n,) 1/kg, with what hangs on the nodes
@@ -69,6 +70,27 @@ class State(NamedTuple):
     def internal(self) -> Array:
         """Force [N] of the elements on the nodes (n, 3)."""
         return self.forces[: len(self.position)]
+
+
+@dataclass(slots=True)
+class Accumulated:
+    """Sums over a run."""
+
+    time: float = 0.0  # s
+    work: float = 0.0  # J, of the loads
+    outside: float = 0.0  # J, of it that of pressures; less the energy that mass damping took
+    damped: float = 0.0  # J, that mass damping took
+    brought: float = 0.0  # J, of motion that added mass brought
+    steps: int = 0
+
+    def damp(self, energy: float) -> None:
+        """Add an energy [J] that mass damping took."""
+        self.damped += energy
+        self.outside -= energy
+
+    def done(self) -> float:
+        """Work [J] on the structure, but for that of rigid walls."""
+        return self.work + self.brought - self.damped
 
 
 def state_at_rest(nodes: Array, blocks: int, springs: int, rows: int, walls: int) -> State:

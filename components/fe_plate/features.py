@@ -1,0 +1,44 @@
+"""Optional physics as objects: pressures on faces, and the integration of the elements."""
+
+from collections.abc import Callable
+
+from quintet.components.fe_plate.build import Structure
+from quintet.components.fe_plate.kernels.eight_points import step_eight_points
+from quintet.components.fe_plate.kernels.elements import step_elements
+from quintet.components.fe_plate.loads import add_pressure
+from quintet.components.fe_plate.params import Pressure
+from quintet.components.fe_plate.state import State
+
+Stepped = tuple[float, float, int]  # stable step [s], least volume over that at the start, of which
+Kernel = Callable[..., Stepped]
+
+
+class Pressures:
+    """Pressures on outer faces, along their normals as they move; none on eroded elements."""
+
+    def __init__(self, pressures: tuple[Pressure, ...], built: Structure) -> None:
+        self.loads, self.built = list(zip(pressures, built.pressed, strict=True)), built
+
+    def add(self, state: State, time: float) -> None:
+        """Add the loads [N] of a time [s]."""
+        mesh, places = self.built.mesh, self.built.places
+        for load, faces in self.loads:
+            if pressure := load.at(time):
+                intact = places.active(state)[mesh.owner[faces]] > 0.0
+                add_pressure(mesh, state, faces[intact], pressure)
+
+
+def stepping_kernel(points: int) -> Kernel:
+    """Kernel that steps the blocks of elements with 1 or 8 points; others are not compiled."""
+    return _one_point if points == 1 else _eight_points
+
+
+def _one_point(begin: int, end: int, first: int, *arguments: object) -> Stepped:
+    """Step blocks that are counted from a part's first one on."""
+    result: Stepped = step_elements(first + begin, first + end, *arguments)
+    return result
+
+
+def _eight_points(begin: int, end: int, first: int, *arguments: object) -> Stepped:
+    result: Stepped = step_eight_points(first + begin, first + end, *arguments)
+    return result
