@@ -128,8 +128,8 @@ class Judge:
         internal, lack, heat = self.most
         if lack > MOST_HOURGLASS * internal and internal > NEGLIGIBLE * turned:
             texts["hourglass"] = (
-                "the error in the energy of hourglass patterns, unseen by one quadrature point, "
-                f"must be below {MOST_HOURGLASS:.0%} of the internal energy; it is "
+                "the error in the energy of patterns that one quadrature point does not see must "
+                f"be below {MOST_HOURGLASS:.0%} of the internal energy; it is "
                 f"{lack / internal:.0%} of {internal:.3g} J. Take more elements through the "
                 'thickness, or integration = "full".'
             )

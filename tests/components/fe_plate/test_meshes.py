@@ -53,8 +53,8 @@ def test_a_cylinder_has_its_volume_and_its_elements(axis, quarter):
     assert made.items() == made.params.parts[0].count == share * 4 * 3 * 9 * 8
     rim = 12 * 2  # corners of the circle
     area = 0.5 * rim * math.sin(2.0 * math.pi / rim) * 0.01**2
-    assert made.volume.sum() == pytest.approx(share * area * 0.05, rel=1e-12)
-    assert made.volume.min() > 0.4 * made.volume.max()
+    assert made.built.volume.sum() == pytest.approx(share * area * 0.05, rel=1e-12)
+    assert made.built.volume.min() > 0.4 * made.built.volume.max()
     used = np.unique(made.mesh.corner)
     assert len(used) == len(made.mesh.node)  # none twice, none alone
     middle = 0.5 * (made.mesh.node.min(axis=0) + made.mesh.node.max(axis=0))
@@ -67,7 +67,7 @@ def test_a_cutout_leaves_out_elements_and_the_nodes_that_no_other_has():
     cut = Cutout(lowest=(0.01, 0.01, -1.0), highest=(0.03, 0.02, 1.0))
     made = FePlate(FePlateParams(parts=(Part(**box, cutout=cut, material=ELASTIC),)))
     assert made.items() == made.params.parts[0].count == 4 * 3 - 2
-    assert made.volume.sum() == pytest.approx(10 * 0.01**3, rel=1e-12)
+    assert made.built.volume.sum() == pytest.approx(10 * 0.01**3, rel=1e-12)
     assert len(made.mesh.node) == 5 * 4 * 2 and len(made.faces) == 2 * 10 + 14 + 6
     wider = Cutout(lowest=(0.0, 0.0, 0.0), highest=(0.04, 0.03, 0.01))
     with pytest.raises(ValueError, match="it leaves none"):
@@ -189,7 +189,7 @@ def test_a_mesh_is_read_from_a_file(tmp_path, name):
     params = FePlateParams(parts=(Part(mesh=shape, material=ELASTIC),), fixed=(held,))
     made = FePlate(params)
     assert made.items() == params.parts[0].count == 2
-    assert made.volume == pytest.approx([1e-6, 1e-6])
+    assert made.built.volume == pytest.approx([1e-6, 1e-6])
     assert len(made.mesh.node) == 12 and (made.model.free == 0.0).sum() == 3 * 4
     assert made.mesh.node[:, 2].min() == 1.0
     assert made.stable_dt() < params.parts[0].expected_step * 1.1
