@@ -18,9 +18,9 @@ FADING = 10.0  # spacings from a wall within which the offsets of rows fade
 
 def state(params: SphFluidParams) -> State:
     """Initial state: each box under the hydrostatic pressure of the surface above it."""
-    boxes = [fill_box(box, params) for box in params.fluid]
+    boxes = [fill_box(box, params) for box in params.boxes]
     wall = np.concatenate([wall_points(params), obstacle_points(params)])
-    pairs = zip(boxes, params.fluid, strict=True)
+    pairs = zip(boxes, params.boxes, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
     if params.shapes:
         more = shape_points(params)
@@ -30,7 +30,7 @@ def state(params: SphFluidParams) -> State:
     made.position_density[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
     made.velocity_pressure[made.fluid :, :3] = wall_velocity(wall, params)
     if params.wave is not None:
-        moves = params.wave.velocity(boxes[0], params.fluid[0], params.gravity)
+        moves = params.wave.velocity(boxes[0], params.boxes[0], params.gravity)
         made.velocity_pressure[: len(moves), :3] = moves
     if params.initial is not None:
         _write_initial(made, params)
@@ -51,7 +51,7 @@ def shape_points(params: SphFluidParams) -> list[Array]:
 def shape_density(points: list[Array], params: SphFluidParams) -> list[Array]:
     """Density (n,) kg/m3 of each shape: under its highest point at rest, or ρ₀."""
     return [
-        hydrostatic(some, shape.box, params)
+        hydrostatic(some, shape.bounds, params)
         if shape.hydrostatic
         else np.full(len(some), params.density)
         for some, shape in zip(points, params.shapes, strict=True)
@@ -88,10 +88,10 @@ def _offsets(points: Array, box: Box, params: SphFluidParams) -> Array:
     low, high, counts = np.array(box[0]), np.array(box[1]), cells(box, params)
     row = np.floor((points - low) / (high - low) * counts)
     offset = np.mod(0.5 + row @ OFFSETS, 1.0) - 0.5
-    for end, side in enumerate(("x-", "x+") if params.boundary.walls else ()):
+    for end, side in enumerate(("x-", "x+") if params.boundary.tank else ()):
         if side not in params.boundary.open_faces:
-            assert params.boundary.walls is not None
-            clear = np.abs(points[:, 0] - params.boundary.walls[end][0]) / (FADING * params.spacing)
+            assert params.boundary.tank is not None
+            clear = np.abs(points[:, 0] - params.boundary.tank[end][0]) / (FADING * params.spacing)
             offset *= np.minimum(clear, 1.0)
     return np.asarray(offset * (high[0] - low[0]) / counts[0])
 
@@ -114,8 +114,8 @@ def wall_velocity(wall: Array, params: SphFluidParams) -> Array:
     """Velocity (n, 3) m/s of wall particles (n, 3) m, which stay where they are."""
     found = np.zeros_like(wall)
     for face, velocity in params.boundary.wall_velocity.items():
-        assert params.boundary.walls is not None
-        (low, high), axis = params.boundary.walls, "xyz".index(face[0])
+        assert params.boundary.tank is not None
+        (low, high), axis = params.boundary.tank, "xyz".index(face[0])
         beyond = wall[:, axis] > high[axis] if face[1] == "+" else wall[:, axis] < low[axis]
         found[beyond] = velocity
     return found
@@ -139,7 +139,7 @@ def _surface(box: Box, params: SphFluidParams) -> float:
     """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
     own, little = levels(box, params.hydrostatic_gravity)[1], 1e-6 * params.spacing
     found = own
-    for other in params.fluid if any(params.hydrostatic_gravity) else ():
+    for other in params.boxes if any(params.hydrostatic_gravity) else ():
         ends = zip(*box, *other, strict=True)
         shared = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
         beside = min(shared) > -little and sum(one > little for one in shared) > 1
@@ -154,7 +154,7 @@ def wall_density(wall: Array, params: SphFluidParams) -> Array:
     density = np.full(len(wall), params.density)
     if params.boundary.method == "potential":
         return density
-    for box in params.fluid:
+    for box in params.boxes:
         low, high = np.array(box)
         near = (params.boundary.wall_offset + 0.51) * params.spacing
         rows = np.flatnonzero(((wall > low - near) & (wall < high + near)).all(axis=1))

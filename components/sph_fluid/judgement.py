@@ -64,7 +64,7 @@ def note(state: State, params: SphFluidParams, totals: Totals, isolated: bool) -
 def _is_open_above_alone(params: SphFluidParams) -> bool:
     """Whether fluid has no way out of the tank but over its rim."""
     edge = params.boundary
-    return edge.walls is not None and set(edge.open_faces) <= {"z+"}
+    return edge.tank is not None and set(edge.open_faces) <= {"z+"}
 
 
 def _lost(state: State, params: SphFluidParams) -> int:
@@ -73,9 +73,9 @@ def _lost(state: State, params: SphFluidParams) -> int:
 
 def _outside(state: State, params: SphFluidParams) -> int:
     """Number of particles beyond a closed face of the tank by more than a spacing."""
-    if params.boundary.walls is None or not _is_open_above_alone(params):
+    if params.boundary.tank is None or not _is_open_above_alone(params):
         return 0
-    (low, high), points = params.boundary.walls, state.position_density[: state.fluid]
+    (low, high), points = params.boundary.tank, state.position_density[: state.fluid]
     beyond = np.zeros(state.fluid, bool)
     for face in closed_faces(params):
         axis = "xyz".index(face[0])
@@ -88,9 +88,9 @@ def _outside(state: State, params: SphFluidParams) -> int:
 
 def _layers(params: SphFluidParams) -> float:
     """Particles in the lesser of the depth and the longest level extent of the largest box."""
-    if not params.fluid:
+    if not params.boxes:
         return np.inf
-    sizes = [np.subtract(high, low) for low, high in params.fluid]
+    sizes = [np.subtract(high, low) for low, high in params.boxes]
     return _shorter(max(sizes, key=np.prod), params) / params.spacing
 
 

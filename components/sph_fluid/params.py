@@ -5,19 +5,19 @@ from typing import ClassVar, Literal
 
 from pydantic import NonNegativeInt
 
+from quintet.components.shared.geometry.shapes import Bounds, Box
 from quintet.components.sph_fluid.setup import geometry
 from quintet.components.sph_fluid.setup.checks import check
 from quintet.components.sph_fluid.setup.expressions import Expression
 from quintet.components.sph_fluid.setup.geometry import (
     Axis,
-    Box,
     Exponent,
     Face,
     Smoothing,
     Spot,
     UprightFace,
 )
-from quintet.components.sph_fluid.setup.shapes import FluidShape
+from quintet.components.sph_fluid.setup.shapes import FluidRegion
 from quintet.components.sph_fluid.setup.standing_wave import StandingWave
 from quintet.interfaces.params import (
     DataFile,
@@ -70,16 +70,16 @@ class Boundary:
         Dynamic boundary particles (Crespo et al. 2007; dbc), modified ones whose density is
         mirrored (English et al. 2022; mdbc), or a contact potential in place of their pressure
         (Vignjevic et al. 2006).
-    walls : m
-        The inside of a tank, lowest and highest corner.
+    walls
+        The inside of a tank, a box.
     open_faces
         Faces that the tank lacks.
     symmetry
         Upright faces of the tank that are planes of symmetry, without walls.
     wall_velocity : m/s
         Velocities of faces that move in their own planes, like belts.
-    obstacles : m
-        Boxes that stand still in the tank, each by its lowest and highest corner.
+    obstacles
+        Boxes that stand still in the tank.
     wall_offset : 1
         Spacings from a wall's face out to its first particles; 0.5 with mdbc.
     sample_depth : 1
@@ -118,6 +118,16 @@ class Boundary:
     roughness: Positive = 5e-4
     potential_stiffness: Positive | None = None
     potential_exponent: Exponent = 1
+
+    @property
+    def tank(self) -> Bounds | None:
+        """Lowest and highest corner [m] of the walls."""
+        return None if self.walls is None else self.walls.bounds
+
+    @property
+    def solids(self) -> tuple[Bounds, ...]:
+        """Lowest and highest corners [m] of the obstacles."""
+        return tuple(box.bounds for box in self.obstacles)
 
 
 @parameters
@@ -185,10 +195,8 @@ class SphFluidParams:
         Between particles.
     sound_speed : m/s
         Artificial, ten times the largest velocity or more, and at least 10 √(g depth).
-    fluid : m
-        Boxes full of fluid, each by its lowest and highest corner.
-    shapes
-        Fluid in other shapes.
+    fluid
+        Boxes and other shapes full of fluid.
     initial
         Velocity and density of the fluid at the start, where it is not at rest.
     remove_inside_bodies
@@ -232,6 +240,7 @@ class SphFluidParams:
     """
 
     RENAMED: ClassVar = {
+        "shapes": "fluid",
         "viscosity": "viscosity.artificial",
         "laminar": "viscosity.kinematic",
         "friction": "viscosity.form",
@@ -259,8 +268,7 @@ class SphFluidParams:
 
     spacing: Positive
     sound_speed: Positive
-    fluid: tuple[Box, ...] = ()
-    shapes: tuple[FluidShape, ...] = ()
+    fluid: tuple[FluidRegion, ...] = ()
     initial: InitialFields | None = None
     remove_inside_bodies: bool = False
     dimensions: Literal[2, 3] = 3
@@ -285,6 +293,16 @@ class SphFluidParams:
     def __post_init__(self) -> None:
         """Check what concerns several values at once."""
         check(self)
+
+    @property
+    def boxes(self) -> tuple[Bounds, ...]:
+        """Lowest and highest corners [m] of the fluid in boxes."""
+        return tuple(region.bounds for region in self.fluid if region.shape == "box")
+
+    @property
+    def shapes(self) -> tuple[FluidRegion, ...]:
+        """Fluid in other shapes."""
+        return tuple(region for region in self.fluid if region.shape != "box")
 
     @property
     def smoothing_length(self) -> float:

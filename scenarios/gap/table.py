@@ -39,10 +39,10 @@ class Run:
         self.width = (right - left)[:, 0] - self.size[0]  # m
         file = folder / "water.vtkhdf"
         points = read_step(file, len(times(file)) - 1)[1]["points"]
-        low, high = np.moveaxis(np.array(water["fluid"], float), 1, 0)
+        low, high = (np.array([box[k] for box in water["fluid"]]) for k in ("lowest", "highest"))
         volume = float(np.prod(high - low, axis=1).sum())  # m3, which the particles share
         self.particle = volume / len(points)  # m3
-        self.level = self._level(volume, np.array(water["boundary"]["walls"]))
+        self.level = self._level(volume, water["boundary"]["walls"])
         self.share = np.array([self._share(points, k) for k in range(len(left))])
         with Recording(folder) as recording:
             self.times = recording.times("water")[1:]
@@ -50,9 +50,9 @@ class Run:
             force = recording.field("water", "surface_load.force")[1:, :, 0] / window  # N
         self.pressure = self._pressure(force)  # over that outside; (gaps, m)
 
-    def _level(self, volume: float, walls: Array) -> float:
+    def _level(self, volume: float, walls: dict[str, list[float]]) -> float:
         """Height of the surface [m] that the water has by its volume."""
-        across = np.prod(walls[1, :2] - walls[0, :2])
+        across = np.prod(np.subtract(walls["highest"], walls["lowest"])[:2])
         solid = len(self.place) * np.prod(self.size)
         return float((volume + solid) / across)
 

@@ -24,7 +24,7 @@ def test_it_weighs_its_weight_less_its_buoyancy(run_scene: Run, shape: str, mass
 
 def test_without_films_it_is_told_what_is_missing(run_scene: Run) -> None:
     plain = ["--set", "end=0.004", "--set", "components.water.remove_inside_bodies=false"]
-    cut = "[[[0.0, 0.0, 0.0], [0.1, 0.3, 0.2]], [[0.1, 0.0, 0.1], [0.3, 0.3, 0.2]]]"
+    cut = "[{lowest=[0,0,0],highest=[0.1,0.3,0.2]}, {lowest=[0.1,0,0.1],highest=[0.3,0.3,0.2]}]"
     plain += ["--set", f"components.water.fluid={cut}"]
     found = run_scene(
         SCENE, "--preset", "box", *plain, "--set", "components.water.boundary.method=dbc"

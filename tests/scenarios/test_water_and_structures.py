@@ -25,9 +25,9 @@ STRIP = (
     "components.gate.fixed=[{lowest=[0.1,0.0,0.079],highest=[0.105,1.0,0.079]},"
     "{lowest=[0.1,0.0,0.0],highest=[0.105,1.0,0.079],directions=['y']}]",
     "components.water.dimensions=3",
-    "components.water.fluid=[[[0.0,0.0,0.0],[0.1,0.0125,0.14]]]",
-    "components.water.boundary.walls=[[0.0,0.0,0.0],[0.4,0.0125,0.25]]",
-    "components.water.boundary.obstacles=[[[0.1,0.0,0.079],[0.105,0.0125,0.2]]]",
+    "components.water.fluid=[{lowest=[0.0,0.0,0.0],highest=[0.1,0.0125,0.14]}]",
+    "components.water.boundary.walls={lowest=[0.0,0.0,0.0],highest=[0.4,0.0125,0.25]}",
+    "components.water.boundary.obstacles=[{lowest=[0.1,0.0,0.079],highest=[0.105,0.0125,0.2]}]",
     "components.water.boundary.symmetry=['y-','y+']",
     "study=[]",
 )

@@ -1,4 +1,4 @@
-"""Convex polygons in the plane of x and z: their moments, and whether they are convex.
+"""Polygons in the plane of x and z: their moments, what is inside, whether they are convex.
 
 Arrays of corners are (k, 2) m and go round from x to z.
 """
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.interfaces.component import Array
 
@@ -77,3 +78,42 @@ def _convex(corner: Array) -> bool:
     back = (along * np.roll(along, 1, axis=0)).sum(axis=1) < 0.0
     whole = np.where(back, np.pi - angle, angle).sum()
     return bool((sine > STRAIGHT).all() and abs(whole - 2.0 * np.pi) < 1e-6)
+
+
+def require_simple(where: str, corners: Sequence[tuple[float, float]]) -> None:
+    """Refuse corners (k, 2) m of a polygon whose edges meet elsewhere than at corners."""
+    start = np.array(corners)
+    along = np.roll(start, -1, axis=0) - start
+    count = len(start)
+    if not (np.linalg.norm(along, axis=1) > 0.0).all():
+        raise ValueError(
+            f"{where}: corners of a prism must differ from the next. Remove one of two."
+        )
+    one, other = np.triu_indices(count, 2)
+    keep = ~((one == 0) & (other == count - 1))  # neighbours
+    one, other = one[keep], other[keep]
+    across = _cross(along[one], along[other])
+    between = start[other] - start[one]
+    safe = np.where(across == 0.0, 1.0, across)
+    t, u = _cross(between, along[other]) / safe, _cross(between, along[one]) / safe
+    met = (across != 0.0) & (t >= 0.0) & (t <= 1.0) & (u >= 0.0) & (u <= 1.0)
+    if met.any():
+        k = int(np.argmax(met))
+        raise ValueError(
+            f"{where}: corners of a prism must go once round a polygon that does not cross itself; "
+            f"the edges after corners {one[k]} and {other[k]} meet. Put them in order."
+        )
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def inside_polygon(first: Array, second: Array, corners: Array) -> NDArray[np.bool_]:
+    """Whether places (n,), (n,) m are inside a polygon (k, 2) m: by the edges that a ray meets."""
+    found = np.zeros(np.broadcast(first, second).shape, bool)
+    for (a, b), (c, d) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        passes = (b > second) != (d > second)
+        if b != d:
+            found ^= passes & (first < a + (second - b) * (c - a) / (d - b))
+    return found

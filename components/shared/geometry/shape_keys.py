@@ -129,6 +129,11 @@ def shape_of(table: Any, where: str) -> Shape:
         shape: Shape = CLASSES[table.shape](**values)
     except ValidationError as error:
         raise ValueError(f"{where}: {error.errors()[0]['ctx']['error']}") from None
+    if isinstance(shape, shapes.Box) and not all(edge > 0.0 for edge in shape.size):
+        raise ValueError(
+            f"{where}: a box must go from its lowest to its highest corner along every axis; found "
+            f"{shape.lowest} and {shape.highest} m. Correct them."
+        )
     return shape
 
 

@@ -47,13 +47,6 @@ class Box:
     lowest: Vector
     highest: Vector
 
-    def __post_init__(self) -> None:
-        if not all(a < b for a, b in zip(self.lowest, self.highest, strict=True)):
-            raise ValueError(
-                "a box must go from its lowest to its highest corner along every axis; found "
-                f"{self.lowest} and {self.highest} m. Correct them."
-            )
-
     @property
     def bounds(self) -> Bounds:
         """Lowest and highest corner [m]."""

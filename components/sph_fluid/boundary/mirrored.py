@@ -139,10 +139,10 @@ class MirroredBoundary:
 def wall_mirrors(params: SphFluidParams) -> Array:
     """Mirror points (n, 3) m of all wall particles, through the nearest point of their wall."""
     points = wall_points(params)
-    if params.boundary.walls is None:
+    if params.boundary.tank is None:
         return obstacle_mirrors(params)
     closed = closed_faces(params)
-    low, high = (np.array(corner) for corner in params.boundary.walls)
+    low, high = (np.array(corner) for corner in params.boundary.tank)
     for axis in range(3):
         low[axis] = low[axis] if FACES[2 * axis] in closed else -np.inf
         high[axis] = high[axis] if FACES[2 * axis + 1] in closed else np.inf

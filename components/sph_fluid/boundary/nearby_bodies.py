@@ -35,15 +35,15 @@ def bounds(place: Array, body: Whole, count: int) -> Bounds:
 def near_walls(bodies: Bounds, params: SphFluidParams, reach: float) -> NDArray[np.bool_]:
     """Which bodies (bodies,) are nearer to a wall or an obstacle than `reach` [m]."""
     found = np.zeros(len(bodies.low), bool)
-    if params.boundary.walls is not None:
-        low, high = np.array(params.boundary.walls)
+    if params.boundary.tank is not None:
+        low, high = np.array(params.boundary.tank)
         for face in closed_faces(params):
             axis = "xyz".index(face[0])
             if face[1] == "-":
                 found |= bodies.low[:, axis] < low[axis] + reach
             else:
                 found |= bodies.high[:, axis] > high[axis] - reach
-    for box in params.boundary.obstacles:
+    for box in params.boundary.solids:
         low, high = np.array(box)
         found |= ((bodies.low < high + reach) & (bodies.high > low - reach)).all(axis=1)
     return found

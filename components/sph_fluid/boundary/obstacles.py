@@ -27,14 +27,14 @@ def obstacle_points(params: SphFluidParams) -> Array:
     A face that lies on a wall of the tank never meets water: there the particles go on to half a
     spacing from the wall, so that no gap is left in the corner.
     """
-    parts = [_points(box, params)[0] for box in params.boundary.obstacles]
+    parts = [_points(box, params)[0] for box in params.boundary.solids]
     return np.concatenate([np.zeros((0, 3)), *parts])
 
 
 def count_obstacle_points(params: SphFluidParams) -> int:
     """Count them without making them: rows along the axes, less those that water does not feel."""
     found = 0
-    for box in params.boundary.obstacles:
+    for box in params.boundary.solids:
         steps, low, _, step, wet = _rows(box, params)
         if max(steps) > MOST_ROWS:  # no machine holds as many; all of them, then
             found += math.prod(int(one) + 1 for one in steps)
@@ -55,7 +55,7 @@ def count_obstacle_points(params: SphFluidParams) -> int:
 def obstacle_mirrors(params: SphFluidParams) -> Array:
     """Images (n, 3) m of the particles of all obstacles, mirrored in the nearest wet face."""
     parts = [np.zeros((0, 3))]
-    for box in params.boundary.obstacles:
+    for box in params.boundary.solids:
         points, depth = _points(box, params)
         # On edges and corners, in all the faces that are equally near.
         nearest = depth <= depth.min(axis=(0, 2))[:, np.newaxis] + ROUNDING * params.spacing
@@ -95,11 +95,11 @@ def _rows(box: Box, params: SphFluidParams) -> tuple[Array, Array, Array, Array,
 
 def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
-    if params.boundary.walls is None:
+    if params.boundary.tank is None:
         return _in_space(np.ones((2, 3), bool), params)
     tolerance = ROUNDING * params.spacing
-    lower = np.array(box[0]) > np.array(params.boundary.walls[0]) + tolerance
-    upper = np.array(box[1]) < np.array(params.boundary.walls[1]) - tolerance
+    lower = np.array(box[0]) > np.array(params.boundary.tank[0]) + tolerance
+    upper = np.array(box[1]) < np.array(params.boundary.tank[1]) - tolerance
     return _in_space(np.stack([lower, upper]) | _named(params.boundary.open_faces), params)
 
 

@@ -18,8 +18,8 @@ class Symmetry:
     """The images of one fluid's rows, from one list of neighbours to the next."""
 
     def __init__(self, params: SphFluidParams) -> None:
-        assert params.boundary.walls is not None
-        walls, faces = params.boundary.walls, sorted(set(params.boundary.symmetry))
+        assert params.boundary.tank is not None
+        walls, faces = params.boundary.tank, sorted(set(params.boundary.symmetry))
         self.images = SymmetryImages([Plane.of_face(face, walls) for face in faces])
         self.write_vectors = self.images.write_vectors
         self.write_values = self.images.write_values

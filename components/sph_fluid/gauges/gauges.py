@@ -53,7 +53,7 @@ class Gauges:
         # (k m, 3 or 2) m: these, and from where images see what these see in them.
         self.image_points = symmetry.all_images(self.points)
         self.above = symmetry.all_images(self.spots)
-        walls = params.boundary.walls
+        walls = params.boundary.tank
         boxes = [walls] if walls else fluid_boxes(params)
         self.floor = min(box[0][2] for box in boxes)  # m
         volume = self.constants.mass / self.constants.density

@@ -25,7 +25,7 @@ class FluidLists:
 
     def __init__(self, params: SphFluidParams, samples: Samples) -> None:
         self.samples = samples
-        self.walls = params.boundary.walls
+        self.walls = params.boundary.tank
         self.skin = VerletSkin(SUPPORT * params.smoothing_length, SKIN[params.integration])
         # In the middle of a step of position Verlet pairs meet too.
         self.middle = params.integration == "symplectic"

@@ -10,6 +10,7 @@ from quintet.components.sph_fluid.setup.geometry import (
     depth,
     fluid_boxes,
     hydrostatic_gravity,
+    named_boxes,
 )
 from quintet.components.sph_fluid.setup.mass import check_mass
 
@@ -22,7 +23,7 @@ ROUNDING = 1e-6  # of a spacing
 
 def check(params: "SphFluidParams") -> None:
     """Refuse what cannot be computed."""
-    if not params.fluid and not params.shapes:
+    if not params.fluid:
         raise ValueError("fluid must have at least one box; found none. Add a box.")
     check_boxes(params)
     check_mass(params)
@@ -44,7 +45,7 @@ def check(params: "SphFluidParams") -> None:
 
         check_initial(params, fluid_boxes(params))
     if params.wave is not None:
-        params.wave.check(params.fluid, params.gravity)
+        params.wave.check(params.boxes, params.gravity)
         check_wave_resolution(params)
 
 
@@ -60,27 +61,25 @@ def check_wave_resolution(params: "SphFluidParams") -> None:
 
 def check_boxes(params: "SphFluidParams") -> None:
     """Boxes of fluid have tolerance for particles and do not overlap."""
-    for number, box in enumerate(params.fluid):
-        _check_corners(f"fluid[{number}]", box, params.spacing)
-        for other, earlier in enumerate(params.fluid[:number]):
+    boxes = named_boxes(params)
+    for number, (name, box) in enumerate(boxes):
+        _check_corners(name, box, params.spacing)
+        for other, earlier in boxes[:number]:
             if _overlap(box, earlier, ROUNDING * params.spacing):
                 raise ValueError(
-                    f"fluid[{number}] must not overlap fluid[{other}]; found {box} and "
-                    f"{earlier}. Cut one of them."
+                    f"{name} must not overlap {other}; found {box} and {earlier}. Cut one of them."
                 )
 
 
 def check_walls(params: "SphFluidParams") -> None:
     """Fluid is inside the walls, and moving faces move in their own planes."""
     edge = params.boundary
-    if edge.walls is None:
+    if edge.tank is None:
         return
-    _check_corners("boundary.walls", edge.walls, params.spacing)
-    low, high = edge.walls
+    _check_corners("boundary.walls", edge.tank, params.spacing)
+    low, high = edge.tank
     tolerance = ROUNDING * params.spacing
-    named = [(f"fluid[{number}]", box) for number, box in enumerate(params.fluid)]
-    named += [(f"shapes[{number}]", shape.box) for number, shape in enumerate(params.shapes)]
-    for whose, box in named:
+    for whose, box in [(f"fluid[{k}]", region.bounds) for k, region in enumerate(params.fluid)]:
         for axis, name in enumerate("xyz"):
             below = box[0][axis] < low[axis] - tolerance and f"{name}-" not in edge.open_faces
             above = box[1][axis] > high[axis] + tolerance and f"{name}+" not in edge.open_faces
@@ -103,7 +102,7 @@ def check_walls(params: "SphFluidParams") -> None:
 def check_obstacles(params: "SphFluidParams") -> None:
     """Obstacles have tolerance for particles and are dry inside."""
     least = 2.0 * params.boundary.wall_offset * params.spacing
-    for number, box in enumerate(params.boundary.obstacles):
+    for number, box in enumerate(params.boundary.solids):
         name = f"boundary.obstacles[{number}]"
         _check_corners(name, box, params.spacing)
         low, high = box
@@ -114,11 +113,10 @@ def check_obstacles(params: "SphFluidParams") -> None:
                 f"{name} must be at least {least:g} m across, twice the wall_offset; found "
                 f"{width:g} m. Refine the spacing, or lower wall_offset."
             )
-        for other, water in enumerate(params.fluid):
+        for other, water in named_boxes(params):
             if _overlap(box, water, ROUNDING * params.spacing):
                 raise ValueError(
-                    f"{name} must not overlap fluid[{other}]; found {box} and {water}. "
-                    "Cut the fluid."
+                    f"{name} must not overlap {other}; found {box} and {water}. Cut the fluid."
                 )
 
 
@@ -136,8 +134,8 @@ def check_sound(params: "SphFluidParams") -> None:
 
 def check_slab(params: "SphFluidParams") -> None:
     """In two dimensions all is one slab."""
-    walls = params.boundary.walls
-    boxes = [*fluid_boxes(params), *([] if walls is None else [walls]), *params.boundary.obstacles]
+    walls = params.boundary.tank
+    boxes = [*fluid_boxes(params), *([] if walls is None else [walls]), *params.boundary.solids]
     sides = {(low[1], high[1]) for low, high in boxes}
     if params.dimensions == 2 and (len(sides) > 1 or params.gravity[1] != 0.0):
         raise ValueError(
@@ -152,9 +150,9 @@ def check_symmetry(params: "SphFluidParams") -> None:
     edge = params.boundary
     for face in edge.symmetry:
         axis, name = "xyz".index(face[0]), f"boundary.symmetry: {face}"
-        if edge.walls is None or face in edge.open_faces:
+        if edge.tank is None or face in edge.open_faces:
             raise ValueError(
-                f"{name} must be a face of the tank; found walls {edge.walls} and open_faces "
+                f"{name} must be a face of the tank; found walls {edge.tank} and open_faces "
                 f"{edge.open_faces}. Give walls, or take the face out of one of the two."
             )
         if params.dimensions == 2 and face[0] == "y":
@@ -167,7 +165,7 @@ def check_symmetry(params: "SphFluidParams") -> None:
                 f"{name} must have gravity in its plane; found {params.gravity} m/s2. Turn "
                 "gravity, or make the face a wall."
             )
-        low, high = edge.walls[0][axis], edge.walls[1][axis]
+        low, high = edge.tank[0][axis], edge.tank[1][axis]
         both = {f"{face[0]}-", f"{face[0]}+"} <= set(edge.symmetry)
         if both and high - low < (least := 3.0 * params.smoothing_length):
             # What is behind one plane would be mirrored in the other.
@@ -175,7 +173,7 @@ def check_symmetry(params: "SphFluidParams") -> None:
                 f"{name} must be {least:g} m or more, 3 smoothing lengths, from the opposite "
                 f"plane; found {high - low:g} m. Widen the tank, or refine the spacing."
             )
-        for number, box in enumerate(edge.obstacles):
+        for number, box in enumerate(edge.solids):
             if min(box[0][axis] - low, high - box[1][axis]) < -ROUNDING * params.spacing:
                 raise ValueError(
                     f"{name}, {face[0]} from {low:g} to {high:g} m, must not cut "

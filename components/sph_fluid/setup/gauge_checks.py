@@ -11,7 +11,7 @@ ROUNDING = 1e-6  # of a spacing
 
 def check_gauges(params: "SphFluidParams") -> None:
     """Refuse gauges beyond a wall of the tank or inside an obstacle."""
-    walls, tolerance = params.boundary.walls, ROUNDING * params.spacing
+    walls, tolerance = params.boundary.tank, ROUNDING * params.spacing
     for name, point in _points(params):
         for axis, value in enumerate(point) if walls else ():
             if params.dimensions == 2 and axis == 1:
@@ -25,7 +25,7 @@ def check_gauges(params: "SphFluidParams") -> None:
                     f"gauges.{name} must be inside the walls along {'xyz'[axis]}, {low:g} to "
                     f"{high:g} m; found {value:g} m, where there is no fluid. Move the gauge."
                 )
-        for number, (lowest, highest) in enumerate(params.boundary.obstacles):
+        for number, (lowest, highest) in enumerate(params.boundary.solids):
             inside = [
                 low + tolerance < value < high - tolerance
                 for low, value, high in zip(lowest, point, highest, strict=False)

@@ -5,14 +5,16 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
+from quintet.components.shared.geometry.shapes import Bounds
 from quintet.interfaces.component import Array
 from quintet.interfaces.faces import box
 from quintet.interfaces.params import Number, Vector
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.params import SphFluidParams
+    from quintet.components.sph_fluid.setup.shapes import FluidRegion
 
-Box = tuple[Vector, Vector]  # lowest and highest corner, m
+Box = Bounds
 Spot = tuple[Number, Number]  # x and y, m
 Axis = Literal["x", "y", "z"]
 Face = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
@@ -32,7 +34,19 @@ def cells(box: Box, params: "SphFluidParams") -> tuple[int, int, int]:
 
 def fluid_boxes(params: "SphFluidParams") -> tuple[Box, ...]:
     """Boxes of fluid, and those around its other shapes."""
-    return *params.fluid, *(shape.box for shape in params.shapes)
+    return *params.boxes, *(shape.bounds for shape in params.shapes)
+
+
+def named_boxes(params: "SphFluidParams") -> list[tuple[str, Box]]:
+    """Boxes of fluid by their names in a scene."""
+    named = enumerate(params.fluid)
+    return [(f"fluid[{k}]", region.bounds) for k, region in named if region.shape == "box"]
+
+
+def named_shapes(params: "SphFluidParams") -> "list[tuple[str, FluidRegion]]":
+    """Fluid in other shapes by its names in a scene."""
+    named = enumerate(params.fluid)
+    return [(f"fluid[{k}]", region) for k, region in named if region.shape != "box"]
 
 
 def closed_faces(params: "SphFluidParams") -> tuple[Face, ...]:
@@ -49,9 +63,9 @@ def wall_layers(params: "SphFluidParams") -> int:
 
 def tank(params: "SphFluidParams") -> Box | None:
     """Box around the tank on whose outside, half a cell off, the wall particles lie."""
-    if params.boundary.walls is None:
+    if params.boundary.tank is None:
         return None
-    (x, y, z), (u, v, w) = params.boundary.walls
+    (x, y, z), (u, v, w) = params.boundary.tank
     beyond = (params.boundary.wall_offset - 0.5) * params.spacing
     out = dict.fromkeys(closed_faces(params), beyond)
     return (
@@ -63,9 +77,9 @@ def tank(params: "SphFluidParams") -> Box | None:
 def wall_faces(params: "SphFluidParams") -> list[Array]:
     """Corners (4, 3) m of each closed face of the tank, and of each face of the obstacles."""
     edge = params.boundary
-    found = box(*edge.walls, closed_faces(params)) if edge.walls else []
+    found = box(*edge.tank, closed_faces(params)) if edge.tank else []
     sides = [face for face in FACES if params.dimensions == 3 or face[0] != "y"]
-    return found + [face for one in edge.obstacles for face in box(*one, sides)]
+    return found + [face for one in edge.solids for face in box(*one, sides)]
 
 
 def slab_thickness(params: "SphFluidParams") -> float:
@@ -76,7 +90,7 @@ def slab_thickness(params: "SphFluidParams") -> float:
 
 def hydrostatic_gravity(params: "SphFluidParams") -> Vector:
     """Gravity [m/s2], but none along axes on which the tank is open below: fluid falls."""
-    if params.boundary.walls is None:
+    if params.boundary.tank is None:
         return params.gravity
     pairs = zip("xyz", params.gravity, strict=True)
     below = [f"{axis}{'+' if g > 0.0 else '-'}" for axis, g in pairs]

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from quintet.components.sph_fluid.setup.geometry import cells
+from quintet.components.sph_fluid.setup.geometry import cells, named_boxes, named_shapes
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.params import SphFluidParams
@@ -20,7 +20,7 @@ EVEN = 1e-9  # of a volume: what differs from it by less is as large
 TOLD = 1e-3  # of a mass: smaller differences are not worth a word
 
 
-class FluidRegion(NamedTuple):
+class RegionMass(NamedTuple):
     """A box or another shape of fluid."""
 
     name: str  # in a scene
@@ -28,23 +28,23 @@ class FluidRegion(NamedTuple):
     particles: int
 
 
-def regions(params: "SphFluidParams") -> Iterator[FluidRegion]:
+def regions(params: "SphFluidParams") -> Iterator[RegionMass]:
     """All regions of a fluid."""
-    for number, box in enumerate(params.fluid):
+    for name, box in named_boxes(params):
         edges = [b - a for a, b in zip(*box, strict=True)]
         if params.dimensions == 2:
             edges[1] = 1.0
-        yield FluidRegion(f"fluid[{number}]", math.prod(edges), math.prod(cells(box, params)))
+        yield RegionMass(name, math.prod(edges), math.prod(cells(box, params)))
     if params.shapes:
         # Left out of scenes whose fluid is in boxes.
         from quintet.components.sph_fluid.setup.shape_filling import particle_count
 
         planar = params.dimensions == 2
-        for number, shape in enumerate(params.shapes):
-            (_, low, _), (_, high, _) = shape.box
+        for name, shape in named_shapes(params):
+            (_, low, _), (_, high, _) = shape.bounds
             volume = shape.volume / (high - low if planar else 1.0)
             count = particle_count(shape, params.spacing, planar)
-            yield FluidRegion(f"shapes[{number}]", volume, count)
+            yield RegionMass(name, volume, count)
 
 
 def particle_volume(params: "SphFluidParams") -> float:
@@ -66,7 +66,7 @@ def check_mass(params: "SphFluidParams") -> None:
         )
 
 
-def _excesses(params: "SphFluidParams", share: float) -> Iterator[tuple[FluidRegion, float]]:
+def _excesses(params: "SphFluidParams", share: float) -> Iterator[tuple[RegionMass, float]]:
     """Parts that hold more or less than they should [m3] by so much of all the fluid."""
     one_volume, found = particle_volume(params), list(regions(params))
     whole = sum(region.volume for region in found)

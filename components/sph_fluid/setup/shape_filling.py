@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
-from quintet.components.sph_fluid.setup.prisms import inside_polygon
-from quintet.components.sph_fluid.setup.shapes import ACROSS, FluidShape
+from quintet.components.shared.geometry.shapes import Cylinder, Sphere
+from quintet.components.sph_fluid.setup.shapes import FluidRegion
 
 Array = NDArray[np.float64]
 FINE = 4  # places along each edge of a cell that are looked at
@@ -34,28 +34,28 @@ class Edge(NamedTuple):
         return (self.high - self.low) / self.cells
 
 
-def edges(shape: FluidShape, spacing: float, planar: bool) -> list[Edge]:
+def edges(shape: FluidRegion, spacing: float, planar: bool) -> list[Edge]:
     """Cells that a shape is cut into; `planar`: one along y."""
-    found = []
-    for axis, low, high in zip("xyz", *shape.box, strict=True):
-        if shape.shape == "sphere" or (shape.shape == "cylinder" and axis != shape.axis):
+    body, found = shape.geometry, []
+    for axis, low, high in zip(range(3), *body.bounds, strict=True):
+        if isinstance(body, Sphere) or (isinstance(body, Cylinder) and axis != body.axis):
             count = math.ceil((high - low) / spacing)
             middle, half = 0.5 * (low + high), 0.5 * count * spacing
             found.append(Edge(middle - half, middle + half, count))
         else:
-            count = 1 if planar and axis == "y" else max(1, round((high - low) / spacing))
+            count = 1 if planar and axis == 1 else max(1, round((high - low) / spacing))
             found.append(Edge(low, high, count))
     return found
 
 
-def particle_count(shape: FluidShape, spacing: float, planar: bool) -> int:
+def particle_count(shape: FluidRegion, spacing: float, planar: bool) -> int:
     """Particles that fill a shape."""
     cell = math.prod(edge.step for edge in edges(shape, spacing, planar))
     return max(1, round(shape.volume / cell))
 
 
 @lru_cache(maxsize=16)
-def fill_shape(shape: FluidShape, spacing: float, planar: bool) -> Array:
+def fill_shape(shape: FluidRegion, spacing: float, planar: bool) -> Array:
     """Middles (n, 3) m of the cells that a shape fills, x fastest."""
     cut = edges(shape, spacing, planar)
     axes = [cell_centres(*edge) for edge in cut]
@@ -65,7 +65,7 @@ def fill_shape(shape: FluidShape, spacing: float, planar: bool) -> Array:
     return lattice_points(axes)[kept]
 
 
-def _parts(shape: FluidShape, cut: list[Edge], axes: list[Array], planar: bool) -> Array:
+def _parts(shape: FluidRegion, cut: list[Edge], axes: list[Array], planar: bool) -> Array:
     """Part of each cell that is inside, x fastest; one layer of cells after another."""
     inner = (np.arange(FINE) + 0.5) / FINE - 0.5
     finer = [
@@ -75,39 +75,11 @@ def _parts(shape: FluidShape, cut: list[Edge], axes: list[Array], planar: bool) 
     if planar:
         finer[1] = axes[1]
     shares = len(axes[0]), FINE, len(axes[1]), 1 if planar else FINE, FINE
+    body, sizes = shape.geometry, (len(finer[0]), len(finer[1]), FINE)
     found = []
     for layer in range(cut[2].cells):
         z = finer[2][layer * FINE : (layer + 1) * FINE]
-        some = inside_lattice(shape, (finer[0], finer[1], z)).reshape(shares)
+        places = np.meshgrid(finer[0], finer[1], z, indexing="ij", sparse=True)
+        some = np.broadcast_to(body.contains(*places), sizes).reshape(shares)
         found.append(some.mean(axis=(1, 3, 4)).T.ravel())
     return np.concatenate(found)
-
-
-def inside_lattice(shape: FluidShape, axes: tuple[Array, Array, Array]) -> NDArray[np.bool_]:
-    """Whether places of a lattice are in a shape; (nx, ny, nz), from its (nx,), (ny,), (nz,) m."""
-    if shape.shape == "mesh":
-        # The reader of meshes is left out of scenes without any.
-        from quintet.components.sph_fluid.setup.mesh_shapes import inside_mesh, read_mesh
-
-        assert shape.file is not None
-        return inside_mesh(axes, read_mesh(shape.file, shape.scale, shape.position).triangles)
-    x, y, z = np.meshgrid(*axes, indexing="ij", sparse=True)
-    return np.broadcast_to(inside(shape, x, y, z), tuple(map(len, axes)))
-
-
-def inside(shape: FluidShape, x: Array, y: Array, z: Array) -> NDArray[np.bool_]:
-    """Whether places [m] are in a sphere, cylinder or prism."""
-    places = x, y, z
-    one, other = (places[axis] for axis in ACROSS[shape.axis])
-    along = places["xyz".index(shape.axis)]
-    if shape.corners is not None and shape.ends is not None:
-        within = (along > shape.ends[0]) & (along < shape.ends[1])
-        return within & inside_polygon(one, other, np.array(shape.corners))
-    assert shape.centre is not None and shape.diameter is not None
-    radius2 = 0.25 * shape.diameter**2
-    a, b = (shape.centre[axis] for axis in ACROSS[shape.axis])
-    c = shape.centre["xyz".index(shape.axis)]
-    aside2 = (one - a) ** 2 + (other - b) ** 2
-    if shape.shape == "sphere":
-        return np.asarray(aside2 + (along - c) ** 2 < radius2)
-    return (np.abs(along - c) < 0.5 * (shape.height or 0.0)) & (aside2 < radius2)

@@ -16,9 +16,9 @@ def stated(params: SphFluidParams) -> dict[str, Array]:
         "depth": np.array([2.0 * length]),  # the radius of the kernel
         "inset": np.array([edge.sample_depth * params.spacing]),
         # What bodies stand in is removed where a scene asks for it.
-        "wet": _corners(() if params.remove_inside_bodies else params.fluid),
-        "solid": _corners(edge.obstacles),
-        "tank": _corners(() if edge.walls is None else (edge.walls,)),
+        "wet": _corners(() if params.remove_inside_bodies else params.boxes),
+        "solid": _corners(edge.solids),
+        "tank": _corners(() if edge.tank is None else (edge.tank,)),
         "closed": np.array([[float(face in closed) for face in FACES]]),
     }
     if params.dimensions == 2:

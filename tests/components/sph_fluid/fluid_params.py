@@ -23,7 +23,20 @@ def nested(settings: dict[str, Any]) -> dict[str, Any]:
         for head in heads:
             at = at.setdefault(head, {})
         at[last] = value
+    edge = table.get("boundary", {})
+    for table_of, name in ((table, "fluid"), (edge, "obstacles")):
+        if name in table_of:
+            table_of[name] = [box(value) for value in table_of[name]]
+    if edge.get("walls") is not None:
+        edge["walls"] = box(edge["walls"])
     return table
+
+
+def box(corners: Any) -> Any:
+    """Table of a box from its lowest and highest corner; other tables as they are."""
+    if isinstance(corners, dict):
+        return corners
+    return {"shape": "box", "lowest": list(corners[0]), "highest": list(corners[1])}
 
 
 def fluid_params(**given: Any) -> SphFluidParams:

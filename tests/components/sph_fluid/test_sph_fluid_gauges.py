@@ -216,8 +216,9 @@ import sys
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import outputs_of
-box = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12))
-fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,)))
+from quintet.components.sph_fluid.setup.shapes import FluidRegion
+region = FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.12, 0.12, 0.12))
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(region,)))
 assert list(outputs_of(fluid)) == ["surface_load.force"]
 assert not [name for name in sys.modules if name.endswith(("gauges", "gauge_kernels"))]
 """

@@ -122,8 +122,10 @@ def test_only_a_scene_that_asks_imports_them():
     program = (
         "import sys; from quintet.components.sph_fluid.params import Boundary, SphFluidParams;"
         "from quintet.components.sph_fluid.component import SphFluid;"
+        "from quintet.components.sph_fluid.setup.shapes import FluidRegion;"
         "f = SphFluid(SphFluidParams(spacing=0.1, sound_speed=30.0,"
-        " fluid=(((0.0, 0.0, 0.0), (0.3, 0.3, 0.3)),), boundary=Boundary(method='dbc')));"
+        " fluid=(FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.3, 0.3, 0.3)),),"
+        " boundary=Boundary(method='dbc')));"
         "f.step(1e-5); names = {m.rpartition('.')[2] for m in sys.modules};"
         "print(sorted(names & {'mirrored', 'mirrored_kernels', 'lubrication', 'film_geometry'}))"
     )

@@ -147,11 +147,11 @@ def test_a_table_that_is_none_is_refused(tmp_path, text, sentence):
     assert sentence in mistakes(folder, fluid=(CUBE,), initial__table="start.csv")
 
 
-SPHERE_SHAPE = {"shape": "sphere", "centre": [0.1, 0.1, 0.1], "diameter": 0.17}
+SPHERE_SHAPE = {"shape": "sphere", "centre": [0.1, 0.1, 0.1], "radius": 0.085}
 SHAPES = [
     (SPHERE_SHAPE, math.pi / 6.0 * 0.17**3),
     (
-        {"shape": "cylinder", "centre": [0.0, 0.0, 0.1], "diameter": 0.13, "height": 0.2},
+        {"shape": "cylinder", "base": [0.0] * 3, "top": [0.0, 0.0, 0.2], "radius": 0.065},
         math.pi / 4.0 * 0.13**2 * 0.2,
     ),
     (
@@ -168,33 +168,33 @@ SHAPES = [
 
 @pytest.mark.parametrize(("shape", "volume"), SHAPES, ids=["sphere", "cylinder", "prism"])
 def test_a_shape_weighs_what_it_holds_and_stays_inside(shape, volume):
-    one = fluid(shapes=(shape,))
+    one = fluid(fluid=(shape,))
     assert one.totals().mass == pytest.approx(1000.0 * volume, rel=1e-9)
     # Nearly as many particles as volumes of a cube.
     assert one.state.fluid == pytest.approx(volume / SPACING**3, rel=0.1)
-    low, high = np.array(one.params.shapes[0].box)
+    low, high = np.array(one.params.shapes[0].bounds)
     assert ((points(one) > low - 0.5 * SPACING) & (points(one) < high + 0.5 * SPACING)).all()
     assert MANIFEST.plan is not None and MANIFEST.plan(one.params).items == one.items()
 
 
 def test_particles_of_a_sphere_lie_in_it():
-    away = np.linalg.norm(points(fluid(shapes=(SPHERE_SHAPE,))) - 0.1, axis=1)
+    away = np.linalg.norm(points(fluid(fluid=(SPHERE_SHAPE,))) - 0.1, axis=1)
     assert away.max() < 0.5 * 0.17 + 0.5 * SPACING
     assert np.sqrt((away**2).mean()) == pytest.approx(math.sqrt(0.6) * 0.085, rel=0.02)
 
 
 def test_a_shape_in_a_slab_is_a_disc():
-    disc = {"shape": "cylinder", "axis": "y", "centre": [0.3, 0.5, 0.5], "diameter": 0.2}
+    disc = {"shape": "cylinder", "base": [0.3, 0.0, 0.5], "top": [0.3, 1.0, 0.5], "radius": 0.1}
     box = ((0.0, 0.0, 0.0), (0.6, 1.0, 0.2))
-    one = fluid(dimensions=2, fluid=(box,), shapes=(disc | {"height": 1.0},))
+    one = fluid(dimensions=2, fluid=(box, disc))
     assert one.totals().mass == pytest.approx(1000.0 * (0.12 + math.pi * 0.01), rel=1e-9)
 
 
 def test_a_surface_from_a_file_is_filled(tmp_path):
     mesh = trimesh.creation.icosphere(subdivisions=3, radius=1.0)
     mesh.export(tmp_path / "ball.stl")
-    ball = {"shape": "mesh", "file": "ball.stl", "scale": 0.1, "position": [0.3, 0.2, 0.1]}
-    params, wrong = read(SphFluidParams, nested(ROOM | {"shapes": [ball]}), "water", tmp_path)
+    ball = {"shape": "mesh", "file": "ball.stl", "scale": 0.1, "origin": [0.3, 0.2, 0.1]}
+    params, wrong = read(SphFluidParams, nested(ROOM | {"fluid": [ball]}), "water", tmp_path)
     assert not wrong
     one = SphFluid(params)
     assert one.totals().mass == pytest.approx(1000.0 * 1e-3 * float(mesh.volume), rel=1e-6)
@@ -206,7 +206,7 @@ def test_a_surface_from_a_file_is_filled(tmp_path):
 
 def test_a_column_starts_hydrostatic_and_a_drop_without_weight():
     column, drop = SHAPES[1][0], SPHERE_SHAPE | {"centre": [0.4, 0.0, 0.3], "hydrostatic": False}
-    one = fluid(shapes=(column, drop), gravity=(0.0, 0.0, -9.81))
+    one = fluid(fluid=(column, drop), gravity=(0.0, 0.0, -9.81))
     place = points(one)
     density = one.state.position_density[: one.state.fluid, 3]
     falls = place[:, 0] > 0.2
@@ -218,22 +218,25 @@ def test_a_column_starts_hydrostatic_and_a_drop_without_weight():
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"shapes": [{"shape": "sphere", "diameter": 1.0}]}, "a sphere needs centre and diameter"),
         (
-            {"shapes": [SPHERE_SHAPE | {"diameter": 0.1}], "fluid": [CUBE]},
-            r"shapes[0] must not overlap fluid[0]",
-        ),
-        ({"shapes": [SPHERE_SHAPE, SPHERE_SHAPE]}, r"shapes[1] must not overlap shapes[0]"),
-        ({"shapes": [SPHERE_SHAPE], "dimensions": 2}, "a cylinder or a prism along y"),
-        (
-            {"shapes": [SPHERE_SHAPE], "boundary.walls": [[0.05, 0.0, 0.0], [1.0, 1.0, 1.0]]},
-            "shapes[0] must be inside the walls along x",
+            {"fluid": [{"shape": "sphere", "radius": 1.0}]},
+            "a sphere is described by",
         ),
         (
-            {"shapes": [SHAPES[2][0] | {"corners": [[0, 0], [1, 1], [1, 0], [0, 1]]}]},
+            {"fluid": [CUBE, SPHERE_SHAPE | {"radius": 0.05}]},
+            r"fluid[1] must not overlap fluid[0]",
+        ),
+        ({"fluid": [SPHERE_SHAPE, SPHERE_SHAPE]}, r"fluid[1] must not overlap fluid[0]"),
+        ({"fluid": [SPHERE_SHAPE], "dimensions": 2}, "a cylinder or a prism along y"),
+        (
+            {"fluid": [SPHERE_SHAPE], "boundary.walls": [[0.05, 0.0, 0.0], [1.0, 1.0, 1.0]]},
+            "fluid[0] must be inside the walls along x",
+        ),
+        (
+            {"fluid": [SHAPES[2][0] | {"corners": [[0, 0], [1, 1], [1, 0], [0, 1]]}]},
             "does not cross itself",
         ),
-        ({"shapes": [SHAPES[2][0] | {"ends": [0.1, 0.0]}]}, "the lower and the upper end"),
+        ({"fluid": [SHAPES[2][0] | {"ends": [0.1, 0.0]}]}, "the lower and the upper end"),
         ({}, "fluid must have at least one box"),
     ],
 )

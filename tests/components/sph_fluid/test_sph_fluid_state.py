@@ -22,8 +22,10 @@ from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.params import Boundary
 
 saved = dict(np.load(sys.argv[1]))
-box, dbc = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12)), Boundary(method="dbc")
-fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), boundary=dbc))
+from quintet.components.sph_fluid.setup.shapes import FluidRegion
+region = FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.12, 0.12, 0.12))
+dbc = Boundary(method="dbc")
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(region,), boundary=dbc))
 position, velocity = saved.pop("position"), saved.pop("velocity")
 rows = len(position)
 volume, body = np.full(rows, 0.02**3), np.zeros(rows)
@@ -42,8 +44,10 @@ from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid import kernels
 from quintet.components.sph_fluid.params import Boundary
-box, dbc = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12)), Boundary(method="dbc")
-fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), boundary=dbc))
+from quintet.components.sph_fluid.setup.shapes import FluidRegion
+region = FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.12, 0.12, 0.12))
+dbc = Boundary(method="dbc")
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(region,), boundary=dbc))
 fluid.step(fluid.stable_dt())
 loaded = {name.rpartition(".")[2] for name in sys.modules if "sph_fluid" in name}
 left_out = "shepard_filter contact_potential potential acoustic_damper mirrored mirrored_kernels"
@@ -70,8 +74,10 @@ from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid import kernels
 from quintet.components.sph_fluid.params import Boundary
-box, mdbc = ((0.0, 0.0, 0.0), (0.12, 0.12, 0.12)), Boundary(method="mdbc")
-fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(box,), boundary=mdbc))
+from quintet.components.sph_fluid.setup.shapes import FluidRegion
+region = FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.12, 0.12, 0.12))
+mdbc = Boundary(method="mdbc")
+fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(region,), boundary=mdbc))
 one = np.array([[0.06, 0.06, -0.01]])
 static = {"normal": one, "volume": np.full(1, 8e-6), "body": np.zeros(1), "contact": np.zeros(1)}
 fluid.bind({f"surface.{key}": array for key, array in static.items()}, {"surface"})

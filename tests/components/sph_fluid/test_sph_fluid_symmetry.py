@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.setup.geometry import Box
 from quintet.interfaces.component import Fields, outputs_of
 from quintet.interfaces.errors import StepError
 
@@ -46,10 +45,10 @@ def whole(half: SphFluidParams) -> SphFluidParams:
     axes = ["xyz".index(face[0]) for face in edge.symmetry]
     assert edge.walls is not None
 
-    def both(box: Box) -> Box:
-        low, high = box
+    def both(box: Any) -> Any:
+        low, high = box.bounds
         x, y, z = (-high[axis] if axis in axes else low[axis] for axis in range(3))
-        return (x, y, z), high
+        return replace(box, lowest=(x, y, z))
 
     return replace(
         half,
@@ -286,8 +285,9 @@ def test_only_a_scene_that_asks_imports_them() -> None:
     program = (
         "import sys; from quintet.components.sph_fluid import SphFluidParams;"
         "from quintet.components.sph_fluid.component import SphFluid;"
+        "from quintet.components.sph_fluid.setup.shapes import FluidRegion;"
         "f = SphFluid(SphFluidParams(spacing=0.1, sound_speed=30.0,"
-        " fluid=(((0.0, 0.0, 0.0), (0.3, 0.3, 0.3)),))); f.step(1e-5);"
+        " fluid=(FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.3, 0.3, 0.3)),))); f.step(1e-5);"
         "assert 'quintet.components.sph_fluid.boundary.symmetry' not in sys.modules;"
         "assert len(f.state.position_density) == f.items() == 27"
     )

@@ -123,8 +123,9 @@ CASES = {
         "link water-cubes: a body must be at least 0.2 m across, ",
     ),
     "a slab of another thickness": (
-        ["floating_square", "--set", "components.water.fluid=[[[0.0,0.0,0.0],[0.45,0.5,0.2]]]",
-         "--set", "components.water.boundary.walls=[[0.0,0.0,0.0],[0.45,0.5,0.45]]"],
+        ["floating_square", "--set",
+         "components.water.fluid=[{lowest=[0,0,0],highest=[0.45,0.5,0.2]}]",
+         "--set", "components.water.boundary.walls={lowest=[0,0,0],highest=[0.45,0.5,0.45]}"],
         "link water-square: in two dimensions samples stand for 1 m along y, and so must water; "
         "its boxes reach over 0.5 m. Let them, and the walls, reach over 1 m.",
     ),
@@ -163,11 +164,11 @@ def test_what_cannot_be_run_is_told_in_one_sentence_as_a_scene_is_checked(capsys
 def test_memory_that_is_not_there_is_planned_without_being_used(capsys):
     """Eight million bodies, and more particles than any machine holds, in obstacles too."""
     before = psutil.Process().memory_info().rss
-    block = "[[[0.2,0.0,0.2],[0.4,0.2,0.4]]]"
+    block = "[{lowest=[0.2,0.0,0.2],highest=[0.4,0.2,0.4]}]"
     spacing = ["still_water", "--set", "components.water.spacing=1e-5"]
     refused(capsys, "check", *spacing, "--set", "components.water.dimensions=3", "--set",
             f"components.water.boundary.obstacles={block}", "--set",
-            "components.water.fluid=[[[0.0,0.0,0.0],[0.1,0.2,0.5]]]")  # fmt: skip
+            "components.water.fluid=[{lowest=[0,0,0],highest=[0.1,0.2,0.5]}]")  # fmt: skip
     many = "{number=[200,200,200],spacing=[0.013,0.013,0.0125]}"
     lone = ["--set", f"components.spheres.bodies.0.copies={many}"]
     with pytest.raises(SystemExit):
