@@ -193,15 +193,3 @@ def test_the_floors_of_the_coupler_are_told_as_they_are():
     table = (ROOT / "coupler/README.md").read_text().partition("A run, from")[0]
     rows = re.findall(r"^\| \d \| (`coupler.+?) \|", table, re.MULTILINE)  # the top one first
     assert [set(re.findall(r"`coupler/(\w+)", row)) for row in rows[::-1]] == FLOORS["coupler"]
-
-
-def test_questions_of_newcomers_are_answered_within_two_hops():
-    linked = re.findall(r"\]\(([^)#]+\.md)\)", (ROOT / "README.md").read_text())
-    texts = [(ROOT / path).read_text() for path in ("README.md", *dict.fromkeys(linked))]
-    for words in (
-        "the progress bar",
-        "torque becomes an angular velocity",
-        "add a term to the pair law",
-        "Adding a link",
-    ):
-        assert any(words in text for text in texts), words

@@ -1,6 +1,7 @@
 """Who may import whom; how long a file may be; what the package holds."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -44,9 +45,14 @@ def where(path):
     return str(path.relative_to(ROOT))
 
 
+@cache
+def nodes(path):
+    return list(ast.walk(ast.parse(path.read_text())))
+
+
 def imported(path):
     """Yield the parts after the project name of every import of the project in a file."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes(path):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}:{node.lineno}: write the import in full"
             names = [f"{node.module}.{alias.name}" for alias in node.names]
@@ -61,12 +67,17 @@ def imported(path):
                 yield rest
 
 
-@pytest.mark.parametrize("path", FILES, ids=where)
-def test_imports_follow_the_layers(path):
+def forbidden_imports(path):
+    """Yield the imports of a file that its folder does not allow."""
     folder, *inner = path.relative_to(ROOT).parts
     own = {("components", inner[0]), ("components", "shared")} if folder == "components" else set()
     for target in imported(path):
-        assert target[0] in MAY_IMPORT[folder] or tuple(target[:2]) in own, ".".join(target)
+        if target[0] not in MAY_IMPORT[folder] and tuple(target[:2]) not in own:
+            yield f"{where(path)}: {'.'.join(target)}"
+
+
+def test_imports_follow_the_layers():
+    assert [line for path in FILES for line in forbidden_imports(path)] == []
 
 
 def wing_of(parts):
@@ -82,8 +93,8 @@ def test_every_wing_has_its_floor(folder):
     assert sum(map(len, floors)) == len(set().union(*floors))
 
 
-@pytest.mark.parametrize("path", FILES, ids=where)
-def test_imports_run_downwards_between_the_wings(path):
+def upward_imports(path):
+    """Yield the imports of a file from a wing that does not lie below its own."""
     folder, *inner = path.relative_to(ROOT).parts
     if folder not in FLOORS or inner == ["__init__.py"]:
         return
@@ -91,7 +102,12 @@ def test_imports_run_downwards_between_the_wings(path):
     own = wing_of(inner)
     for target in imported(path):
         if len(target) > 1 and target[0] == folder and target[1] != own:
-            assert level[target[1]] < level[own], f"{own} must not import {'.'.join(target)}"
+            if level[target[1]] >= level[own]:
+                yield f"{where(path)}: {own} must not import {'.'.join(target)}"
+
+
+def test_imports_run_downwards_between_the_wings():
+    assert [line for path in FILES for line in upward_imports(path)] == []
 
 
 def late_imports(path):
@@ -99,7 +115,7 @@ def late_imports(path):
     lines = path.read_text().splitlines()
     late = {
         node.lineno
-        for function in ast.walk(ast.parse(path.read_text()))
+        for function in nodes(path)
         if isinstance(function, ast.FunctionDef)
         for node in ast.walk(function)
         if isinstance(node, (ast.Import, ast.ImportFrom))
@@ -112,22 +128,25 @@ def late_imports(path):
             yield line
 
 
-@pytest.mark.parametrize("path", FILES, ids=where)
-def test_what_is_imported_late_says_why(path):
-    assert not list(late_imports(path)), "give the reason in a comment above, or import at the top"
+def test_late_imports_have_a_comment_with_their_reason():
+    assert [f"{where(path)}:{line}" for path in FILES for line in late_imports(path)] == []
 
 
-@pytest.mark.parametrize("path", FILES, ids=where)
-def test_neither_contract_nor_coupler_knows_a_solver_by_name(path):
-    if path.relative_to(ROOT).parts[0] in ("interfaces", "coupler"):
-        nodes = ast.walk(ast.parse(path.read_text()))
-        texts = {str(node.value) for node in nodes if isinstance(node, ast.Constant)}
-        assert not texts & (SOLVERS - {"shared", "stand_ins"})
+def test_neither_contract_nor_coupler_knows_a_solver_by_name():
+    solvers = SOLVERS - {"shared", "stand_ins"}
+    named = [
+        f"{where(path)}:{node.lineno}"
+        for path in FILES
+        if path.relative_to(ROOT).parts[0] in ("interfaces", "coupler")
+        for node in nodes(path)
+        if isinstance(node, ast.Constant) and str(node.value) in solvers
+    ]
+    assert named == []
 
 
-@pytest.mark.parametrize("path", FILES + TESTS, ids=where)
-def test_files_are_small(path):
-    assert len(path.read_text().splitlines()) <= LINES
+def test_files_are_small():
+    files = FILES + TESTS
+    assert [where(path) for path in files if len(path.read_text().splitlines()) > LINES] == []
 
 
 def test_every_folder_of_code_and_every_scene_is_a_package():
