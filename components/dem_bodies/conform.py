@@ -14,7 +14,7 @@ WEDGE = {
     "corners": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]],
     "density": 500.0,
     "material": "wood",
-    "origin": [1.0, 2.0, 3.0],
+    "origin": [1.0 - 0.1 / 3.0, 2.0, 3.0 - 0.1 / 3.0],
 }
 WHEEL = {**BALL, "shape": "disc", "centre": [1.0, 2.0, 3.12]}
 NONE = np.zeros((2, 3))

@@ -38,6 +38,8 @@ class Sphere:
 
     Parameters
     ----------
+    shape
+        Name of the shape.
     centre : m
         At the start.
     radius : m

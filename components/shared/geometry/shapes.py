@@ -39,6 +39,8 @@ class Box:
 
     Parameters
     ----------
+    shape
+        Name of the shape.
     lowest, highest : m
         Its corners.
     """
@@ -82,7 +84,10 @@ class Sphere:
 
     Parameters
     ----------
+    shape
+        Name of the shape.
     centre, radius : m
+        Middle, and distance of the surface from it.
     """
 
     shape: Literal["sphere"] = "sphere"
@@ -112,9 +117,12 @@ class Cylinder:
 
     Parameters
     ----------
+    shape
+        Name of the shape.
     base, top : m
         Centres of its ends.
     radius : m
+        Outer one of a tube.
     inner_radius : m
         Of a tube.
     """
@@ -174,7 +182,10 @@ class Disc:
 
     Parameters
     ----------
+    shape
+        Name of the shape.
     centre, radius : m
+        Middle, and distance of the surface from it.
     """
 
     shape: Literal["disc"] = "disc"
@@ -199,6 +210,8 @@ class Polygon:
 
     Parameters
     ----------
+    shape
+        Name of the shape.
     corners : m
         x and z of its corners, in order round it, either way.
     origin : m
@@ -233,6 +246,8 @@ class Mesh:
 
     Parameters
     ----------
+    shape
+        Name of the shape.
     file
         STL, OBJ, PLY, or voxels as .npy; named from the scene's folder on.
     scale : m

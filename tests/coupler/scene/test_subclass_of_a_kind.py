@@ -60,7 +60,7 @@ spacing = 0.05
 sound_speed = 20.0
 gravity = [0.0, 0.0, 0.0]
 stirring = 0.5
-fluid = [{ shape = "box", lowest = [-0.1, -0.1, 0.0], highest = [0.1, 0.1, 0.2] }]
+fluid = [{{ lowest = [-0.1, -0.1, 0.0], highest = [0.1, 0.1, 0.2] }}]
 gauges = {{ pressure_gauges = [[0.0, 0.0, 0.1]], level_gauges = [[0.0, 0.0]], motion_gauge = true }}
 [output]
 fields = ["water.pressure_gauge.pressure", "water.level_gauge.height", "water.motion_gauge.speed",
