@@ -8,32 +8,43 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+import quintet
+
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
+RUNNING = (ROOT / "scenarios/README.md").read_text()
 
 
-def blocks(kind: str) -> list[str]:
-    return re.findall(rf"^```{kind}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+def blocks(text: str, kind: str) -> list[str]:
+    return re.findall(rf"^```{kind}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
-def test_the_tutorial_is_the_component_beside_its_scene():
-    assert (ROOT / "scenarios/two_springs/springs.py").read_text() in blocks("python")
+def test_the_component_it_shows_is_part_of_that_beside_its_scene():
+    (excerpt,) = blocks(README, "python")
+    code = (ROOT / "scenarios/two_springs/springs.py").read_text().splitlines()
+    assert [line for line in excerpt.splitlines() if line not in code] == []
+
+
+def test_the_scene_it_shows_can_run(tmp_path):
+    (scene,) = blocks(README, "toml")
+    (tmp_path / "splash.toml").write_text(scene)
+    quintet.check(str(tmp_path / "splash.toml"))  # raises SceneError where it cannot
 
 
 def test_the_python_example_runs(tmp_path, monkeypatch, capsys):
-    (example,) = (block for block in blocks("python") if block.startswith("import quintet\n"))
+    (example,) = (one for one in blocks(RUNNING, "python") if one.startswith("import quintet\n"))
     monkeypatch.chdir(tmp_path)
     exec(example)
     assert capsys.readouterr().out.endswith("done (251, 1, 3) m 0.5\n")
 
 
 def test_the_picture_and_the_files_it_links_are_there():
-    for link in re.findall(r"\]\(([^)#]+)\)", README):
+    for link in re.findall(r"\]\(([^)#]+)[^)]*\)", README):
         assert (ROOT / link).exists(), link
 
 
 def test_the_scenes_it_runs_exist():
-    named = set(re.findall(r"quintet (?:run|check|join) (\w+)", README))
+    named = set(re.findall(r"quintet (?:run|check|join) ([a-z]\w*)(?![\w.])", README + RUNNING))
     assert named and all((ROOT / "scenarios" / name / "scene.toml").exists() for name in named)
 
 

@@ -1,4 +1,4 @@
-"""Every command of the README but that of the tests, pasted in order into a fresh folder."""
+"""The commands of the README and of scenarios/README.md, pasted in order into a fresh folder."""
 
 import os
 import re
@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-MAIN, _, GIVEN = re.findall(r"^```sh\n(.*?)^```$", (ROOT / "README.md").read_text(), re.M | re.S)
+SHELL = re.compile(r"^```sh\n(.*?)^```$", re.M | re.S)
+MAIN = SHELL.findall((ROOT / "README.md").read_text())[0]
+GIVEN = SHELL.findall((ROOT / "scenarios/README.md").read_text())[0]
 LONGEST = 3600.0  # s for all of it; fifteen minutes on two quiet cores
 
 # Commands that end with another status than 0, as the text beside them says.
