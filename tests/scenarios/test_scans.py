@@ -25,6 +25,8 @@ CASES += [pytest.param("floating_square", name, marks=pytest.mark.full) for name
 CASES += [pytest.param("dust_in_stream", "window", marks=pytest.mark.full)]
 CASES += [pytest.param("glued_bar", name, marks=pytest.mark.full) for name in
           ("window", "substeps")]  # fmt: skip
+CASES += [pytest.param(scene, name, marks=pytest.mark.full) for scene in ("shock_tube", "wedge")
+          for name in ("neighbours", "jitter", "Courant number")]  # fmt: skip
 
 
 @pytest.mark.parametrize(("scene", "scan"), CASES)
