@@ -70,20 +70,12 @@ def write_boundaries(
 
     Parameters
     ----------
-    rows : (b,)
-        Their nodes.
     kind, patch : (n,)
         Of all nodes: what it is, and which of `patches` it belongs to.
-    normals : (n, 3) 1
-        Into the gas.
-    neighbours : (n, K)
     weights : (b, K) 1
-    patches : (p, PATCH_COLUMNS)
     frame : None or (n, 3) m/s
         Velocities of walls.
-    gamma : float, 1
     gas_constant : float, J/(kg K)
-    primitive : (n, 5) kg/m3, m/s, Pa
     """
     near = np.empty(5)
     for row in range(rows.shape[0]):
@@ -173,8 +165,6 @@ def boundary_flows(rows: Any, areas: Any, primitive: Any, gamma: float, flows: A
         Boundary nodes that stand still.
     areas : (n, 3) m2
         Along normals into the gas.
-    primitive : (n, 5) kg/m3, m/s, Pa
-    gamma : float, 1
     flows : (5,)
         Written.
     """

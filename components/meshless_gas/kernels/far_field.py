@@ -86,7 +86,6 @@ def meet(near: Any, given: Any, normal: Any, gamma: float) -> None:
         Of the gas beyond.
     normal : (3,) 1
         Into the gas.
-    gamma : float, 1
     """
     into = inside = 0.0
     for d in range(3):

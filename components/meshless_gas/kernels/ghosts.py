@@ -19,7 +19,6 @@ def write_ghost_states(begin: int, end: int, owner: Any, turn: Any, primitive: A
         Nodes that they are images of.
     turn : (g, 3, 3) 1
         Rotation or reflection from the owner to its image.
-    primitive : (n, 5)
     """
     first = primitive.shape[0] - owner.shape[0]
     for g in range(begin, end):

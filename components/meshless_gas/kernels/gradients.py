@@ -24,15 +24,6 @@ def write_gradients(
 
     Parameters
     ----------
-    first, last : int
-        Of `rows`.
-    rows : (m,)
-        Nodes.
-    primitive : (n, 5) kg/m3, m/s, Pa
-    neighbours : (n, K)
-    coefficients : (n, K, 3) 1/m
-    planar : None or True
-        Of None all three dimensions; else x and z alone.
     gradients : (n, 5 or more, 3)
         Written.
     lowest : (n,) Pa

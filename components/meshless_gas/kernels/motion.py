@@ -78,18 +78,13 @@ def advance(
 
     Parameters
     ----------
-    first, last : int
-        Of `rows`.
-    rows : (m,)
     start, conservative : (n, 5) kg/m3, kg/(m2 s), J/m3
         At the step's start, and now.
-    residual : (n, 5)
     step : float, s
     steps : None or (n,) 1
         Steps of the nodes over `step`.
     old, new : float, 1
         Where `old` is 0, at the first stage, `start` is written.
-    gamma : float, 1
     primitive : (n, 5)
         Written.
     """

@@ -75,17 +75,11 @@ def continue_outflows(
 
     Parameters
     ----------
-    rows : (o,)
     near : (o, m)
         Nodes within.
     weights : (o, 4, m) 1, 1/m
-    positions : (n, 3) m
     patch : (n,)
         Which of `patches` nodes belong to.
-    patches : (p, PATCH_COLUMNS)
-    normals : (n, 3) 1
-        Into the gas.
-    gamma : float, 1
     primitive : (n, 5) kg/m3, m/s, Pa
         The rows are written.
 

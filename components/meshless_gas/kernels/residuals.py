@@ -53,22 +53,14 @@ def write_residuals(
     ----------
     first, last : int
         Of `rows`; LANES of them go side by side.
-    rows : (m,)
-        Nodes that are advanced.
-    positions : (n, 3) m
     primitive : (n, 5) kg/m3, m/s, Pa
         In the laboratory's frame.
     gradients : (n, 5 or more, 3)
     lowest : (n,) Pa
-    neighbours : (n, K)
-    coefficients : (n, K, 3) 1/m
     frame : None or (n, 3) m/s
         Velocities of the nodes.
-    planar : None or True
-        Of None all three dimensions; else x and z alone.
     sloped : None or True
         Of None the scheme is of first order.
-    gamma : float, 1
     limiter : Limiter
         Of slopes; its class is known when this is compiled.
     residual : (n, 5) kg/(m3 s), N/m3, W/m3

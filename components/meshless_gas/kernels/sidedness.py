@@ -23,12 +23,6 @@ def write_sidedness(
 
     Parameters
     ----------
-    first, last : int
-        Of `rows`.
-    rows : (m,)
-    positions : (n, 3) m
-    neighbours : (n, K)
-    coefficients : (n, K, 3) 1/m
     along : (a, 3) 1
         Unit vectors.
     found : (m,) 1

@@ -30,11 +30,6 @@ def write_coefficients(
 
     Parameters
     ----------
-    first, last : int
-        Of `rows`.
-    rows : (m,)
-    positions : (n, 3) m
-    neighbours : (n, K)
     weight : (n,) 1
     planar : bool
         Whether y is left out.

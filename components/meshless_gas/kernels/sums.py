@@ -15,10 +15,7 @@ def add_errors(
 
     Parameters
     ----------
-    rows : (m,)
-        Nodes.
     volumes : (n,) m3
-    primitive : (n, 5) kg/m3, m/s, Pa
     exact : (m, 5)
         At `rows`.
     summed, largest : (5,)

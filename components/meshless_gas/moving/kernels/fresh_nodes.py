@@ -20,15 +20,8 @@ def write_fresh(
 
     Parameters
     ----------
-    rows : (m,)
-        Nodes.
     found : (m, c)
         Nodes near each whose states are known.
-    positions : (n, 3) m
-    spacing : (n,) m
-    centres : (b, 3) m
-    radii : (b,) m
-    primitive : (n, 5)
     """
     low, high, sums = np.empty(5), np.empty(5), np.empty((3, 5))
     for row in range(rows.shape[0]):

@@ -101,14 +101,8 @@ def choose(
 
     Parameters
     ----------
-    rows : (m,)
-        Nodes.
     found : (m, c)
         What is near to each, the nearest first.
-    positions : (n, 3) m
-    spacing : (n,) m
-    centres : (b, 3) m
-    radii : (b,) m
     kept : int
         How many neighbours a node has.
     sides : int

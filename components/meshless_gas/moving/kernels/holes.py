@@ -27,12 +27,10 @@ def cut(
 
     Parameters
     ----------
-    positions : (n, 3) m
     region : (n,)
         0 of the background, 1 + b of the cloud of body b.
     height : (n,) m
         Above the own body; ∞ of the background.
-    centres : (b, 3) m
     radii, depths : (b,) m
         Of bodies, and how far above them no node of others is left.
     margins : (b,) m

@@ -26,16 +26,10 @@ def write_slip_walls(
 
     Parameters
     ----------
-    rows : (w,)
-        Nodes of walls.
-    above : (w, 2)
-        The two nodes above each.
     heights : (w, 2) m
         Of those nodes.
     normals : (w, 3) 1
         Into the gas.
-    velocity : (w, 3) m/s
-    gamma : float, 1
     primitive : (n, 5)
         The rows are written.
     """
@@ -75,8 +69,6 @@ def add_loads(
         Along normals into the gas.
     arms : (w, 3) m
         From the centre.
-    velocity : (w, 3) m/s
-    primitive : (n, 5)
     loads : (b, 8) N, N m, W
         Columns but for the heat are added to.
     """

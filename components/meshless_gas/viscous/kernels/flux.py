@@ -89,18 +89,9 @@ def add_viscous(  # type: ignore[no-untyped-def]
 
     Parameters
     ----------
-    first, last : int
-        Of `rows`.
-    rows : (m,)
-        Nodes that are advanced.
-    positions : (n, 3) m
-    primitive : (n, 5) kg/m3, m/s, Pa
     transported : (n, 2) K, Pa s
-    neighbours : (n, K)
-    coefficients : (n, K, 3) 1/m
     gradients : (n, 5, 3)
     temperature_gradients : (n, 3) K/m
-    law : Transport
     residual : (n, 5)
         Rates of density, momentum and energy per volume; the last four are added to.
     """

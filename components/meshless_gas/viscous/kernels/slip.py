@@ -55,22 +55,12 @@ def write_jumps(  # type: ignore[no-untyped-def]
 
     Parameters
     ----------
-    rows : (w,)
-        Nodes of walls.
-    above : (w, 2)
-        Two nodes above each.
-    positions : (n, 3) m
-    normals : (n, 3) 1
-        Into the gas.
-    velocity : (w, 3) m/s
-        Of the walls.
     temperature : (w,) K
         Of the walls; negative where they are adiabatic: they then get no heat from the gas, that
         of its sliding included.
     lengths : (w, 2) 1
         Of slip and of jump, over the mean free path.
     curvature : float, 1/m
-    law : Transport
     primitive : (n, 5)
         The densities of the rows are written.
     """
@@ -113,8 +103,6 @@ def write_slips(  # type: ignore[no-untyped-def]
 
     Parameters
     ----------
-    neighbours : (n, K)
-    coefficients : (n, K, 3) 1/m
     owner : (g,)
         Nodes whose images the last rows of `positions` are.
     """

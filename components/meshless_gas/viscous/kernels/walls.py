@@ -23,18 +23,10 @@ def write_no_slip_walls(  # type: ignore[no-untyped-def]
 
     Parameters
     ----------
-    rows : (w,)
-        Nodes of walls.
-    neighbours : (n, K)
     weights : (w, K)
         With sum 1: of no slope along the normal.
-    normals : (n, 3) 1
-        Into the gas.
-    velocity : (w, 3) m/s
     temperature : (w,) K
         Negative where the wall is adiabatic.
-    gamma : float, 1
-    law : Transport
     primitive : (n, 5)
         The rows are written.
     """
@@ -67,20 +59,6 @@ def write_tractions(  # type: ignore[no-untyped-def]
 
     By parabolas through the wall and two nodes above it: the least-squares slope at the wall falls
     8 to 15 % short where the layer of temperature is eight spacings thick.
-
-    Parameters
-    ----------
-    rows : (w,)
-        Nodes of walls.
-    above : (w, 2)
-        Two nodes above each.
-    positions : (n, 3) m
-    normals : (n, 3) 1
-        Into the gas.
-    velocity : (w, 3) m/s
-        Of the walls.
-    primitive : (n, 5)
-    law : Transport
     """
     for n in range(rows.shape[0]):
         i, j, k = rows[n], above[n, 0], above[n, 1]
