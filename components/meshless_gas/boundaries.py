@@ -161,7 +161,7 @@ class Boundary:
 
     def __post_init__(self) -> None:
         names = ("state", "total", "pressure", "temperature", "velocity", "accommodation")
-        said = [one for one in names if getattr(self, one) is not None]
+        said = [key for key in names if getattr(self, key) is not None]
         wrong = {
             "inflow": said not in (["state"], ["total"]),
             "outflow": bool(set(said) - {"pressure"}),

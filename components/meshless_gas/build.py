@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.boundaries import Boundary, Gas
-from quintet.components.meshless_gas.clouds.bodies import layered_cloud
 from quintet.components.meshless_gas.clouds.box import box
 from quintet.components.meshless_gas.clouds.cloud import (
     INFLOW,
@@ -18,7 +17,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
     is_mirrored,
 )
 from quintet.components.meshless_gas.clouds.layers import Sides
-from quintet.components.meshless_gas.exact import states_at
+from quintet.components.meshless_gas.exact_states import states_at
 from quintet.components.meshless_gas.kernels.boundaries import (
     BACK_PRESSURE,
     PATCH_COLUMNS,
@@ -29,6 +28,7 @@ from quintet.components.meshless_gas.kernels.boundaries import (
 from quintet.components.meshless_gas.kernels.motion import write_conservative
 from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
 from quintet.components.meshless_gas.laws.transport import Transport
+from quintet.components.meshless_gas.layered_clouds import layered_cloud
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.sidedness import EVEN, UNEVEN, doubts_of, notes_of, surround
 from quintet.components.meshless_gas.state import State, conserved
@@ -65,22 +65,24 @@ class Domain(NamedTuple):
 def domain(params: MeshlessGasParams, team: Team) -> Domain:
     """Build the cloud, and the coefficients of its derivatives."""
     names = [name for name in params.boundaries if params.kind_of(name) not in ("periodic",)]
-    cloud, made, notes, doubts = _cloud(params, names, team)
-    neighbours, kind = made.neighbours, cloud.kind[: cloud.nodes]
+    cloud, stencil, notes, doubts = _cloud(params, names, team)
+    neighbours, kind = stencil.neighbours, cloud.kind[: cloud.nodes]
     edges = _rows(np.isin(kind, (INFLOW, OUTFLOW, SLIP)))
     weights = np.empty((len(edges), neighbours.shape[1]))
-    lacks = write_weights(edges, cloud.kind, cloud.normals, neighbours, made.coefficients, weights)
+    lacks = write_weights(
+        edges, cloud.kind, cloud.normals, neighbours, stencil.coefficients, weights
+    )
     if lacks >= 0:
         place = np.array2string(cloud.positions[edges[lacks]], precision=4)
         raise SceneError(
             f"boundary nodes must have a neighbour within; that at {place} m has none among its "
             f"{neighbours.shape[1]}. Raise neighbours."
         )
-    given = [patch(params.boundaries[name], params.gas) for name in names]
-    patches = np.array([np.zeros(PATCH_COLUMNS), *given])
+    states = [patch(params.boundaries[name], params.gas) for name in names]
+    patches = np.array([np.zeros(PATCH_COLUMNS), *states])
     return Domain(
         cloud=cloud,
-        stencils=made,
+        stencils=stencil,
         inner=_rows(is_advanced(kind)),
         every=np.arange(cloud.nodes, dtype=np.int32),
         edges=edges,
@@ -106,28 +108,28 @@ def _cloud(
     patches = {name: 1 + number for number, name in enumerate(names)}
     if params.box is None:
         layers = layered_cloud(params, Sides(faces, patches))
-        made = stencils(layers.cloud, layers.neighbours, params.planar, team)
+        stencil = stencils(layers.cloud, layers.neighbours, params.planar, team)
         keys = params.plate or params.sphere
         is_moved = keys is not None and keys.layers.jitter > 0.0
-        doubts = doubts_of(layers.cloud, made, params.planar, team) if is_moved else ()
-        return layers.cloud, made, (), doubts
-    one, count = params.box, params.neighbour_count
+        doubts = doubts_of(layers.cloud, stencil, params.planar, team) if is_moved else ()
+        return layers.cloud, stencil, (), doubts
+    lattice, count = params.box, params.neighbour_count
     cloud = box(
-        one.lowest,
-        one.highest,
-        one.spacing,
+        lattice.lowest,
+        lattice.highest,
+        lattice.spacing,
         faces,
         patches,
-        jitter=one.jitter,
-        seed=one.seed,
-        weight=one.weight,
+        jitter=lattice.jitter,
+        seed=lattice.seed,
+        weight=lattice.weight,
         neighbours=count,
         planar=params.planar,
-        parts=[part.part for part in one.refinements],
+        parts=[part.part for part in lattice.refinements],
     )
-    find = graded_neighbours if one.refinements else nearest_neighbours
+    find = graded_neighbours if lattice.refinements else nearest_neighbours
     limit = EVEN if params.neighbours is None else UNEVEN
-    cure = surround(cloud, find, count, one.jitter == 0.0, limit, params.planar, team)
+    cure = surround(cloud, find, count, lattice.jitter == 0.0, limit, params.planar, team)
     is_asked = params.neighbours is not None
     notes = notes_of(cure, count, cloud.nodes, params.planar) if is_asked else ()
     return cloud, cure.stencils, notes, ()

@@ -5,7 +5,7 @@ import numpy as np
 from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, Cloud
-from quintet.components.meshless_gas.exact import states_at
+from quintet.components.meshless_gas.exact_states import states_at
 from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
@@ -119,14 +119,14 @@ def totals(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) ->
     )
 
 
-def failure(place: Array, found: Array, time: float, share: float, sided: float) -> str:
+def failure(place: Array, state: Array, time: float, share: float, sided: float) -> str:
     """Say that a state is none, and what is likely to help.
 
     Parameters
     ----------
     place : (3,) m
         Of the node.
-    found : (5,) kg/m3, m/s, Pa
+    state : (5,) kg/m3, m/s, Pa
         Its state.
     time : float, s
         When the step began.
@@ -137,8 +137,8 @@ def failure(place: Array, found: Array, time: float, share: float, sided: float)
     """
     where = np.array2string(place, precision=4)
     said = (
-        f"density and pressure must stay above 0; the node at {where} m has {found[0]:.3g} kg/m3 "
-        f"and {found[4]:.3g} Pa in the step from t = {time:.6g} s, of {share:.2f} of "
+        f"density and pressure must stay above 0; the node at {where} m has {state[0]:.3g} kg/m3 "
+        f"and {state[4]:.3g} Pa in the step from t = {time:.6g} s, of {share:.2f} of "
         "1/Σ(|v·c| + a|c|). "
     )
     if sided > UNEVEN:

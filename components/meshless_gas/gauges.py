@@ -101,21 +101,21 @@ def line(cloud: Cloud, front: Front, team: Team) -> SampledLine:
     return SampledLine(distances, rows, weights, begin, direction, column, front.level)
 
 
-def crossing(one: SampledLine, primitive: Array) -> float:
+def crossing(sampled: SampledLine, primitive: Array) -> float:
     """Distance [m] at which the level is first passed; minus the line's length if it is not."""
-    values = (one.weights * primitive[one.rows, one.column]).sum(axis=1)
-    above = values > one.level
+    values = (sampled.weights * primitive[sampled.rows, sampled.column]).sum(axis=1)
+    above = values > sampled.level
     turns = np.flatnonzero(above[1:] != above[:-1])
     if not len(turns):
-        return -float(one.distances[-1])
+        return -float(sampled.distances[-1])
     k = int(turns[0])
-    share = (one.level - values[k]) / (values[k + 1] - values[k])
-    return float(one.distances[k] + share * (one.distances[k + 1] - one.distances[k]))
+    share = (sampled.level - values[k]) / (values[k + 1] - values[k])
+    return float(sampled.distances[k] + share * (sampled.distances[k + 1] - sampled.distances[k]))
 
 
 def fronts(lines: Sequence[SampledLine], primitive: Array) -> Fields:
     """Fields of the port `fronts`."""
-    distances = np.array([crossing(one, primitive) for one in lines])
+    distances = np.array([crossing(sampled, primitive) for sampled in lines])
     met = distances >= 0.0
     places = np.array([a.begin + d * a.direction for a, d in zip(lines, distances, strict=True)])
     return {
@@ -137,12 +137,12 @@ def angle(places: Array) -> float:
 
 def probes(rows: Rows, cloud: Cloud, primitive: Array, gas: Gas) -> Fields:
     """Fields of the port `probes`."""
-    found = primitive[rows]
+    states = primitive[rows]
     return {
         "probes.position": cloud.positions[rows],
-        "probes.velocity": found[:, 1:4].copy(),
-        "probes.density": found[:, 0].copy(),
-        "probes.pressure": found[:, 4].copy(),
-        "probes.temperature": temperature(found, gas),
-        "probes.mach": mach(found, gas),
+        "probes.velocity": states[:, 1:4].copy(),
+        "probes.density": states[:, 0].copy(),
+        "probes.pressure": states[:, 4].copy(),
+        "probes.temperature": temperature(states, gas),
+        "probes.mach": mach(states, gas),
     }

@@ -49,4 +49,8 @@ def blocked_inflows(params: MeshlessGasParams, state: State, domain: Domain) -> 
 
 def _patches(params: MeshlessGasParams) -> list[tuple[str, Boundary]]:
     """Boundaries in the order of their numbers."""
-    return [(n, one) for n, one in params.boundaries.items() if params.kind_of(n) != "periodic"]
+    return [
+        (n, boundary)
+        for n, boundary in params.boundaries.items()
+        if params.kind_of(n) != "periodic"
+    ]

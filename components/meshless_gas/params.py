@@ -118,63 +118,67 @@ class MeshlessGasParams:
 
     def _wrong_clouds(self) -> list[str]:
         """What does not fit between the cloud and the dimensions."""
-        found = []
+        mistakes = []
         said = [name for name in ("box", "sphere", "plate") if getattr(self, name) is not None]
         if len(said) != 1:
-            found.append(
+            mistakes.append(
                 f"a gas needs a box, a sphere or a plate of nodes, one of them; found "
                 f"{' and '.join(said) or 'none'}. Correct it."
             )
         if self.particles is not None and self.moving is not None:
-            found.append(
+            mistakes.append(
                 "particles that nodes do not resolve go with nodes that stand still; found moving. "
                 "Leave out particles, or moving."
             )
         if (self.particles is not None or self.moving is not None) and (
             self.local_steps or self.steady is not None
         ):
-            found.append(
+            mistakes.append(
                 "local_steps and steady are for a flow round what stands still; found particles "
                 "or moving. Leave out local_steps and steady."
             )
         if self.moving is not None and self.planar and self.moving.is_cut:
-            found.append(
+            mistakes.append(
                 "moving: clouds that end at a sector are those of spheres: on an axis of symmetry, "
                 "or in 3 dimensions. Say axisymmetric = true or dimensions = 3, or leave it out."
             )
         if self.moving is not None and (self.probes or self.fronts):
-            found.append(
+            mistakes.append(
                 "probes and fronts are read at nodes that stand still; found moving. Leave out "
                 "probes and fronts."
             )
         layered = self.plate or self.sphere
         if layered is not None and layered.layers.jitter > 0.0 and not self.axisymmetric:
-            found.append(
+            mistakes.append(
                 f"layers: jitter is for an axisymmetric sphere; found {layered.layers.jitter:g}. "
                 "Leave it out."
             )
         if layered is not None and layered.layers.jitter > 0.0 and layered.layers.line_stencils:
-            found.append(
+            mistakes.append(
                 "layers: jitter moves nodes off the lines along which line_stencils takes "
                 f"derivatives; found {layered.layers.jitter:g}. Leave it out, or say "
                 "line_stencils = false."
             )
         if self.axisymmetric and (self.dimensions == 3 or self.sphere is None):
-            found.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")
+            mistakes.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")
         if self.sphere is not None and self.dimensions == 2 and not self.axisymmetric:
-            found.append("a sphere in 2 dimensions must be axisymmetric. Say axisymmetric = true.")
+            mistakes.append(
+                "a sphere in 2 dimensions must be axisymmetric. Say axisymmetric = true."
+            )
         if self.vortex is not None and self.box is None:
-            found.append("a vortex drifts through a periodic box. Give a box.")
+            mistakes.append("a vortex drifts through a periodic box. Give a box.")
         if self.limiter == "van_albada" and self.limiter_threshold == 0.0:
-            found.append("limiter_threshold must be above 0 with van Albada's limiter. Raise it.")
+            mistakes.append(
+                "limiter_threshold must be above 0 with van Albada's limiter. Raise it."
+            )
         if self.limiter != "van_albada" and self.limiter_threshold:
-            found.append(
+            mistakes.append(
                 f"limiter_threshold is of van Albada's limiter; found {self.limiter}. Leave it "
                 'out, or say limiter = "van_albada".'
             )
         if self.plate is not None and self.dimensions == 3:
-            found.append("a plate is of 2 dimensions. Leave dimensions out.")
-        return found
+            mistakes.append("a plate is of 2 dimensions. Leave dimensions out.")
+        return mistakes
 
     def _wrong_walls(self) -> list[str]:
         """What does not fit between walls and friction."""
@@ -183,7 +187,7 @@ class MeshlessGasParams:
                 "viscous needs order = 2: the first order adds a viscosity of about half of "
                 "density, speed of sound and spacing. Leave order out."
             ]
-        no_slip = [n for n, one in self.boundaries.items() if one.kind in NO_SLIP]
+        no_slip = [n for n, boundary in self.boundaries.items() if boundary.kind in NO_SLIP]
         if no_slip and not self.viscous:
             return [f"boundaries.{no_slip[0]} holds the gas by friction. Say viscous = true."]
         return []
@@ -191,38 +195,39 @@ class MeshlessGasParams:
     def _wrong_names(self) -> list[str]:
         """What does not fit among the boundaries of a cloud in layers."""
         names = NAMES["sphere" if self.sphere is not None else "plate"]
-        found = [
+        mistakes = [
             f"boundaries.{name} is not known. Known here: {', '.join(names)}."
             for name in self.boundaries
             if name not in names
         ]
-        found += [
+        mistakes += [
             f"boundaries.{name} must be given. Say what is there."
             for name in names
             if name not in self.boundaries
         ]
-        found += [
-            f"boundaries.{name} of a cloud in layers cannot be {one.kind}. Take a wall or a flow."
-            for name, one in self.boundaries.items()
-            if one.kind == "periodic"
-            or (one.kind == "symmetry" and (name != "wall" or self.sphere is None))
+        mistakes += [
+            f"boundaries.{name} of a cloud in layers cannot be {boundary.kind}. "
+            "Take a wall or a flow."
+            for name, boundary in self.boundaries.items()
+            if boundary.kind == "periodic"
+            or (boundary.kind == "symmetry" and (name != "wall" or self.sphere is None))
         ]
-        if not found and self.sphere is not None:
+        if not mistakes and self.sphere is not None:
             far = self.boundaries["far"].state
             if far is None:
                 return ["boundaries.far must be an inflow of a given state round a sphere."]
             return self.sphere.wrong(far.velocity, self.axisymmetric)
-        return found
+        return mistakes
 
     def _wrong_states(self) -> list[str]:
         """What does not fit among the states at the start."""
-        found = []
+        mistakes = []
         if (self.initial is None) == (self.riemann is None):
-            found.append("the gas begins with initial or riemann, one of them. Correct it.")
+            mistakes.append("the gas begins with initial or riemann, one of them. Correct it.")
         if self.riemann is not None and (self.vortex or self.zones or self.moving):
-            found.append("riemann is for a tube alone: leave out vortex, zones and moving.")
+            mistakes.append("riemann is for a tube alone: leave out vortex, zones and moving.")
         if self.local_steps and (self.riemann is not None or self.vortex is not None):
-            found.append(
+            mistakes.append(
                 "local_steps is for flows that become steady: with riemann or vortex its times "
                 "mean nothing. Leave it out."
             )
@@ -231,31 +236,31 @@ class MeshlessGasParams:
             density, *_, pressure = self.initial.primitive(self.gas)
             coldest = 1.0 - share * density / pressure * (self.vortex.strength / math.tau) ** 2
             if coldest <= 0.0:
-                found.append(
+                mistakes.append(
                     f"vortex: strength must leave gas in its middle; found "
                     f"{self.vortex.strength:g} m/s. Make it weaker, or the pressure higher."
                 )
-        return found
+        return mistakes
 
     def _wrong_faces(self) -> list[str]:
         """What does not fit among the faces of the box."""
         assert self.box is not None
-        found, axes = [], ("xz" if self.dimensions == 2 else "xyz")
+        mistakes, axes = [], ("xz" if self.dimensions == 2 else "xyz")
         names = [axis + side for axis in axes for side in "-+"]
         for name in self.boundaries:
             if name not in names:
-                found.append(f"boundaries.{name} is not known. Known here: {', '.join(names)}.")
+                mistakes.append(f"boundaries.{name} is not known. Known here: {', '.join(names)}.")
         for axis in axes:
             ends = [self.kind_of(axis + side) for side in "-+"]
             if ends.count("periodic") == 1:
-                found.append(
+                mistakes.append(
                     f"boundaries: both faces across {axis} must be periodic or none; found "
                     f"{' and '.join(ends)}. Say the other."
                 )
             k = "xyz".index(axis)
             length = self.box.highest[k] - self.box.lowest[k]
             if length < 2.0 * self.box.spacing:
-                found.append(
+                mistakes.append(
                     f"box: along {axis} it must be two spacings long at least; found "
                     f"{length:g} m. Correct lowest and highest, or spacing."
                 )
@@ -263,8 +268,8 @@ class MeshlessGasParams:
         kinds = {name: self.kind_of(name) for name in names}
         for part in self.box.refinements:
             wrong = wrong_part(part.part, corners, self.box.spacing, kinds)
-            found += [f"box.refinements: {wrong}"] if wrong else []
-        return found
+            mistakes += [f"box.refinements: {wrong}"] if wrong else []
+        return mistakes
 
     def _wrong_places(self) -> list[str]:
         """Which places of probes and ends of fronts lie outside the nodes."""
@@ -302,9 +307,9 @@ class MeshlessGasParams:
     @property
     def cloud(self) -> BoxCloud | SphereCloud | PlateCloud:
         """The table that describes the nodes."""
-        found = self.box or self.sphere or self.plate
-        assert found is not None
-        return found
+        cloud = self.box or self.sphere or self.plate
+        assert cloud is not None
+        return cloud
 
     @property
     def expected_count(self) -> int:
@@ -316,18 +321,18 @@ class MeshlessGasParams:
     def expected_step(self) -> float:
         """Step [s] that the states at the start and at the boundary bear."""
         states = [self.initial, *(zone.state for zone in self.zones)]
-        states += [one.state for one in self.boundaries.values()]
+        states += [boundary.state for boundary in self.boundaries.values()]
         if self.riemann is not None:
             states += [self.riemann.left, self.riemann.right]
-        fastest = max(one.fastest(self.gas) for one in states if one is not None)
+        fastest = max(state.fastest(self.gas) for state in states if state is not None)
         finest = self.cloud.finest_spacing
         if self.moving is not None:
             finest = min(finest, self.moving.finest_spacing)
-            fastest += max(math.hypot(*one.velocity) for one in self.moving.bodies)
+            fastest += max(math.hypot(*body.velocity) for body in self.moving.bodies)
         return 0.5 * self.courant * finest / fastest
 
 
 def has_walls(params: MeshlessGasParams) -> bool:
     """Whether what walls feel is given: of bodies, and of walls that hold the gas."""
-    no_slip = any(one.kind in NO_SLIP for one in params.boundaries.values())
+    no_slip = any(boundary.kind in NO_SLIP for boundary in params.boundaries.values())
     return params.box is None or no_slip

@@ -156,14 +156,14 @@ def ports(params: MeshlessGasParams) -> Ports:
     known = params.riemann is not None or params.vortex is not None
     read = (*((PROBES,) if params.probes else ()), *((FRONTS,) if params.fronts else ()))
     felt = (WALL, body(params)) if has_walls(params) else ()
-    given = (BALANCE, *((ERROR,) if known else ()), *read, *felt)
+    gives = (BALANCE, *((ERROR,) if known else ()), *read, *felt)
     if params.particles is not None:
-        return (PARTICLES,), (*given, PARTICLE_LOAD, PARTICLE_HEAT)
+        return (PARTICLES,), (*gives, PARTICLE_LOAD, PARTICLE_HEAT)
     if params.moving is None:
-        return (), given
-    driven = any(one.is_driven for one in params.moving.bodies)
+        return (), gives
+    driven = any(body.is_driven for body in params.moving.bodies)
     bodies = (BODIES, SURFACE, *((LOAD, HEAT) if driven else ()))
-    return (MOTION,) if driven else (), (*given, *bodies)
+    return (MOTION,) if driven else (), (*gives, *bodies)
 
 
 def initial(params: MeshlessGasParams) -> Fields:

@@ -51,13 +51,13 @@ def directions(planar: bool) -> Array:
     return np.stack([np.cos(turn) * across, np.sin(turn) * across, np.cos(polar)], axis=1)
 
 
-def sidedness(cloud: Cloud, made: Stencils, rows: Rows, planar: bool, team: Team) -> Array:
+def sidedness(cloud: Cloud, stencil: Stencils, rows: Rows, planar: bool, team: Team) -> Array:
     """Sidedness (m,) 1 of nodes (m,)."""
-    found = np.zeros(len(rows))
+    sided = np.zeros(len(rows))
     team.run(
-        write_sidedness, len(rows), rows, cloud.positions, *made, directions(planar), found
+        write_sidedness, len(rows), rows, cloud.positions, *stencil, directions(planar), sided
     )  # fmt: skip
-    return found
+    return sided
 
 
 def surround(
@@ -84,15 +84,15 @@ def surround(
     completed = 0
     if is_lattice:
         near, completed = _whole_shells(cloud, find, near, rows, planar, team)
-    made = stencils(cloud, near, planar, team)
-    found = sidedness(cloud, made, rows, planar, team)
-    worst = float(found.max(initial=0.0))
-    uneven = rows[found > limit]
+    stencil = stencils(cloud, near, planar, team)
+    sided = sidedness(cloud, stencil, rows, planar, team)
+    worst = float(sided.max(initial=0.0))
+    uneven = rows[sided > limit]
     if len(uneven):
-        near, left = _extended(cloud, find, made, uneven, limit, planar, team)
+        near, left = _extended(cloud, find, stencil, uneven, limit, planar, team)
         _refuse(cloud, uneven, left)
-        made = stencils(cloud, near, planar, team)
-    return Cure(made, completed, len(uneven), worst)
+        stencil = stencils(cloud, near, planar, team)
+    return Cure(stencil, completed, len(uneven), worst)
 
 
 def _whole_shells(
@@ -114,10 +114,16 @@ def _whole_shells(
 
 
 def _extended(
-    cloud: Cloud, find: Find, made: Stencils, uneven: Rows, limit: float, planar: bool, team: Team
+    cloud: Cloud,
+    find: Find,
+    stencil: Stencils,
+    uneven: Rows,
+    limit: float,
+    planar: bool,
+    team: Team,
 ) -> tuple[Whole, Array]:
     """Neighbours with the fewest of each uneven node that make it even, and its sidedness then."""
-    near = made.neighbours
+    near = stencil.neighbours
     fewest = int((near[uneven] != uneven[:, None]).sum(axis=1).min())
     pool = find(cloud, _most(cloud, fewest, planar), team, uneven)
     best, taken = np.full(len(uneven), np.inf), np.zeros(len(uneven), np.int64)
@@ -126,9 +132,9 @@ def _extended(
     fewer = range(4 if planar else 6, fewest)
     for many in (*range(fewest, pool.shape[1] + 1), *fewer):
         rows = uneven[waiting]
-        found = _sidedness_of(cloud, rows, pool[waiting, :many], planar, team)
-        better = found < best[waiting]
-        best[waiting[better]], taken[waiting[better]] = found[better], many
+        sided = _sidedness_of(cloud, rows, pool[waiting, :many], planar, team)
+        better = sided < best[waiting]
+        best[waiting[better]], taken[waiting[better]] = sided[better], many
         waiting = waiting[best[waiting] > limit]
         if not len(waiting):
             break
@@ -140,17 +146,17 @@ def _sidedness_of(cloud: Cloud, rows: Rows, near: Whole, planar: bool, team: Tea
     places, whole = np.arange(len(rows)), len(rows)
     # The nodes of `rows` come first, so that arrays are no larger than needed.
     positions = np.concatenate([cloud.positions[rows], cloud.positions[near].reshape(-1, 3)])
-    own = whole + np.arange(near.size).reshape(near.shape)
+    itself = whole + np.arange(near.size).reshape(near.shape)
     coefficients, quality = np.zeros((*near.shape, 3)), np.ones(whole)
     weight = cloud.weight[rows]
     team.run(
-        write_coefficients, whole, places, positions, own, weight, planar, coefficients, quality
+        write_coefficients, whole, places, positions, itself, weight, planar, coefficients, quality
     )
-    found = np.zeros(whole)
+    sided = np.zeros(whole)
     team.run(
-        write_sidedness, whole, places, positions, own, coefficients, directions(planar), found
+        write_sidedness, whole, places, positions, itself, coefficients, directions(planar), sided
     )
-    return np.where(quality > 1e-3, found, np.inf)
+    return np.where(quality > 1e-3, sided, np.inf)
 
 
 def _distance(cloud: Cloud, rows: Rows, near: Whole) -> Array:
@@ -187,16 +193,16 @@ def _refuse(cloud: Cloud, rows: Rows, left: Array) -> None:
         )
 
 
-def doubts_of(cloud: Cloud, made: Stencils, planar: bool, team: Team) -> tuple[str, ...]:
+def doubts_of(cloud: Cloud, stencil: Stencils, planar: bool, team: Team) -> tuple[str, ...]:
     """Say that layers moved at random leave too many nodes with neighbours on one side."""
     rows = np.flatnonzero(is_advanced(cloud.kind[: cloud.nodes])).astype(np.int64)
-    found = sidedness(cloud, made, rows, planar, team)
-    many = int((found > UNEVEN).sum())
+    sided = sidedness(cloud, stencil, rows, planar, team)
+    many = int((sided > UNEVEN).sum())
     if many <= FEW * len(rows):
         return ()
     return (
         f"{many} of {len(rows)} nodes have neighbours mostly on one side (sidedness up to "
-        f"{found.max():.2f}, at most {UNEVEN:g} of all but {FEW:.0%}): distances of shocks may be "
+        f"{sided.max():.2f}, at most {UNEVEN:g} of all but {FEW:.0%}): distances of shocks may be "
         "wrong by more than 10 %. Lower layers.jitter to 0.2 or less.",
     )
 

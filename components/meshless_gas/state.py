@@ -40,14 +40,14 @@ def conserved(conservative: Array, volumes: Array, team: Team) -> Array:
 
     Those of a product of matrices would depend on the threads of the library that computes it.
     """
-    found = np.empty(5)
+    sums = np.empty(5)
 
     def add(first: int, last: int) -> None:
         for q in range(first, last):
-            found[q] = (volumes[: len(conservative)] * conservative[:, q]).sum()
+            sums[q] = (volumes[: len(conservative)] * conservative[:, q]).sum()
 
     team.run(add, 5, fewest=1 if len(conservative) > WHOLESALE else 5)
-    return found
+    return sums
 
 
 @dataclass(slots=True)

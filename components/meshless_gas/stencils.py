@@ -37,19 +37,19 @@ def nearest_neighbours(
             f"neighbours must be below the number of nodes, {len(among)}; found {count}. "
             "Make the spacing smaller, or neighbours fewer."
         )
-    found, _ = nearest(cloud.positions, among, cloud.positions[targets], count + 1, team)
-    own = found == targets[:, None]
-    own[~own.any(axis=1), -1] = True  # nodes at one place: the last is left out
-    kept = found[~own].reshape(len(targets), count).astype(np.int32)
+    near, _ = nearest(cloud.positions, among, cloud.positions[targets], count + 1, team)
+    itself = near == targets[:, None]
+    itself[~itself.any(axis=1), -1] = True  # nodes at one place: the last is left out
+    chosen = near[~itself].reshape(len(targets), count).astype(np.int32)
     if rows is not None:
-        return kept
-    return _and_ghosts(cloud, kept)
+        return chosen
+    return _and_ghosts(cloud, chosen)
 
 
-def _and_ghosts(cloud: Cloud, kept: Whole) -> Whole:
+def _and_ghosts(cloud: Cloud, chosen: Whole) -> Whole:
     """Neighbours of nodes, and behind them those of ghosts, themselves."""
     itself = np.arange(cloud.nodes, len(cloud.positions), dtype=np.int32)
-    return np.concatenate([kept, np.repeat(itself[:, None], kept.shape[1], axis=1)])
+    return np.concatenate([chosen, np.repeat(itself[:, None], chosen.shape[1], axis=1)])
 
 
 def graded_neighbours(
@@ -63,7 +63,7 @@ def graded_neighbours(
     targets = np.arange(cloud.nodes) if rows is None else rows
     axes = int((np.ptp(cloud.positions, axis=0) > 0.0).sum())
     more = min(count * 2**axes, len(cloud.positions) - 1)  # as finer ones crowd out what is beyond
-    kept = np.empty((len(targets), count), np.int32)
+    chosen = np.empty((len(targets), count), np.int32)
     for first in range(0, len(targets), BLOCK):
         block = targets[first : first + BLOCK]
         near = nearest_neighbours(cloud, more, team, block)
@@ -71,8 +71,8 @@ def graded_neighbours(
         mean = 0.5 * (cloud.spacing[near] + cloud.spacing[block, None])
         away = np.round(np.sqrt((arms**2).sum(axis=2)) / mean, 9)  # equal ones by distance
         order = np.argsort(away, axis=1, kind="stable")[:, :count]
-        kept[first : first + len(block)] = np.take_along_axis(near, order, axis=1)
-    return kept if rows is not None else _and_ghosts(cloud, kept)
+        chosen[first : first + len(block)] = np.take_along_axis(near, order, axis=1)
+    return chosen if rows is not None else _and_ghosts(cloud, chosen)
 
 
 def stencils(cloud: Cloud, neighbours: Whole, planar: bool, team: Team) -> Stencils:

@@ -36,7 +36,7 @@ class WallLoads(Walls):
         if params.box is None:
             chosen = np.isin(cloud.kind[: cloud.nodes], WALLS) & (patch == names.index("wall"))
         else:  # walls of bodies that carry clouds of their own have no patch of the box
-            no_slip = [n for n, one in enumerate(names) if n and params.kind_of(one) in NO_SLIP]
+            no_slip = [n for n, name in enumerate(names) if n and params.kind_of(name) in NO_SLIP]
             chosen = np.isin(patch, no_slip)
         self.rows = np.flatnonzero(chosen)
         self.places = cloud.positions[self.rows]
@@ -79,8 +79,8 @@ class WallLoads(Walls):
         """Torque (3,) N m on all walls together, about the centre of a sphere or the origin."""
         if self.params.axisymmetric:  # whole rings have none
             return np.zeros(3)
-        one = self.params.sphere
-        arms = self.places - (np.zeros(3) if one is None else np.array(one.centre))
+        sphere = self.params.sphere
+        arms = self.places - (np.zeros(3) if sphere is None else np.array(sphere.centre))
         return np.asarray(np.cross(arms, self._each(primitive)).sum(axis=0))
 
     def scale(self, primitive: Array) -> float:
@@ -116,14 +116,16 @@ class WallLoads(Walls):
     def body(self, primitive: Array) -> Fields:
         """Fields of the port `body`, but for what is judged over time."""
         force = self.force(primitive)
-        given = {
+        fields = {
             "body.force": force[None],
             "body.torque": self.torque(primitive)[None],
             "body.heat": np.array([(self.sizes * self.heat).sum()]),
         }
         if self.stream is not None:
-            given |= {f"body.{key}": np.array([one]) for key, one in self._ratios(primitive, force)}
-        return given
+            fields |= {
+                f"body.{key}": np.array([ratio]) for key, ratio in self._ratios(primitive, force)
+            }
+        return fields
 
     def _ratios(self, primitive: Array, force: Array) -> list[tuple[str, float]]:
         """Coefficients of the force, and values at the stagnation point over their laws."""
@@ -133,22 +135,22 @@ class WallLoads(Walls):
         if params.sphere is None:
             assert isinstance(params.cloud, PlateCloud)
             return [("drag_coefficient", force[0] / (push * params.cloud.length))]
-        one = params.sphere
+        sphere = params.sphere
         pressure = self._at_stagnation(primitive[self.rows, 4])
-        found = [
-            ("drag_coefficient", force[0] / (push * math.pi * one.radius**2)),
+        ratios = [
+            ("drag_coefficient", force[0] / (push * math.pi * sphere.radius**2)),
             (
                 "pitot_ratio",
                 pressure / (stream.pressure * pitot_pressure(stream.mach, stream.gamma)),
             ),
         ]
         if stream.mach > 1.0:
-            found.append(("standoff", self._standoff(primitive) / one.radius))
+            ratios.append(("standoff", self._standoff(primitive) / sphere.radius))
         wall = params.boundaries["wall"].temperature
         if wall is not None:
-            law = fay_riddell(stream, one.radius, wall)
-            found.append(("heat_ratio", self._at_stagnation(self.heat) / law))
-        return found
+            law = fay_riddell(stream, sphere.radius, wall)
+            ratios.append(("heat_ratio", self._at_stagnation(self.heat) / law))
+        return ratios
 
     def _at_stagnation(self, values: Array) -> float:
         """Value where the flow meets the sphere: of the parabola that fits best near it."""
@@ -192,15 +194,15 @@ def free_stream(params: MeshlessGasParams) -> Stream | None:
     """The stream that a body in layers stands in."""
     if params.box is not None:
         return None
-    given: GasState | None = params.initial
+    state: GasState | None = params.initial
     if params.sphere is not None:
-        given = params.boundaries["far"].state
-    if given is None:
+        state = params.boundaries["far"].state
+    if state is None:
         return None
     gas = params.gas
-    density, *_, pressure = given.primitive(gas)
+    density, *_, pressure = state.primitive(gas)
     return Stream(
-        mach=given.mach(gas),
+        mach=state.mach(gas),
         pressure=pressure,
         temperature=pressure / (gas.gas_constant * density),
         gamma=gas.gamma,

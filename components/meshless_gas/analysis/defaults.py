@@ -49,7 +49,11 @@ def scene_of(path: Path, preset: str = "", settings: Mapping[str, Any] | None = 
 
 def gas_table(scene: Table) -> Table:
     """Table of a scene's gas."""
-    (table,) = (one for one in scene["components"].values() if one["kind"] == "meshless_gas")
+    (table,) = (
+        component
+        for component in scene["components"].values()
+        if component["kind"] == "meshless_gas"
+    )
     return dict(table)
 
 
@@ -80,8 +84,10 @@ def errors_of(scene: Table) -> dict[str, Error]:
     gas, end = MeshlessGas(params), float(scene["end"])
     while gas.state.time < end * (1.0 - 1e-12) and np.isfinite(dt := gas.stable_dt()):
         gas.step(min(dt, end - gas.state.time))
-    judged = [one for one in scene["expect"] if one["field"].startswith(FIELDS)]
-    return {one["name"]: _error(gas, one) for one in judged}
+    judged = [
+        expectation for expectation in scene["expect"] if expectation["field"].startswith(FIELDS)
+    ]
+    return {expectation["name"]: _error(gas, expectation) for expectation in judged}
 
 
 def _error(gas: MeshlessGas, expectation: Table) -> Error:
@@ -101,18 +107,22 @@ def main() -> None:
     says.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     words = says.parse_args()
     settings = {
-        key: json.loads(value) for key, _, value in (one.partition("=") for one in words.set)
+        key: json.loads(value) for key, _, value in (word.partition("=") for word in words.set)
     }
-    print("| scene | error of | as shipped | " + " | ".join(f"{one:g}" for one in JITTERS) + " |")
+    print(
+        "| scene | error of | as shipped | "
+        + " | ".join(f"{jitter:g}" for jitter in JITTERS)
+        + " |"
+    )
     print("|" + "---|" * (3 + len(JITTERS)))
     for word in words.scenes:
         path, _, preset = word.partition(":")
         scene = scene_of(Path(path), preset, settings)
         shipped = errors_of(scene)
         jitters = JITTERS if "box" in gas_table(scene) else JITTERS[:1]
-        found = [errors_of(without_numerics(scene, one)) for one in jitters]
+        jitter = [errors_of(without_numerics(scene, jitter)) for jitter in jitters]
         for name, error in shipped.items():
-            cells = " | ".join(f"{one[name].size:.3g}" for one in found)
+            cells = " | ".join(f"{errors[name].size:.3g}" for errors in jitter)
             print(f"| {scene['name']} {preset} | {name} | {error.size:.3g} | {cells} |", flush=True)
 
 

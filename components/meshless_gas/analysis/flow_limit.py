@@ -44,9 +44,9 @@ def flow_limit(gas: MeshlessGas) -> tuple[float, int]:
         rows = rows[bounds[rows] < SPREAD * least]
     rows = rows[is_disturbed(gas, rows)]
     rows = rows[:: -(-len(rows) // NODES)]
-    found = np.array([longest_step(gas, int(row)) for row in rows])
-    found /= bounds[rows] if gas.params.local_steps else least
-    return float(found.min()), int(rows[found.argmin()])
+    steps = np.array([longest_step(gas, int(row)) for row in rows])
+    steps /= bounds[rows] if gas.params.local_steps else least
+    return float(steps.min()), int(rows[steps.argmin()])
 
 
 def is_disturbed(gas: MeshlessGas, rows: Rows) -> Flags:
@@ -64,8 +64,8 @@ def longest_step(gas: MeshlessGas, row: int) -> float:
     speed = state[1:4] - (0.0 if gas.motion.frame is None else gas.motion.frame[row])
     near = gas.motion.domain.stencils.neighbours[row]
     arms = gas.motion.domain.cloud.positions[near] - gas.motion.domain.cloud.positions[row]
-    kept = (arms != 0.0).any(axis=1)
-    arms, coefficients = arms[kept], gas.motion.domain.stencils.coefficients[row][kept]
+    apart = (arms != 0.0).any(axis=1)
+    arms, coefficients = arms[apart], gas.motion.domain.stencils.coefficients[row][apart]
     lattice = Lattice(  # even: as many and as far on either side
         np.concatenate([arms, -arms]), 0.5 * np.concatenate([coefficients, -coefficients])
     )
@@ -74,7 +74,7 @@ def longest_step(gas: MeshlessGas, row: int) -> float:
         viscosity = float(gas.friction.transported[row, 1]) / (state[0] * sound)
         fluid = Fluid(gamma, viscosity, gas.params.gas.prandtl)
     moved = speed / sound + OFF * np.array([1.0, 0.0, 0.7])
-    return largest_step(lattice, moved, slopes(gas, row, near[kept]), fluid) / sound
+    return largest_step(lattice, moved, slopes(gas, row, near[apart]), fluid) / sound
 
 
 def slopes(gas: MeshlessGas, row: int, near: Array) -> float:
@@ -91,7 +91,7 @@ def slopes(gas: MeshlessGas, row: int, near: Array) -> float:
 def gas_of(path: Path, name: str = "") -> tuple[MeshlessGas, dict[str, Any]]:
     """Make the gas of a scene file as its limit of that name has it; return it, and the limit."""
     scene = tomllib.loads(path.read_text())
-    limits = [one for one in scene.get("stability", []) if name in ("", one.get("name"))]
+    limits = [limit for limit in scene.get("stability", []) if name in ("", limit.get("name"))]
     if not limits:
         raise SceneError(f"{path}: a limit of stability must be there; found none. Add it.")
     limit = copy.deepcopy(limits[0])
@@ -99,9 +99,13 @@ def gas_of(path: Path, name: str = "") -> tuple[MeshlessGas, dict[str, Any]]:
         put(scene, place.split("."), value)
     if "against" in limit:
         put(scene, limit["against"]["parameter"].split("."), limit["against"]["values"][0])
-    (table,) = (one for one in scene["components"].values() if one["kind"] == "meshless_gas")
-    given = {key: value for key, value in table.items() if key not in ("kind", "threads")}
-    params, mistakes = read(MeshlessGasParams, given, "gas")
+    (table,) = (
+        component
+        for component in scene["components"].values()
+        if component["kind"] == "meshless_gas"
+    )
+    keys = {key: value for key, value in table.items() if key not in ("kind", "threads")}
+    params, mistakes = read(MeshlessGasParams, keys, "gas")
     if mistakes:
         raise SceneError(mistakes[0])
     limit.setdefault("end", scene["end"])
@@ -111,8 +115,8 @@ def gas_of(path: Path, name: str = "") -> tuple[MeshlessGas, dict[str, Any]]:
 def put(scene: dict[str, Any], path: list[str], value: Any) -> None:
     """Set what a dotted path leads to; numbers count items of lists."""
     at: Any = scene
-    for one in path[:-1]:
-        at = at[int(one)] if isinstance(at, list) else at[one]
+    for key in path[:-1]:
+        at = at[int(key)] if isinstance(at, list) else at[key]
     at[path[-1]] = value
 
 
@@ -121,9 +125,9 @@ def main(words: list[str]) -> None:
     gas, limit = gas_of(Path(words[0]), *words[1:2])
     while gas.state.time < limit["end"] and np.isfinite(dt := gas.stable_dt()):
         gas.step(dt)
-    found, row = flow_limit(gas)
+    step, row = flow_limit(gas)
     place = np.array2string(gas.motion.domain.cloud.positions[row], precision=3)
-    print(f"{limit['name']}: {found:.2f}, by the node at {place} m")
+    print(f"{limit['name']}: {step:.2f}, by the node at {place} m")
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ class Fluid(NamedTuple):
 
 def block(ratio: float = 1.0) -> Lattice:
     """Eight neighbours, spacings 1 along x and `ratio` along z, with the Gaussian weights."""
-    steps = [one for one in itertools.product((-1.0, 0.0, 1.0), repeat=2) if any(one)]
+    steps = [step for step in itertools.product((-1.0, 0.0, 1.0), repeat=2) if any(step)]
     arms = np.array([(x, 0.0, z * ratio) for x, z in steps])
     distance = np.sqrt((arms**2).sum(axis=1))
     last = math.exp(-4.0)
@@ -61,45 +61,45 @@ def cross(ratio: float = 1.0, turned: float | None = None) -> Lattice:
     """
     ends = [(1.0, 0.0, 0.0), (0.0, 0.0, ratio)]
     ends += [] if turned is None else [(0.0, turned, 0.0)]
-    arms = np.array([sign * np.array(one) for one in ends for sign in (1.0, -1.0)])
+    arms = np.array([sign * np.array(end) for end in ends for sign in (1.0, -1.0)])
     return Lattice(arms, 0.5 * arms / (arms**2).sum(axis=1)[:, None])
 
 
 def flux(left: Array, right: Array, normal: Array, gamma: float) -> Array:
     """Flux (5,) between two states of density, velocity and pressure, along a unit vector."""
-    speed = [float(one[1:4] @ normal) for one in (left, right)]
+    speed = [float(side[1:4] @ normal) for side in (left, right)]
     low = min(left[4], right[4])
     carried = ausmpw.py_func(
         left[0], speed[0], left[4], right[0], speed[1], right[4], low, gamma
     )  # fmt: skip
-    found = np.zeros(5)
-    for mass, one in zip(carried[:2], (left, right), strict=True):
-        heat = gamma / (gamma - 1.0) * one[4] / one[0] + 0.5 * one[1:4] @ one[1:4]
-        found += mass * np.concatenate([[1.0], one[1:4], [heat]])
-    found[1:4] += carried[2] * normal
-    return found
+    flux = np.zeros(5)
+    for mass, side in zip(carried[:2], (left, right), strict=True):
+        heat = gamma / (gamma - 1.0) * side[4] / side[0] + 0.5 * side[1:4] @ side[1:4]
+        flux += mass * np.concatenate([[1.0], side[1:4], [heat]])
+    flux[1:4] += carried[2] * normal
+    return flux
 
 
 def derivatives(state: Array, normal: Array, gamma: float) -> tuple[Array, Array]:
     """Derivatives (5, 5) of the flux by the states on its left and on its right."""
-    found = np.zeros((2, 5, 5))
+    jacobians = np.zeros((2, 5, 5))
     for side, q in itertools.product(range(2), range(5)):
         for sign in (1.0, -1.0):
             both = np.array([state, state])
             both[side, q] += sign * TINY
-            found[side, :, q] += sign * flux(both[0], both[1], normal, gamma) / (2.0 * TINY)
-    return found[0], found[1]
+            jacobians[side, :, q] += sign * flux(both[0], both[1], normal, gamma) / (2.0 * TINY)
+    return jacobians[0], jacobians[1]
 
 
 def to_conservative(state: Array, gamma: float) -> Array:
     """Derivatives (5, 5) of density, momentum and energy by density, velocity and pressure."""
     density, velocity = state[0], state[1:4]
-    found = np.zeros((5, 5))
-    found[0, 0] = 1.0
-    found[1:4, 0], found[1:4, 1:4] = velocity, density * np.eye(3)
-    found[4, 0], found[4, 1:4] = 0.5 * velocity @ velocity, density * velocity
-    found[4, 4] = 1.0 / (gamma - 1.0)
-    return found
+    matrix = np.zeros((5, 5))
+    matrix[0, 0] = 1.0
+    matrix[1:4, 0], matrix[1:4, 1:4] = velocity, density * np.eye(3)
+    matrix[4, 0], matrix[4, 1:4] = 0.5 * velocity @ velocity, density * velocity
+    matrix[4, 4] = 1.0 / (gamma - 1.0)
+    return matrix
 
 
 def limit(
@@ -154,8 +154,8 @@ def largest_step(lattice: Lattice, velocity: Array, slopes: float, fluid: Fluid)
             left * half[:, None, None] + right * (across - other)[:, None, None]
         )  # fmt: skip
     if fluid.viscosity:
-        for one, wave in enumerate(shift):
-            whole[one] += friction(lattice, wave, slope[one], state, fluid)
+        for number, wave in enumerate(shift):
+            whole[number] += friction(lattice, wave, slope[number], state, fluid)
     return largest(np.linalg.eigvals(back @ whole).ravel())
 
 
@@ -175,7 +175,7 @@ def phases(arms: Array) -> Array:
 def friction(lattice: Lattice, shift: Array, slope: Array, state: Array, fluid: Fluid) -> Array:
     """Rates (5, 5) of momentum and energy by friction and conduction, of one wave."""
     arms, coefficients = lattice
-    found = np.zeros((5, 5), complex)
+    matrix = np.zeros((5, 5), complex)
     conduction = fluid.gamma / (fluid.gamma - 1.0) / fluid.prandtl * fluid.viscosity  # of R T
     warmth = np.array([-state[4] / state[0] ** 2, 0.0, 0.0, 0.0, 1.0 / state[0]])  # of R T, too
     square = (arms**2).sum(axis=1)
@@ -186,10 +186,10 @@ def friction(lattice: Lattice, shift: Array, slope: Array, state: Array, fluid: 
         # c·(∇v + ∇vᵀ - 2/3 ∇·v), by velocities.
         push = middle @ c * np.eye(3) + np.outer(middle, c) - 2.0 / 3.0 * np.outer(c, middle)
         push = 2.0 * fluid.viscosity * push
-        found[1:4, 1:4] += push
-        found[4, 1:4] += state[1:4] @ push
-        found[4] += 2.0 * conduction * (middle @ c) * warmth
-    return found
+        matrix[1:4, 1:4] += push
+        matrix[4, 1:4] += state[1:4] @ push
+        matrix[4] += 2.0 * conduction * (middle @ c) * warmth
+    return matrix
 
 
 def largest(rates: Array) -> float:
@@ -205,7 +205,7 @@ def largest(rates: Array) -> float:
 
 def main() -> None:
     """Print the limit of what the command line tells."""
-    add = (made := argparse.ArgumentParser(description=__doc__)).add_argument
+    add = (parser := argparse.ArgumentParser(description=__doc__)).add_argument
     add("--mach", type=float, nargs="+", default=[0.0], help="of streams; the least limit is told")
     add("--angle", type=float, nargs="+", default=[0.0], help="degrees, to the lattice")
     add("--order", type=int, default=2, choices=(1, 2), help="of the scheme")
@@ -214,17 +214,17 @@ def main() -> None:
     add("--turned", type=float, help="of a cross round an axis: distance of what is turned")
     add("--viscosity", type=float, default=0.0, help="over density, sound speed and spacing")
     add("--prandtl", type=float, default=0.72)
-    given = made.parse_args()
-    fluid = Fluid(viscosity=given.viscosity, prandtl=given.prandtl)
-    found = []
-    for mach, angle, ratio in itertools.product(given.mach, given.angle, given.ratio):
+    options = parser.parse_args()
+    fluid = Fluid(viscosity=options.viscosity, prandtl=options.prandtl)
+    rows = []
+    for mach, angle, ratio in itertools.product(options.mach, options.angle, options.ratio):
         turn = math.radians(angle)
         speed = (mach + 1e-3) * np.array([math.cos(turn), 0.0, math.sin(turn)])
-        lattice = cross(ratio, given.turned) if given.cross else block(ratio)
-        value = limit(lattice, speed, given.order - 1.0, fluid)
-        found.append(value)
+        lattice = cross(ratio, options.turned) if options.cross else block(ratio)
+        value = limit(lattice, speed, options.order - 1.0, fluid)
+        rows.append(value)
         print(f"Mach {mach:g} at {angle:g} degrees, ratio {ratio:g}: {value:.2f}")
-    print(f"least: {min(found):.2f}")
+    print(f"least: {min(rows):.2f}")
 
 
 if __name__ == "__main__":

@@ -102,14 +102,17 @@ def box(
         else Lattice(np.zeros(1), np.ones(1), (False, False))
         for d in range(3)
     ]
-    grids = np.meshgrid(*(one.places for one in lattices), indexing="ij")
+    grids = np.meshgrid(*(lattice.places for lattice in lattices), indexing="ij")
     positions = np.stack([grid.ravel() for grid in grids], axis=1)
     widths = np.stack(
-        [grid.ravel() for grid in np.meshgrid(*(one.widths for one in lattices), indexing="ij")],
+        [
+            grid.ravel()
+            for grid in np.meshgrid(*(lattice.widths for lattice in lattices), indexing="ij")
+        ],
         axis=1,
     )
     kind, patch, normals, areas = _faces(lattices, widths, axes, faces, patches)
-    step = np.array([one.widths.max() for one in lattices])
+    step = np.array([lattice.widths.max() for lattice in lattices])
     spacing = max(step[d] for d in axes)
     cells = halved(positions, widths, kind == INNER, spacing, parts, axes)
     positions, count, rows = cells.positions, len(cells.positions), cells.origin
@@ -118,7 +121,7 @@ def box(
         moves = np.random.default_rng(seed).uniform(-0.5, 0.5, (count, 3)) * jitter * step
         moves *= finer[:, None]
         positions[:, axes] += np.where(kind[rows, None] == INNER, moves, 0.0)[:, axes]
-    made = Cloud(
+    cloud = Cloud(
         positions=positions,
         kind=kind[rows],
         normals=normals[rows],
@@ -133,8 +136,8 @@ def box(
     )
     reach = reach_of(neighbours, len(axes), jitter)
     for d in axes:
-        made = with_images(made, d, (lowest[d], highest[d]), ends[d], reach * step[d])
-    return made
+        cloud = with_images(cloud, d, (lowest[d], highest[d]), ends[d], reach * step[d])
+    return cloud
 
 
 def _faces(
@@ -145,22 +148,22 @@ def _faces(
     patches: Mapping[str, int],
 ) -> tuple[NDArray[np.int8], NDArray[np.int32], Array, Array]:
     """Kinds (n,), numbers of boundaries (n,), normals and areas (n, 3) m2 of the nodes of a box."""
-    place = np.indices([len(one.places) for one in lattices]).reshape(3, -1).T
+    place = np.indices([len(lattice.places) for lattice in lattices]).reshape(3, -1).T
     count = len(widths)
     kind = np.zeros(count, np.int8)
     patch = np.zeros(count, np.int32)
     normals, areas = np.zeros((count, 3)), np.zeros((count, 3))
     rank = {INFLOW: 2, OUTFLOW: 0}  # at edges inflows come before walls, and outflows after them
-    ranks = np.array([rank.get(one, 1) if one != INNER else -1 for one in range(8)])
+    ranks = np.array([rank.get(kind, 1) if kind != INNER else -1 for kind in range(8)])
     for d, side in product(axes, (0, 1)):
         if not lattices[d].has_ends[side]:
             continue
         face = AXES[d] + "-+"[side]
-        sign, own = (1.0, -1.0)[side], KINDS[faces[face]]
+        sign, there = (1.0, -1.0)[side], KINDS[faces[face]]
         on = place[:, d] == (0, len(lattices[d].places) - 1)[side]
         areas[on, d] += sign * widths[on].prod(axis=1) / widths[on, d]
-        first = on & (ranks[kind] < ranks[own])
-        kind[first], patch[first], normals[first] = own, patches[face], 0.0
+        first = on & (ranks[kind] < ranks[there])
+        kind[first], patch[first], normals[first] = there, patches[face], 0.0
         normals[first, d] = sign
     return kind, patch, normals, areas
 

@@ -48,13 +48,13 @@ def sphere_cap(sphere: SphereInStream, reach: Reach, sides: Sides) -> LayeredClo
     points, triangles = geodesic(max(1, round(reach.rays * ARC / math.pi)))
     angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
     whole = _without_ears(triangles[(angle <= reach.sector)[triangles].all(axis=1)])
-    kept = np.zeros(len(points), bool)
-    kept[whole] = True
-    number = np.where(kept, np.cumsum(kept) - 1, -1)
-    share = shares(points, triangles, whole)[kept]
-    near, is_edge = adjacent(number[triangles[kept[triangles].any(axis=1)]], int(kept.sum()))
+    used = np.zeros(len(points), bool)
+    used[whole] = True
+    number = np.where(used, np.cumsum(used) - 1, -1)
+    share = shares(points, triangles, whole)[used]
+    near, is_edge = adjacent(number[triangles[used[triangles].any(axis=1)]], int(used.sum()))
     inside = number[whole]
-    points, angle = points[kept], angle[kept]
+    points, angle = points[used], angle[used]
     outer = outer_radius(angle, radius, mach, reach)
     distance = geometric(reach.first, outer - radius, reach.layers)
     places = centre + points * (radius + distance)[:, :, None]
@@ -86,16 +86,16 @@ def geodesic(frequency: int) -> tuple[Array, NDArray[np.int64]]:
         (number[i, j], number[i - 1, j], number[i, j - 1]) for i, j, _ in share if i > 0 and j > 0
     ]
     places = np.einsum("sk,fkx->fsx", np.array(share, float) / frequency, corners[sides])
-    found = places.reshape(-1, 3)
-    found /= np.sqrt((found**2).sum(axis=1))[:, None]
-    _, first, same = np.unique(np.round(found, 9), axis=0, return_index=True, return_inverse=True)
+    points = places.reshape(-1, 3)
+    points /= np.sqrt((points**2).sum(axis=1))[:, None]
+    _, first, same = np.unique(np.round(points, 9), axis=0, return_index=True, return_inverse=True)
     parts = np.array(upward + downward) + len(share) * np.arange(len(sides))[:, None, None]
-    return found[first] @ _rotation().T, same.ravel()[parts.reshape(-1, 3)]
+    return points[first] @ _rotation().T, same.ravel()[parts.reshape(-1, 3)]
 
 
 def _icosahedron() -> tuple[Array, NDArray[np.int64]]:
     flat = [(0.0, s, t * GOLDEN) for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
-    corners = np.array([np.roll(one, k) for one in flat for k in range(3)])
+    corners = np.array([np.roll(face, k) for face in flat for k in range(3)])
     corners /= np.sqrt((corners**2).sum(axis=1))[:, None]
     near = ((corners[:, None] - corners) ** 2).sum(axis=2) < 1.2  # edges are 1.05 long
     sides = [
@@ -112,10 +112,10 @@ def _rotation() -> Array:
     matrix = np.eye(3)
     for axis, turn in enumerate(TURN):
         i, j = (axis + 1) % 3, (axis + 2) % 3
-        one = np.eye(3)
-        one[i, i] = one[j, j] = math.cos(turn)
-        one[i, j], one[j, i] = -math.sin(turn), math.sin(turn)
-        matrix = one @ matrix
+        unit = np.eye(3)
+        unit[i, i] = unit[j, j] = math.cos(turn)
+        unit[i, j], unit[j, i] = -math.sin(turn), math.sin(turn)
+        matrix = unit @ matrix
     return matrix
 
 
@@ -137,10 +137,10 @@ def _towards(places: Array, triangles: NDArray[np.int64]) -> Array:
     a, b, c = (places[triangles[:, k]] for k in range(3))
     area = 0.5 * np.cross(b - a, c - a)
     area *= -np.sign((area * a).sum(axis=1))[:, None]
-    found = np.zeros(places.shape)
+    sides = np.zeros(places.shape)
     for k in range(3):
-        np.add.at(found, triangles[:, k], area / 3.0)
-    return found
+        np.add.at(sides, triangles[:, k], area / 3.0)
+    return sides
 
 
 def adjacent(faces: NDArray[np.int64], count: int) -> tuple[Whole, NDArray[np.bool_]]:
@@ -181,9 +181,9 @@ def rim(places: Array, faces: NDArray[np.int64]) -> Array:
     a, b, c = _sides(faces).T
     ray = places[-1] - places[0]
     up = heights(places)[:, :, None] * ray / np.sqrt((ray**2).sum(axis=1))[:, None]
-    found = np.zeros(places.shape).transpose(1, 0, 2)
-    for one in (a, b):
-        area = 0.5 * np.cross(places[:, b] - places[:, a], up[:, one])
+    sides = np.zeros(places.shape).transpose(1, 0, 2)
+    for end in (a, b):
+        area = 0.5 * np.cross(places[:, b] - places[:, a], up[:, end])
         area *= np.sign((area * (places[:, c] - places[:, a])).sum(axis=2))[:, :, None]
-        np.add.at(found, one, area.transpose(1, 0, 2))
-    return found.transpose(1, 0, 2)
+        np.add.at(sides, end, area.transpose(1, 0, 2))
+    return sides.transpose(1, 0, 2)

@@ -53,17 +53,17 @@ def own_areas(cloud: Cloud, rows: NDArray[Any]) -> Array:
 
 def joined(clouds: list[Cloud]) -> Cloud:
     """One cloud of several: their nodes in order, then all ghosts."""
-    count = np.cumsum([0, *(one.nodes for one in clouds)])
+    count = np.cumsum([0, *(cloud.nodes for cloud in clouds)])
 
     def rows(name: str) -> Array:
         """Nodes of all, then ghosts of all."""
-        parts = [getattr(one, name) for one in clouds]
-        heads = [part[: one.nodes] for part, one in zip(parts, clouds, strict=True)]
-        tails = [part[one.nodes :] for part, one in zip(parts, clouds, strict=True)]
+        parts = [getattr(cloud, name) for cloud in clouds]
+        heads = [part[: cloud.nodes] for part, cloud in zip(parts, clouds, strict=True)]
+        tails = [part[cloud.nodes :] for part, cloud in zip(parts, clouds, strict=True)]
         return np.concatenate([*heads, *tails])
 
-    owner = [one.owner + first for one, first in zip(clouds, count[:-1], strict=True)]
-    turn = np.concatenate([one.turn for one in clouds])
+    owner = [cloud.owner + first for cloud, first in zip(clouds, count[:-1], strict=True)]
+    turn = np.concatenate([cloud.turn for cloud in clouds])
     nodes = [rows(name) for name in Cloud._fields[:-2]]
     return Cloud(*nodes, np.concatenate(owner).astype(np.int32), turn)  # type: ignore[call-arg]
 

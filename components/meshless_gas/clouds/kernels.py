@@ -75,13 +75,13 @@ def search(
     axis: Any,
     parted: Any,
     targets: Any,
-    found: Any,
+    near: Any,
     squares: Any,
 ) -> None:
     """Write the nearest points of targets."""
     low, high = np.empty(DEEPEST, np.int64), np.empty(DEEPEST, np.int64)
     bound = np.empty(DEEPEST)
-    count = found.shape[1]
+    count = near.shape[1]
     for t in range(first, last):
         x, y, z = targets[t, 0], targets[t, 1], targets[t, 2]
         have = 0
@@ -95,7 +95,7 @@ def search(
                 for k in range(begin, end):
                     j = order[k]
                     a, b, c = points[j, 0] - x, points[j, 1] - y, points[j, 2] - z
-                    have = put(found[t], squares[t], have, j, a * a + b * b + c * c)
+                    have = put(near[t], squares[t], have, j, a * a + b * b + c * c)
                 continue
             middle = (begin + end) // 2
             d = axis[middle]
@@ -112,18 +112,18 @@ def search(
 
 
 @njit(**INNER)
-def put(found: Any, squares: Any, have: int, j: int, square: float) -> int:
+def put(near: Any, squares: Any, have: int, j: int, square: float) -> int:
     """Put a point among the nearest, sorted by distance and then by number; return how many."""
-    count = found.shape[0]
+    count = near.shape[0]
     place = have if have < count else count - 1
     if have == count and not (
-        square < squares[place] or (square == squares[place] and j < found[place])
+        square < squares[place] or (square == squares[place] and j < near[place])
     ):
         return have
     while place > 0 and (
-        square < squares[place - 1] or (square == squares[place - 1] and j < found[place - 1])
+        square < squares[place - 1] or (square == squares[place - 1] and j < near[place - 1])
     ):
-        squares[place], found[place] = squares[place - 1], found[place - 1]
+        squares[place], near[place] = squares[place - 1], near[place - 1]
         place -= 1
-    squares[place], found[place] = square, j
+    squares[place], near[place] = square, j
     return min(have + 1, count)

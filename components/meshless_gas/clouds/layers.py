@@ -156,8 +156,8 @@ def _neighbours(layers: int, surface: SurfaceGrid, is_cross: bool) -> Whole:
     rows = np.hstack(columns)
     rows = np.take_along_axis(rows, np.argsort(rows == NONE, axis=1, kind="stable"), axis=1)
     rows = rows[:, : int((rows != NONE).sum(axis=1).max())]
-    own = np.arange(len(rows))[:, None]
-    return np.where(rows == NONE, own, rows).astype(np.int32)
+    itself = np.arange(len(rows))[:, None]
+    return np.where(rows == NONE, itself, rows).astype(np.int32)
 
 
 def _without_diagonals(full: Whole, cross: Whole, kind: Kinds) -> Whole:
@@ -189,10 +189,10 @@ def _volumes(places: Array, areas: Array) -> Array:
 def heights(places: Array) -> Array:
     """Height (layers, m) m of each node's part of its ray: to the middles of the gaps beside it."""
     gap = np.sqrt((np.diff(places, axis=0) ** 2).sum(axis=2))
-    found = np.zeros(places.shape[:2])
-    found[:-1] += 0.5 * gap
-    found[1:] += 0.5 * gap
-    return found
+    volumes = np.zeros(places.shape[:2])
+    volumes[:-1] += 0.5 * gap
+    volumes[1:] += 0.5 * gap
+    return volumes
 
 
 def _faces(places: Array, surface: SurfaceGrid, bounds: Bounds) -> tuple[Array, Array]:

@@ -17,13 +17,13 @@ from quintet.components.meshless_gas.clouds.cloud import (
 from quintet.components.meshless_gas.clouds.layers import LayeredCloud
 
 
-def mirrored(made: LayeredCloud, wall: int) -> LayeredCloud:
+def mirrored(layers: LayeredCloud, wall: int) -> LayeredCloud:
     """Mirror the second layer of a cloud in the first where that is of patch `wall`, a slip wall.
 
     Nodes of the wall from which gas leaves sideways keep their kind.
     """
-    cloud, neighbours = made.cloud, made.neighbours
-    count, nodes = len(made.off_wall), cloud.nodes
+    cloud, neighbours = layers.cloud, layers.neighbours
+    count, nodes = len(layers.off_wall), cloud.nodes
     rows = np.arange(count)
     per_layer = len(cloud.owner) // (nodes // count)
     # The second layer's nodes and ghosts, and those of the wall below each.
@@ -35,11 +35,11 @@ def mirrored(made: LayeredCloud, wall: int) -> LayeredCloud:
     image = cloud.positions[above] - 2.0 * out[:, None] * normal
     turn = np.eye(3) - 2.0 * normal[:, :, None] * normal[:, None, :]
     first = len(cloud.positions)
-    found = with_ghosts(cloud, above, image, turn)
+    ghosted = with_ghosts(cloud, above, image, turn)
     number = np.full(first, -1, np.int64)
     number[above] = first + np.arange(len(above))
-    kind = found.kind.copy()
-    padded = np.arange(len(found.positions), dtype=np.int32)[:, None]
+    kind = ghosted.kind.copy()
+    padded = np.arange(len(ghosted.positions), dtype=np.int32)[:, None]
     padded = np.repeat(padded, neighbours.shape[1], axis=1)
     padded[:first] = neighbours
     for row in rows:
@@ -50,7 +50,7 @@ def mirrored(made: LayeredCloud, wall: int) -> LayeredCloud:
             kind[row] = SYMMETRY
             padded[row, : len(near)] = near
             padded[row, len(near) : len(near) + len(images)] = images
-    return LayeredCloud(found._replace(kind=kind), padded, made.off_wall)
+    return LayeredCloud(ghosted._replace(kind=kind), padded, layers.off_wall)
 
 
 def as_slip(faces: Mapping[str, str]) -> dict[str, str]:

@@ -35,7 +35,7 @@ def nearest(
     order = among.astype(np.int64)
     axis, parted = np.zeros(len(order), np.int8), np.zeros(len(order))
     build(points, order, axis, parted)
-    found = np.empty((len(targets), count), np.int64)
+    near = np.empty((len(targets), count), np.int64)
     squares = np.empty((len(targets), count))
-    team.run(search, len(targets), points, order, axis, parted, targets, found, squares)
-    return found, squares
+    team.run(search, len(targets), points, order, axis, parted, targets, near, squares)
+    return near, squares

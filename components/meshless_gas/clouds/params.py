@@ -68,18 +68,18 @@ class BoxCloud:
     @property
     def finest_spacing(self) -> float:
         """Least distance [m] of nodes."""
-        deepest: int = max((one.levels for one in self.refinements), default=0)
+        deepest: int = max((part.levels for part in self.refinements), default=0)
         return self.spacing / 2**deepest
 
     def expected_count(self, dimensions: int) -> int:
         """About how many nodes there will be, at most."""
         axes = (0, 2) if dimensions == 2 else (0, 1, 2)
         count = self._count(np.array(self.lowest), np.array(self.highest), self.spacing, axes)
-        for one in self.refinements:
-            for depth in range(one.levels):
-                away = transition(one.levels, depth, one.width, self.spacing)
-                low = np.maximum(np.array(one.lowest) - away, self.lowest)
-                high = np.minimum(np.array(one.highest) + away, self.highest)
+        for part in self.refinements:
+            for depth in range(part.levels):
+                away = transition(part.levels, depth, part.width, self.spacing)
+                low = np.maximum(np.array(part.lowest) - away, self.lowest)
+                high = np.minimum(np.array(part.highest) + away, self.highest)
                 cells = self._count(low, high, self.spacing / 2**depth, axes)
                 count += cells * (2 ** len(axes) - 1)
         return round(count)
@@ -178,19 +178,19 @@ class SphereCloud:
 
     def wrong(self, stream: Vector, axisymmetric: bool) -> list[str]:
         """What does not fit between the sphere, the stream [m/s] that it stands in and an axis."""
-        found = []
+        mistakes = []
         if not stream[0] > 0.0 or any(stream[1:]):
-            found.append(
+            mistakes.append(
                 "boundaries.far: the stream round a sphere must flow along x, from where the "
                 f"layers look for its bow shock; found {stream} m/s. Turn the scene so that it "
                 "does."
             )
         if axisymmetric and any(self.centre[1:]):
-            found.append(
+            mistakes.append(
                 "sphere: its centre must lie on the axis of symmetry, y = z = 0; found "
                 f"{self.centre} m. Move it there."
             )
-        return found
+        return mistakes
 
     def expected_count(self, dimensions: int) -> int:
         """About how many nodes there will be."""

@@ -48,13 +48,13 @@ def transition(levels: int, depth: int, width: float, spacing: float) -> float:
 
 
 def wrong_part(
-    one: FinePart, box: tuple[Array, Array], spacing: float, faces: Mapping[str, str]
+    part: FinePart, box: tuple[Array, Array], spacing: float, faces: Mapping[str, str]
 ) -> str | None:
     """What is wrong with a part of a box, if anything.
 
     Parameters
     ----------
-    one : FinePart
+    part : FinePart
     box : (3,) and (3,) m
         Its corners.
     spacing : float, m
@@ -62,16 +62,16 @@ def wrong_part(
         What is at each face, ``x-`` to ``z+`` or without y: those with nodes of their own keep
         the spacing.
     """
-    away = transition(one.levels, 0, one.width, spacing)
+    away = transition(part.levels, 0, part.width, spacing)
     for face, kind in faces.items():
         d, side = "xyz".index(face[0]), 1 if face[1] == "+" else 0
-        low, high = one.lowest[d], one.highest[d]
+        low, high = part.lowest[d], part.highest[d]
         if low >= high:
             return f"the highest corner must lie beyond the lowest along {face[0]}. Correct it."
         if low >= box[1][d] or high <= box[0][d]:
             return f"a finer part lies outside of the box along {face[0]}. Correct its corners."
         is_whole = low <= box[0][d] and high >= box[1][d]
-        if kind == "symmetry" or (kind == "periodic" and (is_whole or one.levels == 1)):
+        if kind == "symmetry" or (kind == "periodic" and (is_whole or part.levels == 1)):
             continue
         free = (high + away - box[1][d]) if side else (box[0][d] - low + away)
         if free > (0.0 if kind == "periodic" else -spacing):
@@ -105,13 +105,13 @@ def halved(
     """
     count = len(positions)
     cells = Cells(np.arange(count), positions, widths, np.zeros(count, np.int64))
-    for depth in range(max((one.levels for one in parts), default=0)):
+    for depth in range(max((part.levels for part in parts), default=0)):
         chosen = np.zeros(len(cells.level), bool)
-        for one in parts:
-            if one.levels > depth:
-                away = transition(one.levels, depth, one.width, spacing)
-                held = (cells.positions >= one.lowest - away) & (
-                    cells.positions <= one.highest + away
+        for part in parts:
+            if part.levels > depth:
+                away = transition(part.levels, depth, part.width, spacing)
+                held = (cells.positions >= part.lowest - away) & (
+                    cells.positions <= part.highest + away
                 )
                 chosen |= held[:, axes].all(axis=1)
         cells = _halved(cells, chosen & (cells.level == depth) & is_divisible[cells.origin], axes)

@@ -55,33 +55,33 @@ def star(left: Side, right: Side, gamma: float) -> tuple[float, float]:
 def solution(left: Side, right: Side, gamma: float, speeds: Array) -> Array:
     """States (n, 3) kg/m3, m/s, Pa at x/t (n,) m/s; section 4.5."""
     pressure, velocity = star(left, right, gamma)
-    found = np.empty((len(speeds), 3))
+    states = np.empty((len(speeds), 3))
     on_left = speeds < velocity
     for side, sign, mine in ((left, 1.0, on_left), (right, -1.0, ~on_left)):
         mirrored = Side(side.density, sign * side.velocity, side.pressure)
         part = one_side(mirrored, pressure, sign * velocity, gamma, sign * speeds[mine])
         part[:, 1] *= sign
-        found[mine] = part
-    return found
+        states[mine] = part
+    return states
 
 
 def one_side(side: Side, pressure: float, velocity: float, gamma: float, speeds: Array) -> Array:
     """States left of the contact."""
     density, u, p = side
     sound, ratio = math.sqrt(gamma * p / density), pressure / p
-    found = np.tile([density, u, p], (len(speeds), 1))
+    states = np.tile([density, u, p], (len(speeds), 1))
     g = (gamma - 1.0) / (gamma + 1.0)
     if pressure > p:  # equations 4.50 and 4.52
         mach = math.sqrt(((gamma + 1.0) * ratio + gamma - 1.0) / (2.0 * gamma))
         front = u - sound * mach
         behind = density * (ratio + g) / (g * ratio + 1.0)
-        found[speeds > front] = behind, velocity, pressure
-        return found
+        states[speeds > front] = behind, velocity, pressure
+        return states
     head, tail = u - sound, velocity - sound * ratio ** ((gamma - 1.0) / (2.0 * gamma))
-    found[speeds > tail] = density * ratio ** (1.0 / gamma), velocity, pressure
+    states[speeds > tail] = density * ratio ** (1.0 / gamma), velocity, pressure
     fan = (speeds >= head) & (speeds <= tail)
     along = np.maximum(2.0 / (gamma + 1.0) + g / sound * (u - speeds[fan]), 0.0)  # equation 4.56
-    found[fan, 0] = density * along ** (2.0 / (gamma - 1.0))
-    found[fan, 1] = 2.0 / (gamma + 1.0) * (sound + 0.5 * (gamma - 1.0) * u + speeds[fan])
-    found[fan, 2] = p * along ** (2.0 * gamma / (gamma - 1.0))
-    return found
+    states[fan, 0] = density * along ** (2.0 / (gamma - 1.0))
+    states[fan, 1] = 2.0 / (gamma + 1.0) * (sound + 0.5 * (gamma - 1.0) * u + speeds[fan])
+    states[fan, 2] = p * along ** (2.0 * gamma / (gamma - 1.0))
+    return states

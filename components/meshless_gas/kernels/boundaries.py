@@ -80,18 +80,18 @@ def write_boundaries(
     near = np.empty(5)
     for row in range(rows.shape[0]):
         i = rows[row]
-        given = patches[patch[i]]
+        outer = patches[patch[i]]
         near[:] = 0.0
         for k in range(neighbours.shape[1]):
             if weights[row, k] > 0.0:
                 for q in range(5):
                     near[q] += weights[row, k] * primitive[neighbours[i, k], q]
-        if kind[i] == INFLOW and given[TOTAL_PRESSURE] > 0.0:
-            from_rest(near, given, gamma, gas_constant)
+        if kind[i] == INFLOW and outer[TOTAL_PRESSURE] > 0.0:
+            from_rest(near, outer, gamma, gas_constant)
         elif kind[i] == INFLOW:
-            come_in(near, given, normals[i], gamma)
+            come_in(near, outer, normals[i], gamma)
         elif kind[i] == OUTFLOW:
-            leave(near, normals[i], given[BACK_PRESSURE], gamma)
+            leave(near, normals[i], outer[BACK_PRESSURE], gamma)
         elif frame is None:
             slip(near, normals[i], 0.0, 0.0, 0.0, gamma)
         else:
@@ -101,33 +101,33 @@ def write_boundaries(
 
 
 @njit(**INNER)
-def come_in(near: Any, given: Any, normal: Any, gamma: float) -> None:
+def come_in(near: Any, outer: Any, normal: Any, gamma: float) -> None:
     """State of gas that comes in: the given one; slower than sound it lets waves out."""
     into, same = 0.0, True
     for d in range(3):
-        into += given[1 + d] * normal[d]
-    sound = math.sqrt(gamma * given[4] / given[0])
+        into += outer[1 + d] * normal[d]
+    sound = math.sqrt(gamma * outer[4] / outer[0])
     for q in range(5):
-        size = given[q] if q == 0 or q == 4 else sound
-        same = same and abs(near[q] - given[q]) <= NOISE * size
+        size = outer[q] if q == 0 or q == 4 else sound
+        same = same and abs(near[q] - outer[q]) <= NOISE * size
     if not same and into < sound:
-        meet(near, given, normal, gamma)
+        meet(near, outer, normal, gamma)
         return
     for q in range(5):
-        near[q] = given[q]
+        near[q] = outer[q]
 
 
 @njit(**INNER)
-def from_rest(near: Any, given: Any, gamma: float, gas_constant: float) -> None:
+def from_rest(near: Any, outer: Any, gamma: float, gas_constant: float) -> None:
     """State that gas at rest comes to without losses, at the pressure of the gas it meets."""
-    rest, hot = given[TOTAL_PRESSURE], given[TOTAL_TEMPERATURE]
+    rest, hot = outer[TOTAL_PRESSURE], outer[TOTAL_TEMPERATURE]
     ratio = min(near[4] / rest, 1.0) ** ((gamma - 1.0) / gamma)
     temperature = hot * ratio
     speed = math.sqrt(2.0 * gamma / (gamma - 1.0) * gas_constant * (hot - temperature))
     pressure = min(near[4], rest)
     near[0], near[4] = pressure / (gas_constant * temperature), pressure
     for d in range(3):  # where its velocity says the direction alone
-        near[1 + d] = speed * given[1 + d]
+        near[1 + d] = speed * outer[1 + d]
 
 
 @njit(**INNER)

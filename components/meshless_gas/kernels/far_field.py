@@ -75,33 +75,33 @@ def at_rest(
 
 
 @njit(**INNER)
-def meet(near: Any, given: Any, normal: Any, gamma: float) -> None:
+def meet(near: Any, outer: Any, normal: Any, gamma: float) -> None:
     """Write the state at a boundary into that of the gas within.
 
     Parameters
     ----------
     near : (5,) kg/m3, m/s, Pa
         Of the gas within; written.
-    given : (5 or more,) kg/m3, m/s, Pa
+    outer : (5 or more,) kg/m3, m/s, Pa
         Of the gas beyond.
     normal : (3,) 1
         Into the gas.
     """
     into = inside = 0.0
     for d in range(3):
-        into += given[1 + d] * normal[d]
+        into += outer[1 + d] * normal[d]
         inside += near[1 + d] * normal[d]
-    star, velocity = between(given[0], into, given[4], near[0], inside, near[4], gamma)
+    star, velocity = between(outer[0], into, outer[4], near[0], inside, near[4], gamma)
     if not star > 0.0:  # torn apart: the boundary has the gas within
         return
     comes_in = velocity >= 0.0
     if comes_in:
-        density, u, p = at_rest(given[0], into, given[4], star, velocity, gamma)
+        density, u, p = at_rest(outer[0], into, outer[4], star, velocity, gamma)
     else:  # seen from within, against the normal
         density, u, p = at_rest(near[0], -inside, near[4], star, -velocity, gamma)
         u = -u
     across = into if comes_in else inside
     for d in range(3):
-        along = (given[1 + d] if comes_in else near[1 + d]) - across * normal[d]
+        along = (outer[1 + d] if comes_in else near[1 + d]) - across * normal[d]
         near[1 + d] = along + u * normal[d]
     near[0], near[4] = density, p

@@ -48,12 +48,12 @@ def write_bounds(
         for k in range(neighbours.shape[1]):
             j = np.uintp(neighbours[i, k])
             x, y, z = coefficients[i, k, 0], coefficients[i, k, 1], coefficients[i, k, 2]
-            own = abs(u * x + v * y + w * z)
+            carried = abs(u * x + v * y + w * z)
             other = abs(
                 (primitive[j, 1] - fx) * x + (primitive[j, 2] - fy) * y + (primitive[j, 3] - fz) * z
             )
             size = math.sqrt(x * x + y * y + z * z)
-            summed += max(own, other) + max(sound[i], sound[j]) * size
+            summed += max(carried, other) + max(sound[i], sound[j]) * size
         bounds[i] = 1.0 / summed
         least = min(least, bounds[i])
     return least

@@ -34,14 +34,14 @@ class Outflows(NamedTuple):
 def outflows(cloud: Cloud, neighbours: Whole) -> Outflows:
     """Planes by least squares through neighbours within and theirs, of weight 1/d²."""
     rows = np.flatnonzero(cloud.kind == OUTFLOW).astype(np.int32)
-    found = neighbours[neighbours[rows]].reshape(len(rows), neighbours.shape[1] ** 2)
-    found = np.sort(np.hstack([neighbours[rows], found]), axis=1)
-    first = np.hstack([np.ones((len(rows), 1), bool), np.diff(found, axis=1) > 0])
-    chosen = first & (cloud.kind[found] == WITHIN)
+    around = neighbours[neighbours[rows]].reshape(len(rows), neighbours.shape[1] ** 2)
+    around = np.sort(np.hstack([neighbours[rows], around]), axis=1)
+    first = np.hstack([np.ones((len(rows), 1), bool), np.diff(around, axis=1) > 0])
+    chosen = first & (cloud.kind[around] == WITHIN)
     many = int(chosen.sum(axis=1).max(initial=0))
     order = np.argsort(~chosen, axis=1, kind="stable")[:, :many]
-    chosen, found = (np.take_along_axis(one, order, axis=1) for one in (chosen, found))
-    near = np.where(chosen, found, rows[:, None])
+    chosen, around = (np.take_along_axis(array, order, axis=1) for array in (chosen, around))
+    near = np.where(chosen, around, rows[:, None])
     arm = cloud.positions[near] - cloud.positions[rows][:, None]
     distance = np.sqrt((arm**2).sum(axis=2))
     scale = distance.max(axis=1, initial=0.0)[:, None]
@@ -53,10 +53,10 @@ def outflows(cloud: Cloud, neighbours: Whole) -> Outflows:
     return Outflows(rows, near.astype(np.int32), weights)
 
 
-def clear_of_holes(one: Outflows, active: NDArray[np.bool_]) -> Outflows:
+def clear_of_holes(planes: Outflows, active: NDArray[np.bool_]) -> Outflows:
     """Those of them near to which no node is left out."""
-    kept = active[one.rows] & active[one.near].all(axis=1)
-    return Outflows(one.rows[kept], one.near[kept], one.weights[kept])
+    clear = active[planes.rows] & active[planes.near].all(axis=1)
+    return Outflows(planes.rows[clear], planes.near[clear], planes.weights[clear])
 
 
 @njit(**EXACT)

@@ -154,13 +154,13 @@ def load_pairs(  # type: ignore[no-untyped-def]
 def change(work, q, lane, across, limiter, threshold, planar):  # type: ignore[no-untyped-def]
     """Changes of a variable from both nodes to the middle of their pair."""
     at = (OWN_SLOPE + 3 * q) * LANES + lane
-    own = work[at] * work[ARM * LANES + lane]
-    own += work[at + 2 * LANES] * work[(ARM + 2) * LANES + lane]
+    projected = work[at] * work[ARM * LANES + lane]
+    projected += work[at + 2 * LANES] * work[(ARM + 2) * LANES + lane]
     if planar is None:
-        own += work[at + LANES] * work[(ARM + 1) * LANES + lane]
+        projected += work[at + LANES] * work[(ARM + 1) * LANES + lane]
     other = work[(OTHER_SLOPE + q) * LANES + lane]
     return (
-        half_step(limiter, own - across, across, threshold),
+        half_step(limiter, projected - across, across, threshold),
         half_step(limiter, other - across, across, threshold),
     )
 

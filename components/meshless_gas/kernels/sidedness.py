@@ -17,7 +17,7 @@ def write_sidedness(
     neighbours: Any,
     coefficients: Any,
     along: Any,
-    found: Any,
+    sided: Any,
 ) -> None:
     """Write the sidedness of nodes, in coordinates over their greatest reach along each axis.
 
@@ -25,7 +25,7 @@ def write_sidedness(
     ----------
     along : (a, 3) 1
         Unit vectors.
-    found : (m,) 1
+    sided : (m,) 1
         Written.
     """
     reach = np.empty(3)
@@ -47,4 +47,4 @@ def write_sidedness(
                 if flux < 0.0:
                     upstream += 2.0 * flux * arm
             worst = max(worst, abs(upstream - 1.0))
-        found[row] = worst
+        sided[row] = worst

@@ -27,32 +27,37 @@ def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:
     assert params.box is not None
     ground = domain(params, team)
     planar, nodes, near = params.planar, ground.cloud.nodes, ground.stencils.neighbours.shape[1]
-    kept = params.neighbour_count if planar else max(params.neighbour_count, ACROSS)
+    count = params.neighbour_count if planar else max(params.neighbour_count, ACROSS)
     cloud, rings = with_bodies(ground.cloud, keys, 0, planar)
-    whole, many = len(cloud.positions), max([near, kept, *(one.home.shape[1] for one in rings)])
+    whole, many = (
+        len(cloud.positions),
+        max([near, count, *(body_cloud.home.shape[1] for body_cloud in rings)]),
+    )
     neighbours = np.repeat(np.arange(whole, dtype=np.int32)[:, None], many, axis=1)
     coefficients = np.zeros((whole, many, 3))
-    found = ground.stencils.neighbours[:nodes]
-    neighbours[:nodes, :near] = np.where(found < nodes, found, found + cloud.nodes - nodes)
+    near_nodes = ground.stencils.neighbours[:nodes]
+    neighbours[:nodes, :near] = np.where(
+        near_nodes < nodes, near_nodes, near_nodes + cloud.nodes - nodes
+    )
     coefficients[:nodes, :near] = ground.stencils.coefficients[:nodes]
     if keys.line_stencils:  # of a lattice, the nearest first
         lines = np.flatnonzero(cloud.kind[:nodes] == INNER)
         neighbours[lines, LINES:] = lines[:, None]
     box = np.array([params.box.lowest, params.box.highest])
-    own = layout(cloud, nodes, rings, keys, neighbours, box, kept, planar)
+    clouds = layout(cloud, nodes, rings, keys, neighbours, box, count, planar)
     rows = np.arange(0 if keys.line_stencils else nodes, cloud.nodes)
-    made = Stencils(neighbours, coefficients)
+    stencil = Stencils(neighbours, coefficients)
     team.run(
         write_coefficients, len(rows), rows, cloud.positions, neighbours, cloud.weight, planar,
         coefficients, np.ones(whole),
     )  # fmt: skip
     joint = ground._replace(
         cloud=cloud,
-        stencils=made,
-        bounding=np.concatenate([ground.bounding, own.leaving.astype(np.int32)]),
+        stencils=stencil,
+        bounding=np.concatenate([ground.bounding, clouds.leaving.astype(np.int32)]),
         weights=_padded(ground.weights, many),
     )
-    return MovingClouds(params, joint, own, _friction(params, keys, own), team)
+    return MovingClouds(params, joint, clouds, _friction(params, keys, clouds), team)
 
 
 def _friction(params: MeshlessGasParams, keys: Moving, clouds: CloudLayout) -> BodyFriction:

@@ -37,16 +37,16 @@ class Holes:
 
     def cut(self, centre: Array, is_first: bool = False) -> Rows:
         """Leave out what clouds with these centres cover; return the nodes that came back."""
-        cloud, own, keys = self.cloud, self.layout, self.params
+        cloud, layout, keys = self.cloud, self.layout, self.params
         count, positions = cloud.nodes, cloud.positions
-        refuse_places(own, centre, is_first)
+        refuse_places(layout, centre, is_first)
         was = self.active[:count].copy()
         active = np.empty(count, bool)
-        margins = np.where(is_first, 0.0, keys.hysteresis) * own.spacing
-        depths = own.thickness - keys.overlap * own.spacing
+        margins = np.where(is_first, 0.0, keys.hysteresis) * layout.spacing
+        depths = layout.thickness - keys.overlap * layout.spacing
         covered = cut(
-            positions, cloud.region[:count], own.height, centre, own.radii, depths, margins, was,
-            active,
+            positions, cloud.region[:count], layout.height, centre, layout.radii, depths, margins,
+            was, active,
         )  # fmt: skip
         if covered >= 0:
             error: type[QuintetError] = SceneError if is_first else StepError
@@ -54,14 +54,14 @@ class Holes:
                 f"walls must lie in the gas; that at {positions[covered].tolist()} m lies in "
                 "another body. Move the bodies apart."
             )
-        away = own.heights_of(positions[:count], centre)
-        for b in range(len(own.radii)):
+        away = layout.heights_of(positions[:count], centre)
+        for b in range(len(layout.radii)):
             self._part(b, away[b], was, active, margins[b])
         self.active[:count] = active
         self.active[count:] = active[cloud.owner]
         fresh = np.flatnonzero(active & ~was)
         self.seen[:] = centre
-        self.volumes[:] = partitioned(own, cloud, active, away, self.team)
+        self.volumes[:] = partitioned(layout, cloud, active, away, self.team)
         self.uncovered += len(fresh)
         return fresh
 
@@ -69,12 +69,12 @@ class Holes:
         """Leave out nodes of other clouds that lie too near to nodes of a body's cloud."""
         region = self.cloud.region[: len(active)]
         h, top = self.layout.spacing[b], self.layout.thickness[b]
-        own = np.flatnonzero(active & (region == b + 1))
+        members = np.flatnonzero(active & (region == b + 1))
         rows = np.flatnonzero(active & (region != b + 1) & (away < top + h))
         rows = rows[np.isin(self.cloud.kind[rows], (INNER, OUTFLOW))]
-        if len(rows) and len(own):
+        if len(rows) and len(members):
             positions = self.cloud.positions
-            _, squares = nearest(positions, own, positions[rows], 1, self.team)
+            _, squares = nearest(positions, members, positions[rows], 1, self.team)
             part(rows, squares, self.params.fringe_distance * h, more, was, active)
 
 

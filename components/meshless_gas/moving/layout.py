@@ -50,7 +50,7 @@ class CloudLayout(NamedTuple):
     is_cut: NDArray[np.bool_]  # (b,) whether the cloud ends where the box does
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
-    kept: int  # neighbours of a node across seams
+    fringe_count: int  # neighbours of a node across seams
     planar: bool  # whether nothing leaves the plane of x and z
 
     def heights_of(self, places: Array, centre: Array) -> Array:
@@ -64,14 +64,14 @@ def with_bodies(
 ) -> tuple[Cloud, list[Ring]]:
     """Join the clouds of bodies, at their first positions, to a background."""
     rings = [
-        ring(one, 1 + b, patch, params.axisymmetric)
+        ring(body, 1 + b, patch, params.axisymmetric)
         if planar
-        else shell(one, 1 + b, patch, params.line_stencils)
-        for b, one in enumerate(params.bodies)
+        else shell(body, 1 + b, patch, params.line_stencils)
+        for b, body in enumerate(params.bodies)
     ]
     moved = [
-        one.cloud._replace(positions=one.cloud.positions + np.array(body.centre))
-        for one, body in zip(rings, params.bodies, strict=True)
+        body_cloud.cloud._replace(positions=body_cloud.cloud.positions + np.array(body.centre))
+        for body_cloud, body in zip(rings, params.bodies, strict=True)
     ]
     if params.axisymmetric:
         radius = background.positions[:, 2:]
@@ -89,7 +89,7 @@ def layout(
     params: Moving,
     neighbours: Whole,
     box: Array,
-    kept: int,
+    fringe_count: int,
     planar: bool,
 ) -> CloudLayout:
     """Say how bodies' clouds lie in the joined cloud.
@@ -104,32 +104,34 @@ def layout(
     neighbours : (n, K)
         Of the background; rows of other nodes are written.
     box : (2, 3) m
-    kept : int
+    fringe_count : int
         Neighbours of a node across seams.
     planar : bool
     """
     count = cloud.nodes
-    sizes = [one.cloud.nodes for one in rings]
-    imaged = [len(one.cloud.owner) for one in rings]
+    sizes = [body_cloud.cloud.nodes for body_cloud in rings]
+    imaged = [len(body_cloud.cloud.owner) for body_cloud in rings]
     firsts = background + np.cumsum([0, *sizes[:-1]])  # rows of each body's cloud begin here
     beyond = count + len(cloud.owner) - sum(imaged) + np.cumsum([0, *imaged[:-1]])  # its images
     height = np.full(count, np.inf)
-    for one, first, image in zip(rings, firsts, beyond, strict=True):
-        place = np.arange(first, first + one.cloud.nodes)
-        own = one.home
-        own = np.where(own < len(place), own + first, own - len(place) + image)
+    for body_cloud, first, image in zip(rings, firsts, beyond, strict=True):
+        place = np.arange(first, first + body_cloud.cloud.nodes)
+        home = body_cloud.home
+        home = np.where(home < len(place), home + first, home - len(place) + image)
         neighbours[place] = place[:, None]
-        neighbours[place, : own.shape[1]] = own
-        height[place] = one.height
-    walls = [first + np.arange(one.rays) for one, first in zip(rings, firsts, strict=True)]
-    rays = [one.rays for one in rings]
-    levels = [one.height.reshape(-1, one.rays) for one in rings]
-    leaving = [one.leaving + first for one, first in zip(rings, firsts, strict=True)]
-    before = [one.before + first for one, first in zip(rings, firsts, strict=True)]
+        neighbours[place, : home.shape[1]] = home
+        height[place] = body_cloud.height
+    walls = [
+        first + np.arange(body_cloud.rays) for body_cloud, first in zip(rings, firsts, strict=True)
+    ]
+    rays = [body_cloud.rays for body_cloud in rings]
+    levels = [body_cloud.height.reshape(-1, body_cloud.rays) for body_cloud in rings]
+    leaving = [body_cloud.leaving + first for body_cloud, first in zip(rings, firsts, strict=True)]
+    before = [body_cloud.before + first for body_cloud, first in zip(rings, firsts, strict=True)]
     images = [image + np.arange(size) for image, size in zip(beyond, imaged, strict=True)]
     above = [
-        np.stack([wall + one.rays, wall + 2 * one.rays], axis=1)
-        for one, wall in zip(rings, walls, strict=True)
+        np.stack([wall + body_cloud.rays, wall + 2 * body_cloud.rays], axis=1)
+        for body_cloud, wall in zip(rings, walls, strict=True)
     ]
     all_images = np.concatenate(images)
     sides = [(0, -1), (0, 1), (2, 1)]
@@ -144,7 +146,9 @@ def layout(
         areas=cloud.areas[:count].copy(),
         carried=np.arange(background, background + sum(sizes)),
         carrier=np.repeat(np.arange(len(rings)), sizes),
-        offsets=np.concatenate([one.cloud.positions[: one.cloud.nodes] for one in rings]),
+        offsets=np.concatenate(
+            [body_cloud.cloud.positions[: body_cloud.cloud.nodes] for body_cloud in rings]
+        ),
         images=all_images,
         imaged=cloud.owner[all_images - count].astype(np.int64),
         walls=np.concatenate(walls),
@@ -154,15 +158,17 @@ def layout(
         leaving=np.concatenate(leaving),
         before=np.concatenate(before),
         plane=_plane(cloud, background, np.concatenate(leaving)),
-        arms=np.concatenate([one.cloud.positions[: one.rays] for one in rings]),
-        radii=np.array([one.radius for one in params.bodies]),
-        thickness=np.array([one.heights[-1] for one in params.bodies]),
-        spacing=np.array([one.spacing for one in params.bodies]),
+        arms=np.concatenate(
+            [body_cloud.cloud.positions[: body_cloud.rays] for body_cloud in rings]
+        ),
+        radii=np.array([body.radius for body in params.bodies]),
+        thickness=np.array([body.heights[-1] for body in params.bodies]),
+        spacing=np.array([body.spacing for body in params.bodies]),
         second=np.array([level[2].min() for level in levels]),
-        is_cut=np.array([one.is_cut for one in params.bodies]),
+        is_cut=np.array([body.is_cut for body in params.bodies]),
         box=box,
         open_sides=sides,
-        kept=kept,
+        fringe_count=fringe_count,
         planar=planar,
     )
 

@@ -19,8 +19,8 @@ class NoSlipBodies(BodyFriction):
 
     def __init__(self, params: Moving, layout: CloudLayout, law: Transport) -> None:
         super().__init__(len(layout.walls))
-        warmth = np.array([one.temperature or 0.0 for one in params.bodies])[layout.body]
-        insulating = np.array([one.is_adiabatic for one in params.bodies])[layout.body]
+        warmth = np.array([body.temperature or 0.0 for body in params.bodies])[layout.body]
+        insulating = np.array([body.is_adiabatic for body in params.bodies])[layout.body]
         self.held = np.flatnonzero((warmth > 0.0) | insulating)
         self.law, self.layout, self.temperature = law, layout, warmth[self.held]
         self.insulating = np.flatnonzero(insulating[self.held])  # of those that are held
@@ -52,23 +52,23 @@ class NoSlipBodies(BodyFriction):
         Gas that turns with its wall is not sheared: of the slope of the velocity along the normal
         n, ω × n is rotation.
         """
-        own, held = self.layout, self.held
+        layout, held = self.layout, self.held
         friction, heat = np.empty((len(held), 3)), np.empty(len(held))
         write_tractions(
             self.rows, self.above, cloud.positions, cloud.normals, velocity[held], primitive,
             self.law, friction, heat,
         )  # fmt: skip
         if spin.any():
-            turning = np.cross(spin[own.body[held]], cloud.normals[self.rows])  # 1/s
+            turning = np.cross(spin[layout.body[held]], cloud.normals[self.rows])  # 1/s
             viscosity = [sutherland.py_func(kelvin, self.law) for kelvin in self.temperature]
             friction -= np.array(viscosity)[:, None] * turning
         heat[self.insulating] = 0.0
         self.friction[held], self.heat[held] = friction, heat
-        size = np.sqrt((cloud.areas[own.walls] ** 2).sum(axis=1))
+        size = np.sqrt((cloud.areas[layout.walls] ** 2).sum(axis=1))
         force = size[:, None] * self.friction
-        torque, work = np.cross(own.arms, force), (force * velocity).sum(axis=1)
+        torque, work = np.cross(layout.arms, force), (force * velocity).sum(axis=1)
         for b in range(len(loads)):
-            mine = own.body == b
+            mine = layout.body == b
             loads[b, FORCE] += force[mine].sum(axis=0)
             loads[b, TORQUE] += torque[mine].sum(axis=0)
             loads[b, POWER] -= work[mine].sum()

@@ -72,9 +72,9 @@ def unit_force(params: MeshlessGasParams) -> Array:
     assert params.initial is not None and params.moving is not None
     bodies = params.moving.bodies
     density, u, v, w, _ = params.initial.primitive(params.gas)
-    speeds = np.array([u, v, w]) - np.array([one.velocity for one in bodies])
+    speeds = np.array([u, v, w]) - np.array([body.velocity for body in bodies])
     square = np.maximum((speeds * speeds).sum(axis=1), 1e-300)
-    radii = np.array([one.radius for one in bodies])
+    radii = np.array([body.radius for body in bodies])
     is_sphere = params.moving.axisymmetric or not params.planar
     area = math.pi * radii**2 if is_sphere else 2.0 * radii
     return np.asarray(0.5 * density * square * area)
@@ -96,21 +96,23 @@ def base_force(params: MeshlessGasParams, layout: CloudLayout, areas: Array) -> 
         0 of bodies whose wall is whole.
     """
     assert params.initial is not None
-    found = np.zeros((len(layout.is_cut), 3))
-    np.add.at(found, layout.body, areas[layout.walls])  # of what is computed; the back's is less it
+    outward = np.zeros((len(layout.is_cut), 3))
+    np.add.at(
+        outward, layout.body, areas[layout.walls]
+    )  # of what is computed; the back's is less it
     if params.has_rings:  # of a whole turn about the axis nothing else is left
-        found[:, 1:] = 0.0
-    found[~layout.is_cut] = 0.0
-    return np.asarray(params.initial.primitive(params.gas)[4] * found)
+        outward[:, 1:] = 0.0
+    outward[~layout.is_cut] = 0.0
+    return np.asarray(params.initial.primitive(params.gas)[4] * outward)
 
 
 def unit_heat(params: MeshlessGasParams) -> Array:
     """Heat flux (b,) W/m2 that a ratio of 1 stands for; infinite where there is no law for it."""
     assert params.initial is not None and params.moving is not None
-    gas, found = params.gas, []
+    gas, units = params.gas, []
     density, *wind, pressure = params.initial.primitive(gas)
-    for one in params.moving.bodies:
-        speed = math.dist(wind, one.velocity)
+    for body in params.moving.bodies:
+        speed = math.dist(wind, body.velocity)
         stream = Stream(
             mach=speed / math.sqrt(gas.gamma * pressure / density),
             pressure=pressure,
@@ -122,7 +124,7 @@ def unit_heat(params: MeshlessGasParams) -> Array:
         )
         is_known = params.viscous and params.moving.axisymmetric and stream.mach > 1.0
         law = math.inf
-        if is_known and one.temperature is not None:
-            law = fay_riddell(stream, one.radius, one.temperature)
-        found.append(law if law > 0.0 else math.inf)
-    return np.array(found)
+        if is_known and body.temperature is not None:
+            law = fay_riddell(stream, body.radius, body.temperature)
+        units.append(law if law > 0.0 else math.inf)
+    return np.array(units)

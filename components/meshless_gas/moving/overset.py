@@ -44,42 +44,42 @@ class FringeStencils:
 
     def join(self, active: Flags, centre: Array) -> None:
         """Find neighbours across seams, and coefficients of all nodes that they changed for."""
-        cloud, own, neighbours = self.cloud, self.layout, self.stencils.neighbours
+        cloud, layout, neighbours = self.cloud, self.layout, self.stencils.neighbours
         count = cloud.nodes
         region = cloud.region[:count]
         band = np.zeros(count, bool)
         near_any = np.zeros(count, bool)
-        for b, one in enumerate(own.heights_of(cloud.positions[:count], centre)):
-            reach = BAND * own.spacing[b]
+        for b, heights in enumerate(layout.heights_of(cloud.positions[:count], centre)):
+            reach = BAND * layout.spacing[b]
             mine = region == b + 1
-            band |= ~mine & (one < own.thickness[b] + reach)
-            band |= mine & (one > own.thickness[b] - reach)
-            near_any |= ~mine & (one < own.thickness[b] + 2.0 * reach) | mine
-        band &= active[:count] & (own.height > 0.0)
+            band |= ~mine & (heights < layout.thickness[b] + reach)
+            band |= mine & (heights > layout.thickness[b] - reach)
+            near_any |= ~mine & (heights < layout.thickness[b] + 2.0 * reach) | mine
+        band &= active[:count] & (layout.height > 0.0)
         # Of a box that is coarser than the cloud some reach farther.
-        far = np.flatnonzero(active[:count] & ~band & ~active[own.home].all(axis=1))
-        band[far[own.height[far] > 0.0]] = True
-        reached = own.home[far]
+        far = np.flatnonzero(active[:count] & ~band & ~active[layout.home].all(axis=1))
+        band[far[layout.height[far] > 0.0]] = True
+        reached = layout.home[far]
         near_any[reached[reached < count]] = True
-        if not own.planar:
-            band[own.leaving] = False  # they have the state of the node beside them
+        if not layout.planar:
+            band[layout.leaving] = False  # they have the state of the node beside them
         self._refuse_walls(band & self.no_slip, active)
         rows = np.flatnonzero(band & ~self.no_slip)
         before = self.touched
-        neighbours[before] = own.home[before]
+        neighbours[before] = layout.home[before]
         images = near_any[cloud.owner] & active[cloud.owner]
         among = np.flatnonzero(np.concatenate([near_any & active[:count], images]))
-        found = around(rows, among, cloud, NEAR * own.kept, own.planar, self.team)
+        near = around(rows, among, cloud, NEAR * layout.fringe_count, layout.planar, self.team)
         lacks = choose(
-            rows, found, cloud.positions, cloud.spacing, centre, own.radii, own.kept,
-            4 if own.planar else 6, neighbours,
+            rows, near, cloud.positions, cloud.spacing, centre, layout.radii, layout.fringe_count,
+            4 if layout.planar else 6, neighbours,
         )  # fmt: skip
         if lacks >= 0:
-            raise StepError(too_few(own.kept, cloud.positions[lacks]))
+            raise StepError(too_few(layout.fringe_count, cloud.positions[lacks]))
         other = (cloud.region[neighbours[rows]] != region[rows][:, None]).any(axis=1)
-        whole = active[own.home[rows]].all(axis=1)
+        whole = active[layout.home[rows]].all(axis=1)
         back = rows[whole & ~other]
-        neighbours[back] = own.home[back]
+        neighbours[back] = layout.home[back]
         self.touched, self.across = rows[~(whole & ~other)], rows[other]
         self.fit(np.union1d(before, self.touched))
         self.fitted[:] = centre
@@ -97,18 +97,18 @@ class FringeStencils:
 
     def fit(self, rows: Rows) -> None:
         """Write the coefficients of nodes."""
-        cloud, made = self.cloud, self.stencils
+        cloud, stencils = self.cloud, self.stencils
         weight = cloud.weight
         if len(self.across):
             weight = weight.copy()
             weight[self.across] = self.least[self.across]
         self.team.run(
-            write_coefficients, len(rows), rows, cloud.positions, made.neighbours, weight,
-            self.layout.planar, made.coefficients, self.quality,
+            write_coefficients, len(rows), rows, cloud.positions, stencils.neighbours, weight,
+            self.layout.planar, stencils.coefficients, self.quality,
         )  # fmt: skip
         bad = rows[self.quality[rows] < SOUND]
         if len(bad):
-            raise StepError(too_few(self.layout.kept, cloud.positions[bad[0]]))
+            raise StepError(too_few(self.layout.fringe_count, cloud.positions[bad[0]]))
         self.weigh(rows)
 
     def weigh(self, rows: Rows) -> None:
@@ -121,7 +121,7 @@ class FringeStencils:
         weights = np.empty((len(places), self.weights.shape[1]))
         lacks = write_weights(edges, cloud.kind, cloud.normals, *self.stencils, weights)
         if lacks >= 0:
-            raise StepError(too_few(self.layout.kept, cloud.positions[edges[lacks]]))
+            raise StepError(too_few(self.layout.fringe_count, cloud.positions[edges[lacks]]))
         self.weights[places] = weights
 
     def refit(self, centre: Array) -> None:
@@ -161,9 +161,9 @@ def around(
         Threads.
     """
     many = min(many, len(among))
-    found, _ = nearest(cloud.positions, among, cloud.positions[rows], many, team)
+    near, _ = nearest(cloud.positions, among, cloud.positions[rows], many, team)
     face = cloud.kind[rows] != INNER_NODE
     if not planar and face.any():
         within = among[cloud.kind[among] == INNER_NODE]
-        found[face], _ = nearest(cloud.positions, within, cloud.positions[rows[face]], many, team)
-    return found
+        near[face], _ = nearest(cloud.positions, within, cloud.positions[rows[face]], many, team)
+    return near

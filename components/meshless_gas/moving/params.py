@@ -189,34 +189,35 @@ class Moving:
 
     def __post_init__(self) -> None:
         if self.axisymmetric:
-            for one in self.bodies:
-                if any(one.centre[1:]) or any(one.velocity[1:]):
+            for body in self.bodies:
+                if any(body.centre[1:]) or any(body.velocity[1:]):
                     raise ValueError(
                         "bodies of an axisymmetric flow lie and move on the axis; found centre "
-                        f"{list(one.centre)} m, velocity {list(one.velocity)} m/s. Leave y and "
+                        f"{list(body.centre)} m, velocity {list(body.velocity)} m/s. Leave y and "
                         "z at 0."
                     )
-                if one.angular_velocity:
+                if body.angular_velocity:
                     raise ValueError(
                         "spheres of an axisymmetric flow do not turn about y; found "
-                        f"{one.angular_velocity:g} rad/s. Leave out angular_velocity."
+                        f"{body.angular_velocity:g} rad/s. Leave out angular_velocity."
                     )
 
     @property
     def is_cut(self) -> bool:
         """Whether a cloud ends at a sector, and about no axis of symmetry."""
-        return not self.axisymmetric and any(one.is_cut for one in self.bodies)
+        return not self.axisymmetric and any(body.is_cut for body in self.bodies)
 
     def expected_count(self, dimensions: int) -> int:
         """Nodes of all bodies' clouds."""
         if dimensions == 3:
             return sum(
-                round((5 * one.frequency**2 + 1) * (1.0 - math.cos(one.sector))) * len(one.heights)
-                for one in self.bodies
+                round((5 * body.frequency**2 + 1) * (1.0 - math.cos(body.sector)))
+                * len(body.heights)
+                for body in self.bodies
             )
         whole = sum(
-            round(one.points_around * one.sector / math.pi) * len(one.heights)
-            for one in self.bodies
+            round(body.points_around * body.sector / math.pi) * len(body.heights)
+            for body in self.bodies
         )
         return whole // 2 if self.axisymmetric else whole
 
@@ -224,5 +225,6 @@ class Moving:
     def finest_spacing(self) -> float:
         """Least distance [m] of nodes in bodies' clouds."""
         return min(
-            min(one.heights[1], math.tau * one.radius / one.points_around) for one in self.bodies
+            min(body.heights[1], math.tau * body.radius / body.points_around)
+            for body in self.bodies
         )

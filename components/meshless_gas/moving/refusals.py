@@ -62,7 +62,7 @@ def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
         )
     if params.box is None:
         raise SceneError("bodies that carry clouds need a box around them. Give a box.")
-    if not params.viscous and any(one.is_no_slip for one in keys.bodies):
+    if not params.viscous and any(body.is_no_slip for body in keys.bodies):
         raise SceneError(
             "walls of a temperature, or adiabatic ones, hold the gas by friction. Say viscous = "
             "true, or leave out temperature and is_adiabatic."
@@ -88,11 +88,11 @@ def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
             "Leave out line_stencils, or jitter."
         )
     refuse_sector(params)
-    for one in keys.bodies:
-        if params.planar and (one.centre[1] or one.velocity[1]):
+    for body in keys.bodies:
+        if params.planar and (body.centre[1] or body.velocity[1]):
             raise SceneError(
                 "bodies in two dimensions lie and move in the plane y = 0; found centre "
-                f"{list(one.centre)} m, velocity {list(one.velocity)} m/s. Leave y at 0."
+                f"{list(body.centre)} m, velocity {list(body.velocity)} m/s. Leave y at 0."
             )
 
 
@@ -100,10 +100,10 @@ def refuse_sector(params: MeshlessGasParams) -> None:
     """Refuse clouds that end where the box does not, or where no gas leaves."""
     assert params.moving is not None and params.box is not None
     end = params.box.highest[0]
-    for b, one in enumerate(params.moving.bodies):
-        if one.is_cut and (one.centre[0] != end or params.kind_of("x+") != "outflow"):
+    for b, body in enumerate(params.moving.bodies):
+        if body.is_cut and (body.centre[0] != end or params.kind_of("x+") != "outflow"):
             raise SceneError(
-                f"the cloud of body {b} ends in the plane x = {one.centre[0]:g} m, as its sector "
+                f"the cloud of body {b} ends in the plane x = {body.centre[0]:g} m, as its sector "
                 f"says; the box must end there too, as an outflow. Found {end:g} m and "
                 f'{params.kind_of("x+")}. Correct box.highest, or boundaries."x+".'
             )
@@ -150,13 +150,13 @@ def refuse_partner(static: Fields, radii: Array, bodies: NDArray[np.int64]) -> N
             f"each driven body needs a partner; found {len(bodies)} driven bodies and "
             f"{len(sizes)} of the partner. Give both as many."
         )
-    own = 2.0 * radii[bodies]
-    wrong = np.flatnonzero(sizes < own * (1.0 - ROUNDING))
+    diameters = 2.0 * radii[bodies]
+    wrong = np.flatnonzero(sizes < diameters * (1.0 - ROUNDING))
     if len(wrong):
         k = wrong[0]
         raise SceneError(
             f"moving.bodies.{bodies[k]}: the partner's body must be at least as large as that in "
-            f"the gas, {own[k]:.6g} m across, as they would overlap in contact; found "
+            f"the gas, {diameters[k]:.6g} m across, as they would overlap in contact; found "
             f"{sizes[k]:.6g} m. Give both the same radius; the partner's may be larger, that "
             "layers of nodes fit between bodies that strike each other."
         )

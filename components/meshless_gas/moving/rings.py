@@ -71,7 +71,7 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
         volumes *= math.tau * positions[:, 2]
         areas *= math.tau * positions[:, 2:]
     thickness = np.diff(heights, axis=0, append=2.0 * heights[-1:] - heights[-2:-1])
-    made = Cloud(
+    cloud = Cloud(
         positions=positions,
         kind=kind,
         normals=normals,
@@ -89,10 +89,10 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
         owner = np.flatnonzero(positions[:, 2] < CLOSE * max(body.spacing, length[-1, 0]))
         mirror = np.diag([1.0, 1.0, -1.0])
         turns = np.repeat(mirror[None], len(owner), axis=0)
-        made = with_ghosts(made, owner, positions[owner] @ mirror, turns)
+        cloud = with_ghosts(cloud, owner, positions[owner] @ mirror, turns)
         images[owner] = nodes + np.arange(len(owner))
     home = _home(len(heights), count, images, body.is_cut)
-    return Ring(made, home, heights.ravel(), count, leaving, leaving - 1)
+    return Ring(cloud, home, heights.ravel(), count, leaving, leaving - 1)
 
 
 def _angles(body: Body, axisymmetric: bool) -> tuple[Array, Array]:
@@ -131,8 +131,8 @@ def _home(layers: int, count: int, images: NDArray[np.int64], is_cut: bool) -> W
             row = level * count + beside % count
             over = (beside < 0) | (beside >= count)
             if images.max(initial=-1) >= 0:  # beyond the axis lies the image of the node itself
-                own = level * count + ray
-                row = np.where(over, images[np.clip(own, 0, len(images) - 1)], row)
+                itself = level * count + ray
+                row = np.where(over, images[np.clip(itself, 0, len(images) - 1)], row)
             there = (level >= 0) & (level < layers)
             if is_cut:  # beyond the last ray lies nothing
                 there &= beside < count

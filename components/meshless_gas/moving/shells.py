@@ -60,14 +60,14 @@ def shell(body: Body, region: int, patch: int, is_cross: bool) -> Ring:
         weight=body.weight,
     )
     grid = SurfaceGrid(near, none[:0], np.zeros((0, 3, 3)), is_edge)
-    made = layered(places, grid, bounds, is_cross)
-    kind = made.cloud.kind
+    shells = layered(places, grid, bounds, is_cross)
+    kind = shells.cloud.kind
     # The last shell is no boundary, and the wall's edge no outflow.
-    areas = np.where((kind != INNER)[:, None], made.cloud.areas, 0.0)
+    areas = np.where((kind != INNER)[:, None], shells.cloud.areas, 0.0)
     areas[:count] = points * bounds.areas[0][:, None]
     areas[-count:] -= np.where(is_edge[:, None], bounds.beyond, 0.0)
-    cloud = made.cloud._replace(
-        normals=np.where((kind != INNER)[:, None], made.cloud.normals, 0.0),
+    cloud = shells.cloud._replace(
+        normals=np.where((kind != INNER)[:, None], shells.cloud.normals, 0.0),
         areas=areas,
         region=np.full(len(kind), region, np.int32),
         patch=np.where(kind == SLIP, patch, 0).astype(np.int32),
@@ -75,7 +75,7 @@ def shell(body: Body, region: int, patch: int, is_cross: bool) -> Ring:
     leaving = np.flatnonzero(kind == OUTFLOW)
     layer, foot = np.divmod(leaving, count)
     before = layer * count + _inward(points, is_edge)[foot]
-    return Ring(cloud, made.neighbours, heights.ravel(), count, leaving, before)
+    return Ring(cloud, shells.neighbours, heights.ravel(), count, leaving, before)
 
 
 def _grid(body: Body) -> tuple[Array, NDArray[np.int64]]:
@@ -84,9 +84,9 @@ def _grid(body: Body) -> tuple[Array, NDArray[np.int64]]:
     if not body.is_cut:
         return points, faces
     angle = np.arccos(np.clip(-points[:, 0], -1.0, 1.0))
-    kept = angle <= body.sector + BEYOND * ARC / body.frequency
-    number = np.where(kept, np.cumsum(kept) - 1, -1)
-    return points[kept], number[faces[kept[faces].any(axis=1)]]
+    inside = angle <= body.sector + BEYOND * ARC / body.frequency
+    number = np.where(inside, np.cumsum(inside) - 1, -1)
+    return points[inside], number[faces[inside[faces].any(axis=1)]]
 
 
 def _ended(points: Array, is_edge: NDArray[np.bool_], sector: float) -> Array:
@@ -100,6 +100,6 @@ def _inward(points: Array, is_edge: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Nearest point that is no edge (m,), of those at an edge; itself elsewhere."""
     within = np.flatnonzero(~is_edge)
     inward = np.arange(len(points))
-    for one in np.flatnonzero(is_edge):
-        inward[one] = within[((points[within] - points[one]) ** 2).sum(axis=1).argmin()]
+    for point in np.flatnonzero(is_edge):
+        inward[point] = within[((points[within] - points[point]) ** 2).sum(axis=1).argmin()]
     return inward

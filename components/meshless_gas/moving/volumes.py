@@ -36,16 +36,16 @@ def partitioned(
     region, width = cloud.region[:count], cloud.spacing[:count]
     volumes = layout.volumes.copy()
     near = np.zeros(count, bool)
-    for b, one in enumerate(away):
-        beyond = (one - layout.thickness[b]) / width
+    for b, heights in enumerate(away):
+        beyond = (heights - layout.thickness[b]) / width
         # Nearer to the own body than to this one; the background has none, its height is ∞.
-        nearer = 0.5 * (one - layout.height) / width
+        nearer = 0.5 * (heights - layout.height) / width
         share = np.clip(np.maximum(beyond, nearer) + 0.5, 0.0, 1.0)
         volumes *= np.where(region == b + 1, 1.0, share)
-        near |= one < layout.thickness[b] + 3.0 * layout.spacing[b]
+        near |= heights < layout.thickness[b] + 3.0 * layout.spacing[b]
     omitted = np.flatnonzero(~active & (volumes > 0.0))
     receiving = np.flatnonzero(active & near)
     if len(omitted) and len(receiving):
-        found, _ = nearest(cloud.positions, receiving, cloud.positions[omitted], 1, team)
-        np.add.at(volumes, found[:, 0], volumes[omitted])
+        receivers, _ = nearest(cloud.positions, receiving, cloud.positions[omitted], 1, team)
+        np.add.at(volumes, receivers[:, 0], volumes[omitted])
     return np.where(active, volumes, 0.0)

@@ -37,17 +37,17 @@ class InterphaseExchange:
 
     def __init__(
         self,
-        given: PointParticles,
+        keys: PointParticles,
         cloud: Cloud,
         planar: bool,
         transport: Transport,
         gamma: float,
         prandtl: float,
     ) -> None:
-        self.laws = Laws(DRAG[given.drag], HEAT[given.heat], transport, gamma, prandtl)
+        self.laws = Laws(DRAG[keys.drag], HEAT[keys.heat], transport, gamma, prandtl)
         self.capacity = transport.gas_constant / (gamma - 1.0)  # J/(kg K)
-        self.count = given.nodes or NODES[2 if planar else 3]
-        self.reaction, self.planar, self.images = given.reaction, planar, cloud
+        self.count = keys.nodes or NODES[2 if planar else 3]
+        self.reaction, self.planar, self.images = keys.reaction, planar, cloud
         of = np.concatenate([np.arange(cloud.nodes), cloud.owner])
         self.volumes, self.spacing = cloud.volumes[of], cloud.spacing[of]
         self.summed = np.zeros((len(of), 2))

@@ -89,12 +89,14 @@ def exchange(
         vx, vy, vz = loads.velocity[i, 0], loads.velocity[i, 1], loads.velocity[i, 2]
         if inside > 0.0:
             warm = pressure / (density * laws.transport.gas_constant)
-            own = loads.temperature[i]
+            sphere_temperature = loads.temperature[i]
             slip = math.sqrt((u - vx) ** 2 + (v - vy) ** 2 + (w - vz) ** 2)
-            drag, warms = stiffness(laws, density, pressure, warm, slip, particles.diameter[i], own)
+            drag, warms = stiffness(
+                laws, density, pressure, warm, slip, particles.diameter[i], sphere_temperature
+            )
             drag, warms = drag * particles.number[i], warms * particles.number[i]
             fx, fy, fz = drag * (u - vx), drag * (v - vy), drag * (w - vz)
-            heat = warms * (warm - own)
+            heat = warms * (warm - sphere_temperature)
         power = fx * vx + fy * vy + fz * vz + heat
         loads.rates[i, 0], loads.rates[i, 1] = drag, warms
         loads.heat[i] += share * heat
@@ -131,7 +133,7 @@ def gas_around(
 @njit(**INNER)
 def stiffness(
     laws: Laws, density: float, pressure: float, warm: float, slip: float, diameter: float,
-    own: float,
+    sphere_temperature: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Force over velocity [kg/s], and heat over difference of temperature [W/K], of one sphere.
 
@@ -142,14 +144,14 @@ def stiffness(
         Of the gas.
     slip : float, m/s
         Of the sphere through it.
-    diameter, own : float, m and K
+    diameter, sphere_temperature : float, m and K
         Of the sphere, and its temperature.
     """
     viscosity = sutherland(warm, laws.transport)
     sound = math.sqrt(laws.gamma * pressure / density)
     reynolds, mach = density * slip * diameter / viscosity, slip / sound
     rarefied = viscosity / (density * sound * diameter)  # M/Re
-    factor = drag_factor(laws.drag, reynolds, mach, rarefied, own / warm, laws.gamma)
+    factor = drag_factor(laws.drag, reynolds, mach, rarefied, sphere_temperature / warm, laws.gamma)
     number = nusselt(laws.heat, reynolds, mach, rarefied, laws.prandtl)
     conductivity = viscosity * laws.transport.conduction
     return (

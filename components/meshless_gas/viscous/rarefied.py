@@ -28,15 +28,15 @@ class RarefiedWalls:
         law: Transport,
     ) -> None:
         self.law = law
-        given = [one.accommodation for one in walls]
-        self.chosen = np.array([n for n, one in enumerate(given) if one is not None])
+        coefficients = [wall.accommodation for wall in walls]
+        self.chosen = np.array([n for n, pair in enumerate(coefficients) if pair is not None])
         self.rows, self.above = rows[self.chosen], above[self.chosen]
         gas = params.gas
         self.lengths = np.array(
             [
-                (slip_length(one.momentum), jump_length(one.energy, gas.gamma, gas.prandtl))
-                for one in given
-                if one is not None
+                (slip_length(pair.momentum), jump_length(pair.energy, gas.gamma, gas.prandtl))
+                for pair in coefficients
+                if pair is not None
             ]
         )
         self.curvature = 1.0 / params.sphere.radius if params.sphere is not None else 0.0

@@ -52,9 +52,9 @@ class Viscous(WallFriction):
             )
         names = ("", *(n for n in params.boundaries if params.kind_of(n) != "periodic"))
         walls = [params.boundaries[names[number]] for number in cloud.patch[self.rows]]
-        self.velocity = np.array([one.velocity or (0.0, 0.0, 0.0) for one in walls])
+        self.velocity = np.array([wall.velocity or (0.0, 0.0, 0.0) for wall in walls])
         self.velocity = self.velocity.reshape(-1, 3)
-        self.temperature = np.array([one.temperature or -1.0 for one in walls])
+        self.temperature = np.array([wall.temperature or -1.0 for wall in walls])
         self.areas = own_areas(cloud, self.rows)
         self.above = nodes_above(self.rows, domain)
         self.rarefied = []
@@ -130,7 +130,7 @@ def nodes_above(rows: Whole, domain: Domain) -> Whole:
     nearest, and slopes are of first order.
     """
     cloud, neighbours = domain.cloud, domain.stencils.neighbours
-    found = np.empty((len(rows), 2), np.int32)
+    above = np.empty((len(rows), 2), np.int32)
     at = rows.astype(np.int64)
     for step in range(2):
         near = neighbours[at]
@@ -145,5 +145,5 @@ def nodes_above(rows: Whole, domain: Domain) -> Whole:
             1e-6 * np.where(inner, length, 0.0) / np.max(length, initial=1e-300)
         )  # of two in line the nearer
         at = near[np.arange(len(rows)), score.argmax(axis=1)].astype(np.int64)
-        found[:, step] = at
-    return found
+        above[:, step] = at
+    return above

@@ -12,7 +12,7 @@ from quintet.components.shared.numba_options import EXACT
 
 @njit(**EXACT)
 def write_fresh(
-    rows: Any, found: Any, positions: Any, spacing: Any, centres: Any, radii: Any, primitive: Any
+    rows: Any, near: Any, positions: Any, spacing: Any, centres: Any, radii: Any, primitive: Any
 ) -> None:
     """Write the states of nodes that come back: a plane by least squares, within those around.
 
@@ -20,7 +20,7 @@ def write_fresh(
 
     Parameters
     ----------
-    found : (m, c)
+    near : (m, c)
         Nodes near each whose states are known.
     """
     low, high, sums = np.empty(5), np.empty(5), np.empty((3, 5))
@@ -28,8 +28,8 @@ def write_fresh(
         i = rows[row]
         low[:], high[:], sums[:] = math.inf, -math.inf, 0.0
         s = sx = sz = xx = xz = zz = 0.0
-        for k in range(found.shape[1]):
-            j = found[row, k]
+        for k in range(near.shape[1]):
+            j = near[row, k]
             sag = SAG * min(spacing[i], spacing[j])
             if not is_seen(positions, i, j, centres, radii, sag):
                 continue
@@ -55,20 +55,20 @@ def write_fresh(
 
 @njit(**EXACT)
 def write_fresh_in_space(
-    rows: Any, found: Any, positions: Any, spacing: Any, centres: Any, radii: Any, primitive: Any
+    rows: Any, near: Any, positions: Any, spacing: Any, centres: Any, radii: Any, primitive: Any
 ) -> None:
     """Write the states of nodes that come back, as `write_fresh` does, in three dimensions.
 
     Fitted about the mean place of the nodes around, where the fit is their mean.
     """
     low, high, mean, middle = np.empty(5), np.empty(5), np.empty(5), np.empty(3)
-    weight, arm, sums = np.empty(found.shape[1]), np.empty((found.shape[1], 3)), np.empty((3, 5))
+    weight, arm, sums = np.empty(near.shape[1]), np.empty((near.shape[1], 3)), np.empty((3, 5))
     for row in range(rows.shape[0]):
         i = rows[row]
         low[:], high[:], mean[:], middle[:], sums[:] = math.inf, -math.inf, 0.0, 0.0, 0.0
         whole = 0.0
-        for k in range(found.shape[1]):
-            j = found[row, k]
+        for k in range(near.shape[1]):
+            j = near[row, k]
             weight[k], square = 0.0, 1e-9
             for d in range(3):
                 arm[k, d] = (positions[j, d] - positions[i, d]) / spacing[i]
@@ -78,12 +78,12 @@ def write_fresh_in_space(
                 weight[k] = 1.0 / square
             whole += weight[k]
         xx = xy = xz = yy = yz = zz = 0.0
-        for k in range(found.shape[1]):
+        for k in range(near.shape[1]):
             for d in range(3):
                 middle[d] += weight[k] / whole * arm[k, d]
             for q in range(5):
-                mean[q] += weight[k] / whole * primitive[found[row, k], q]
-        for k in range(found.shape[1]):
+                mean[q] += weight[k] / whole * primitive[near[row, k], q]
+        for k in range(near.shape[1]):
             if weight[k] == 0.0:
                 continue
             x, y, z = arm[k, 0] - middle[0], arm[k, 1] - middle[1], arm[k, 2] - middle[2]
@@ -91,7 +91,7 @@ def write_fresh_in_space(
             xx, xy, xz = xx + w * x * x, xy + w * x * y, xz + w * x * z
             yy, yz, zz = yy + w * y * y, yz + w * y * z, zz + w * z * z
             for q in range(5):
-                value = primitive[found[row, k], q]
+                value = primitive[near[row, k], q]
                 low[q], high[q] = min(low[q], value), max(high[q], value)
                 sums[0, q] += w * x * (value - mean[q])
                 sums[1, q] += w * y * (value - mean[q])

@@ -41,40 +41,40 @@ def is_towards(positions: Any, i: int, j: int, side: int) -> bool:
 
 @njit(**INNER)
 def surround(
-    row: int, i: int, found: Any, positions: Any, spacing: Any, centres: Any, radii: Any, kept: int,
+    row: int, i: int, near: Any, positions: Any, spacing: Any, centres: Any, radii: Any, count: int,
     sides: int, neighbours: Any,
 ) -> None:  # fmt: skip
     """Let a node have neighbours on all sides where there are some in sight."""
     for side in range(sides):
         has = False
-        for k in range(kept):
+        for k in range(count):
             has = has or is_towards(positions, i, neighbours[i, k], side)
         if has:
             continue
-        for k in range(found.shape[1]):
-            j = found[row, k]
+        for k in range(near.shape[1]):
+            j = near[row, k]
             sag = SAG * min(spacing[i], spacing[j])
             if (
                 j != i
                 and is_towards(positions, i, j, side)
                 and is_seen(positions, i, j, centres, radii, sag)
             ):
-                slot = spare(i, positions, kept, sides, neighbours)
+                slot = spare(i, positions, count, sides, neighbours)
                 if slot >= 0:
                     neighbours[i, slot] = j
                 break
 
 
 @njit(**INNER)
-def spare(i: int, positions: Any, kept: int, sides: int, neighbours: Any) -> int:
+def spare(i: int, positions: Any, count: int, sides: int, neighbours: Any) -> int:
     """The last neighbour of a node that is not the only one on a side; -1 if each is."""
-    for slot in range(kept - 1, -1, -1):
+    for slot in range(count - 1, -1, -1):
         needed = False
         for side in range(sides):
             if not is_towards(positions, i, neighbours[i, slot], side):
                 continue
             others = False
-            for k in range(kept):
+            for k in range(count):
                 others = others or (k != slot and is_towards(positions, i, neighbours[i, k], side))
             needed = needed or not others
         if not needed:
@@ -85,12 +85,12 @@ def spare(i: int, positions: Any, kept: int, sides: int, neighbours: Any) -> int
 @njit(**EXACT)
 def choose(
     rows: Any,
-    found: Any,
+    near: Any,
     positions: Any,
     spacing: Any,
     centres: Any,
     radii: Any,
-    kept: int,
+    count: int,
     sides: int,
     neighbours: Any,
 ) -> int:
@@ -101,9 +101,9 @@ def choose(
 
     Parameters
     ----------
-    found : (m, c)
+    near : (m, c)
         What is near to each, the nearest first.
-    kept : int
+    count : int
         How many neighbours a node has.
     sides : int
         On which it should have some: 4 in the plane, 6 in space.
@@ -113,18 +113,18 @@ def choose(
     lacks = -1
     for row in range(rows.shape[0]):
         i, have = rows[row], 0
-        for k in range(found.shape[1]):
-            j = found[row, k]
+        for k in range(near.shape[1]):
+            j = near[row, k]
             sag = SAG * min(spacing[i], spacing[j])
             if j != i and is_seen(positions, i, j, centres, radii, sag):
                 neighbours[i, have] = j
                 have += 1
-                if have == kept:
+                if have == count:
                     break
-        if have < kept:
+        if have < count:
             lacks = i
         else:
-            surround(row, i, found, positions, spacing, centres, radii, kept, sides, neighbours)
+            surround(row, i, near, positions, spacing, centres, radii, count, sides, neighbours)
         for k in range(have, neighbours.shape[1]):
             neighbours[i, k] = i
     return lacks

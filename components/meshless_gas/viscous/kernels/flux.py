@@ -31,9 +31,9 @@ def write_temperature_gradients(  # type: ignore[no-untyped-def]
     """Gradients (n, 3) K/m of temperature by least squares."""
     for row in range(first, last):
         i = np.uintp(rows[row])
-        x, y, z, own = 0.0, 0.0, 0.0, transported[i, 0]
+        x, y, z, temperature = 0.0, 0.0, 0.0, transported[i, 0]
         for k in range(neighbours.shape[1]):
-            rise = transported[np.uintp(neighbours[i, k]), 0] - own
+            rise = transported[np.uintp(neighbours[i, k]), 0] - temperature
             x += coefficients[i, k, 0] * rise
             y += coefficients[i, k, 1] * rise
             z += coefficients[i, k, 2] * rise
@@ -100,7 +100,7 @@ def add_viscous(  # type: ignore[no-untyped-def]
         g, t = gradients[i], temperature_gradients[i]
         x, y, z = positions[i, 0], positions[i, 1], positions[i, 2]
         u, v, w = primitive[i, 1], primitive[i, 2], primitive[i, 3]
-        own, mu_i = transported[i, 0], transported[i, 1]
+        temperature, mu_i = transported[i, 0], transported[i, 1]
         fx, fy, fz, fe, sx, sy, sz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for k in range(neighbours.shape[1]):
             j = np.uintp(neighbours[i, k])
@@ -118,7 +118,7 @@ def add_viscous(  # type: ignore[no-untyped-def]
                 corrected(g[3], h[3], c - w, r, inverse),
                 mu,
             )
-            q = corrected(t, s, transported[j, 0] - own, r, inverse)
+            q = corrected(t, s, transported[j, 0] - temperature, r, inverse)
             px, py, pz = along(tensor, cx, cy, cz)
             fx, fy, fz = fx + px, fy + py, fz + pz
             work = px * (u + a) + py * (v + b) + pz * (w + c)

@@ -31,19 +31,19 @@ def heights(i, above, n, positions, normals):  # type: ignore[no-untyped-def]
 
 
 @njit(**INNER)
-def extrapolated_slip(i, j, k, shares, normals, velocity, primitive, found):  # type: ignore[no-untyped-def]
+def extrapolated_slip(i, j, k, shares, normals, velocity, primitive, slope):  # type: ignore[no-untyped-def]
     """Write the share (3,) m/s/m of ∂u_t/∂n that does not depend on the slip; return its square.
 
     Velocities are those against the wall, along it.
     """
     through, square = 0.0, 0.0
     for axis in range(3):
-        found[axis] = shares[1] * (primitive[j, 1 + axis] - velocity[axis])
-        found[axis] += shares[2] * (primitive[k, 1 + axis] - velocity[axis])
-        through += found[axis] * normals[i, axis]
+        slope[axis] = shares[1] * (primitive[j, 1 + axis] - velocity[axis])
+        slope[axis] += shares[2] * (primitive[k, 1 + axis] - velocity[axis])
+        through += slope[axis] * normals[i, axis]
     for axis in range(3):
-        found[axis] -= through * normals[i, axis]
-        square += found[axis] ** 2
+        slope[axis] -= through * normals[i, axis]
+        square += slope[axis] ** 2
     return square
 
 
@@ -69,15 +69,17 @@ def write_jumps(  # type: ignore[no-untyped-def]
         near, far = heights(i, above, n, positions, normals)
         shares = slope_shares(near, far)
         pressure = primitive[i, 4]
-        one = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
+        near_temperature = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
         two = primitive[k, 4] / (primitive[k, 0] * law.gas_constant)
-        rest = shares[1] * one + shares[2] * two
+        rest = shares[1] * near_temperature + shares[2] * two
         drawn = extrapolated_slip(
             i, j, k, shares, normals, velocity[n], primitive, primitive[i, 1:4]
         )
-        found = temperature[n] if temperature[n] > 0.0 else one
+        temperature_i = temperature[n] if temperature[n] > 0.0 else near_temperature
         for _ in range(ROUNDS):
-            mean = mean_free_path(sutherland(found, law), pressure, found, law.gas_constant)
+            mean = mean_free_path(
+                sutherland(temperature_i, law), pressure, temperature_i, law.gas_constant
+            )
             if temperature[n] > 0.0:
                 length = lengths[n, 1] * mean
                 new = (temperature[n] + length * rest) / (1.0 - length * shares[0])
@@ -86,12 +88,12 @@ def write_jumps(  # type: ignore[no-untyped-def]
                 slope = math.sqrt(drawn) / (1.0 - length * (shares[0] - curvature))
                 new = (-slope * slope * length / law.conduction - rest) / shares[0]
             if not new > 0.0:  # of a parabola that a starting flow has bent too far
-                new = one
-            change = abs(new - found)
-            found = new
-            if change <= LEFT * found:
+                new = near_temperature
+            change = abs(new - temperature_i)
+            temperature_i = new
+            if change <= LEFT * temperature_i:
                 break
-        primitive[i, 0] = pressure / (law.gas_constant * found)
+        primitive[i, 0] = pressure / (law.gas_constant * temperature_i)
 
 
 @njit(**EXACT)
@@ -109,22 +111,24 @@ def write_slips(  # type: ignore[no-untyped-def]
     nodes = positions.shape[0] - owner.shape[0]
     for n in range(rows.shape[0]):
         i, j, k = rows[n], above[n, 0], above[n, 1]
-        own = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
+        temperature_i = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
         x, y, z = 0.0, 0.0, 0.0
         for m in range(neighbours.shape[1]):
             other = neighbours[i, m]
             if other >= nodes:  # images get their states after walls; a temperature has no sides
                 other = owner[other - nodes]
-            rise = primitive[other, 4] / (primitive[other, 0] * law.gas_constant) - own
+            rise = primitive[other, 4] / (primitive[other, 0] * law.gas_constant) - temperature_i
             x += coefficients[i, m, 0] * rise
             y += coefficients[i, m, 1] * rise
             z += coefficients[i, m, 2] * rise
         through = x * normals[i, 0] + y * normals[i, 1] + z * normals[i, 2]
-        mu = sutherland(own, law)
-        creep = CREEP * mu / (primitive[i, 0] * own)
+        mu = sutherland(temperature_i, law)
+        creep = CREEP * mu / (primitive[i, 0] * temperature_i)
         near, far = heights(i, above, n, positions, normals)
         shares = slope_shares(near, far)
-        length = lengths[n, 0] * mean_free_path(mu, primitive[i, 4], own, law.gas_constant)
+        length = lengths[n, 0] * mean_free_path(
+            mu, primitive[i, 4], temperature_i, law.gas_constant
+        )
         drawn = primitive[i, 1:4]
         extrapolated_slip(i, j, k, shares, normals, velocity[n], primitive, drawn)
         for axis in range(3):
@@ -148,11 +152,15 @@ def write_slip_tractions(  # type: ignore[no-untyped-def]
         i, j, k = rows[n], above[n, 0], above[n, 1]
         near, far = heights(i, above, n, positions, normals)
         shares = slope_shares(near, far)
-        own = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
-        one = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
+        temperature_i = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
+        near_temperature = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
         two = primitive[k, 4] / (primitive[k, 0] * law.gas_constant)
-        mu = sutherland(own, law)
-        heat[n] = law.conduction * mu * (shares[0] * own + shares[1] * one + shares[2] * two)
+        mu = sutherland(temperature_i, law)
+        heat[n] = (
+            law.conduction
+            * mu
+            * (shares[0] * temperature_i + shares[1] * near_temperature + shares[2] * two)
+        )
         rising, spreading = 0.0, 0.0
         for axis in range(3):
             slip = primitive[i, 1 + axis] - velocity[n, axis]

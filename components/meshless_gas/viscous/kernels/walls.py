@@ -68,9 +68,9 @@ def write_tractions(  # type: ignore[no-untyped-def]
             far += (positions[k, axis] - positions[i, axis]) * normals[i, axis]
         wall = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
         mu = sutherland(wall, law)
-        one = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
+        near_temperature = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
         two = primitive[k, 4] / (primitive[k, 0] * law.gas_constant)
-        heat[n] = law.conduction * mu * wall_slope(wall, one, two, near, far)
+        heat[n] = law.conduction * mu * wall_slope(wall, near_temperature, two, near, far)
         for axis in range(3):
             slope = wall_slope(
                 velocity[n, axis], primitive[j, 1 + axis], primitive[k, 1 + axis], near, far

@@ -24,9 +24,9 @@ def layered_cloud(params: MeshlessGasParams, sides: Sides) -> LayeredCloud:
     far = params.boundaries["far"].state
     assert far is not None
     make = sphere_cap if params.dimensions == 3 else sphere_meridian
-    one = params.sphere
-    sphere = SphereInStream(np.array(one.centre), one.radius, far.mach(params.gas))
-    return make(sphere, _reach(one), sides)
+    keys = params.sphere
+    sphere = SphereInStream(np.array(keys.centre), keys.radius, far.mach(params.gas))
+    return make(sphere, _reach(keys), sides)
 
 
 def _reach(sphere: SphereCloud) -> Reach:
@@ -39,9 +39,9 @@ def _reach(sphere: SphereCloud) -> Reach:
     )
 
 
-def _plate(one: PlateCloud, sides: Sides) -> LayeredCloud:
-    reach = _of(one.layers, one.points_along, 0.0, 1.0, 0.0)
-    return plate(reach, one.length, one.ahead, one.height, one.finest, sides)
+def _plate(keys: PlateCloud, sides: Sides) -> LayeredCloud:
+    reach = _of(keys.layers, keys.points_along, 0.0, 1.0, 0.0)
+    return plate(reach, keys.length, keys.ahead, keys.height, keys.finest, sides)
 
 
 def _of(layers: Layers, rays: int, sector: float, margin: float, farthest: float) -> Reach:
