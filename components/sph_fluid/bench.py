@@ -20,11 +20,11 @@ UNIT = "particle-steps/s"
 LENGTHS = {"10k": 16, "100k": 199, "1M": 2028}  # spacings, of the channels of so many particles
 ALL = {"density_diffusion": 0.1, "xsph": 0.5}  # what pairs of fluid may have
 CUBE = 0.2  # m
-NOTCHED = [
-    [[0.0, 0.0, 0.0], [0.4, 0.59, 0.3]],
-    [[0.4, 0.0, 0.0], [0.6, 0.2, 0.3]],
-    [[0.4, 0.4, 0.0], [0.6, 0.59, 0.3]],
-    [[0.4, 0.2, 0.2], [0.6, 0.4, 0.3]],
+NOTCHED: list[dict[str, Any]] = [
+    {"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.4, 0.59, 0.3]},
+    {"shape": "box", "lowest": [0.4, 0.0, 0.0], "highest": [0.6, 0.2, 0.3]},
+    {"shape": "box", "lowest": [0.4, 0.4, 0.0], "highest": [0.6, 0.59, 0.3]},
+    {"shape": "box", "lowest": [0.4, 0.2, 0.2], "highest": [0.6, 0.4, 0.3]},
 ]  # m, the column without the cube
 
 
@@ -53,13 +53,14 @@ def tank(inside: tuple[int, int, int], fluid: tuple[int, int, int], sound: float
     `sound` is the speed of sound in units of sqrt(g H).
     """
     start = [0.0, 0.0, 0.0]
+    walls = {"lowest": start, "highest": [SPACING * n for n in inside]}
     return {
         "spacing": SPACING,
         "smoothing": 1.5,
         "viscosity": {"artificial": 0.1},
         "sound_speed": sound * math.sqrt(9.81 * SPACING * fluid[2]),
-        "fluid": [[start, [SPACING * n for n in fluid]]],
-        "boundary": {"method": "dbc", "walls": [start, [SPACING * n for n in inside]]},
+        "fluid": [{"shape": "box", "lowest": start, "highest": [SPACING * n for n in fluid]}],
+        "boundary": {"method": "dbc", "walls": walls},
     }
 
 
@@ -75,5 +76,5 @@ def cube() -> tuple[Fields, Fields]:
         "surface.volume": ones * SPACING**3,
         "surface.body": ones,
     }
-    corner = np.array(NOTCHED[3][0]) * [1.0, 1.0, 0.0]
+    corner = np.array(NOTCHED[3]["lowest"]) * [1.0, 1.0, 0.0]
     return static, {"surface.position": corner + arm, "surface.velocity": np.zeros_like(arm)}

@@ -12,7 +12,7 @@ DROP: dict[str, Any] = {
     "spacing": 0.05,
     "sound_speed": 20.0,
     "gravity": [0.0, 0.0, 0.0],
-    "fluid": [[[0.0, 0.0, 0.0], [0.2, 0.2, 0.2]]],
+    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 0.2, 0.2]}],
 }
 MIRRORED = {
     "boundary": {"method": "mdbc", "lubrication_films": True},
@@ -26,7 +26,8 @@ PLACES = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])  # (2, 3) m, of the s
 def cases() -> tuple[ConformCase, ...]:
     """Walls of either kind, both integrators, gauges, two dimensions."""
     twice = {**DROP, "integration": "symplectic"}
-    slab = {**DROP, "dimensions": 2, "fluid": [[[0.0, 0.0, 0.0], [0.2, 1.0, 0.2]]]}
+    box = {"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 1.0, 0.2]}
+    slab = {**DROP, "dimensions": 2, "fluid": [box]}
     return (
         _case("drop", DROP),
         _case("drop, mirrored walls and films", {**DROP, **MIRRORED}, mirror=True),
