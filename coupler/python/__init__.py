@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from quintet.coupler.scene.scene import Scene
     from quintet.interfaces.errors import QuintetError, RunError, SceneError
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 __all__ = [
     "QuintetError",
     "RunError",
