@@ -17,10 +17,10 @@ Erosion = Literal["plastic_strain", "damage", "spall"]
 
 
 def _box_or_set(where: str, box: tuple[Vector | None, Vector | None], name: str) -> None:
-    given = sum(one is not None for one in box)
-    if given != (0 if name else 2):
+    corners = sum(corner is not None for corner in box)
+    if corners != (0 if name else 2):
         raise ValueError(
-            f"{where}: a box has lowest and highest, and no node_set; found {given} of them"
+            f"{where}: a box has lowest and highest, and no node_set; found {corners} of them"
             f"{' and a node_set' if name else ''}."
         )
 

@@ -11,11 +11,11 @@ BYTES = 1000.0  # of an element
 
 def plan(params: FePlateParams) -> Plan:
     """What a run will need."""
-    count = sum(one.count for one in params.parts)
+    count = sum(part.count for part in params.parts)
     points = points_of(params)
     return Plan(
         count,
-        min(one.expected_step for one in params.parts),
+        min(part.expected_step for part in params.parts),
         RATE / points,
         BYTES * points,
         notes=(*mesh_notes(params.parts), *integration_notes(params)),

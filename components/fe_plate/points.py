@@ -21,7 +21,7 @@ def is_shocked(part: Part) -> bool:
     """Whether a part is made for impact: its material has a law of shocks, or of failure."""
     law = material(part.material)
     fails = (law.spall_stress, law.failure_strain, law.damage)
-    return law.mie_gruneisen is not None or any(one is not None for one in fails)
+    return law.mie_gruneisen is not None or any(rule is not None for rule in fails)
 
 
 def integration_notes(params: FePlateParams) -> tuple[str, ...]:

@@ -29,9 +29,9 @@ def supports(params: FePlateParams, mesh: Mesh) -> Fields:
     for number, held in enumerate(params.fixed):
         clamped = set(whole) <= set(held.directions)
         axes = AXES if clamped else held.directions if len(held.directions) == 1 else ()
-        found = _held(mesh, held, f"fixed.{number}", axes, 0.0 if clamped else BEYOND * size)
-        faces += found
-        kinds += [CLAMPED if clamped else SYMMETRY] * len(found)
+        rectangles = _held(mesh, held, f"fixed.{number}", axes, 0.0 if clamped else BEYOND * size)
+        faces += rectangles
+        kinds += [CLAMPED if clamped else SYMMETRY] * len(rectangles)
     return {**polygons(faces), "support": np.array(kinds, float)} if faces else {}
 
 
@@ -41,7 +41,7 @@ def _held(mesh: Mesh, held: Fixed, where: str, axes: Sequence[str], beyond: floa
     corners = _corners(mesh)[(nodes[mesh.side] | (mesh.side < 0)).all(axis=1)]  # (f, 4, 3)
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     unit = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    found = []
+    rectangles = []
     for axis in map(AXES.index, axes):
         for way in (-1.0, 1.0):
             mine = corners[unit[:, axis] * way > 1.0 - FLAT]
@@ -49,8 +49,8 @@ def _held(mesh: Mesh, held: Fixed, where: str, axes: Sequence[str], beyond: floa
             for place in places:
                 flat = mine[np.isclose(mine[:, 0, axis], place, rtol=1e-9, atol=1e-12)]
                 low, high = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
-                found.append(_rectangle(low - beyond, high + beyond, axis, place, way))
-    return found
+                rectangles.append(_rectangle(low - beyond, high + beyond, axis, place, way))
+    return rectangles
 
 
 def _corners(mesh: Mesh) -> Array:

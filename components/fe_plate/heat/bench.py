@@ -17,7 +17,7 @@ def bar(n: int) -> dict[str, Any]:
     }
     end = {"lowest": [0.0, 0.0, 0.0], "highest": [0.0, 0.01, 0.01]}
     held = [{**end, "temperature": 400.0}]
-    return {"parts": [part], "held": held, "longest_step": 1e-2}
+    return {"parts": [part], "fixed_temperatures": held, "longest_step": 1e-2}
 
 
 def cases() -> tuple[BenchCase, ...]:

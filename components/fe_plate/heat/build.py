@@ -1,4 +1,4 @@
-"""A conducting body as its parameters describe it: mesh, conductances, what is held."""
+"""A conducting body as its parameters describe it: mesh, conductances, fixed temperatures."""
 
 import numpy as np
 
@@ -14,45 +14,47 @@ from quintet.interfaces.errors import SceneError
 
 def build(params: FeHeatParams) -> Model:
     """Build all that never changes."""
-    made = mesh(params.parts, 3, params.node_sets)
-    nodes = len(made.node)
-    begin, at = incident(made.corner, nodes)
-    first, column = pattern(made.corner, begin, at)
+    grid = mesh(params.parts, 3, params.node_sets)
+    nodes = len(grid.node)
+    begin, at = incident(grid.corner, nodes)
+    first, column = pattern(grid.corner, begin, at)
     matrix = Matrix(first, column, np.empty(len(column)), np.empty(nodes))
-    conductivity = np.array([part.conductivity for part in params.parts])[made.part]
-    capacity = np.array([part.capacity for part in params.parts])[made.part]
+    conductivity = np.array([part.conductivity for part in params.parts])[grid.part]
+    capacity = np.array([part.capacity for part in params.parts])[grid.part]
     nodal, volume = np.empty(nodes), np.empty(nodes)
-    worst = write_matrix(made.node, made.corner, conductivity, capacity, matrix, nodal, volume)
+    worst = write_matrix(grid.node, grid.corner, conductivity, capacity, matrix, nodal, volume)
     if worst >= 0:
-        middle = np.array2string(made.node[made.corner[worst]].mean(axis=0), precision=4)
+        middle = np.array2string(grid.node[grid.corner[worst]].mean(axis=0), precision=4)
         raise SceneError(
             f"element {worst} at {middle} m must have a volume above 0 at each of its points; it "
             "has not: it is inside out. Turn its corners, or mesh it anew."
         )
     part = np.empty(nodes, np.int64)
-    part[made.corner] = made.part[:, None]
-    holder = _holders(params, made)
+    part[grid.corner] = grid.part[:, None]
+    holder = _holders(params, grid)
     _require_held(params, part, holder)
     free = (holder < 0).astype(np.float64)
-    return Model(made, matrix, nodal, volume, part, free, holder, _sources(params, made))
+    return Model(grid, matrix, nodal, volume, part, free, holder, _sources(params, grid))
 
 
-def _holders(params: FeHeatParams, made: Mesh) -> Whole:
+def _holders(params: FeHeatParams, grid: Mesh) -> Whole:
     """Number of what holds each node (n,), -1 of none."""
-    found = np.full(len(made.node), -1)
-    for number, one in enumerate(params.held):
-        rows = _held_by(one, made, f"held.{number}")
+    holder = np.full(len(grid.node), -1)
+    for number, fixed in enumerate(params.fixed_temperatures):
+        rows = _held_by(fixed, grid, f"fixed_temperatures.{number}")
         if not rows.any():
-            raise SceneError(f"held.{number}: it must hold a node; it holds none. Correct the box.")
-        found[rows] = number
-    return found
+            raise SceneError(
+                f"fixed_temperatures.{number}: it must hold a node; it holds none. Correct the box."
+            )
+        holder[rows] = number
+    return holder
 
 
-def _held_by(one: FixedTemperature, made: Mesh, where: str) -> Array:
-    if one.point is None:
-        box = Faces(lowest=one.lowest, highest=one.highest, node_set=one.node_set)
-        return np.asarray(chosen(made, box, where))
-    nearest = ((made.node - one.point) ** 2).sum(axis=1)
+def _held_by(fixed: FixedTemperature, grid: Mesh, where: str) -> Array:
+    if fixed.point is None:
+        box = Faces(lowest=fixed.lowest, highest=fixed.highest, node_set=fixed.node_set)
+        return np.asarray(chosen(grid, box, where))
+    nearest = ((grid.node - fixed.point) ** 2).sum(axis=1)
     return np.asarray(np.arange(len(nearest)) == np.argmin(nearest))
 
 
@@ -61,29 +63,29 @@ def _require_held(params: FeHeatParams, part: Whole, holder: Whole) -> None:
     for number in range(len(params.parts)):
         if params.steady and not (holder[part == number] >= 0).any():
             raise SceneError(
-                f"parts.{number}: to be steady it must be held at a temperature somewhere; it is "
-                "not. Add held, or let it not be steady."
+                f"parts.{number}: a steady part needs a fixed temperature somewhere; it has "
+                "none. Add fixed_temperatures, or leave out steady."
             )
 
 
-def _sources(params: FeHeatParams, made: Mesh) -> Array:
+def _sources(params: FeHeatParams, grid: Mesh) -> Array:
     """Heat (n,) W of all fluxes at each node."""
-    found = np.zeros(len(made.node))
-    for number, one in enumerate(params.fluxes):
-        faces = faces_in(made, [one.faces], f"fluxes.{number}")
+    sources = np.zeros(len(grid.node))
+    for number, entry in enumerate(params.fluxes):
+        faces = faces_in(grid, [entry.faces], f"fluxes.{number}")
         if not len(faces):
             raise SceneError(
                 f"fluxes.{number}: its box must hold an outer face; none is. Correct the box."
             )
-        side = made.side[faces]
-        np.add.at(found, side, one.flux * face_shares(made.node[side]))
-    return found
+        side = grid.side[faces]
+        np.add.at(sources, side, entry.flux * face_shares(grid.node[side]))
+    return sources
 
 
 def initial_state(params: FeHeatParams, model: Model, surface: int) -> State:
-    """Temperatures of the parts at the start, and of what is held."""
-    temperature = np.array([one.temperature for one in params.parts])[model.part]
-    held = np.array([one.temperature for one in params.held], float)
+    """Temperatures of the parts at the start, and fixed ones."""
+    temperature = np.array([part.temperature for part in params.parts])[model.part]
+    held = np.array([fixed.temperature for fixed in params.fixed_temperatures], float)
     is_held = model.holder >= 0
     temperature[is_held] = held[model.holder[is_held]]
     judged = np.zeros((len(params.parts), 2))

@@ -22,12 +22,12 @@ MOST = 20_000  # iterations
 
 
 class FeHeat(Component):
-    """Finds the temperatures of a body from what holds and heats it.
+    """Finds the temperatures of a body from fixed temperatures and heat fluxes.
 
     Parameters
     ----------
     params : FeHeatParams
-        Parts, what is held, fluxes.
+        Parts, fixed temperatures, fluxes.
     """
 
     Params: type[FeHeatParams] = FeHeatParams
@@ -49,7 +49,7 @@ class FeHeat(Component):
         self.surface = np.unique(faces)  # nodes
         self.corner = np.searchsorted(self.surface, faces)  # (f, 4) among these
         self.gauges = [
-            int(np.argmin(((mesh.node - one) ** 2).sum(axis=1))) for one in params.node_gauges
+            int(np.argmin(((mesh.node - place) ** 2).sum(axis=1))) for place in params.node_gauges
         ]
         self.state = initial_state(params, self.model, len(self.surface))
         self.start = self.state.temperature.copy()  # K
@@ -63,7 +63,7 @@ class FeHeat(Component):
         }
 
     def prepare(self, fields: Fields) -> None:
-        """Compile the kernels of a step: what is there is found to be solved."""
+        """Compile by solving the present, already converged state."""
         still = self.state.temperature.copy()
         flow = np.zeros_like(still)
         solve(self.model.conductance, flow, self.model.free, flow, still, math.inf, 0)
@@ -130,13 +130,13 @@ class FeHeat(Component):
 
     def _solved(self, shift: Array, load: Array, guess: Array) -> Array:
         model = self.model
-        made, left = solve(
+        iterations, residual = solve(
             model.conductance, shift, model.free, load, guess, self.params.tolerance, MOST
         )
-        if not left <= self.params.tolerance:
+        if not residual <= self.params.tolerance:
             raise StepError(
-                f"temperatures: {made} iterations must bring the residual below "
-                f"{self.params.tolerance:g}; it is {left:.3g}. Raise the tolerance, or make "
+                f"temperatures: {iterations} iterations must bring the residual below "
+                f"{self.params.tolerance:g}; it is {residual:.3g}. Raise the tolerance, or make "
                 "elements of more equal shape."
             )
         return guess
@@ -144,36 +144,36 @@ class FeHeat(Component):
     def give(self, wanted: Keys) -> Fields:
         """Copy out temperatures and heat flows."""
         temperature, model = self.state.temperature, self.model
-        given: dict[str, Array] = {}
+        values: dict[str, Array] = {}
         if "node_temperature.temperature" in wanted:
-            given["node_temperature.temperature"] = temperature[self.surface]
+            values["node_temperature.temperature"] = temperature[self.surface]
         if "parts.temperature" in wanted:
             weighed = np.bincount(model.part, model.volume * temperature)
-            given["parts.temperature"] = weighed / np.bincount(model.part, model.volume)
+            values["parts.temperature"] = weighed / np.bincount(model.part, model.volume)
         if "held.heat_flow" in wanted:
-            given["held.heat_flow"] = self.state.held.copy()
+            values["held.heat_flow"] = self.state.held.copy()
         if "node_gauge.temperature" in wanted:
-            given["node_gauge.temperature"] = temperature[self.gauges]
-        return given
+            values["node_gauge.temperature"] = temperature[self.gauges]
+        return values
 
     def save(self) -> Fields:
         """Copy out all state."""
         return {name: array.copy() for name, array in self.state._asdict().items()}
 
     def load(self, state: Fields) -> None:
-        """Come back to a saved state, bit for bit."""
+        """Restore a saved state, bit for bit."""
         for name, array in self.state._asdict().items():
             array[:] = state[name]
 
     def totals(self) -> Totals:
         """Mass, heat above 0 K, and heat of sources and held nodes; steady parts store none."""
         parts = np.bincount(self.model.part, self.model.volume)  # m3
-        mass = float(parts @ [one.density or 0.0 for one in self.params.parts])
+        mass = float(parts @ [part.density or 0.0 for part in self.params.parts])
         stored = 0.0 if self.params.steady else float(self.model.capacity @ self.state.temperature)
         return Totals(mass=mass, internal=stored, work=float(self.state.outside[0]))
 
     def warnings(self) -> dict[str, str]:
-        """Steps that pass over the transient of a part."""
+        """Steps too long to resolve the transient of a part."""
         return warnings(self.state.judged, self.times)
 
     def notes(self) -> tuple[str, ...]:

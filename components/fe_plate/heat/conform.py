@@ -22,7 +22,7 @@ FACE_NODES = 9  # of its other end
 
 def cases() -> tuple[ConformCase, ...]:
     """A block that is insulated; one that is held at an end; the same, steady."""
-    held = {"parts": [PART], "held": [{**END, "temperature": 300.0}]}
+    held = {"parts": [PART], "fixed_temperatures": [{**END, "temperature": 300.0}]}
     far = {"lowest": [0.03, 0.0, 0.0], "highest": [0.03, 0.02, 0.02]}
     coupled = {**held, "coupled_faces": [far], "node_gauges": [[0.01, 0.0, 0.0]]}
     return (

@@ -89,14 +89,14 @@ def write_matrix(
     nodal, volume : (n,) float arrays, J/K, m3
         Written.
     """
-    x, own = np.empty((8, 3)), np.empty((8, 8))
+    x, element = np.empty((8, 3)), np.empty((8, 8))
     shape, natural, gradient = np.empty(8), np.empty((8, 3)), np.empty((8, 3))
     matrix.value[:], matrix.diagonal[:], nodal[:], volume[:] = 0.0, 0.0, 0.0, 0.0
     for e in range(corner.shape[0]):
         for a in range(8):
             for k in range(3):
                 x[a, k] = node[corner[e, a], k]
-        own[:] = 0.0
+        element[:] = 0.0
         for q in range(8):
             weight = shapes_at(
                 GAUSS * XI[q], GAUSS * ETA[q], GAUSS * ZETA[q], x, shape, natural, gradient
@@ -109,13 +109,13 @@ def write_matrix(
                 for b in range(8):
                     along = gradient[a, 0] * gradient[b, 0] + gradient[a, 1] * gradient[b, 1]
                     along += gradient[a, 2] * gradient[b, 2]
-                    own[a, b] += conductivity[e] * weight * along
+                    element[a, b] += conductivity[e] * weight * along
         for a in range(8):
             i = corner[e, a]
             for b in range(8):
                 if b != a:
-                    matrix.value[entry(matrix, i, corner[e, b])] += own[a, b]
-                    matrix.diagonal[i] -= own[a, b]
+                    matrix.value[entry(matrix, i, corner[e, b])] += element[a, b]
+                    matrix.diagonal[i] -= element[a, b]
     return -1
 
 
@@ -123,24 +123,24 @@ def write_matrix(
 def conduct(matrix: Matrix, temperature: Array, flow: Array) -> None:
     """Write the heat (n,) W that flows into each node; none where all are alike, to the bit."""
     for i in range(flow.shape[0]):
-        own, summed = temperature[i], 0.0
+        here, summed = temperature[i], 0.0
         for k in range(matrix.first[i], matrix.first[i + 1]):
-            summed += matrix.value[k] * (own - temperature[matrix.column[k]])
+            summed += matrix.value[k] * (here - temperature[matrix.column[k]])
         flow[i] = summed
 
 
 @njit(**INNER)
-def dot(one, other):  # type: ignore[no-untyped-def]
+def dot(left, right):  # type: ignore[no-untyped-def]
     """Scalar product, in four sums side by side."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
-    whole = one.shape[0] // 4 * 4
+    whole = left.shape[0] // 4 * 4
     for i in range(0, whole, 4):
-        a += one[i] * other[i]
-        b += one[i + 1] * other[i + 1]
-        c += one[i + 2] * other[i + 2]
-        d += one[i + 3] * other[i + 3]
-    for i in range(whole, one.shape[0]):
-        a += one[i] * other[i]
+        a += left[i] * right[i]
+        b += left[i + 1] * right[i + 1]
+        c += left[i + 2] * right[i + 2]
+        d += left[i + 3] * right[i + 3]
+    for i in range(whole, left.shape[0]):
+        a += left[i] * right[i]
     return (a + b) + (c + d)
 
 
@@ -187,13 +187,13 @@ def solve(
     if size == 0.0 and left > 0.0:  # nothing warms it: all are 0 K
         x[:] = (1.0 - free) * x
         return 0, 0.0
-    rho, made = 0.0, 0
+    rho, iterations = 0.0, 0
     p[:] = 0.0
-    while left > enough and made < most:
+    while left > enough and iterations < most:
         for i in range(n):
             z[i] = r[i] / (matrix.diagonal[i] + shift[i])
         last, rho = rho, dot(r, z)
-        beta = rho / last if made > 0 else 0.0
+        beta = rho / last if iterations > 0 else 0.0
         for i in range(n):
             p[i] = z[i] + beta * p[i]
         conduct(matrix, p, q)
@@ -204,5 +204,5 @@ def solve(
             x[i] += alpha * p[i]
             r[i] -= alpha * q[i]
         left = dot(r, r)
-        made += 1
-    return made, np.sqrt(left / size) if size > 0.0 else 0.0
+        iterations += 1
+    return iterations, np.sqrt(left / size) if size > 0.0 else 0.0

@@ -42,11 +42,11 @@ def shapes_at(xi, eta, zeta, x, shape, natural, gradient):  # type: ignore[no-un
     Hughes, The Finite Element Method (1987), section 3.5.
     """
     for a in range(8):
-        one, two, three = 1.0 + XI[a] * xi, 1.0 + ETA[a] * eta, 1.0 + ZETA[a] * zeta
-        shape[a] = 0.125 * one * two * three
-        natural[a, 0] = 0.125 * XI[a] * two * three
-        natural[a, 1] = 0.125 * ETA[a] * one * three
-        natural[a, 2] = 0.125 * ZETA[a] * one * two
+        p, q, r = 1.0 + XI[a] * xi, 1.0 + ETA[a] * eta, 1.0 + ZETA[a] * zeta
+        shape[a] = 0.125 * p * q * r
+        natural[a, 0] = 0.125 * XI[a] * q * r
+        natural[a, 1] = 0.125 * ETA[a] * p * r
+        natural[a, 2] = 0.125 * ZETA[a] * p * q
     j = np.zeros((3, 3))  # dx_k / dξ_l
     for a in range(8):
         for k in range(3):
@@ -74,11 +74,11 @@ def face_shares(corners: Array) -> Array:
     Hughes, The Finite Element Method (1987), section 3.8 (Gauss's 2 x 2 points).
     """
     xi, eta = XI[:4], ETA[:4]
-    found = np.zeros(corners.shape[:2])
+    shares = np.zeros(corners.shape[:2])
     for at, by in ((-GAUSS, -GAUSS), (GAUSS, -GAUSS), (GAUSS, GAUSS), (-GAUSS, GAUSS)):
         shape = 0.25 * (1.0 + xi * at) * (1.0 + eta * by)
         along = np.einsum("a,fak->fk", 0.25 * xi * (1.0 + eta * by), corners)
         across = np.einsum("a,fak->fk", 0.25 * eta * (1.0 + xi * at), corners)
         area = np.linalg.norm(np.cross(along, across), axis=1)
-        found += area[:, None] * shape
-    return found
+        shares += area[:, None] * shape
+    return shares

@@ -1,6 +1,6 @@
 """What a scene says about a body that conducts heat."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -69,7 +69,7 @@ class ConductingPart:
 
     @property
     def capacity(self) -> float:
-        """Of a cubic metre [J/(m3 K)]; 0 if it is not told."""
+        """Of a cubic metre [J/(m3 K)]; 0 if it is left out."""
         return (self.density or 0.0) * (self.specific_heat or 0.0)
 
 
@@ -96,11 +96,12 @@ class FixedTemperature:
     temperature: NotNegative
 
     def __post_init__(self) -> None:
-        box = sum(one is not None for one in (self.lowest, self.highest))
+        box = sum(corner is not None for corner in (self.lowest, self.highest))
         ways = (self.point is not None, box > 0, bool(self.node_set))
         if sum(ways) != 1 or box == 1:
             raise ValueError(
-                "held: nodes are chosen by a point, by lowest and highest of a box, or by a "
+                "fixed_temperatures: nodes are chosen by a point, by lowest and highest of a "
+                "box, or by a "
                 f"node_set; found {sum(ways)} of these. Give one."
             )
 
@@ -123,7 +124,7 @@ class Flux:
 
 @parameters
 class FeHeatParams:
-    """A body that conducts heat, what holds its temperatures and what heats it.
+    """A body that conducts heat, its fixed temperatures and its heat fluxes.
 
     Parameters
     ----------
@@ -131,8 +132,8 @@ class FeHeatParams:
         What it is made of; parts do not touch each other.
     node_sets
         Nodes by name.
-    held
-        Nodes at given temperatures; of those that are named twice the last holds.
+    fixed_temperatures
+        Nodes at given temperatures; of nodes that are named twice the last entry counts.
     fluxes
         Heat through outer faces; all others are insulated.
     coupled_faces
@@ -147,9 +148,11 @@ class FeHeatParams:
         Of the linear systems: residual over right side.
     """
 
+    RENAMED: ClassVar = {"held": "fixed_temperatures"}
+
     parts: tuple[ConductingPart, ...]
     node_sets: tuple[NodeSet, ...] = ()
-    held: tuple[FixedTemperature, ...] = ()
+    fixed_temperatures: tuple[FixedTemperature, ...] = ()
     fluxes: tuple[Flux, ...] = ()
     coupled_faces: tuple[Faces, ...] = ()
     node_gauges: tuple[Vector, ...] = ()
@@ -163,8 +166,8 @@ class FeHeatParams:
         for number, part in enumerate(self.parts):
             if not self.steady and part.capacity == 0.0:
                 raise ValueError(
-                    f"parts.{number}: what is not steady must have density and specific_heat. "
+                    f"parts.{number}: without steady, a part must have density and specific_heat. "
                     "Give both, or steady = true."
                 )
         if self.steady and self.longest_step is not None:
-            raise ValueError("longest_step has no meaning where all is steady. Remove one.")
+            raise ValueError("longest_step has no meaning with steady = true. Remove one.")

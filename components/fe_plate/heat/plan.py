@@ -12,6 +12,6 @@ BYTES = 700.0  # of an element
 
 def plan(params: FeHeatParams) -> Plan:
     """What a run will need."""
-    count = sum(one.count for one in params.parts)
+    count = sum(part.count for part in params.parts)
     notes = mesh_notes(params.parts)
     return Plan(count, params.longest_step or math.inf, RATE, BYTES, notes=notes)

@@ -1,4 +1,4 @@
-"""Arrays of a conducting body: the matrix, what is held, and temperatures."""
+"""Arrays of a conducting body: the matrix, fixed nodes, and temperatures."""
 
 from typing import NamedTuple
 

@@ -109,20 +109,20 @@ def mix(work, first, share, forward):  # type: ignore[no-untyped-def]
             mean += work[VOLUME * LANES + first + k] * sign(k, axis)
         mean /= whole
         other, third = (axis + 1) % 3, (axis + 2) % 3
-        own, others = LOCAL + axis, (LOCAL + other, LOCAL + third)
+        along, others = LOCAL + axis, (LOCAL + other, LOCAL + third)
         slope = 0.0
         for k in range(POINTS):
             weight = work[VOLUME * LANES + first + k] * (sign(k, axis) - mean)
             if forward:
                 value = work[others[0] * LANES + first + k] + work[others[1] * LANES + first + k]
             else:
-                value = work[own * LANES + first + k]
+                value = work[along * LANES + first + k]
             slope += weight * value
         slope *= -share / whole
         for k in range(POINTS):
             more = (sign(k, axis) - mean) * slope
             if forward:
-                work[own * LANES + first + k] += more
+                work[along * LANES + first + k] += more
             else:
                 work[others[0] * LANES + first + k] += more
                 work[others[1] * LANES + first + k] += more

@@ -184,16 +184,16 @@ def put_nine(work, row, k, values):  # type: ignore[no-untyped-def]
 @njit(**INLINED)
 def greatest(work, row):  # type: ignore[no-untyped-def]
     """Greatest number of a row; within another loop it would keep that from becoming vectors."""
-    found = work[row * LANES]
+    largest = work[row * LANES]
     for k in range(1, LANES):
-        found = max(found, work[row * LANES + k])
-    return found
+        largest = max(largest, work[row * LANES + k])
+    return largest
 
 
 @njit(**INLINED)
 def least(work, row):  # type: ignore[no-untyped-def]
     """Least number of a row."""
-    found = work[row * LANES]
+    smallest = work[row * LANES]
     for k in range(1, LANES):
-        found = min(found, work[row * LANES + k])
-    return found
+        smallest = min(smallest, work[row * LANES + k])
+    return smallest

@@ -84,21 +84,21 @@ def step_eight_points(
     step, smallest, worst = HUGE, HUGE, first * LANES
     for block in range(first, last):
         begin, at = block * PER, block * LANES
-        own, before = points[at * POINT_ROWS : (at + LANES) * POINT_ROWS], start[at : at + LANES]
-        erode(own)
+        rows, before = points[at * POINT_ROWS : (at + LANES) * POINT_ROWS], start[at : at + LANES]
+        erode(rows)
         load_corners(position, corner, begin, PER, model.depth, X, work)
         load_corners(velocity, corner, begin, PER, 0.0, V, work)
         broadcast(work)
         point_geometry(work, dt)
-        assume_strains(own, work, law)
-        compare_volumes(own, before, work, law, dt)
+        assume_strains(rows, work, law)
+        compare_volumes(rows, before, work, law, dt)
         for k in range(LANES):
             ratio = work[VOLUME * LANES + k] / before[k]
-            if ratio < smallest and own[ACTIVE * LANES + k] > 0.0:
+            if ratio < smallest and rows[ACTIVE * LANES + k] > 0.0:
                 smallest, worst = ratio, block * LANES + k
-        step = min(step, advance_material(own, work, law, resistance, dt))
-        spread_stresses(own, work, law)
-        sum_forces(own, work)
+        step = min(step, advance_material(rows, work, law, resistance, dt))
+        spread_stresses(rows, work, law)
+        sum_forces(rows, work)
         take_from_corners(X, work, begin, filled[block], target, forces)
     return step, smallest, worst
 
@@ -212,9 +212,9 @@ def compare_volumes(points, start, work, law, dt):  # type: ignore[no-untyped-de
             points[at] += dt * (trace_at(work, k) - mean) if live else 0.0
             ratio = now / before * exponential(points[at])
             ratio = 1.0 if abs(ratio - 1.0) < ROUNDING else ratio
-            own = work[VOLUME * LANES + k] / start[k]
+            point_ratio = work[VOLUME * LANES + k] / start[k]
             work[RATIO * LANES + k] = ratio if live else 1.0
-            work[SPECIFIC * LANES + k] = (own if live else 1.0) / law.density
+            work[SPECIFIC * LANES + k] = (point_ratio if live else 1.0) / law.density
             for row in range(GRADIENT * LANES, (GRADIENT + 9) * LANES, LANES):
                 work[row + k] = work[row + k] if live else 0.0
 

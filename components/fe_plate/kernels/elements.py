@@ -59,8 +59,8 @@ def step_elements(
 
     Returns
     -------
-    float, s : largest step that all of them bear
-    float, 1 : least volume over that at the start, of those that are left
+    float, s : stable step of all of them
+    float, 1 : least volume over that at the start, of those not eroded
     int : place of the element that has it
     """
     # Arrays are taken out of their tuples once: each time costs a count of references.
@@ -74,16 +74,16 @@ def step_elements(
     for block in range(first, last):
         begin = block * LANES
         # Rows at places that are known when this is compiled: else loops do not become vectors.
-        own = points[begin * POINT_ROWS : (begin + LANES) * POINT_ROWS]
-        hung = springs[begin * SPRING_ROWS : (begin + LANES) * SPRING_ROWS]
+        rows = points[begin * POINT_ROWS : (begin + LANES) * POINT_ROWS]
+        patterns = springs[begin * SPRING_ROWS : (begin + LANES) * SPRING_ROWS]
         load_corners(position, corner, begin, LANES, model.depth, X, work)
         load_corners(velocity, corner, begin, LANES, 0.0, V, work)
         mean_geometry(work, dt)
-        ratio = compare_volumes(own, start[begin : begin + LANES], work, law)
+        ratio = compare_volumes(rows, start[begin : begin + LANES], work, law)
         if ratio < smallest:
             smallest, worst = ratio, smallest_of(work, begin)
-        step = min(step, advance_material(own, work, law, resistance, dt))
-        hold_patterns(own, hung, work, stiff, dt)
+        step = min(step, advance_material(rows, work, law, resistance, dt))
+        hold_patterns(rows, patterns, work, stiff, dt)
         take_from_corners(X, work, begin, filled[block], target, forces)
     return step, smallest, worst
 
@@ -136,7 +136,7 @@ def hold_patterns(points, springs, work, stiff, dt):  # type: ignore[no-untyped-
         n2, w2 = loaded(three(springs, 3, k), three(work, RATE + 3, k), turn, loads)
         n3, w3 = loaded(three(springs, 6, k), three(work, RATE + 6, k), turn, loads)
         n4, w4 = loaded(three(springs, 9, k), three(work, RATE + 9, k), turn, loads)
-        n1, n2, n3, n4 = kept(n1, live), kept(n2, live), kept(n3, live), kept(n4, live)
+        n1, n2, n3, n4 = masked(n1, live), masked(n2, live), masked(n3, live), masked(n4, live)
         put_three(springs, 0, k, n1)
         put_three(springs, 3, k, n2)
         put_three(springs, 6, k, n3)
@@ -177,7 +177,7 @@ def loaded(old, rate, turn, loads):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def kept(force, live):  # type: ignore[no-untyped-def]
+def masked(force, live):  # type: ignore[no-untyped-def]
     """Give a force, none of an eroded element."""
     return force[0] if live else 0.0, force[1] if live else 0.0, force[2] if live else 0.0
 

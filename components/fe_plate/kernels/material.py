@@ -64,7 +64,7 @@ def advance_material(points, work, law, resistance, dt):  # type: ignore[no-unty
         strain_elastically(points, work, law, dt)
         if return_to_flow_stress(points, work, law, dt):
             yield_plastically(points, work, law, dt)
-        press(points, work, law, dt)
+        update_pressure(points, work, law, dt)
     else:
         take_stresses(points, work)
     fracture(points, work, law)
@@ -101,7 +101,7 @@ def yield_plastically(points, work, law, dt):  # type: ignore[no-untyped-def]
 
 
 @njit(**INLINED)
-def press(points, work, law, dt):  # type: ignore[no-untyped-def]
+def update_pressure(points, work, law, dt):  # type: ignore[no-untyped-def]
     """Advance pressures, energies and temperatures, and the deviators of points that bear any."""
     for k in range(LANES):
         gradient = nine(work, GRADIENT, k)

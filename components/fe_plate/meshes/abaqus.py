@@ -33,12 +33,12 @@ def require_readable(path: Path) -> None:
                     wrong = f"names in {_name(options)}"
                     _refuse(path, "sets of nodes by numbers", wrong, "Write the numbers.")
     if nodes > 1:
-        found = f"{nodes}, of which the reader keeps the last alone"
-        _refuse(path, "one block *NODE", found, "Write all nodes into one block.")
+        finding = f"{nodes}, of which the reader keeps the last alone"
+        _refuse(path, "one block *NODE", finding, "Write all nodes into one block.")
     for name, count in names.items():
         if count > 1:
-            found = f"{count} of {name}, of which the reader keeps the last alone"
-            _refuse(path, "sets of different names", found, "Rename or merge them.")
+            finding = f"{count} of {name}, of which the reader keeps the last alone"
+            _refuse(path, "sets of different names", finding, "Rename or merge them.")
 
 
 def _name(options: list[str]) -> str:
@@ -53,5 +53,5 @@ def _is_number(line: str) -> bool:
     return all(word.strip().isdigit() for word in line.strip(",").split(","))
 
 
-def _refuse(path: Path, rule: str, found: str, cure: str) -> None:
-    raise SceneError(f"file {path.name} must have {rule}; found {found}. {cure}")
+def _refuse(path: Path, rule: str, finding: str, cure: str) -> None:
+    raise SceneError(f"file {path.name} must have {rule}; found {finding}. {cure}")

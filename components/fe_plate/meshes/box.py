@@ -21,8 +21,8 @@ def box(part: Shape) -> tuple[Array, Whole]:
         return node, corner
     x, y, z = cut_out(part)
     left = ~(x[:, None, None] & y[None, :, None] & z[None, None, :])
-    kept, numbers = np.unique(corner[left.ravel()], return_inverse=True)
-    return node[kept], numbers.reshape(-1, 8)
+    used, numbers = np.unique(corner[left.ravel()], return_inverse=True)
+    return node[used], numbers.reshape(-1, 8)
 
 
 def rectangle(part: Shape) -> tuple[Array, Whole]:
@@ -38,5 +38,5 @@ def rectangle(part: Shape) -> tuple[Array, Whole]:
     node = np.stack([across, np.zeros_like(across), up], axis=-1).reshape(-1, 3)
     number = np.arange(len(node)).reshape(nx + 1, nz + 1)
     around = (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1])
-    quad = np.stack([one.ravel() for one in around], axis=1)
+    quad = np.stack([index.ravel() for index in around], axis=1)
     return node, np.concatenate([quad, quad], axis=1)

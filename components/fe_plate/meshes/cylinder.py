@@ -10,21 +10,21 @@ ROUND = 0.5  # how far its rim goes from a square (0) to a circle (1)
 ALONG = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}  # places of the disc's axes and of its own
 
 
-def cylinder(given: Cylinder) -> tuple[Array, Whole]:
+def cylinder(shape: Cylinder) -> tuple[Array, Whole]:
     """Nodes (n, 3) m and corners (e, 8) of a cylinder, or of its quarter."""
-    core, rings, layers = given.elements
+    core, rings, layers = shape.elements
     flat, quad = quarter_disc(core, rings)
-    if not given.quarter:
+    if not shape.quarter:
         flat, quad = whole_disc(flat, quad)
-    flat = given.radius * flat
-    height = np.linspace(0.0, given.length, layers + 1)
+    flat = shape.radius * flat
+    height = np.linspace(0.0, shape.length, layers + 1)
     node = np.empty((layers + 1, len(flat), 3))
-    first, second, own = ALONG[given.axis]
+    first, second, along = ALONG[shape.axis]
     node[:, :, first], node[:, :, second] = flat[:, 0], flat[:, 1]
-    node[:, :, own] = height[:, None]
+    node[:, :, along] = height[:, None]
     level = len(flat) * np.arange(layers)[:, None, None]
     corner = np.concatenate([quad + level, quad + level + len(flat)], axis=2)
-    return node.reshape(-1, 3) + given.base, corner.reshape(-1, 8)
+    return node.reshape(-1, 3) + shape.base, corner.reshape(-1, 8)
 
 
 def quarter_disc(core: int, rings: int) -> tuple[Array, Whole]:

@@ -39,12 +39,12 @@ def read(file: str, coincident: str = "refuse") -> FileMesh:
         Whether nodes of different elements at the same place are refused ("refuse"), joined
         ("join"), or left apart ("keep").
     """
-    name, found = Path(file).name, _parsed(file)
-    corner = _solids(name, found)
-    given = np.asarray(found.points, np.float64)
-    points = np.zeros((len(given), 3))
-    points[:, : given.shape[1]] = given
-    notes = _left_out(name, found, np.unique(corner))
+    name, source = Path(file).name, _parsed(file)
+    corner = _solids(name, source)
+    raw = np.asarray(source.points, np.float64)
+    points = np.zeros((len(raw), 3))
+    points[:, : raw.shape[1]] = raw
+    notes = _left_out(name, source, np.unique(corner))
     same = np.arange(len(points))
     if coincident != "keep":
         same = _same_places(name, points, corner, coincident)
@@ -56,12 +56,12 @@ def read(file: str, coincident: str = "refuse") -> FileMesh:
             f"mesh {name}: it is in {count} pieces that share no node; they do not feel each other."
         )
     sets = {}
-    for key, nodes in found.point_sets.items():
+    for key, nodes in source.point_sets.items():
         members = np.unique(same[np.asarray(nodes, np.int64)])
         sets[key] = np.flatnonzero(np.isin(used, members))
         if lost := len(members) - len(sets[key]):
             notes.append(f"mesh {name}: {lost} nodes of its set {key} belong to no solid.")
-    return FileMesh(points[used], corner, sets, _groups(name, found, notes), tuple(notes))
+    return FileMesh(points[used], corner, sets, _groups(name, source, notes), tuple(notes))
 
 
 def _parsed(file: str) -> Any:
@@ -86,10 +86,10 @@ def _parsed(file: str) -> Any:
         ) from error
 
 
-def _solids(name: str, found: Any) -> Whole:
+def _solids(name: str, source: Any) -> Whole:
     """Corners (e, 8) of all blocks of 8-node solids; other solids are refused."""
     kinds, others = Counter[str](), Counter[str]()
-    for block in found.cells:
+    for block in source.cells:
         kinds[block.type] += len(block.data)
         if block.dim == 3 and block.type != SOLID:
             others[block.type] += len(block.data)
@@ -103,14 +103,14 @@ def _solids(name: str, found: Any) -> Whole:
             f"file {name} must have no other solids than {SOLID}, for they would be holes; found "
             f"{_listed(others)} beside {kinds[SOLID]} {SOLID}. Mesh it with 8-node solids alone."
         )
-    cells = [np.asarray(block.data, np.int64) for block in found.cells if block.type == SOLID]
+    cells = [np.asarray(block.data, np.int64) for block in source.cells if block.type == SOLID]
     return np.concatenate(cells)
 
 
-def _left_out(name: str, found: Any, used: Whole) -> list[str]:
+def _left_out(name: str, source: Any, used: Whole) -> list[str]:
     """Notes of faces, edges and points beside the solids; shells and beams are refused."""
     marks, lost = Counter[str](), Counter[str]()
-    for block in found.cells:
+    for block in source.cells:
         if block.type == SOLID or not len(block.data):
             continue
         data = np.asarray(block.data)
@@ -152,12 +152,12 @@ def _same_places(name: str, points: Array, corner: Whole, coincident: str) -> Wh
     return same
 
 
-def _groups(name: str, found: Any, notes: list[str]) -> dict[str, Whole]:
+def _groups(name: str, source: Any, notes: list[str]) -> dict[str, Whole]:
     """Solids of each named set of elements, counted through all blocks of solids."""
     groups = {}
-    for key, blocks in found.cell_sets.items():
+    for key, blocks in source.cell_sets.items():
         rows, first, lost = [np.zeros(0, np.int64)], 0, 0
-        for block, chosen in zip(found.cells, blocks, strict=True):
+        for block, chosen in zip(source.cells, blocks, strict=True):
             members = np.asarray([] if chosen is None else chosen, np.int64)
             if block.type == SOLID:
                 rows.append(first + members)

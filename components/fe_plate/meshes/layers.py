@@ -25,17 +25,17 @@ def fewest_layers(part: Part, dimensions: int = 3) -> int:
         across = (2 * (core + rings), 2.0 * shape.radius)
         return _fewest([across, (layers, shape.length)])
     assert part.lowest is not None and part.highest is not None and part.elements is not None
-    found = []
+    extents = []
     for along, cut in enumerate(cut_out(part)):
         if dimensions == 2 and along == 1:
             continue
         extent = part.highest[along] - part.lowest[along]
-        found.append((part.elements[along], extent))
+        extents.append((part.elements[along], extent))
         # Beside a cutout the part is as thin as what is left there.
         for left in (int(np.argmax(cut)), int(np.argmax(cut[::-1]))) if cut.any() else ():
             if left:
-                found.append((left, extent * left / part.elements[along]))
-    return _fewest(found)
+                extents.append((left, extent * left / part.elements[along]))
+    return _fewest(extents)
 
 
 def _fewest(extents: list[tuple[int, float]]) -> int:
@@ -65,9 +65,9 @@ def twins(corner: Whole) -> Whole:
     side = np.sort(corner[:, SIDES].reshape(-1, 4), axis=1)
     order = np.lexsort(side.T)
     same = np.flatnonzero((side[order[1:]] == side[order[:-1]]).all(axis=1))
-    found = np.full(len(side), -1)
-    found[order[same]], found[order[same + 1]] = order[same + 1], order[same]
-    return found
+    twin = np.full(len(side), -1)
+    twin[order[same]], twin[order[same + 1]] = order[same + 1], order[same]
+    return twin
 
 
 def _middles(node: Array, corner: Whole, side: Whole) -> Array:

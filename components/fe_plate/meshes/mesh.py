@@ -53,30 +53,30 @@ def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = 
         elif part.cylinder is not None:
             node, corner = cylinder(part.cylinder)
         elif part.mesh is not None:
-            found = part.mesh.placed()
-            node, corner = found.node, found.corner
-            notes += found.notes
-            for name, rows in found.sets.items():
+            loaded = part.mesh.placed()
+            node, corner = loaded.node, loaded.corner
+            notes += loaded.notes
+            for name, rows in loaded.sets.items():
                 named[name] = np.append(named.get(name, rows[:0]), first + rows)
-            for name, rows in found.groups.items():
+            for name, rows in loaded.groups.items():
                 groups[name] = np.append(groups.get(name, rows[:0]), count + rows)
         else:
             node, corner = box(part)
         nodes.append(node)
         corners.append(corner + first)
         first, count = first + len(node), count + len(corner)
-    number = np.repeat(np.arange(len(parts)), [len(one) for one in corners])
+    number = np.repeat(np.arange(len(parts)), [len(rows) for rows in corners])
     corner = np.concatenate(corners)
     outer = outer_sides(corner) if dimensions == 3 else outer_edges(corner)
     node = np.concatenate(nodes)
     _require_apart(node, corner, number, outer[0])
-    for place, one in enumerate(sets):
-        if one.name in named:
+    for place, node_set in enumerate(sets):
+        if node_set.name in named:
             raise SceneError(
-                f"node_sets.{place}: names must differ; {one.name} is the name of another set, of "
-                "the scene or of a mesh's file. Rename it."
+                f"node_sets.{place}: names must differ; {node_set.name} is the name of another "
+                "set, of the scene or of a mesh's file. Rename it."
             )
-        named[one.name] = np.flatnonzero(inside(node, one))
+        named[node_set.name] = np.flatnonzero(inside(node, node_set))
     return Mesh(node, corner, number, *outer, named, groups, tuple(notes))
 
 
@@ -92,12 +92,12 @@ def _require_apart(node: Array, corner: Whole, part: Whole, side: Whole) -> None
     first = outer[first_at_place(node[outer], shortest)]
     shared = np.flatnonzero(part_of[first] != part_of[outer])
     if len(shared):
-        one = shared[0]
-        pair = sorted((part_of[first[one]], part_of[outer[one]]))
+        k = shared[0]
+        pair = sorted((part_of[first[k]], part_of[outer[k]]))
         raise SceneError(
             f"parts.{pair[0]} and parts.{pair[1]}: parts must not touch, for they are not joined "
             f"and do not feel each other; {len(shared)} of their nodes lie at the same places, one "
-            f"at {np.array2string(node[outer[one]], precision=4)} m. Make them one mesh, or leave "
+            f"at {np.array2string(node[outer[k]], precision=4)} m. Make them one mesh, or leave "
             "a gap between them."
         )
 
@@ -130,9 +130,9 @@ def chosen(mesh: Mesh, by: Faces | Fixed, where: str) -> NDArray[np.bool_]:
         return inside(mesh.node, by)
     if by.node_set not in mesh.sets:
         raise SceneError(unknown(f"{where}: node_set {by.node_set}", by.node_set, mesh.sets))
-    found = np.zeros(len(mesh.node), bool)
-    found[mesh.sets[by.node_set]] = True
-    return found
+    nodes = np.zeros(len(mesh.node), bool)
+    nodes[mesh.sets[by.node_set]] = True
+    return nodes
 
 
 def elements_of(mesh: Mesh, by: Elements, where: str) -> Whole:
@@ -156,10 +156,10 @@ def inside(points: Array, box: Faces | Fixed | NodeSet) -> NDArray[np.bool_]:
 
 def faces_in(mesh: Mesh, boxes: Sequence[Faces], where: str) -> Whole:
     """Numbers of the outer faces all of whose corners lie in one of some boxes, or sets."""
-    found = np.zeros(len(mesh.side), bool)
-    for one in boxes:
-        found |= (chosen(mesh, one, where)[mesh.side] | (mesh.side < 0)).all(axis=1)
-    return np.flatnonzero(found)
+    faces = np.zeros(len(mesh.side), bool)
+    for by in boxes:
+        faces |= (chosen(mesh, by, where)[mesh.side] | (mesh.side < 0)).all(axis=1)
+    return np.flatnonzero(faces)
 
 
 def incident(corner: Whole, nodes: int) -> tuple[Whole, Whole]:

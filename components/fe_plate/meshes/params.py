@@ -101,11 +101,11 @@ class MeshFile:
 
     def placed(self) -> FileMesh:
         """Nodes where they are [m], and elements, which are checked; with notes of both."""
-        found, name = read(self.file, self.coincident_nodes), Path(self.file).name
-        node = self.scale * found.node + self.move
-        notes = [_size(name, node, len(found.corner), self.scale), *found.notes]
-        notes += require_sound(f"mesh {name}", node, found.corner)
-        return found._replace(node=node, notes=tuple(notes))
+        loaded, name = read(self.file, self.coincident_nodes), Path(self.file).name
+        node = self.scale * loaded.node + self.move
+        notes = [_size(name, node, len(loaded.corner), self.scale), *loaded.notes]
+        notes += require_sound(f"mesh {name}", node, loaded.corner)
+        return loaded._replace(node=node, notes=tuple(notes))
 
 
 def _size(name: str, node: NDArray[np.float64], elements: int, scale: float) -> str:
@@ -152,12 +152,12 @@ class Shape(Protocol):
 def require_shape(part: Shape) -> None:
     """Refuse a part that is not one of a box, a cylinder and a mesh."""
     box = (part.lowest, part.highest, part.elements)
-    given = sum(one is not None for one in box)
-    others = sum(one is not None for one in (part.cylinder, part.mesh))
-    if (given, others) not in ((3, 0), (0, 1)):
+    keys = sum(value is not None for value in box)
+    others = sum(value is not None for value in (part.cylinder, part.mesh))
+    if (keys, others) not in ((3, 0), (0, 1)):
         raise ValueError(
             "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
-            f"found {given} keys of a box and {others} of the others. Give one."
+            f"found {keys} keys of a box and {others} of the others. Give one."
         )
     if part.lowest is None or part.highest is None:
         if part.cutout is not None:
@@ -181,15 +181,15 @@ def mesh_notes(parts: Sequence[Shape]) -> tuple[str, ...]:
 def cut_out(part: Shape) -> tuple[Flags, Flags, Flags]:
     """Which elements of a box have a middle within its cutout, along each of x, y and z."""
     assert part.elements is not None and part.lowest is not None and part.highest is not None
-    found = []
+    inside_along = []
     for along, count in enumerate(part.elements):
         low, high = part.lowest[along], part.highest[along]
         middle = low + (high - low) * (np.arange(count) + 0.5) / count
         inside = np.zeros(count, bool)
         if part.cutout is not None:
             inside = (part.cutout.lowest[along] <= middle) & (middle <= part.cutout.highest[along])
-        found.append(inside)
-    return found[0], found[1], found[2]
+        inside_along.append(inside)
+    return inside_along[0], inside_along[1], inside_along[2]
 
 
 def count_elements(part: Shape) -> int:
@@ -198,7 +198,7 @@ def count_elements(part: Shape) -> int:
         return part.cylinder.count
     if part.mesh is not None:
         return part.mesh.count
-    left_out = [int(one.sum()) for one in cut_out(part)]
+    left_out = [int(inside.sum()) for inside in cut_out(part)]
     return math.prod(part.elements or ()) - math.prod(left_out)
 
 
@@ -242,9 +242,9 @@ class Part:
     @property
     def expected_step(self) -> float:
         """Step [s] that its shortest edge bears."""
-        made = material(self.material)
+        law = material(self.material)
         bound = sum((1.0 / edge**2 for edge in self._edges()), 0.0)
-        speed = math.sqrt((made.bulk + 4.0 / 3.0 * made.shear) / made.density)
+        speed = math.sqrt((law.bulk + 4.0 / 3.0 * law.shear) / law.density)
         return 1.0 / (speed * math.sqrt(bound))
 
     def require_planar(self, where: str) -> None:
@@ -272,8 +272,8 @@ class Part:
         if self.cylinder is not None:
             return self.cylinder.edges
         if self.mesh is not None:
-            made = self.mesh.placed()
-            return (least_edge(made.node, made.corner),) * 3
+            loaded = self.mesh.placed()
+            return (least_edge(loaded.node, loaded.corner),) * 3
         assert self.lowest is not None and self.highest is not None and self.elements is not None
         sides = zip(self.lowest, self.highest, self.elements, strict=True)
         return tuple((b - a) / n for a, b, n in sides)

@@ -43,7 +43,7 @@ def face(at, size, temperature):
 def bar_with_points(n):
     points = [(HOT, 500.0), (COLD, 0.0), (BEYOND, 0.0)]
     held = tuple(FixedTemperature(point=one, temperature=kelvin) for one, kelvin in points)
-    return block((0.03, 0.01, 0.01), (3 * n, n, n), 170.0, steady=True, held=held)
+    return block((0.03, 0.01, 0.01), (3 * n, n, n), 170.0, steady=True, fixed_temperatures=held)
 
 
 def test_temperatures_held_at_points_depend_on_the_mesh():
@@ -84,7 +84,7 @@ def test_a_linear_temperature_is_exact_in_any_mesh():
         FixedTemperature(lowest=(-1, -1, z), highest=(1, 1, z), temperature=t)
         for z, t in ((0, 9), (2, 5))
     ]
-    made = FeHeat(FeHeatParams(parts=(part,), held=tuple(ends), steady=True))
+    made = FeHeat(FeHeatParams(parts=(part,), fixed_temperatures=tuple(ends), steady=True))
     made.step(1.0)
     mesh = made.model.mesh
     assert made.state.temperature == pytest.approx(9.0 - 2.0 * mesh.node[:, 2], abs=1e-8)
@@ -99,7 +99,8 @@ def test_steady_heat_through_half_a_side_follows_its_series():
     heated = Faces(lowest=(0.0, 0.0, 0.0), highest=(0.0, 0.5, 0.1))
     made = block(
         (1.0, 1.0, 0.1), (n, n, 1), steady=True,
-        held=(face(1.0, (1.0, 1.0, 0.1), 0.0),), fluxes=(Flux(faces=heated, flux=flux),),
+        fixed_temperatures=(face(1.0, (1.0, 1.0, 0.1), 0.0),),
+        fluxes=(Flux(faces=heated, flux=flux),),
     )  # fmt: skip
     made.step(1.0)
     x, y, _ = made.model.mesh.node.T
@@ -116,7 +117,7 @@ def cooled(dt, n=32, seconds=0.15):
     """A slab that was at 1 K, whose ends are at 0 K since the start; temperatures and places."""
     size = (1.0, 1.0 / n, 1.0 / n)
     ends = (face(0.0, size, 0.0), face(1.0, size, 0.0))
-    made = block(size, (n, 1, 1), 1.0, held=ends)
+    made = block(size, (n, 1, 1), 1.0, fixed_temperatures=ends)
     for _ in range(round(seconds / dt)):
         made.step(dt)
     return made.state.temperature, made.model.mesh.node[:, 0]
@@ -161,7 +162,7 @@ def test_heat_is_conserved_whatever_the_tolerance(is_held):
     """What partners and holders give is what the body gains, to rounding."""
     size = (0.3, 0.2, 0.2)
     held = (face(0.0, size, 7.0),) if is_held else ()
-    made = block(size, (3, 2, 2), 3.0, tolerance=1e-3, held=held)
+    made = block(size, (3, 2, 2), 3.0, tolerance=1e-3, fixed_temperatures=held)
     heat = np.random.default_rng(1).normal(size=len(made.surface))
     before, dt = made.totals().internal, 0.02
     made.take({"node_heat.heat_flow": heat})
@@ -176,7 +177,7 @@ def test_heat_is_conserved_whatever_the_tolerance(is_held):
 def test_very_long_and_very_short_steps_stay_in_bounds_in_flat_elements(size, step):
     """Temperatures stay between those that are held."""
     ends = (face(0.0, size, 400.0), face(1.0, size, 300.0))
-    made = block(size, (10, 10, 3), 300.0, held=ends)
+    made = block(size, (10, 10, 3), 300.0, fixed_temperatures=ends)
     for _ in range(3):
         made.step(step)
     assert made.state.temperature.min() > 300.0 - 1e-6
@@ -190,7 +191,9 @@ def test_a_long_step_overshoots_by_a_quarter_at_most():
 
 def test_heat_that_comes_from_outside_is_counted():
     size = (1.0, 0.5, 0.5)
-    made = block(size, (3, 2, 2), 3.0, held=(face(0.0, size, 400.0), face(1.0, size, 300.0)))
+    made = block(
+        size, (3, 2, 2), 3.0, fixed_temperatures=(face(0.0, size, 400.0), face(1.0, size, 300.0))
+    )
     begun = made.totals()
     for _ in range(4):
         made.step(0.02)
@@ -218,9 +221,13 @@ def test_conduction_and_mechanics_import_nothing_of_each_other():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"steady": True}, "must be held at a temperature somewhere"),
+        ({"steady": True}, "needs a fixed temperature somewhere"),
         (
-            {"held": (FixedTemperature(lowest=(9, 9, 9), highest=(9, 9, 9), temperature=1),)},
+            {
+                "fixed_temperatures": (
+                    FixedTemperature(lowest=(9, 9, 9), highest=(9, 9, 9), temperature=1),
+                )
+            },
             "holds none",
         ),
         ({"coupled_faces": (Faces(lowest=(9, 9, 9), highest=(9, 9, 9)),)}, "must hold an outer"),
@@ -265,7 +272,7 @@ def test_steps_that_pass_over_the_transient_are_warned_of(share, is_told):
         density=2700.0, specific_heat=900.0,
     )  # fmt: skip
     held = FixedTemperature(lowest=(0.03, 0.0, 0.0), highest=(0.03, 0.01, 0.01), temperature=400.0)
-    made = FeHeat(FeHeatParams(parts=(part,), held=(held,)))
+    made = FeHeat(FeHeatParams(parts=(part,), fixed_temperatures=(held,)))
     crossing = 0.03**2 * 2700.0 * 900.0 / (math.pi**2 * 237.0)
     for _ in range(3):
         made.step(share * crossing)
