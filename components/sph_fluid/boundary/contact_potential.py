@@ -26,15 +26,13 @@ that are higher, the repulsion of walls (`laws.WallRepulsion`) turns the fluid.
 import math
 
 import numpy as np
-from numba import njit
 
-from quintet.components.shared.numba_options import FAST
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing import cubic_spline, wendland
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
-from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid.laws import Constants, ContactPotential, WallRepulsion
+from quintet.components.sph_fluid.boundary.kernels.contact_energy import stored_energy
+from quintet.components.sph_fluid.laws import ContactPotential
 from quintet.components.sph_fluid.pairs.constants import constants, wall_repulsion
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import (
@@ -168,23 +166,3 @@ def slope(q: float, params: SphFluidParams) -> float:
     if params.kernel == "wendland":
         return 10.0 * q * float(wendland.slope.py_func(q))
     return 3.0 * float(cubic_spline.slope.py_func(q))
-
-
-@njit(**FAST)
-def stored_energy(
-    first: int, last: int, position: Array, stiff: Array, lists: Lists, inverse: float,
-    exponent: int, per_volume: float, repulsion: WallRepulsion, constants: Constants, found: Array,
-) -> None:  # fmt: skip
-    """Write the energy over m² of fluid rows [first, last) with their boundary neighbours."""
-    _, middle, end, neighbour = lists
-    for i in range(first, last):
-        total = 0.0
-        for k in range(np.uint64(middle[i]), np.uint64(end[i])):
-            j = np.uint64(neighbour[k])
-            x, y = position[i, 0] - position[j, 0], position[i, 1] - position[j, 1]
-            z = position[i, 2] - position[j, 2]
-            r2 = x * x + y * y + z * z
-            total += stiff[j] * per_volume * (kernel(r2, constants.smoothing) * inverse) ** exponent
-            close = max(1.0 - r2 / repulsion.reach2, 0.0)
-            total += 0.25 * repulsion.stiffness * repulsion.reach2 * close * close
-        found[i] = total

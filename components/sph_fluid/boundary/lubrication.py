@@ -21,25 +21,22 @@ the body itself this is p. So the film presses with its own pressure on that par
 particles leave, as many of them as there are in the gap, and nothing is pressed twice.
 """
 
-from typing import NamedTuple
-
 import numpy as np
-from numba import njit
 
-from quintet.components.shared.numba_options import FAST
 from quintet.components.shared.search.neighbours import Lists
-from quintet.components.shared.smoothing.smoothing import kernel
-from quintet.components.sph_fluid.boundary.film_geometry import (
+from quintet.components.sph_fluid.boundary.film_geometry import Films, find_films
+from quintet.components.sph_fluid.boundary.kernels.films import (
     WIDEST,
-    Films,
+    FilmPlaces,
     face_normals,
-    find_films,
+    solve_reynolds,
+    write_fluid_share,
 )
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.laws import Constants
 from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.components.sph_fluid.state import State
 from quintet.interfaces.component import Fields
 
 FADING = 0.85  # spacings below WIDEST over which films fade out, as particles get in and press
@@ -113,82 +110,3 @@ def advance(
     np.add.at(state.force, films.sample, force)
     bodies = films.facing >= 0
     np.add.at(state.force, films.facing[bodies], -force[bodies])
-
-
-class FilmPlaces(NamedTuple):
-    """Places of films, one for each sample that faces another surface."""
-
-    rim: Array  # (m,) whether it has the pressure outside
-    begin: Whole  # (m + 1,) where its neighbours in the film stand in `near`
-    near: Whole
-    width: Array  # (m,) m
-    position: Array  # (m, 3) m
-    outside: Array  # (m,) Pa
-    stored: Array  # (m,) m, water per area at the step's beginning
-    transmissivity: Array  # (m,) m4 s/kg, K = w³/(12μ), bounded
-
-
-@njit(**FAST)
-def solve_reynolds(
-    places: FilmPlaces, cell: float, weight: tuple[float, float, float], sweeps: int,
-    pressure: Array, share: Array,
-) -> None:  # fmt: skip
-    """Write pressure and full share of films at a step's end, by Gauss and Seidel.
-
-    Parameters
-    ----------
-    places : FilmPlaces
-    cell : float, m2/s
-        Area of a sample over the step.
-    weight : three floats, N/m3
-        ρ₀ g.
-    sweeps : int
-    pressure, share : (m,) float arrays, Pa, 1
-        Of the last step; written.
-
-    References
-    ----------
-    Elrod, ASME J. Lubr. Technol. 103 (1981) 350.
-    """
-    rim, begin, near, width, position, outside, stored, transmissivity = places
-    for i in range(rim.shape[0]):
-        if rim[i]:
-            pressure[i] = outside[i]
-            share[i] = 1.0 if outside[i] > 0.0 else 0.0
-    for _ in range(sweeps):
-        for i in range(rim.shape[0]):
-            if rim[i]:
-                continue
-            brought, paths = 0.0, 0.0
-            for k in range(begin[i], begin[i + 1]):
-                j = near[k]
-                path = 0.5 * (transmissivity[i] + transmissivity[j])
-                head = 0.0
-                for d in range(3):
-                    head += weight[d] * (position[i, d] - position[j, d])
-                # What is not full has no pressure to drive anything out.
-                if pressure[j] > 0.0:
-                    brought += path * (pressure[j] + head)
-                paths += path
-            full = brought - cell * (width[i] - stored[i])
-            pressure[i] = max(full / paths, 0.0) if paths > 0.0 else 0.0
-            filled = (stored[i] + brought / cell) / width[i]
-            share[i] = 1.0 if pressure[i] > 0.0 else min(filled, 1.0)
-
-
-@njit(**FAST)
-def write_fluid_share(
-    row: Whole, face: Array, split: int, position: Array, lists: Lists, constants: Constants,
-    share: Array,
-) -> None:  # fmt: skip
-    """Write Σ V W of the fluid around points (m, 3) m of faces, by the lists of mirror points."""
-    begin, _, end, neighbour = lists
-    for s in range(row.shape[0]):
-        i = split + row[s]
-        share[s] = 0.0
-        for k in range(np.uint64(begin[i]), np.uint64(end[i])):
-            j = np.uint64(neighbour[k])
-            r2 = 0.0
-            for d in range(3):
-                r2 += (face[s, d] - position[j, d]) ** 2
-            share[s] += kernel(r2, constants.smoothing) * constants.mass / position[j, 3]

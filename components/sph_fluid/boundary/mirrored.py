@@ -3,8 +3,8 @@
 Modified dynamic boundary condition: English et al., Comput. Part. Mech. 9 (2022) 911. The
 density at the mirror point of a boundary particle, and its gradient there, are fitted to the
 fluid around that point and carried on to the particle, so that the fluid feels its own pressure
-go on into the wall and comes as near to it as to itself (`mirrored_kernels.py`). Links may choose
-the contact potential for the samples that they bring.
+go on into the wall and comes as near to it as to itself (`kernels/mirrored_density.py`). Links may
+choose the contact potential for the samples that they bring.
 """
 
 import math
@@ -16,7 +16,7 @@ import numpy as np
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.search.verlet_list import longest
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid.boundary.mirrored_kernels import (
+from quintet.components.sph_fluid.boundary.kernels.mirrored_density import (
     BY_POTENTIAL,
     NOT_LISTED,
     extrapolate_density,

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from fluid_params import fluid_params
 
-from quintet.components.sph_fluid.boundary.film_geometry import face_normals
 from quintet.components.sph_fluid.boundary.film_search import near
-from quintet.components.sph_fluid.boundary.lubrication import write_fluid_share
+from quintet.components.sph_fluid.boundary.kernels.films import face_normals, write_fluid_share
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.coupler.coupling.body_samples import BOX, fill, mirrors
 

@@ -127,7 +127,7 @@ def test_only_a_scene_that_asks_imports_them():
         " fluid=(FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.3, 0.3, 0.3)),),"
         " boundary=Boundary(method='dbc')));"
         "f.step(1e-5); names = {m.rpartition('.')[2] for m in sys.modules};"
-        "print(sorted(names & {'mirrored', 'mirrored_kernels', 'lubrication', 'film_geometry'}))"
+        "print(sorted(names & {'mirrored', 'mirrored_density', 'lubrication', 'film_geometry'}))"
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert found.stdout.strip() == "[]", found.stderr

@@ -50,7 +50,7 @@ dbc = Boundary(method="dbc")
 fluid = SphFluid(SphFluidParams(spacing=0.02, sound_speed=20.0, fluid=(region,), boundary=dbc))
 fluid.step(fluid.stable_dt())
 loaded = {name.rpartition(".")[2] for name in sys.modules if "sph_fluid" in name}
-left_out = "shepard_filter contact_potential potential acoustic_damper mirrored mirrored_kernels"
+left_out = "shepard_filter contact_potential potential acoustic_damper mirrored mirrored_density"
 left_out += " single_precision position_verlet symmetry lubrication film_geometry gauges"
 left_out += " film_search selective_films nearby_bodies removal shape_filling initial_fields"
 left_out += " field_table"
