@@ -25,19 +25,19 @@ def state(params: SphFluidParams) -> State:
     if params.shapes:
         more = shape_points(params)
         boxes, dense = boxes + more, dense + shape_density(more, params)
-    made = State.empty(sum(map(len, boxes)), len(wall))
-    made.position_density[:, :3] = np.concatenate([*boxes, wall])
-    made.position_density[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
-    made.velocity_pressure[made.fluid :, :3] = wall_velocity(wall, params)
+    start = State.empty(sum(map(len, boxes)), len(wall))
+    start.position_density[:, :3] = np.concatenate([*boxes, wall])
+    start.position_density[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
+    start.velocity_pressure[start.fluid :, :3] = wall_velocity(wall, params)
     if params.wave is not None:
         moves = params.wave.velocity(boxes[0], params.boxes[0], params.gravity)
-        made.velocity_pressure[: len(moves), :3] = moves
+        start.velocity_pressure[: len(moves), :3] = moves
     if params.initial is not None:
-        _write_initial(made, params)
+        _write_initial(start, params)
     if params.acoustic_damper > 0.0:
-        made.minus_rho_div_u = np.zeros(made.particles)
-    made.largest_acceleration = math.hypot(*params.gravity)
-    return made
+        start.minus_rho_div_u = np.zeros(start.particles)
+    start.largest_acceleration = math.hypot(*params.gravity)
+    return start
 
 
 def shape_points(params: SphFluidParams) -> list[Array]:
@@ -45,7 +45,7 @@ def shape_points(params: SphFluidParams) -> list[Array]:
     # Left out of scenes whose fluid is in boxes.
     from quintet.components.sph_fluid.setup.shape_filling import fill_shape
 
-    return [fill_shape(one, params.spacing, params.dimensions == 2) for one in params.shapes]
+    return [fill_shape(shape, params.spacing, params.dimensions == 2) for shape in params.shapes]
 
 
 def shape_density(points: list[Array], params: SphFluidParams) -> list[Array]:
@@ -58,17 +58,17 @@ def shape_density(points: list[Array], params: SphFluidParams) -> list[Array]:
     ]
 
 
-def _write_initial(made: State, params: SphFluidParams) -> None:
+def _write_initial(state: State, params: SphFluidParams) -> None:
     """Write velocity and density as a scene gives them."""
     # Left out of scenes whose fluid starts at rest.
     from quintet.components.sph_fluid.setup.initial_fields import initial_density, initial_velocity
 
-    points = made.position_density[: made.fluid, :3]
+    points = state.position_density[: state.fluid, :3]
     velocity, density = initial_velocity(points, params), initial_density(points, params)
     if velocity is not None:
-        made.velocity_pressure[: made.fluid, :3] = velocity
+        state.velocity_pressure[: state.fluid, :3] = velocity
     if density is not None:
-        made.position_density[: made.fluid, 3] = density
+        state.position_density[: state.fluid, 3] = density
 
 
 def fill_box(box: Box, params: SphFluidParams) -> Array:
@@ -112,13 +112,13 @@ def wall_points(params: SphFluidParams) -> Array:
 
 def wall_velocity(wall: Array, params: SphFluidParams) -> Array:
     """Velocity (n, 3) m/s of wall particles (n, 3) m, which stay where they are."""
-    found = np.zeros_like(wall)
+    velocities = np.zeros_like(wall)
     for face, velocity in params.boundary.wall_velocity.items():
         assert params.boundary.tank is not None
         (low, high), axis = params.boundary.tank, "xyz".index(face[0])
         beyond = wall[:, axis] > high[axis] if face[1] == "+" else wall[:, axis] < low[axis]
-        found[beyond] = velocity
-    return found
+        velocities[beyond] = velocity
+    return velocities
 
 
 def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int]]) -> Array:
@@ -137,16 +137,16 @@ def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
 
 def _surface(box: Box, params: SphFluidParams) -> float:
     """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
-    own, little = levels(box, params.hydrostatic_gravity)[1], 1e-6 * params.spacing
-    found = own
+    top, little = levels(box, params.hydrostatic_gravity)[1], 1e-6 * params.spacing
+    level = top
     for other in params.boxes if any(params.hydrostatic_gravity) else ():
         ends = zip(*box, *other, strict=True)
         shared = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
-        beside = min(shared) > -little and sum(one > little for one in shared) > 1
+        beside = min(shared) > -little and sum(width > little for width in shared) > 1
         lowest, highest = levels(other, params.hydrostatic_gravity)
-        if beside and abs(lowest - own) < little < highest - own:
-            found = max(found, _surface(other, params))
-    return found
+        if beside and abs(lowest - top) < little < highest - top:
+            level = max(level, _surface(other, params))
+    return level
 
 
 def wall_density(wall: Array, params: SphFluidParams) -> Array:

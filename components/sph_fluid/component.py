@@ -92,11 +92,11 @@ class SphFluid(Component):
 
     def prepare(self, fields: Fields) -> None:
         """Compile all kernels: try a step, and come back."""
-        kept = self.save()
+        before = self.save()
         self.take(fields)
         self.step(self.stable_dt())
         self.give(frozenset(fields_of(self.gives)))
-        self.load(kept)
+        self.load(before)
 
     def stable_dt(self) -> float:
         """Largest step [s]; Monaghan & Kos 1999 and Morris 1997, from the rates of the last one."""
@@ -171,12 +171,12 @@ class SphFluid(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
-        given: dict[str, Array] = {}
+        outputs: dict[str, Array] = {}
         if self.gauges and not wanted <= LOADS:
-            given.update(self.gauges.read(self.state, self.lists.arrays))
+            outputs.update(self.gauges.read(self.state, self.lists.arrays))
         if wanted & LOADS:
-            given["surface_load.force"] = self.state.force.copy()
-        return {key: given[key] for key in wanted}
+            outputs["surface_load.force"] = self.state.force.copy()
+        return {key: outputs[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
@@ -194,10 +194,10 @@ class SphFluid(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left."""
-        found = diagnostics.totals(self.state, self.params, self.constants)
+        totals = diagnostics.totals(self.state, self.params, self.constants)
         if len(self.state.reference):
-            found.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
-        return found
+            totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
+        return totals
 
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""

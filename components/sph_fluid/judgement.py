@@ -120,9 +120,9 @@ def _most_artificial(params: SphFluidParams, held: float, judged: Array, mass: f
 
     `held` [J] is m g depth, `mass` [kg] that of all the fluid. Fluid at rest bears any.
     """
-    own = params.viscosity.kinematic
-    if own > 0.0:
-        return MOST_ARTIFICIAL * own, f"viscosity.kinematic is {own:g} m2/s"
+    kinematic = params.viscosity.kinematic
+    if kinematic > 0.0:
+        return MOST_ARTIFICIAL * kinematic, f"viscosity.kinematic is {kinematic:g} m2/s"
     if params.wave is not None:
         # Lamb 1932, article 348: A falls as exp(-2νk²t).
         number, g = 2.0 * np.pi / params.wave.length, float(np.linalg.norm(params.gravity))

@@ -149,14 +149,14 @@ def sum_continuity(count, position_i, velocity_i, position, velocity, constants)
     """Σ u_ij·∇_iW_ij of a boundary particle over so many of the fluid around it."""
     x, y, z, _ = position_i
     u, v, w, _ = velocity_i
-    found = position.dtype.type(0)
+    density_rate = position.dtype.type(0)
     for k in range(count):
         dx, dy, dz = x - position[k, 0], y - position[k, 1], z - position[k, 2]
         dot = dx * (u - velocity[k, 0]) + dy * (v - velocity[k, 1]) + dz * (w - velocity[k, 2])
         r2 = dx * dx + dy * dy + dz * dz
         per_r = ONE / math.sqrt(r2 + constants.smoothing.tiny)
-        found += dot * gradient(r2, per_r, constants.smoothing)
-    return found
+        density_rate += dot * gradient(r2, per_r, constants.smoothing)
+    return density_rate
 
 
 @njit(inline="always")
@@ -263,18 +263,18 @@ def sample_forces(
             slope = gradient(r2, per_r, constants.smoothing)
             if terms.volume is not None:
                 slope *= volume[i]
-            own = pressure
+            pressure_i = pressure
             if terms.contact.on is not None:
                 acts = zero
                 if terms.contact.partial is not None:
                     acts = mask[i]
-                own = pressure * contact_factor(r2, acts, terms.contact, constants.smoothing)
+                pressure_i = pressure * contact_factor(r2, acts, terms.contact, constants.smoothing)
             apparent_i = u, v, w
             if terms.viscosity.on is not None:
                 apparent_i = apparent[i, 0], apparent[i, 1], apparent[i, 2]
             velocity_j = velocity[j, 0], velocity[j, 1], velocity[j, 2]
             on_sample = add_pair_force(
-                on_sample, (dx, dy, dz), apparent_i, velocity_j, r2, own + velocity[j, 3],
+                on_sample, (dx, dy, dz), apparent_i, velocity_j, r2, pressure_i + velocity[j, 3],
                 dot * per_r2, slope, per_r2, per_density, terms,
             )  # fmt: skip
         for d in range(3):

@@ -221,10 +221,10 @@ def contact_factor(r2, mask, contact, smoothing):  # type: ignore[no-untyped-def
     ----------
     Vignjevic, De Vuyst & Campbell, CMES 13 (2006) 35; see `boundary/contact_potential.py`.
     """
-    one = kernel(r2, smoothing) * contact.inverse
-    two = one * one
-    power = (ONE + contact.once * (one - ONE)) * (ONE + contact.twice * (two - ONE))
-    factor = contact.strength * power * (ONE + contact.four * (two * two - ONE))
+    first = kernel(r2, smoothing) * contact.inverse
+    second = first * first
+    power = (ONE + contact.once * (first - ONE)) * (ONE + contact.twice * (second - ONE))
+    factor = contact.strength * power * (ONE + contact.four * (second * second - ONE))
     if contact.partial is not None:
         return ONE + mask * (factor - ONE)
     return factor

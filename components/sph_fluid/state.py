@@ -100,8 +100,8 @@ class State:
 
     def sample_rows(self) -> Whole:
         """Rows of the samples, in the order of their port; (samples,)."""
-        found = np.flatnonzero(self.sample >= 0)
-        return self.fluid + found[np.argsort(self.sample[found])]
+        samples = np.flatnonzero(self.sample >= 0)
+        return self.fluid + samples[np.argsort(self.sample[samples])]
 
     def save(self) -> dict[str, NDArray[Any]]:
         """Copy out everything."""
@@ -110,6 +110,6 @@ class State:
     @classmethod
     def load(cls, saved: Fields) -> "State":
         """Make the state that was saved."""
-        kept = {part.name: np.array(saved[part.name]) for part in fields(cls)}
-        own: dict[str, Any] = {name: a if a.ndim else a.item() for name, a in kept.items()}
-        return cls(**own)
+        arrays = {part.name: np.array(saved[part.name]) for part in fields(cls)}
+        parts: dict[str, Any] = {name: a if a.ndim else a.item() for name, a in arrays.items()}
+        return cls(**parts)

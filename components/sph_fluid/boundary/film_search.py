@@ -24,7 +24,7 @@ def near(places: Array, points: Array, reach: float) -> Near:
     _, start, order = sorted_into(points, grid)
     cell, begin = np.empty(len(places), np.int64), np.zeros(len(places) + 1, np.int64)
     number_cells(places, grid, cell)
-    found = np.empty(LISTED * len(places), np.int64)
-    while list_near(places, cell, points, start, order, grid, reach * reach, begin, found) < 0:
-        found = np.empty(4 * len(found), np.int64)
-    return Near(begin, found)
+    listed = np.empty(LISTED * len(places), np.int64)
+    while list_near(places, cell, points, start, order, grid, reach * reach, begin, listed) < 0:
+        listed = np.empty(4 * len(listed), np.int64)
+    return Near(begin, listed)

@@ -61,16 +61,16 @@ class Gauges:
 
     def read(self, state: State, lists: Lists) -> Fields:
         """Read all gauges; `lists` are those of this state, if it has any yet."""
-        found: dict[str, Array] = {}
+        readings: dict[str, Array] = {}
         if len(self.points):
-            found["pressure_gauge.pressure"] = self._pressure(state)
+            readings["pressure_gauge.pressure"] = self._pressure(state)
         if len(self.spots):
-            found["level_gauge.height"] = self._height(state)
+            readings["level_gauge.height"] = self._height(state)
         if self.params.gauges.front_gauge is not None:
-            found["front_gauge.position"] = self._front(state, lists)
+            readings["front_gauge.position"] = self._front(state, lists)
         if self.params.gauges.motion_gauge:
-            found |= self._motion(state)
-        return found
+            readings |= self._motion(state)
+        return readings
 
     def _pressure(self, state: State) -> Array:
         sums = np.empty((len(self.image_points), 3))
@@ -117,13 +117,13 @@ class Gauges:
     def _front(self, state: State, lists: Lists) -> Array:
         axis = "xyz".index(str(self.params.gauges.front_gauge))
         along = state.position_density[: state.fluid, axis]
-        found = -math.inf
+        ahead = -math.inf
         if len(state.reference):
-            found = furthest(
+            ahead = furthest(
                 axis, 1.0 / self.lone, state.fluid, state.position_density, lists, self.constants
             )
         # At the start there are no lists, and no spray either.
-        front = found if math.isfinite(found) else float(along.max())
+        front = ahead if math.isfinite(ahead) else float(along.max())
         return np.array([front + 0.5 * self.params.spacing])
 
     def _motion(self, state: State) -> Fields:
@@ -132,11 +132,11 @@ class Gauges:
             state.velocity_pressure[: state.fluid, :3],
         )
         squares = np.einsum("nd,nd->n", velocity, velocity)
-        one = self.constants.mass * slab_thickness(self.params)  # kg
-        centre, mass = points.mean(axis=0), one * len(points)
+        particle_mass = self.constants.mass * slab_thickness(self.params)  # kg
+        centre, mass = points.mean(axis=0), particle_mass * len(points)
         return {
             "motion_gauge.speed": np.sqrt(squares.max(keepdims=True)),
-            "motion_gauge.kinetic": 0.5 * one * squares.sum(keepdims=True),
+            "motion_gauge.kinetic": 0.5 * particle_mass * squares.sum(keepdims=True),
             "motion_gauge.potential": np.array([-mass * float(centre @ self.params.gravity)]),
             "motion_gauge.centre": centre[np.newaxis],
         }

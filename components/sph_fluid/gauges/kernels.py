@@ -74,9 +74,9 @@ def furthest(
     """Greatest position along an axis of fluid that has so many fluid neighbours or more."""
     begin, middle, _, neighbour = lists
     reach2 = (SUPPORT * constants.smoothing.length) ** 2
-    found = -math.inf
+    front = -math.inf
     for i in range(split):
-        if position[i, axis] > found:
+        if position[i, axis] > front:
             count = -1  # each is its own neighbour
             for k in range(begin[i], middle[i]):
                 j = neighbour[k]
@@ -84,5 +84,5 @@ def furthest(
                 z = position[i, 2] - position[j, 2]
                 count += int(x * x + y * y + z * z < reach2)
             if count >= fewest:
-                found = position[i, axis]
-    return found
+                front = position[i, axis]
+    return front

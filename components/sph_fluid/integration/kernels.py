@@ -32,10 +32,10 @@ class Rows(NamedTuple):
 @njit(inline="always")
 def shift2(i, position, reference):  # type: ignore[no-untyped-def]
     """Square of how far [m] a row is from where the lists were made."""
-    found = 0.0
+    sum2 = 0.0
     for d in range(3):
-        found += (position[i, d] - reference[i, d]) ** 2
-    return found
+        sum2 += (position[i, d] - reference[i, d]) ** 2
+    return sum2
 
 
 @njit(inline="always")

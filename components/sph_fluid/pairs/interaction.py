@@ -67,9 +67,9 @@ class Interaction:
         rates = self.rates._replace(minus_rho_div_u=state.minus_rho_div_u)
         rows = self.boundary.rows_with_density_rate(state)
         arguments = (state.fluid, *self.given, self.params.gravity, rates)
-        found = team.run(pair_rates, rows, *arguments)
-        state.largest_acceleration = math.sqrt(max(greatest for greatest, _ in found))
-        state.largest_approach = max(fastest for _, fastest in found)
+        extremes = team.run(pair_rates, rows, *arguments)
+        state.largest_acceleration = math.sqrt(max(greatest for greatest, _ in extremes))
+        state.largest_approach = max(fastest for _, fastest in extremes)
 
     def _boundary_rows(self, state: State, lists: Lists, team: Team) -> BoundaryRows:
         """What boundary rows have beside particles, as the state is."""
@@ -100,16 +100,16 @@ def relative_volume(samples: Samples, state: State, params: SphFluidParams) -> A
     fluid's particles; as heavy as those they would displace more, or less, than the body does.
     The same holds of the walls of a fluid whose own edges it divides so badly that it matters.
     """
-    one_volume = particle_volume(params)
-    share, wall = samples.volume / one_volume, wall_volume(params) / one_volume
-    if abs(wall - 1.0) < UNEVEN or one_volume == params.spacing**params.dimensions:
+    particle = particle_volume(params)
+    share, wall = samples.volume / particle, wall_volume(params) / particle
+    if abs(wall - 1.0) < UNEVEN or particle == params.spacing**params.dimensions:
         wall = 1.0
     if np.abs(share - 1.0).max(initial=abs(wall - 1.0)) < EVEN:
         return np.zeros(0)
-    found = np.ones(len(state.position_density))
-    found[state.fluid : state.particles] = wall
-    found[samples.row] = share
-    return found
+    volumes = np.ones(len(state.position_density))
+    volumes[state.fluid : state.particles] = wall
+    volumes[samples.row] = share
+    return volumes
 
 
 def wall_volume(params: SphFluidParams) -> float:

@@ -53,14 +53,14 @@ class FluidLists:
     def sort(self, state: State) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
         split = state.fluid
-        kept = in_domain(state.position_density[:split], self.walls)
-        if not len(kept):
+        inside = in_domain(state.position_density[:split], self.walls)
+        if not len(inside):
             raise StepError("step: all fluid has left the domain. Check the walls and gravity.")
-        fluid = state.position_density.take(kept, axis=0)
+        fluid = state.position_density.take(inside, axis=0)
         boundary = state.position_density[split : state.particles]
         grid = grid_around(fluid, self.skin.reach)
-        state.lost += split - len(kept)
-        state.keep(kept[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
+        state.lost += split - len(inside)
+        state.keep(inside[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         places = [state.position_density[:, :3], state.mirror_point]
         state.reference, state.moved = np.concatenate(places), 0.0
         self.samples.find_rows(state)
@@ -76,11 +76,11 @@ class FluidLists:
 
 def in_domain(points: Array, walls: Box | None) -> Whole:
     """Rows (k,) of points (n, 3 or more) m that are in the tank or not far outside of it."""
-    found = np.ones(len(points), bool)
+    inside = np.ones(len(points), bool)
     if walls is not None:
         low, high = np.array(walls)
         stray = STRAY * float((high - low).max())
         for axis in range(3):
-            one = points[:, axis]
-            found &= (one > low[axis] - stray) & (one < high[axis] + stray)
-    return np.flatnonzero(found)
+            along = points[:, axis]
+            inside &= (along > low[axis] - stray) & (along < high[axis] + stray)
+    return np.flatnonzero(inside)

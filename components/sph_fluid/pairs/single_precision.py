@@ -29,11 +29,11 @@ class SinglePrecision:
 
     def boundary(self, rows: BoundaryRows) -> BoundaryRows:
         """Round what boundary rows have beside particles."""
-        found: BoundaryRows = rounded(rows)
-        return found
+        single: BoundaryRows = rounded(rows)
+        return single
 
     def law(self, law: PairLaw) -> PairLaw:
         """Round the numbers of the law, with densities above that at no pressure."""
         constants = law.constants._replace(base=law.constants.density)
-        found: PairLaw = rounded(law._replace(constants=constants))
-        return found
+        single: PairLaw = rounded(law._replace(constants=constants))
+        return single

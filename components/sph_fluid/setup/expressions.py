@@ -56,34 +56,34 @@ KNOWN = (
 )
 
 
-def _checked(given: float | str) -> float | str:
+def _checked(expression: float | str) -> float | str:
     """Refuse what is no expression, before anything is computed."""
-    if isinstance(given, str):
-        _check(_parse(given), given, 0)
-    elif not math.isfinite(given):
-        raise ValueError(f"a number must be finite; found {given}. Correct it.")
-    return given
+    if isinstance(expression, str):
+        _check(_parse(expression), expression, 0)
+    elif not math.isfinite(expression):
+        raise ValueError(f"a number must be finite; found {expression}. Correct it.")
+    return expression
 
 
 Expression = Annotated[float | str, AfterValidator(_checked)]
 
 
-def values_at(given: float | str, points: Array, what: str) -> Array:
+def values_at(expression: float | str, points: Array, what: str) -> Array:
     """Values (n,) of an expression at points (n, 3) m; all must be finite."""
-    if not isinstance(given, str):
-        return np.full(len(points), float(given))
+    if not isinstance(expression, str):
+        return np.full(len(points), float(expression))
     places = dict(zip(COORDINATES, points.T, strict=True))
     with np.errstate(all="ignore"):
-        found = _value(_parse(given), places)
-        found = np.array(np.broadcast_to(found, len(points)), np.float64)
-    bad = np.flatnonzero(~np.isfinite(found))
+        values = _value(_parse(expression), places)
+        values = np.array(np.broadcast_to(values, len(points)), np.float64)
+    bad = np.flatnonzero(~np.isfinite(values))
     if len(bad):
         x, y, z = points[bad[0]].tolist()
         raise ValueError(
-            f"{what} must be finite in all of the fluid; {given!r} is {found[bad[0]]} at ({x:.4g}, "
-            f"{y:.4g}, {z:.4g}) m. Correct it."
+            f"{what} must be finite in all of the fluid; {expression!r} is {values[bad[0]]} at "
+            f"({x:.4g}, {y:.4g}, {z:.4g}) m. Correct it."
         )
-    return found
+    return values
 
 
 def _parse(text: str) -> ast.expr:
@@ -113,8 +113,8 @@ def _check(node: ast.expr, text: str, depth: int) -> None:
         raise ValueError(
             f"an expression must be one of {KNOWN}; found {ast.unparse(node)[:60]!r}. Correct it."
         )
-    for one in inner:
-        _check(one, text, depth + 1)
+    for operand in inner:
+        _check(operand, text, depth + 1)
 
 
 def _inner(node: ast.expr) -> list[ast.expr] | None:
@@ -124,14 +124,14 @@ def _inner(node: ast.expr) -> list[ast.expr] | None:
             return []
         case ast.Name(id=name) if name in (*COORDINATES, *CONSTANTS):
             return []
-        case ast.UnaryOp(op=op, operand=one) if type(op) in OPERATORS:
-            return [one]
-        case ast.BinOp(left=one, op=op, right=other) if type(op) in OPERATORS:
-            return [one, other]
-        case ast.Compare(left=one, ops=[op], comparators=[other]) if type(op) in OPERATORS:
-            return [one, other]
-        case ast.Call(func=ast.Name(id=name), args=given, keywords=[]) if name in FUNCTIONS:
-            return given if len(given) == FUNCTIONS[name][1] else None
+        case ast.UnaryOp(op=op, operand=left) if type(op) in OPERATORS:
+            return [left]
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+            return [left, right]
+        case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in OPERATORS:
+            return [left, right]
+        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
+            return arguments if len(arguments) == FUNCTIONS[name][1] else None
     return None
 
 
@@ -142,15 +142,15 @@ def _value(node: ast.expr, places: Mapping[str, Array]) -> Any:
             return np.float64(_number(value))
         case ast.Name(id=name):
             return places[name] if name in places else np.float64(CONSTANTS[name])
-        case ast.UnaryOp(op=op, operand=one):
-            return OPERATORS[type(op)](_value(one, places))
-        case ast.BinOp(left=one, op=op, right=other):
-            return OPERATORS[type(op)](_value(one, places), _value(other, places))
-        case ast.Compare(left=one, ops=[op], comparators=[other]):
-            found = OPERATORS[type(op)](_value(one, places), _value(other, places))
-            return np.asarray(found, np.float64)
-        case ast.Call(func=ast.Name(id=name), args=given):
-            return FUNCTIONS[name][0](*(_value(one, places) for one in given))
+        case ast.UnaryOp(op=op, operand=left):
+            return OPERATORS[type(op)](_value(left, places))
+        case ast.BinOp(left=left, op=op, right=right):
+            return OPERATORS[type(op)](_value(left, places), _value(right, places))
+        case ast.Compare(left=left, ops=[op], comparators=[right]):
+            flags = OPERATORS[type(op)](_value(left, places), _value(right, places))
+            return np.asarray(flags, np.float64)
+        case ast.Call(func=ast.Name(id=name), args=arguments):
+            return FUNCTIONS[name][0](*(_value(left, places) for left in arguments))
     raise ValueError(f"an expression must be one of {KNOWN}.")
 
 

@@ -31,9 +31,9 @@ class FieldTable:
 
     def at(self, points: Array, name: str) -> Array:
         """Values (n,) of a field at points (n, 3) m; 0 of a velocity that has no column."""
-        found = np.zeros(len(points))
+        values = np.zeros(len(points))
         if name not in self.values:
-            return found
+            return values
         lower, share = [], []
         for axis, place in self.places.items():
             along = np.clip(points[:, AXES.index(axis)], place[0], place[-1])
@@ -48,8 +48,8 @@ class FieldTable:
             for end, row, part, place in zip(ends, lower, share, self.places.values(), strict=True):
                 weight = weight * (part if end else 1.0 - part)
                 at.append(np.minimum(row + end, len(place) - 1))
-            found += weight * self.values[name][tuple(at)]
-        return found
+            values += weight * self.values[name][tuple(at)]
+        return values
 
 
 @lru_cache(maxsize=8)
@@ -59,16 +59,16 @@ def read_table(file: str) -> FieldTable:
     try:
         with open(file, newline="", encoding="utf-8") as text:
             head, *rows = [row for row in csv.reader(text) if row]
-        columns = [one.strip() for one in head]
-        numbers = np.array([[float(one) for one in row] for row in rows])
+        columns = [cell.strip() for cell in head]
+        numbers = np.array([[float(number) for number in row] for row in rows])
     except (OSError, ValueError, csv.Error) as error:
         raise ValueError(
             f"table {name} must have a line with the names of its columns, then lines of numbers; "
             f"reading it found {error}. Correct it."
         ) from error
     known = (*AXES, *FIELDS)
-    axes = [one for one in columns if one in AXES]
-    fields = [one for one in columns if one in FIELDS]
+    axes = [column for column in columns if column in AXES]
+    fields = [column for column in columns if column in FIELDS]
     right = len(set(columns)) == len(columns) and set(columns) <= set(known) and axes and fields
     if not right or numbers.ndim != 2 or not np.isfinite(numbers).all():
         raise ValueError(
@@ -81,7 +81,7 @@ def read_table(file: str) -> FieldTable:
     for axis in axes:
         places[axis], row = np.unique(column[axis], return_inverse=True)
         at.append(row.reshape(-1))
-    shape = tuple(len(one) for one in places.values())
+    shape = tuple(len(axis) for axis in places.values())
     number = np.ravel_multi_index(tuple(at), shape)
     if len(rows) != np.prod(shape) or len(np.unique(number)) != len(rows):
         raise ValueError(
@@ -89,8 +89,8 @@ def read_table(file: str) -> FieldTable:
             f"{' x '.join(map(str, shape))}; found {len(rows)} rows. Complete it."
         )
     values = {}
-    for one in fields:
-        values[one] = np.empty(len(rows))
-        values[one][number] = column[one]
-        values[one] = values[one].reshape(shape)
+    for field in fields:
+        values[field] = np.empty(len(rows))
+        values[field][number] = column[field]
+        values[field] = values[field].reshape(shape)
     return FieldTable(places, values)

@@ -21,7 +21,7 @@ def initial_velocity(points: Array, params: "SphFluidParams") -> Array | None:
     initial = params.initial
     assert initial is not None
     if initial.velocity is not None:
-        parts = [values_at(one, points, "initial.velocity") for one in initial.velocity]
+        parts = [values_at(component, points, "initial.velocity") for component in initial.velocity]
         return np.stack(parts, axis=1)
     table = _table(params)
     if table is None or not table.has("u", "v", "w"):
@@ -34,20 +34,20 @@ def initial_density(points: Array, params: "SphFluidParams") -> Array | None:
     initial, table = params.initial, None
     assert initial is not None
     if initial.density is not None:
-        found = values_at(initial.density, points, "initial.density")
+        densities = values_at(initial.density, points, "initial.density")
     elif (table := _table(params)) is not None and table.has("density"):
-        found = table.at(points, "density")
+        densities = table.at(points, "density")
     else:
         return None
-    worst = int(np.argmax(np.abs(found - params.density)))
-    if abs(found[worst] - params.density) > COMPRESSED * params.density:
+    worst = int(np.argmax(np.abs(densities - params.density)))
+    if abs(densities[worst] - params.density) > COMPRESSED * params.density:
         x, y, z = points[worst].tolist()
         raise ValueError(
             f"initial density must be within {100.0 * COMPRESSED:g} % of {params.density:g} kg/m3, "
-            f"of a weakly compressible fluid; found {found[worst]:.5g} at ({x:.4g}, {y:.4g}, "
+            f"of a weakly compressible fluid; found {densities[worst]:.5g} at ({x:.4g}, {y:.4g}, "
             f"{z:.4g}) m. Correct it, or density."
         )
-    return found
+    return densities
 
 
 def check_initial(params: "SphFluidParams", boxes: tuple[Box, ...]) -> None:

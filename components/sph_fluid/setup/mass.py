@@ -50,8 +50,8 @@ def regions(params: "SphFluidParams") -> Iterator[RegionMass]:
 def particle_volume(params: "SphFluidParams") -> float:
     """Volume [m3] of a particle at rest; area [m2] in two dimensions."""
     nominal = params.spacing**params.dimensions
-    found = list(regions(params))
-    share = sum(one.volume for one in found) / (nominal * sum(one.particles for one in found))
+    parts = list(regions(params))
+    share = sum(part.volume for part in parts) / (nominal * sum(part.particles for part in parts))
     return nominal if abs(share - 1.0) < EVEN else nominal * share
 
 
@@ -68,18 +68,18 @@ def check_mass(params: "SphFluidParams") -> None:
 
 def _excesses(params: "SphFluidParams", share: float) -> Iterator[tuple[RegionMass, float]]:
     """Parts that hold more or less than they should [m3] by so much of all the fluid."""
-    one_volume, found = particle_volume(params), list(regions(params))
-    whole = sum(region.volume for region in found)
-    for region in found:
-        excess = region.particles * one_volume - region.volume
+    volume, parts = particle_volume(params), list(regions(params))
+    whole = sum(region.volume for region in parts)
+    for region in parts:
+        excess = region.particles * volume - region.volume
         if abs(excess) > share * whole:
             yield region, excess
 
 
 def mass_notes(params: "SphFluidParams") -> tuple[str, ...]:
     """Say where particles do not hold what spacing³ would."""
-    nominal, one_volume = params.spacing**params.dimensions, particle_volume(params)
-    change = one_volume / nominal - 1.0
+    nominal, volume = params.spacing**params.dimensions, particle_volume(params)
+    change = volume / nominal - 1.0
     uneven = tuple(
         f"{region.name} holds {100.0 * excess / region.volume:+.2g} % of its mass more or less "
         "than it should, and others the rest: their edges are cut differently"

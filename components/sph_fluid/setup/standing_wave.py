@@ -61,7 +61,7 @@ class StandingWave:
         number = 2.0 * math.pi / self.length
         size = self.amplitude * g * number / self.frequency(depth, g)
         along, up = number * (points[:, 0] - low[0]), number * (points[:, 2] - low[2])
-        found = np.zeros_like(points)
-        found[:, 0] = -size * np.cosh(up) / math.cosh(number * depth) * np.sin(along)
-        found[:, 2] = size * np.sinh(up) / math.cosh(number * depth) * np.cos(along)
-        return found
+        velocities = np.zeros_like(points)
+        velocities[:, 0] = -size * np.cosh(up) / math.cosh(number * depth) * np.sin(along)
+        velocities[:, 2] = size * np.sinh(up) / math.cosh(number * depth) * np.cos(along)
+        return velocities

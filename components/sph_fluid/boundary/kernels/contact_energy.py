@@ -13,7 +13,7 @@ from quintet.components.sph_fluid.state import Array
 @njit(**FAST)
 def stored_energy(
     first: int, last: int, position: Array, stiff: Array, lists: Lists, inverse: float,
-    exponent: int, per_volume: float, repulsion: WallRepulsion, constants: Constants, found: Array,
+    exponent: int, per_volume: float, repulsion: WallRepulsion, constants: Constants, energy: Array,
 ) -> None:  # fmt: skip
     """Write the energy over m² of fluid rows [first, last) with their boundary neighbours."""
     _, middle, end, neighbour = lists
@@ -27,4 +27,4 @@ def stored_energy(
             total += stiff[j] * per_volume * (kernel(r2, constants.smoothing) * inverse) ** exponent
             close = max(1.0 - r2 / repulsion.reach2, 0.0)
             total += 0.25 * repulsion.stiffness * repulsion.reach2 * close * close
-        found[i] = total
+        energy[i] = total

@@ -28,7 +28,7 @@ class Near(NamedTuple):
 @njit(**EXACT)
 def list_near(
     places: Array, cell: Whole, points: Array, start: Whole, order: Whole, grid: Grid,
-    reach2: float, begin: Whole, found: Whole,
+    reach2: float, begin: Whole, listed: Whole,
 ) -> int:  # fmt: skip
     """Write the lists of `near`; how many numbers they have, or -1 where there is no space."""
     nx, ny, nz = grid.nx, grid.ny, grid.nz
@@ -48,11 +48,11 @@ def list_near(
                     for d in range(3):
                         r2 += (places[i, d] - points[j, d]) ** 2
                     if r2 < reach2:
-                        if count == found.shape[0]:
+                        if count == listed.shape[0]:
                             return -1
-                        found[count] = j
+                        listed[count] = j
                         count += 1
-        found[begin[i] : count].sort()
+        listed[begin[i] : count].sort()
     begin[places.shape[0]] = count
     return count
 
@@ -81,11 +81,11 @@ def face_normal(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
 @njit(**FAST)
 def face_normals(off: Array, back: Array) -> Array:
     """Normals (m, 3) of the faces across, from vectors (m, 3) m out of both faces of films."""
-    found = np.empty_like(off)
+    normals = np.empty_like(off)
     for i in range(off.shape[0]):
         ax, ay, az, bx, by, bz = off[i, 0], off[i, 1], off[i, 2], back[i, 0], back[i, 1], back[i, 2]
-        found[i, 0], found[i, 1], found[i, 2] = face_normal(ax, ay, az, bx, by, bz)
-    return found
+        normals[i, 0], normals[i, 1], normals[i, 2] = face_normal(ax, ay, az, bx, by, bz)
+    return normals
 
 
 @njit(**FAST)
