@@ -58,6 +58,14 @@ def test_links_lead_to_files(path):
             assert not part or part in anchors(path.parent / link if link else path), part
 
 
+def test_lines_of_prose_are_short():
+    texts = [ROOT / "README.md", *sorted(ROOT.glob("scenarios/**/README.md"))]
+    prose = [(path, line) for path in texts for line in FENCE.sub("", path.read_text()).split("\n")]
+    exempt = ("|", "(`quintet ")  # rows of tables, and commands that stand as they are pasted
+    long = [(where(p), line) for p, line in prose if len(line) > 160]
+    assert [(place, line) for place, line in long if not line.startswith(exempt)] == []
+
+
 @cache
 def anchors(path):
     """Parts of a text that links may lead to: its headings, as they are written in addresses."""
