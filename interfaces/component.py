@@ -164,6 +164,32 @@ class Component(ABC):
         """Static fields of the ports it gives, and its requests at those it takes."""
         return {}
 
+    def sample(self, request: Fields) -> Fields:
+        """Answer how its surface is sampled, in its own frame; after `describe`, before `bind`.
+
+        Parameters
+        ----------
+        request : mapping of arrays
+            Of one of its ports. Of ``motion`` and ``faces`` one row each of ``spacing``, ``depth``
+            (below the outermost samples) and ``inset`` (of these below the surface), all in m, of
+            ``mirror`` (1 if the image of each sample in the surface is asked for) and
+            ``dimensions`` (2 or 3). Of other meshes ``points`` (n, 3) m that hang on it.
+
+        Returns
+        -------
+        mapping of arrays
+            Of the same port, a row for each sample. Of rigid bodies ``arm`` m, outward ``normal``,
+            ``volume`` m3, number of the ``body``, ``image`` m if asked for. Of faces ``node``
+            (n, 4) and, of these nodes, ``weight``, ``along`` and ``across`` (n, 4), shape
+            functions and their derivatives, ``depth`` m, ``side`` m, ``normal``, ``volume`` m3.
+            Of points ``node``, ``weight``, ``face``, and in m ``gap``, ``size`` and ``beyond``.
+            `components.shared.geometry` computes all of these from dimensions or a mesh.
+        """
+        raise PortError(
+            f"{type(self).__name__} cannot be sampled, for it has no method sample; a partner asks "
+            f"for {', '.join(request)}. Give it one, or leave it out of the link."
+        )
+
     def bind(self, static: Fields, joined: AbstractSet[str]) -> None:  # noqa: B027  (most need none)
         """Join its ports; once, before the first take.
 

@@ -37,17 +37,6 @@ SURFACE = Port(
 )
 # The same with the mirror image of each sample through its surface, for fluids that ask for it.
 MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,), "m")))
-# Said too by fluids that let each link choose what presses between them and its samples:
-# 0 what presses at their walls, 1 a contact potential.
-CONTACT = Field("contact", (), "1")
-# Stated too by fluids that know where they begin, so that bodies which begin in the water, in an
-# obstacle or outside the tank are refused. A box is its lowest and its highest corner.
-BEGINNING = (
-    Field("wet", (2, 3), "m"),  # boxes that are full of fluid and must hold no body
-    Field("solid", (2, 3), "m"),  # obstacles
-    Field("tank", (2, 3), "m"),  # one, or none
-    Field("closed", (6,), "1"),  # 1 for each face of the tank that is closed: x- x+ y- y+ z- z+
-)
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 
 # Said by solvers in two dimensions: 2. All that they hold lies in the plane of x and z and is 1 m
@@ -55,10 +44,7 @@ SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
 # surface is sampled by one row of points in the plane, each standing for 1 m of depth, and forces
 # and torques are those on 1 m. Solvers that do not say it have three dimensions.
 DIMENSIONS = Field("dimensions", (), "1")
-THICKNESS = Field("thickness", (), "m")  # along y, of a fluid of two dimensions
 
-# Shapes of rigid bodies: OTHER ones cannot be sampled; discs and polygons are of two dimensions.
-SPHERE, BOX, OTHER, DISC, POLYGON = range(5)
 # Rigid bodies: given by whatever moves them, loaded by a force and a torque about the centre.
 MOTION = Port(
     "motion",
@@ -68,31 +54,18 @@ MOTION = Port(
         ORIENTATION,  # unit quaternion w, x, y, z: body -> world
         ANGULAR_VELOCITY,
     ),
-    static=(
-        Field("shape", (), "1"),  # one of the above
-        Field("size", (3,), "m"),  # edges of a box; diameter of a sphere, three times; see below
-        Field("mass", (), "kg"),
-    ),
+    static=(Field("mass", (), "kg"),),
 )
-# The same of bodies in two dimensions. Their size is how far they reach along x and z, and 1 m
-# along y. Polygons are convex; their corners, from the centre in the body's frame, stand one body
-# after another, each going round from x to z.
-PLANAR_MOTION = replace(
-    MOTION,
-    static=(
-        *MOTION.static,
-        DIMENSIONS,
-        Field("corners", (), "1"),  # how many corners each body has; a disc 0
-        Field("corner", (3,), "m"),  # (corners of all bodies, 3)
-    ),
-)
+PLANAR_MOTION = replace(MOTION, static=(*MOTION.static, DIMENSIONS))
+# Of round bodies, for partners that have such bodies themselves.
+RADIUS = Field("radius", (), "m")
 LOAD = Port("load", fields=(FORCE, TORQUE))
 # Into each body, from a flow around it.
 HEAT = Port("heat", fields=(HEAT_FLOW,))
-# Spheres in a flow that is coarser than they are. One that stands for a number of equal ones is
+# Particles in a flow that is coarser than they are. One that stands for a number of equal ones is
 # told, loaded and heated as all of them together; its diameter is that of one.
-SPHERES = Port(
-    "spheres",
+PARTICLES = Port(
+    "particles",
     fields=(
         POSITION,
         VELOCITY,

@@ -23,6 +23,7 @@ from quintet.components.dem_bodies.integration.step_limit import (
 )
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import SHOWS
+from quintet.components.dem_bodies.shapes.sampling import sample
 from quintet.components.dem_bodies.shapes.view import planes_view, view
 from quintet.components.dem_bodies.start import described
 from quintet.components.dem_bodies.state import BallPairs
@@ -101,8 +102,12 @@ class DemBodies(Component):
         self.begun = False  # whether the contacts of the start are known
 
     def describe(self) -> Fields:
-        """State shapes, sizes, masses, corners; unions of spheres have the box around them."""
-        return described(self.params, self.bodies, self.solids)
+        """State masses, and whether there are two dimensions."""
+        return described(self.params, self.solids)
+
+    def sample(self, request: Fields) -> Fields:
+        """Sample the surfaces of all bodies as a partner asks for it."""
+        return sample(self.bodies, request)
 
     def prepare(self, fields: Fields) -> None:
         """Compile the kernels of a step, and those that read its end."""

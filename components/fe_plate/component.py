@@ -25,6 +25,7 @@ from quintet.components.fe_plate.ports import SHOWS
 from quintet.components.fe_plate.state import Accumulated, Array
 from quintet.components.fe_plate.supports import supports
 from quintet.components.fe_plate.view import view
+from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -95,6 +96,11 @@ class FePlate(Component):
             for port in ("faces", "node_glue")
             for key, array in mesh.items()
         }
+
+    def sample(self, request: Fields) -> Fields:
+        """Sample the structure below its faces, or hang points on these."""
+        port = next(iter(request)).partition(".")[0]
+        return mesh_answer(port, request, self.describe())
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Take the mass of particles that are glued to the nodes."""

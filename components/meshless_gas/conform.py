@@ -110,8 +110,7 @@ def _body() -> ConformCase:
             "moving": {"bodies": [body]},
         },
         static={
-            "motion.shape": np.zeros(1),
-            "motion.size": np.full((1, 3), 0.4),
+            "motion.radius": np.full(1, 0.2),
             "motion.mass": np.ones(1),
         },
         rest={

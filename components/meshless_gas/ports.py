@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
+from quintet.interfaces import ports as shared
 from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.manifest import Ports
-from quintet.interfaces.ports import HEAT, LOAD, MOTION, SPHERES, TEMPERATURE, VELOCITY
+from quintet.interfaces.ports import HEAT, LOAD, MOTION, RADIUS, TEMPERATURE, VELOCITY
 
 POSITION = Field("position", (3,), "m")
 DENSITY = Field("density", (), "kg/m3")
@@ -146,7 +147,8 @@ SURFACE = Port(
 # Spheres that nodes do not resolve, as the partner has them, and what the gas does to them; a point
 # is not turned, its torque is 0.
 # The largest that the gas can take for points: the spacing of its nodes where they are coarsest.
-PARTICLES = replace(SPHERES, name="particles", requests=(Field("largest_diameter", (), "m"),))
+PARTICLES = replace(shared.PARTICLES, requests=(Field("largest_diameter", (), "m"),))
+DRIVEN = replace(MOTION, static=(*MOTION.static, RADIUS))
 PARTICLE_LOAD = replace(LOAD, name="particle_load")
 PARTICLE_HEAT = replace(HEAT, name="particle_heat")
 
@@ -163,7 +165,7 @@ def ports(params: MeshlessGasParams) -> Ports:
         return (), gives
     driven = any(body.is_driven for body in params.moving.bodies)
     bodies = (BODIES, SURFACE, *((LOAD, HEAT) if driven else ()))
-    return (MOTION,) if driven else (), (*gives, *bodies)
+    return (DRIVEN,) if driven else (), (*gives, *bodies)
 
 
 def initial(params: MeshlessGasParams) -> Fields:

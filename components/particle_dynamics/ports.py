@@ -1,5 +1,7 @@
 """What particle dynamics takes and gives: places and hotness, energies, baths, a wall of heat."""
 
+from dataclasses import replace
+
 from quintet.components.particle_dynamics.params import ParticleDynamicsParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
@@ -7,8 +9,9 @@ from quintet.interfaces.ports import (
     HEAT,
     LOAD,
     MOTION,
+    PARTICLES,
     POSITION,
-    SPHERES,
+    RADIUS,
     TEMPERATURE,
     VELOCITY,
     WALL_HEAT,
@@ -45,11 +48,14 @@ BATHS = Port(
     ),
 )
 
+ROUND_BODIES = replace(MOTION, static=(*MOTION.static, RADIUS))
+SPHERES = replace(PARTICLES, name="spheres")
+
 
 def ports(params: ParticleDynamicsParams) -> Ports:
     """Ports taken and given."""
     if params.lattice is None:
-        return (LOAD, HEAT), (MOTION, SPHERES)
+        return (LOAD, HEAT), (ROUND_BODIES, SPHERES)
     baths = (BATHS,) if params.baths else ()
     coupled = any(one.coupled for one in params.baths)
     wall = (WALL_HEAT,) if coupled else ()

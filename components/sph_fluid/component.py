@@ -69,7 +69,7 @@ class SphFluid(Component):
         self.gauges = features.gauges(params, self.symmetry)
 
     def describe(self) -> Fields:
-        """State how surfaces should be sampled, and where water, tank and obstacles are."""
+        """Request how surfaces are to be sampled."""
         return stated(self.params)
 
     def bind(self, static: Fields, joined: Keys) -> None:
@@ -84,8 +84,11 @@ class SphFluid(Component):
                 self.films.join(self.state, static)
 
     def prime(self, fields: Fields) -> None:
-        """Remove fluid inside the bodies joined, where a scene asks for it."""
-        if self.params.remove_inside_bodies and len(self.samples.row):
+        """Refuse bodies that begin out of place; remove fluid inside them, where a scene asks."""
+        if not len(self.samples.row):
+            return
+        features.refuse_misplaced(self.params, self.samples.body, fields["surface.position"])
+        if self.params.remove_inside_bodies:
             self._notes += features.remove_inside_bodies(
                 self.state, self.samples, fields, self.params
             )

@@ -15,7 +15,8 @@ from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, Sy
 from quintet.components.sph_fluid.integration.method import Integration
 from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precision
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.state import State
+from quintet.components.sph_fluid.setup.geometry import closed_faces
+from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
 
 if TYPE_CHECKING:
@@ -76,6 +77,22 @@ def lubrication_films(params: SphFluidParams, samples: Samples) -> Films | None:
 
         return SelectiveFilms(params, samples, partial(make_films, params, samples))
     return make_films(params, samples) if params.boundary.lubrication_films else None
+
+
+def refuse_misplaced(params: SphFluidParams, body: Array, position: Array) -> None:
+    """Refuse bodies, by the places (n, 3) m of their samples, in the water or beyond the tank."""
+    # Left out of scenes without bodies.
+    from quintet.components.sph_fluid.setup.body_places import TOUCH, Room, refuse_misplaced
+
+    edge = params.boundary
+    room = Room(
+        edge.tank,
+        (*closed_faces(params), *edge.symmetry),
+        () if params.remove_inside_bodies else params.boxes,
+        edge.solids,
+        (0, 2) if params.dimensions == 2 else (0, 1, 2),
+    )
+    refuse_misplaced(body, position, (TOUCH - edge.sample_depth) * params.spacing, room)
 
 
 def remove_inside_bodies(

@@ -7,8 +7,6 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
-    BEGINNING,
-    CONTACT,
     MIRRORED_SURFACE,
     SURFACE,
     SURFACE_LOAD,
@@ -27,6 +25,9 @@ MOTION = Port(
         Field("centre", (3,), "m"),  # of mass
     ),
 )
+# Static field of the samples of surfaces, from links that choose what presses on them: 0 what does
+# at walls, 1 a contact potential.
+CONTACT = Field("contact", (), "1")
 # Of the view: the fluid's particles.
 SHOWS = (VELOCITY, Field("density", (), "kg/m3"), Field("pressure", (), "Pa"))
 
@@ -42,7 +43,6 @@ def surface(params: SphFluidParams) -> Port:
     Dynamic boundary particles know no other contact; films know no potential.
     """
     port = MIRRORED_SURFACE if params.mirrored else SURFACE
-    port = replace(port, requests=(*port.requests, *BEGINNING))
     if params.dimensions == 2:
         port = planar_surface(port)
     fixed = params.boundary.method == "dbc" or params.boundary.lubrication_films is True

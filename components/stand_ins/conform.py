@@ -61,7 +61,7 @@ def _recorded(folder: Path) -> dict[str, Any]:
         "motion.orientation": orientation,
         "motion.angular_velocity": np.tile(np.outer(turn, [1.0, 0.0, 0.0]), (ROWS, 1, 1)),
     }
-    static = {"shape": np.ones(3), "size": np.ones((3, 3)), "mass": np.ones(3)}
+    static = {"mass": np.ones(3)}
     with h5py.File(folder / "recording.h5", "w") as file:
         file.attrs["run"], file.attrs["tick"], file["scene"] = "", WINDOW, ""
         group = file.create_group("components/bodies")

@@ -10,27 +10,25 @@ from quintet.components.stand_ins.params import (
     PrescribedParams,
     prescribed_ports,
 )
-from quintet.interfaces.component import Array, Component, Fields, Keys
+from quintet.interfaces.component import Array, Component, Field, Fields, Keys
 from quintet.interfaces.params import Vector
-from quintet.interfaces.ports import BOX, DISC, POLYGON, SPHERE
+from quintet.interfaces.ports import MOTION, VELOCITY
 
 LOADS = ("force", "torque")
-NONE = np.zeros((0, 2))
-SHAPES = {"sphere": SPHERE, "box": BOX, "disc": DISC, "polygon": POLYGON}
+POSES = frozenset(f"motion.{field.name}" for field in MOTION.fields)
 
 
 class Prescribed(Component):
     """Bodies at x = x0 + v t + a sin(2 π f t) that rotate steadily by ω."""
+
+    shows = (VELOCITY, Field("radius", (), "m"))
 
     def __init__(self, params: PrescribedParams) -> None:
         self.takes, self.gives = prescribed_ports(params)
         self.loads = {f"measured_load.{key}": np.zeros((len(params.bodies), 3)) for key in LOADS}
         bodies = params.bodies
         self.planar = params.planar
-        self.shape = np.array([float(SHAPES[one.shape]) for one in bodies])
-        shapes = [shape_of(body, "bodies") for body in bodies]
-        self.corners = [one.outline if isinstance(one, Polygon) else NONE for one in shapes]
-        self.size = np.array([size_of(shape) for shape in shapes])  # (n, 3) m
+        self.shapes = shapes = [shape_of(body, "bodies") for body in bodies]
         self.mass = np.array([one.mass for one in bodies])  # (n,) kg
         self.origin = np.array([centre_of(shape) for shape in shapes])  # (n, 3) m
         self.velocity = np.array([one.velocity for one in bodies])  # (n, 3) m/s
@@ -42,13 +40,16 @@ class Prescribed(Component):
         self.time = 0.0  # s
 
     def describe(self) -> Fields:
-        """State shapes, sizes and masses; in two dimensions corners."""
-        told = {"shape": self.shape, "size": self.size, "mass": self.mass}
-        if self.planar:
-            told["dimensions"] = np.array([2.0])
-            told["corners"] = np.array([float(len(one)) for one in self.corners])
-            told["corner"] = np.insert(np.concatenate(self.corners), 1, 0.0, axis=1)
-        return {f"motion.{name}": array.copy() for name, array in told.items()}
+        """State masses, and whether there are two dimensions."""
+        planar = {"motion.dimensions": np.array([2.0])} if self.planar else {}
+        return {"motion.mass": self.mass.copy(), **planar}
+
+    def sample(self, request: Fields) -> Fields:
+        """Sample the surfaces of all bodies as a partner asks for it."""
+        # Left out of scenes whose bodies nobody samples.
+        from quintet.components.stand_ins.body_samples import sample
+
+        return sample(self.shapes, request)
 
     def stable_dt(self) -> float:
         """Allow any step: the path is known."""
@@ -88,6 +89,13 @@ class Prescribed(Component):
         self.time = float(state["time"][0])
         self.loads = {key: np.array(state[key]) for key in self.loads}
 
+    def view(self) -> Fields:
+        """Corners and faces of boxes and polygons, centres and radii of spheres and discs."""
+        # Left out of runs without pictures.
+        from quintet.components.stand_ins.body_view import view
+
+        return view(self.shapes, self.give(POSES))
+
     def items(self) -> int:
         """Count the bodies."""
         return len(self.mass)
@@ -99,18 +107,6 @@ def centre_of(shape: Shape) -> Vector:
         return shape.origin
     assert isinstance(shape, Box | Sphere | Disc)
     return shape.centre
-
-
-def size_of(shape: Shape) -> Vector:
-    """Size [m] as `ports.MOTION` and `ports.PLANAR_MOTION` give it."""
-    if isinstance(shape, Polygon):
-        x, z = np.ptp(shape.outline, axis=0).tolist()
-        return x, 1.0, z
-    if isinstance(shape, Box):
-        return shape.size
-    assert isinstance(shape, Sphere | Disc)
-    diameter = 2.0 * shape.radius
-    return diameter, 1.0 if isinstance(shape, Disc) else diameter, diameter
 
 
 def steady_rotation(angular_velocity: Array, time: float) -> Array:

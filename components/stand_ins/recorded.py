@@ -64,7 +64,8 @@ def recorded_start(params: ReplayParams) -> Fields:
     with recorded(params) as file:
         group = file.component(params.component)
         known = fields_of(gives)
-        found = {key: array[()] for key, array in group.get("static", {}).items()}
+        static = group.get("static", {}).items()
+        found = {key: array[()] for key, array in static if not key.startswith("samples.")}
         for key, data in group["fields"].items():
             if known[key].centring == "instant" and len(data):
                 found[key] = file.field(params.component, key, slice(1))[0]

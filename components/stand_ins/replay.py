@@ -5,8 +5,9 @@ import numpy as np
 from quintet.components.stand_ins.params import ReplayParams
 from quintet.components.stand_ins.recorded import recorded, recorded_ports
 from quintet.interfaces.component import Component, Fields, Keys, fields_of
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.errors import SceneError, StepError
 
+SAMPLES = "samples"  # first part of the names under which a recording holds them
 ROUNDING = 1e-9  # of a window, by which times may differ
 
 
@@ -25,7 +26,9 @@ class Replay(Component):
             self.times = marks["ticks"] * file.file.attrs["tick"]  # (rows,) s
             self.stable = marks["stable_steps"]  # (rows,) s
             self.rows = {key: file.field(name, key) for key in group["fields"]}
-            self.static = {key: group[f"static/{key}"][()] for key in group.get("static", ())}
+            static = {key: group[f"static/{key}"][()] for key in group.get("static", ())}
+            self.static = {k: a for k, a in static.items() if not k.startswith(SAMPLES)}
+            self.samples = {k: a for k, a in static.items() if k.startswith(SAMPLES)}
         self.row = 0
         self._into = 0.0  # s, since the last recorded time
         self._from = 0  # row at the beginning of the last step
@@ -33,6 +36,27 @@ class Replay(Component):
     def describe(self) -> Fields:
         """Give what was described then."""
         return {key: array.copy() for key, array in self.static.items()}
+
+    def sample(self, request: Fields) -> Fields:
+        """Answer as the recorded component did; of a mesh, from its nodes and faces."""
+        port = next(iter(request)).partition(".")[0]
+        if f"{port}.start" in self.static:
+            # Left out of replays of bodies.
+            from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
+
+            return mesh_answer(port, request, self.static)
+        for number in {key.split(".")[1] for key in self.samples}:
+            start = f"{SAMPLES}.{number}."
+            told = {
+                k.removeprefix(start): a for k, a in self.samples.items() if k.startswith(start)
+            }
+            if all(np.array_equal(told.get(key, ()), array) for key, array in request.items()):
+                return {key: array for key, array in told.items() if key not in request}
+        asked = ", ".join(f"{key} {array[0]:g}" for key, array in request.items())
+        raise SceneError(
+            "a replay of bodies can be sampled only as they were in the recorded run; found a "
+            f"request for {asked}. Ask for the same, or record a run that does."
+        )
 
     def stable_dt(self) -> float:
         """Return what the recorded component allowed then."""

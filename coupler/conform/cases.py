@@ -110,7 +110,8 @@ def of_scene(
     one = scene.components[component]
     made = {other: _make(plan, scene) for other, plan in scene.components.items()}
     exchange = scene.exchange()
-    static = exchange.bind({key: dict(each.describe()) for key, each in made.items()})
+    described = {key: dict(each.describe()) for key, each in made.items()}
+    static = exchange.bind(described, lambda name, request: made[name].sample(request))
     for key, each in made.items():
         each.bind(static[key], frozenset(exchange.joined(key)))
     rest = _at_the_start(exchange, component, made)

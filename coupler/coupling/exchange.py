@@ -18,6 +18,7 @@ Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
 Works = list[tuple[str, str, str]]  # force, velocity, position or "": all of one component
 Ends = Mapping[str, Fields]  # outputs of both components of a transfer at one end of a window
 Mapped = dict[str, Array]
+Sampler = Callable[[str, Fields], Fields]  # component and request -> its samples
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,38 +142,9 @@ def refused_starts(links: Sequence[Link], initial: Mapping[str, Fields]) -> list
     ]
 
 
-def requires(ports: Ports, name: str, takes: Port | None, gives: Port | None) -> list[str]:
-    """List what a component's ports lack for a role in a link; empty when it fits."""
-    lacks = []
-    for verb, needed, offered in (("take", takes, ports[0]), ("give", gives, ports[1])):
-        if needed is None:
-            continue
-        found = next((port for port in offered if port.name == needed.name), None)
-        if found is None:
-            lacks.append(f"{name} must {verb} a port {needed.name}")
-        else:
-            lacks += misfits(name, found, needed)
-    return lacks
-
-
-def misfits(name: str, found: Port, needed: Port) -> list[str]:
-    """Say which fields of a port are not as the other side has them."""
-    theirs = {field.name: field for field in needed.fields}
-    wrong = []
-    for mine in found.fields:
-        other = theirs.get(mine.name)
-        place = f"{name}.{found.name}.{mine.name}"
-        if other is None:
-            wrong.append(f"{place} is not known to the other side ({', '.join(theirs)})")
-        elif mine.unit != other.unit:
-            wrong.append(f"{place} is in {mine.unit}, the other side's in {other.unit}")
-        elif mine.centring != other.centring:
-            wrong.append(f"{place} is {mine.centring}, the other side's {other.centring}")
-        elif mine.shape != other.shape:
-            wrong.append(f"{place} has shape {mine.shape}, the other side's {other.shape}")
-        elif mine.kind != other.kind:
-            wrong.append(f"{place} is a {mine.kind}, the other side's a {other.kind}")
-    return wrong
+def requests_of(link: Link, described: Mapping[str, Fields]) -> Mapping[str, Fields]:
+    """What a link asks components to sample, by their names; of links with a method ``asks``."""
+    return dict(getattr(link, "asks", lambda _: {})(described))
 
 
 @dataclass(slots=True)
@@ -224,13 +196,26 @@ class Exchange:
         self.transfers = [one for _, one in pairs]
         self.link_of = [number for number, _ in pairs]  # of each transfer
         self._bindings: list[Binding] = []
+        self.samples: list[tuple[str, Fields, Fields]] = []  # component, request, its answer
         self._maps: list[Callable[[Ends, Ends], Mapped]] = []
         self._moment: list[Callable[[Ends, Ends, Fields], Array] | None] = []
         self._rows: dict[tuple[str, str], dict[int, slice]] = {}  # (component, port) -> by link
 
-    def bind(self, described: Mapping[str, Fields]) -> dict[str, Mapped]:
-        """Static fields for every component: a partner's in rows, those of own items added up."""
-        self._bindings = [link.bind(described) for link in self.links]
+    def bind(
+        self, described: Mapping[str, Fields], sample: Sampler = lambda _name, _request: {}
+    ) -> dict[str, Mapped]:
+        """Static fields for every component: a partner's in rows, those of own items added up.
+
+        A link finds the samples for which it asks among what a component described.
+        """
+        self._bindings, self.samples = [], []
+        for link in self.links:
+            told = dict(described)
+            for name, request in requests_of(link, described).items():
+                answer = sample(name, request)
+                told[name] = {**described[name], **answer}
+                self.samples.append((name, request, answer))
+            self._bindings.append(link.bind(told))
         self._maps = [maps for one in self._bindings for maps in one.maps]
         self._moment = [
             moment for one in self._bindings for moment in one.moment or (None,) * len(one.maps)
@@ -241,6 +226,19 @@ class Exchange:
                 for key, array in fields.items():
                     merged[name][key] = self._join(name, key, merged[name].get(key), array)
         return merged
+
+    def samples_of(self, name: str) -> dict[str, Array]:
+        """Samples of a component's rigid bodies, each with its request: what a replay answers.
+
+        Those of a mesh follow from its nodes and faces.
+        """
+        answers = [(request, told) for owner, request, told in self.samples if owner == name]
+        return {
+            f"samples.{number}.{key}": array
+            for number, (request, told) in enumerate(answers)
+            if any(key.endswith(".arm") for key in told)
+            for key, array in {**request, **told}.items()
+        }
 
     def _join(self, name: str, key: str, known: Array | None, array: Array) -> Array:
         if known is None:

@@ -188,7 +188,7 @@ def join_ports(
         Outputs of each component that somebody wants who is no component.
     """
     exchange, participants = coupling.exchange, coupling.components
-    static = exchange.bind(described)
+    static = exchange.bind(described, lambda name, request: participants[name].sample(request))
     wanted = {name: exchange.wanted(name, asked.get(name, ())) for name in participants}
     for name, one in participants.items():
         works, joined = exchange.works(name), exchange.joined(name)

@@ -64,14 +64,11 @@ class ShapeMap:
         Corners of the face on which each point lies.
     weight : (n, 4) float array, 1
         Shape functions there; each row sums to one.
-    face : (n,) int array
-        Number of that face.
     """
 
     node: Array
     weight: Array
     nodes: int
-    face: Array
 
     def map_consistent(self, values: Array) -> Array:
         """Values (nodes, k) at the points: (n, k)."""
@@ -97,7 +94,7 @@ class OffsetMap:
         Of x, t and s: shape functions at the feet of the points, and their derivatives.
     depth : (n,) float array, m
         Of the points below the faces.
-    side : (3,) float array, m
+    side : (n, 3) float array, m
         Added to s: half of the depth along y where faces are edges, else none.
     """
 

@@ -15,6 +15,7 @@ from quintet.interfaces.lines.message import Message, Shapes, order_of, require_
 from quintet.interfaces.lines.transport import FramedLine
 from quintet.interfaces.serving.serve import sendable
 
+BEFORE = {"", "go", "describe", "sample", "bind", "prime"}  # orders in which a scene is refused
 LONGEST_WAIT = 86400.0  # s for one answer, also of a component that nobody watches
 
 
@@ -131,7 +132,7 @@ class Participant:
         self._answered = self.built = True
         if failed:
             text = sendable(str(message.header.get("text")))
-            if message.header.get("error") == SceneError.__name__ and self.shapes is None:
+            if message.header.get("error") == SceneError.__name__ and self.order in BEFORE:
                 # It has not begun: the scene is refused, by who knows the rule.
                 raise SceneError(f"components.{self.name}: {text}")
             said = f"{sendable(str(message.header.get('error')))}: {text}"
@@ -166,6 +167,10 @@ class Participant:
         """Send an order and wait for the answer."""
         self.send_order(order, fields, **header)
         return self.receive()
+
+    def sample(self, request: Fields) -> Fields:
+        """Ask for samples of its surface, before its ports are joined."""
+        return self.call("sample", request).fields
 
     def bind(self, static: Fields, **header: Any) -> None:
         """Join its ports: who reads what, and with what forces do work."""

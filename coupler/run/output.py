@@ -102,7 +102,8 @@ class OutputWriter:
         made = Recorder(path, self.folder.name, text, self._windows.tick)
         for name, one in self.scene.components.items():
             ports = only_fields(one.gives, coupling.outputs[name])
-            made.component(name, ports, described[name])
+            samples = coupling.exchange.samples_of(name)
+            made.component(name, ports, {**described[name], **samples})
         return made
 
     def _go_on(self) -> None:

@@ -7,7 +7,7 @@ from quintet.interfaces.errors import OrderError
 # state -> order -> next state
 LEGAL: dict[str, dict[str, str]] = {
     "new": {"describe": "described", "finish": "finished"},
-    "described": {"bind": "ready", "finish": "finished"},
+    "described": {"sample": "described", "bind": "ready", "finish": "finished"},
     "ready": {
         "give": "ready",
         "prime": "ready",

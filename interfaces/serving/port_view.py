@@ -2,13 +2,10 @@
 
 import numpy as np
 
-from quintet.interfaces.component import Array, Component, Field, Fields, Port
+from quintet.interfaces.component import Component, Field, Fields, Port
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.faces import CORNERS, FACES, stacked
-from quintet.interfaces.ports import BOX, DISC, MESH, POLYGON, POSITION, SPHERE
-from quintet.interfaces.rotation import matrix
+from quintet.interfaces.ports import MESH, POSITION, RADIUS
 
-RADIUS = Field("radius", (), "m")
 MESH_CORNER = next(one for one in MESH if one.name == "corner")
 
 
@@ -42,20 +39,16 @@ def port_fields(gives: tuple[Port, ...]) -> tuple[Field, ...]:
         return ()
     plain = (one for one in port.fields if one.kind == "value" and one.centring == "instant")
     fields = tuple(one for one in plain if one.name != POSITION.name)
-    return (*fields, RADIUS) if _has(port, "shape") else fields
-
-
-def _has(port: Port, static: str) -> bool:
-    return any(one.name == static for one in port.static)
+    return (*fields, RADIUS) if RADIUS in port.static else fields
 
 
 def port_view(port: Port, given: Fields, static: Fields) -> Fields:
-    """Bodies, faces or points of a port, from its fields and what its component described."""
+    """Faces or points of a port, from its fields and what its component described."""
     now, told = _of_port(port, given), _of_port(port, static)
     fields = [one.name for one in port_fields((port,)) if one.name in now]
-    if "shape" in told and "size" in told:
-        return _bodies(now, told, fields)
     view = {"points": now["position"], **{name: now[name] for name in fields}}
+    if RADIUS.name in told:
+        view[RADIUS.name] = told[RADIUS.name]
     if MESH_CORNER in port.static and "corner" in told:
         view["cells"] = np.asarray(told["corner"], np.int64)
     return view
@@ -65,37 +58,3 @@ def _of_port(port: Port, fields: Fields) -> Fields:
     """Fields of a port, by their names in it."""
     keys = [key for key in fields if key.startswith(f"{port.name}.")]
     return {key.partition(".")[2]: fields[key] for key in keys}
-
-
-def _bodies(now: Fields, told: Fields, fields: list[str]) -> Fields:
-    """Corners and faces of boxes and polygons, centres and radii of spheres and discs."""
-    shape, size, centre = told["shape"].astype(int), told["size"], now["position"]
-    axes = np.tile(np.eye(3), (len(shape), 1, 1))
-    if "orientation" in now:
-        axes = matrix(now["orientation"])
-    round_ones = np.flatnonzero(np.isin(shape, (SPHERE, DISC)))
-    plain = np.flatnonzero(~np.isin(shape, (SPHERE, DISC, BOX, POLYGON)))
-    loose = np.concatenate([round_ones, plain])
-    owners, arms = [loose], [np.zeros((len(loose), 3))]  # body of each point; m, in its frame
-    cells, count = [], len(loose)
-    for k in np.flatnonzero(np.isin(shape, (BOX, POLYGON))).tolist():
-        corners = 0.5 * size[k] * CORNERS if shape[k] == BOX else _polygon(told, k)
-        cells.append(count + (FACES if shape[k] == BOX else np.arange(len(corners))[None]))
-        owners.append(np.full(len(corners), k))
-        arms.append(corners)
-        count += len(corners)
-    owner = np.concatenate(owners)
-    arm = np.einsum("nij,nj->ni", axes[owner], np.concatenate(arms))
-    view: dict[str, Array] = {"points": centre[owner] + arm}
-    view |= {name: now[name][owner] for name in fields}
-    if "velocity" in view and "angular_velocity" in now:
-        view["velocity"] = view["velocity"] + np.cross(now["angular_velocity"][owner], arm)
-    radius = np.zeros(count)
-    radius[: len(round_ones)] = 0.5 * size[round_ones, 0]
-    view["radius"] = radius
-    return view | ({"cells": stacked(cells)} if cells else {})
-
-
-def _polygon(told: Fields, k: int) -> Array:
-    first = int(told["corners"][:k].sum())
-    return np.asarray(told["corner"][first : first + int(told["corners"][k])])

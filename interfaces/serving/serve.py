@@ -60,6 +60,7 @@ class Server:
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
             "describe": self._describe,
+            "sample": lambda request: ({}, self.component.sample(request.fields)),
             "bind": self._bind,
             "prime": self._prime,
             "prepare": self._prepare,

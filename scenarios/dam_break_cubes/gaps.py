@@ -15,7 +15,6 @@ import h5py
 import matplotlib
 import numpy as np
 
-from quintet.coupler.coupling.body_samples import fill
 from quintet.interfaces.rotation import matrix
 
 matplotlib.use("Agg")
@@ -25,6 +24,7 @@ HERE = Path(__file__).parent
 SINCE, UNTIL = 0.75, 1.0  # s: water stands between the cubes, and the pyramid still stands
 GAPS = ((0, 1, 1.0), (1, 1, -1.0), (1, 1, 1.0), (2, 1, -1.0))  # cube, axis, side of its face
 FRONTS = ((0, 0, -1.0), (1, 0, -1.0), (2, 0, -1.0))
+EDGE = 0.15  # m, of a cube
 TOP, HALFWAY = 5, 0.225  # m
 SMOOTH = 0.02  # s, of the curves
 
@@ -38,12 +38,11 @@ class Run:
             self.time = cubes["times"][:]
             self.position = cubes["fields/motion.position"][:]
             self.turned = cubes["fields/motion.orientation"][:]
-            size = cubes["static/motion.size"][:]
+            arm = cubes["static/samples.0.motion.arm"][:]  # m
+            body = cubes["static/samples.0.motion.body"][:]
             self.impulse = water["fields/surface_load.force"][:]
-            keys = ("spacing", "depth", "inset")
-            sampling = [float(water[f"static/surface.{key}"][0]) for key in keys]
-        self.area = float(size[0, 0]) ** 2
-        self.arm = [fill(1, one, *sampling)[0] for one in size]
+        self.area = EDGE**2
+        self.arm = [arm[body == cube] for cube in range(self.position.shape[1])]
 
     def pressure(self, cube: int, axis: int, side: float) -> np.ndarray:
         """Mean pressure [Pa] on a face, over every window."""

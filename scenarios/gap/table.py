@@ -11,17 +11,14 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from quintet.coupler.coupling.body_samples import fill
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.vtkhdf_reader import read_step, times
 from quintet.interfaces.component import Array
-from quintet.interfaces.ports import BOX
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 MIDDLE = 2.5  # spacings: half the width of the middle of a face, away from its rim
-REACH = 3.0  # spacings, of the kernel
 WEIGHT = 9810.0  # N/m3, rho g
 
 
@@ -47,6 +44,8 @@ class Run:
         with Recording(folder) as recording:
             self.times = recording.times("water")[1:]
             window = np.diff(recording.times("water"))[:, None]
+            samples = recording.static("blocks")
+            self.arm = samples["samples.0.motion.arm"][samples["samples.0.motion.body"] == 0.0]
             force = recording.field("water", "surface_load.force")[1:, :, 0] / window  # N
         self.pressure = self._pressure(force)  # over that outside; (gaps, m)
 
@@ -66,11 +65,9 @@ class Run:
         return float(inside * self.particle / np.prod(high - low))
 
     def _pressure(self, force: Array) -> Array:
-        depth, inset = REACH * self.spacing, 0.5 * self.spacing
-        arm = fill(BOX, self.size, self.spacing, depth, inset)[0]
-        middle = (np.abs(arm[:, 1:]) < MIDDLE * self.spacing).all(axis=1)
+        middle = (np.abs(self.arm[:, 1:]) < MIDDLE * self.spacing).all(axis=1)
         area = (2.0 * MIDDLE * self.spacing) ** 2
-        push = force.reshape(len(force), len(self.place), len(arm))[:, :, middle].sum(axis=2)
+        push = force.reshape(len(force), len(self.place), len(self.arm))[:, :, middle].sum(axis=2)
         outside = WEIGHT * (self.level - self.place[0, 2])
         return (1.0 - 0.5 * (push[:, 0::2] - push[:, 1::2]) / (area * outside)).T
 

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from quintet.coupler.coupling.face_samples import sample_faces
-from quintet.coupler.coupling.rigid_samples import Sampling
+from quintet.components.shared.geometry.surface_samples import Sampling
+from quintet.components.shared.geometry.surface_samples_mesh import sample_faces
+from quintet.coupler.coupling.mapping import ShapeMap
 
 MASS, STIFFNESS, PRESSURE, WAVE, SPEED, DRAG, SPACING, END = (
     1.0,
@@ -43,7 +44,7 @@ def _exact():
     mesh = Plate(Plate.Params()).describe()
     asked = Sampling(SPACING, depth=SPACING, inset=0.0, planar=False)
     found = sample_faces(mesh["faces.start"], mesh["faces.corner"], asked)
-    shape, area = found.offset.surface, found.volume / SPACING
+    shape, area = ShapeMap(found.node, found.weight, 12), found.volume / SPACING
     phi = np.array([shape.map_consistent(unit[:, None])[:, 0] for unit in np.eye(12)]).T  # (n, 12)
     place = shape.map_consistent(mesh["faces.start"])[:, 0]
     # sin(k x - ω t) = sin(k x) cos(ω t) - cos(k x) sin(ω t), with cos and sin as two more unknowns.

@@ -1,10 +1,14 @@
 """Toys: balls that turn and move as they are pushed."""
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 
+from quintet.components.shared.geometry.surface_samples import rigid_answer, sphere
 from quintet.interfaces.component import Array, Component, Fields, Keys, Port, Totals
 from quintet.interfaces.params import Count, Positive, Vector, parameters
-from quintet.interfaces.ports import LOAD, MOTION
+from quintet.interfaces.ports import LOAD, MOTION, RADIUS
 
 
 def turn(orientation: Array, spin: Array, dt: float) -> Array:
@@ -21,7 +25,7 @@ class Balls(Component):
     """Spheres in free motion, pushed by forces and torques about their centres."""
 
     takes = (LOAD,)
-    gives = (MOTION,)
+    gives = (replace(MOTION, static=(*MOTION.static, RADIUS)),)
 
     @parameters
     class Params:
@@ -44,8 +48,12 @@ class Balls(Component):
 
     def describe(self) -> Fields:
         count, params = len(self.x), self.params
-        size, mass = np.full((count, 3), params.diameter), np.full(count, params.mass)
-        return {"motion.shape": np.zeros(count), "motion.size": size, "motion.mass": mass}
+        radius, mass = np.full(count, 0.5 * params.diameter), np.full(count, params.mass)
+        return {"motion.radius": radius, "motion.mass": mass}
+
+    def sample(self, request: Fields) -> Fields:
+        ball = partial(sphere, self.params.diameter)
+        return rigid_answer("motion", request, [ball] * len(self.x))
 
     def stable_dt(self) -> float:
         return self.params.dt

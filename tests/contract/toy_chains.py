@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.interfaces.component import Array, Component, Fields, Keys, Totals
 from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters
 from quintet.interfaces.ports import GLUED, GLUED_LOAD, NODE_GLUE, NODE_LOAD
@@ -68,6 +69,9 @@ class Column(Component):
         start = np.column_stack([place, np.tile(CORNERS, (layers, 1))])
         corner = np.arange(4 * layers - 4, 4 * layers, dtype=float)[None]
         return {"node_glue.start": start, "node_glue.corner": corner}
+
+    def sample(self, request: Fields) -> Fields:
+        return mesh_answer("node_glue", request, self.describe())
 
     def bind(self, static: Fields, joined: Keys) -> None:
         if "node_load" in joined:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.interfaces.component import Component, Fields, Keys, Totals
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 from quintet.interfaces.ports import NODE_HEAT, NODE_TEMPERATURE, WALL_HEAT, WALL_TEMPERATURE
@@ -30,6 +31,9 @@ class Slab(Component):
         square = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
         corner = np.array([[0.0, 1.0, 2.0, 3.0]])
         return {"node_temperature.start": square, "node_temperature.corner": corner}
+
+    def sample(self, request: Fields) -> Fields:
+        return mesh_answer("node_temperature", request, self.describe())
 
     def stable_dt(self) -> float:
         return np.inf

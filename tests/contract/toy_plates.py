@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.interfaces.component import Component, Fields, Keys, Totals
 from quintet.interfaces.params import NotNegative, Positive, parameters
 from quintet.interfaces.ports import FACES, NODE_LOAD, SURFACE, SURFACE_LOAD
@@ -31,6 +32,9 @@ class Plate(Component):
         first = [4 * j + i for j in range(2) for i in range(3)]
         corner = np.array([[n, n + 1, n + 5, n + 4] for n in first], dtype=float)
         return {"faces.start": self.start.copy(), "faces.corner": corner}
+
+    def sample(self, request: Fields) -> Fields:
+        return mesh_answer("faces", request, self.describe())
 
     def stable_dt(self) -> float:
         return self.params.dt

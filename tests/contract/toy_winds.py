@@ -1,10 +1,14 @@
 """Toys: a creeping flow that drags, turns and heats spheres."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from quintet.interfaces.component import Component, Fields, Keys, Totals
 from quintet.interfaces.params import Count, Positive, Vector, parameters
-from quintet.interfaces.ports import HEAT, LOAD, MOTION, SPHERES
+from quintet.interfaces.ports import HEAT, LOAD, MOTION, PARTICLES
+
+SPHERES = replace(PARTICLES, name="spheres")
 
 
 class Wind(Component):

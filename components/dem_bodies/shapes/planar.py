@@ -13,7 +13,6 @@ from quintet.components.shared.geometry.polygons import (
     area_moments,
     edges,
     in_order,
-    in_space,
 )
 from quintet.interfaces.component import Array
 
@@ -43,16 +42,6 @@ def inner_corners(corner: Array, radius: float) -> Array:
 def shortest_edge(body: RigidBody) -> float:
     """Length [m] of a polygon's shortest edge."""
     return float(np.linalg.norm(edges(np.array(body.corners)), axis=1).min())
-
-
-def describe(bodies: Sequence[RigidBody]) -> dict[str, Array]:
-    """State what `ports.PLANAR_MOTION` asks for beyond shape, size and mass."""
-    each = [np.zeros((0, 2)) if body.corners is None else corners(body) for body in bodies]
-    return {
-        "motion.dimensions": np.array([2.0]),
-        "motion.corners": np.array([float(len(one)) for one in each]),
-        "motion.corner": in_space(np.concatenate(each)),
-    }
 
 
 def triangles(count: int) -> Array:

@@ -13,6 +13,7 @@ from quintet.components.fe_plate.heat.ports import SHOWS
 from quintet.components.fe_plate.heat.view import view
 from quintet.components.fe_plate.meshes.arrays import Array
 from quintet.components.fe_plate.meshes.mesh import faces_in
+from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.interfaces.component import Component, Fields, Keys, Totals
 from quintet.interfaces.errors import SceneError, StepError
 
@@ -61,6 +62,10 @@ class FeHeat(Component):
             "node_temperature.start": self.model.mesh.node[self.surface],
             "node_temperature.corner": self.corner.astype(np.float64),
         }
+
+    def sample(self, request: Fields) -> Fields:
+        """Hang points on the faces of the surface."""
+        return mesh_answer("node_temperature", request, self.describe())
 
     def prepare(self, fields: Fields) -> None:
         """Compile by solving the present, already converged state."""

@@ -142,9 +142,9 @@ def refuse_partner(static: Fields, radii: Array, bodies: NDArray[np.int64]) -> N
     bodies : (d,) int array
         Those that are driven.
     """
-    if "motion.size" not in static:
+    if "motion.radius" not in static:
         return
-    sizes = np.asarray(static["motion.size"]).min(axis=1)  # m
+    sizes = 2.0 * static["motion.radius"]  # m
     if len(sizes) != len(bodies):
         raise SceneError(
             f"each driven body needs a partner; found {len(bodies)} driven bodies and "

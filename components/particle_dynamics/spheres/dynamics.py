@@ -1,6 +1,7 @@
 """Spheres that fly: loads of a partner, gravity, tethers, impacts."""
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -20,9 +21,9 @@ from quintet.components.particle_dynamics.spheres.refusals import (
     refuse_behind_walls,
     refuse_overlaps,
 )
+from quintet.components.shared.geometry.surface_samples import rigid_answer, sphere
 from quintet.interfaces.component import Array, Component, Fields, Keys, Totals
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.ports import SPHERE
 
 KEPT = ("position", "velocity", "orientation", "spin", "temperature", "force", "torque", "heat")
 ROUNDING = 1e-9  # of a step, by which the time of a launch may be missed
@@ -67,16 +68,21 @@ class SphereDynamics(Component):
         self.flies |= rows
 
     def describe(self) -> Fields:
-        """State shape, size and mass."""
+        """State radius and mass."""
         one = self.spheres
         return {
-            "motion.shape": np.full(len(one.mass), float(SPHERE)),
-            "motion.size": np.repeat(2.0 * one.radius[:, None], 3, axis=1),
+            "motion.radius": one.radius.copy(),
             "motion.mass": one.mass.copy(),
             "spheres.mass": one.mass.copy(),
             "spheres.heat_capacity": one.capacity.copy(),
             "spheres.number": one.parcel.copy(),
         }
+
+    def sample(self, request: Fields) -> Fields:
+        """Sample the surfaces of the spheres as a partner asks for it."""
+        diameters = (2.0 * self.spheres.radius).tolist()
+        known = {diameter: partial(sphere, diameter) for diameter in set(diameters)}
+        return rigid_answer("motion", request, [known[diameter] for diameter in diameters])
 
     def stable_dt(self) -> float:
         """Return what tethers, closing speeds and the scene allow; free flight has no limit."""

@@ -12,14 +12,14 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import fluid_boxes, slab_thickness
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.ports import DIMENSIONS, THICKNESS
+from quintet.interfaces.ports import DIMENSIONS
 
 NEARLY = 1e-9  # m
 
 
 def planar_surface(port: Port) -> Port:
     """Port of surfaces that says that the fluid has two dimensions."""
-    return replace(port, requests=(*port.requests, DIMENSIONS, THICKNESS))
+    return replace(port, requests=(*port.requests, DIMENSIONS))
 
 
 def require_one_metre(params: SphFluidParams) -> None:

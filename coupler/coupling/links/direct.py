@@ -16,9 +16,9 @@ from quintet.coupler.coupling.exchange import (
     Ports,
     Transfer,
     Works,
-    misfits,
 )
 from quintet.coupler.coupling.links.keys import Pairs, is_stand_in, with_keys
+from quintet.coupler.coupling.links.port_checks import misfits
 from quintet.interfaces.component import Array, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import parameters, unknown

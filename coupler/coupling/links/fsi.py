@@ -1,7 +1,7 @@
 """Fluid and structure: surface samples move with bodies or faces, whose loads they map back.
 
-The fluid takes samples and gives a force on each; it never learns what moves them. The body
-gives its shape or its faces; it never learns how finely they are sampled. `contact` says what
+The fluid takes samples and gives a force on each; it never learns what moves them. Whoever moves a
+surface says where its samples are; it never learns who asked. `contact` says what
 presses between the fluid and the samples of this link: what does at the fluid's walls, or a contact
 potential, of a fluid whose port asks for it.
 """
@@ -17,20 +17,20 @@ from quintet.coupler.coupling.exchange import (
     Ports,
     Transfer,
     Works,
-    requires,
 )
 from quintet.coupler.coupling.links.keys import Between, with_keys
+from quintet.coupler.coupling.links.port_checks import requires
 from quintet.coupler.coupling.links.sampled_structures import (
     FACES_OF_A_MESH,
     RIGID_BODIES,
     Sampling,
     Structure,
+    request,
 )
 from quintet.interfaces.component import Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import parameters
 from quintet.interfaces.ports import (
-    CONTACT,
     DIMENSIONS,
     FACES,
     MIRRORED_SURFACE,
@@ -39,6 +39,8 @@ from quintet.interfaces.ports import (
     SURFACE_LOAD,
 )
 
+# Static field of a fluid that lets links choose: 1 where a contact potential presses on a sample.
+CONTACT = "contact"
 WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
 
@@ -117,12 +119,12 @@ def _same_dimensions(name: str, ports: Mapping[str, Port]) -> None:
 
 def _contact(name: str, fluid: str, surface: Port, potential: bool) -> float | None:
     """Code of what presses on the samples, for a fluid that lets its links choose it."""
-    if any(field.name == CONTACT.name for field in surface.static):
+    if any(field.name == CONTACT for field in surface.static):
         return float(potential)
     if potential:
         raise SceneError(
             f"link {name}: contact potential needs a fluid that lets links choose their contact; "
-            f"port {surface.name} of {fluid} does not say {CONTACT.name}. Remove contact, or "
+            f"port {surface.name} of {fluid} does not say {CONTACT}. Remove contact, or "
             f"choose a boundary of {fluid} that does, without films."
         )
     return None
@@ -156,13 +158,15 @@ class Fsi:
         """Nothing: any steps, any scheme."""
         return Demands()
 
-    def refuses(self, initial: Mapping[str, Fields]) -> list[str]:
-        """See `exchange.refused_starts`."""
-        return self.structure.refuses(self.sampling, initial)
+    def asks(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
+        """See `exchange.requests_of`: samples of the surface, as the fluid asks for them."""
+        stated = described[self.sampling.fluid]
+        return {self.sampling.body: request(self.sampling, self.structure.motion.name, stated)}
 
     def bind(self, described: Mapping[str, Fields]) -> Binding:
-        """Sample the surface at the fluid's spacing."""
-        found, count = self.structure.bind(self.sampling, described), len(self.transfers)
+        """Let the samples of the surface ride on what moves it."""
+        found = self.structure.bind(self.sampling, described[self.sampling.body])
+        count = len(self.transfers)
         return replace(found, maps=found.maps[:count], moment=found.moment[:count])
 
 

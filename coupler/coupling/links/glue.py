@@ -22,10 +22,10 @@ from quintet.coupler.coupling.exchange import (
     Ports,
     Transfer,
     Works,
-    requires,
 )
-from quintet.coupler.coupling.faces import Projection, project
 from quintet.coupler.coupling.links.keys import Between, is_stand_in, with_keys
+from quintet.coupler.coupling.links.port_checks import requires
+from quintet.coupler.coupling.links.sampled_structures import OF_POINTS, answered
 from quintet.coupler.coupling.mapping import ShapeMap
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import LinkError, SceneError
@@ -144,20 +144,27 @@ class Glue:
         """One step of both sides in every window, one after the other."""
         return Demands(equal_steps=True, schemes=("serial",), reason=WHY)
 
+    def asks(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
+        """See `exchange.requests_of`: on which faces the particles hang."""
+        points = described[self.particles]["glued_load.position"]
+        return {self.mesh: {f"{NODE_GLUE.name}.points": points}}
+
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Hang the particles on the faces, and their mass on the nodes."""
         glued, mesh = described[self.particles], described[self.mesh]
-        place = glued["glued_load.position"]
-        found = project(place, mesh["node_glue.start"], mesh["node_glue.corner"])
-        self._refuse_outside(place, found)
-        shape, each = found.shape, glued["glued_load.mass"]
+        told = answered(self.name, self.mesh, NODE_GLUE.name, mesh, OF_POINTS)
+        node, weight, face, gap, size, beyond = told
+        on = face.astype(np.int64)  # (particles,) face of each
+        self._refuse_outside(glued["glued_load.position"], on, gap, size, beyond)
+        shape = ShapeMap(node.astype(np.int64), weight, len(mesh["node_glue.start"]))
+        each = glued["glued_load.mass"]
         mass = _hung(shape, each)
         returned = HUNG in self.transfers[0].fills
 
         def load(_: Ends, end: Ends) -> Mapped:
             mapped = {FORCE[1]: shape.map_conservative(end[self.particles][FORCE[0]])}
             if returned:
-                active = end[self.mesh][ERODED[0]][shape.face]
+                active = end[self.mesh][ERODED[0]][on]
                 mapped[HUNG] = mass if active.all() else _hung(shape, each * active)
             return mapped
 
@@ -165,25 +172,23 @@ class Glue:
             return {"glued.velocity": shape.map_consistent(end[self.mesh]["node_glue.velocity"])}
 
         def free(_: Ends, end: Ends) -> Mapped:
-            return {ERODED[1]: end[self.mesh][ERODED[0]][shape.face]}
+            return {ERODED[1]: end[self.mesh][ERODED[0]][on]}
 
         static = {self.mesh: {"node_load.added_mass": mass}}
         return Binding(static, self._those((load, move, free)))
 
-    def _refuse_outside(self, place: Array, found: Projection) -> None:
+    def _refuse_outside(
+        self, place: Array, face: Array, gap: Array, size: Array, beyond: Array
+    ) -> None:
         """Refuse particles that lie beside all faces, or too far above them."""
-        beside, far = found.beyond > BESIDE * found.size, found.gap > self.reach * found.size
+        beside, far = beyond > BESIDE * size, gap > self.reach * size
         for one in np.flatnonzero(beside | far)[:1]:
-            how = (
-                f"{found.beyond[one]:.3g} m beside"
-                if beside[one]
-                else f"{found.gap[one]:.3g} m from"
-            )
+            how = f"{beyond[one]:.3g} m beside" if beside[one] else f"{gap[one]:.3g} m from"
             raise LinkError(
                 f"link {self.name}: a glued particle must lie above a face of {self.mesh}, no "
                 f"further from it than reach = {self.reach:g} of its longest side; particle {one} "
                 f"of {self.particles}, at {np.array2string(place[one], precision=4)} m, is {how} "
-                f"the nearest one, face {found.shape.face[one]} of {found.size[one]:.3g} m. Let "
+                f"the nearest one, face {face[one]} of {size[one]:.3g} m. Let "
                 "the faces reach under all glued particles, glue fewer, or raise reach."
             )
 

@@ -9,6 +9,7 @@ change of it overshoots where the wall conducts better than the mesh.
 from collections.abc import Mapping
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
 from quintet.coupler.coupling.exchange import (
@@ -20,10 +21,11 @@ from quintet.coupler.coupling.exchange import (
     Ports,
     Transfer,
     Works,
-    requires,
 )
-from quintet.coupler.coupling.faces import project
 from quintet.coupler.coupling.links.keys import Between, with_keys
+from quintet.coupler.coupling.links.port_checks import requires
+from quintet.coupler.coupling.links.sampled_structures import OF_POINTS, answered
+from quintet.coupler.coupling.mapping import ShapeMap
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import parameters
@@ -108,14 +110,17 @@ class Heat:
             reason="its temperature is relaxed from window to window, so windows are not repeated",
         )
 
+    def asks(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
+        """See `exchange.requests_of`: on which faces the points of the wall lie."""
+        points = described[self.wall]["wall_heat.position"]
+        return {self.mesh: {f"{NODE_TEMPERATURE.name}.points": points}}
+
     def bind(self, described: Mapping[str, Fields]) -> Binding:
-        """Find the faces on which the points of the wall lie."""
+        """Share temperature and heat on the faces on which the points of the wall lie."""
         mesh = described[self.mesh]
-        shape = project(
-            described[self.wall]["wall_heat.position"],
-            mesh["node_temperature.start"],
-            mesh["node_temperature.corner"],
-        ).shape
+        told = answered(self.name, self.mesh, NODE_TEMPERATURE.name, mesh, OF_POINTS)
+        nodes = len(mesh["node_temperature.start"])
+        shape = ShapeMap(told[0].astype(np.int64), told[1], nodes)
 
         def hold(_: Ends, end: Ends) -> Mapped:
             temperature = end[self.mesh]["node_temperature.temperature"]

@@ -1,6 +1,7 @@
 """Structures that a fluid samples: rigid bodies and deforming faces, how they move and take loads.
 
-Samples ride on what moves them, and their forces go back by the transpose of the same map.
+Whoever moves a structure says where its samples are; they ride on it, and their forces go back by
+the transpose of the same map.
 """
 
 from collections.abc import Callable, Mapping
@@ -10,23 +11,21 @@ from functools import partial
 import numpy as np
 
 from quintet.coupler.coupling.exchange import Binding, Ends, Mapped
-from quintet.coupler.coupling.face_samples import sample_faces
-from quintet.coupler.coupling.faces import is_planar
-from quintet.coupler.coupling.mapping import OffsetMap, RigidMap
-from quintet.coupler.coupling.rigid_samples import Sampling as AskedSampling
-from quintet.coupler.coupling.rigid_samples import (
-    asked_sampling,
-    body_widths,
-    sample_bodies,
-    unsampled,
-)
-from quintet.coupler.coupling.start_positions import misplaced
+from quintet.coupler.coupling.mapping import OffsetMap, RigidMap, ShapeMap
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError
-from quintet.interfaces.ports import FACES, LOAD, MOTION, NODE_LOAD
+from quintet.interfaces.ports import DIMENSIONS, FACES, LOAD, MOTION, NODE_LOAD
 
-NEARLY = 1e-9  # m
 POSES = tuple(f"motion.{one.name}" for one in MOTION.fields)
+# What an answer to a request for samples holds, and the shape of one row.
+OF_BODIES: dict[str, tuple[int, ...]] = {"arm": (3,), "normal": (3,), "volume": (), "body": ()}
+OF_FACES: dict[str, tuple[int, ...]] = {
+    "node": (4,), "weight": (4,), "along": (4,), "across": (4,),
+    "depth": (), "side": (3,), "normal": (3,), "volume": (),
+}  # fmt: skip
+OF_POINTS: dict[str, tuple[int, ...]] = {
+    "node": (4,), "weight": (4,), "face": (), "gap": (), "size": (), "beyond": (),
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +41,7 @@ class Sampling:
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """Ports and fields of one kind of structure, and how its surface is sampled."""
+    """Ports and fields of one kind of structure, and how its samples move."""
 
     motion: Port
     load: Port
@@ -50,56 +49,48 @@ class Structure:
     fills: tuple[str, ...]  # fields that their forces become
     needs: tuple[str, ...]  # fields of the structure that this takes
     works_on: tuple[tuple[str, str, str], ...]
-    refuses: Callable[[Sampling, Mapping[str, Fields]], list[str]]  # of how both begin
-    bind: Callable[[Sampling, Mapping[str, Fields]], Binding]
+    bind: Callable[[Sampling, Fields], Binding]
 
 
-def _bind_bodies(of: Sampling, described: Mapping[str, Fields]) -> Binding:
-    """Sample every body at the fluid's spacing."""
-    asked, bodies = asked_sampling(described[of.fluid]), described[of.body]
-    if wrong := _refused_bodies(of, described):
-        raise LinkError("\n".join(wrong))
-    found = sample_bodies(bodies, asked, of.mirrored)
-    samples = RigidMap(found.arm, found.body, len(bodies["motion.shape"]))
-    mirror = None
-    if found.image is not None:
-        mirror = RigidMap(found.image, found.body, samples.bodies)
-    static = _static(of, found.normal, found.volume, found.body.astype(np.float64))
+def request(of: Sampling, port: str, stated: Fields) -> dict[str, Array]:
+    """What a fluid that states this asks of whoever moves a structure, by `Component.sample`."""
+    spacing = stated["surface.spacing"]
+    asked = {
+        "spacing": spacing,
+        "depth": stated["surface.depth"],
+        "inset": stated.get("surface.inset", 0.5 * spacing),
+        "mirror": np.array([float(of.mirrored)]),
+        "dimensions": stated.get(f"surface.{DIMENSIONS.name}", np.array([3.0])),
+    }
+    return {f"{port}.{name}": np.asarray(array, np.float64) for name, array in asked.items()}
+
+
+def answered(
+    link: str, name: str, port: str, told: Fields, shapes: Mapping[str, tuple[int, ...]]
+) -> list[Array]:
+    """Fields of an answer to a request for samples, checked: a row for each sample."""
+    found = [told.get(f"{port}.{field}") for field in shapes]
+    rows = -1 if found[0] is None else len(found[0])
+    for (field, shape), array in zip(shapes.items(), found, strict=True):
+        if array is None or array.shape != (rows, *shape):
+            raise LinkError(
+                f"link {link}: sample of {name} must answer with {port}.{field} of shape "
+                f"{('n', *shape)}, a row for each sample; found "
+                f"{'none' if array is None else array.shape}. Correct it."
+            )
+    return [array for array in found if array is not None]
+
+
+def _bind_bodies(of: Sampling, bodies: Fields) -> Binding:
+    """Let samples ride on rigid bodies."""
+    arm, normal, volume, number = answered(of.link, of.body, "motion", bodies, OF_BODIES)
+    owner, count = number.astype(np.int64), len(bodies["motion.mass"])
+    samples, mirror = RigidMap(arm, owner, count), None
+    if of.mirrored:
+        (image,) = answered(of.link, of.body, "motion", bodies, {"image": (3,)})
+        mirror = RigidMap(image, owner, count)
     maps = (partial(_move_bodies, of.body, samples, mirror), partial(_load_bodies, of, samples))
-    return Binding(static, maps, (None, partial(_moment, of.body)))
-
-
-def _refused_slab(of: Sampling, initial: Mapping[str, Fields]) -> list[str]:
-    """Refuse a slab in which what samples stand for, 1 m along y, is not what the fluid has."""
-    return [
-        f"link {of.link}: in two dimensions samples stand for 1 m along y, and so must {of.fluid}; "
-        f"its boxes reach over {thickness:g} m. Let them, and the walls, reach over 1 m."
-        for thickness in initial.get(of.fluid, {}).get("surface.thickness", ())
-        if abs(thickness - 1.0) > NEARLY
-    ]
-
-
-def _refused_bodies(of: Sampling, initial: Mapping[str, Fields]) -> list[str]:
-    """Refuse also bodies of shapes that cannot be sampled, thin ones, and those out of place."""
-    fluid, bodies = initial.get(of.fluid, {}), initial.get(of.body, {})
-    wrong = _refused_slab(of, initial)
-    if wrong or "surface.spacing" not in fluid or "motion.shape" not in bodies:
-        return wrong
-    asked = asked_sampling(fluid)
-    wrong = unsampled(of.body, bodies, asked.planar) or _thin(of, bodies, asked)
-    if not wrong and "motion.position" in bodies:
-        wrong = misplaced((of.fluid, of.body), fluid, bodies, asked)
-    return [f"link {of.link}: {sentence}" for sentence in wrong]
-
-
-def _thin(of: Sampling, bodies: Fields, asked: AskedSampling) -> list[str]:
-    widths, least = body_widths(bodies, asked.planar), asked.least
-    return [
-        f"a body must be at least {least:g} m across, a spacing of {of.fluid} and twice the depth "
-        f"of the outermost samples it wants; body {body} of {of.body} is {widths[body]:g} m. "
-        f"Refine the spacing of {of.fluid}, or leave the body out."
-        for body in np.flatnonzero(widths < least)[:1]
-    ]
+    return Binding(_static(of, normal, volume, number), maps, (None, partial(_moment, of.body)))
 
 
 def _static(of: Sampling, normal: Array, volume: Array, body: Array) -> dict[str, Mapped]:
@@ -136,38 +127,16 @@ def _moment(body: str, start: Ends, end: Ends, mapped: Fields) -> Array:
     return np.asarray(turn.sum(axis=0))
 
 
-def _bind_faces(of: Sampling, described: Mapping[str, Fields]) -> Binding:
-    """Sample the body below every face as the fluid asks for it."""
-    asked, mesh = asked_sampling(described[of.fluid]), described[of.body]
-    if wrong := _refused_faces(of, described):
-        raise LinkError("\n".join(wrong))
-    found = sample_faces(mesh["faces.start"], mesh["faces.corner"], asked)
-    if found.room < asked.least * (1.0 - NEARLY):
-        raise LinkError(
-            f"link {of.link}: a body must be at least {asked.least:g} m thick between its faces, a "
-            f"spacing of {of.fluid} and twice the depth of the outermost samples it wants; behind "
-            f"face {found.thin} of {of.body} it is {found.room:g} m. Refine the spacing of "
-            f"{of.fluid}, or leave one of its sides out of its coupled faces."
-        )
-    maps = partial(_move_faces, of, found.offset), partial(_load_faces, of, found.offset)
-    static = _static(of, found.normal, found.volume, np.zeros(len(found.volume)))
+def _bind_faces(of: Sampling, mesh: Fields) -> Binding:
+    """Let samples ride below the faces of a mesh."""
+    told = answered(of.link, of.body, "faces", mesh, OF_FACES)
+    node, *weights, depth, side, normal, volume = told
+    nodes = len(mesh["faces.start"])
+    surface, along, across = (ShapeMap(node.astype(np.int64), one, nodes) for one in weights)
+    offset = OffsetMap(surface, along, across, depth, side)
+    maps = partial(_move_faces, of, offset), partial(_load_faces, of, offset)
+    static = _static(of, normal, volume, np.zeros(len(volume)))
     return Binding(static, maps, (None, partial(_node_moment, of.body)))
-
-
-def _refused_faces(of: Sampling, initial: Mapping[str, Fields]) -> list[str]:
-    """Refuse also a mesh of other dimensions than the fluid."""
-    fluid, mesh = initial.get(of.fluid, {}), initial.get(of.body, {})
-    wrong = _refused_slab(of, initial)
-    if wrong or "surface.spacing" not in fluid or "faces.start" not in mesh:
-        return wrong
-    planar = asked_sampling(fluid).planar
-    if planar == is_planar(mesh, "faces"):
-        return []
-    flat, solid = (of.fluid, of.body) if planar else (of.body, of.fluid)
-    return [
-        f"link {of.link}: both sides must have two dimensions or both three; {flat} has two, "
-        f"{solid} has three. Set dimensions = 2 in both, or 3 in both."
-    ]
 
 
 def _move_faces(of: Sampling, samples: OffsetMap, _: Ends, end: Ends) -> Mapped:
@@ -199,7 +168,6 @@ RIGID_BODIES = Structure(
         ("load.force", "motion.velocity", "motion.position"),
         ("load.torque", "motion.angular_velocity", "motion.orientation"),
     ),
-    refuses=_refused_bodies,
     bind=_bind_bodies,
 )
 FACES_OF_A_MESH = Structure(
@@ -209,6 +177,5 @@ FACES_OF_A_MESH = Structure(
     fills=("node_load.force",),
     needs=("faces.position",),
     works_on=(("node_load.force", "faces.velocity", "faces.position"),),
-    refuses=_refused_faces,
     bind=_bind_faces,
 )

@@ -9,9 +9,7 @@ from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.shapes.agglomerate import agglomerate
 from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
 from quintet.components.shared.geometry.mesh_files import voxels
-from quintet.coupler.coupling.body_samples import fill
 from quintet.interfaces.component import outputs_of
-from quintet.interfaces.errors import LinkError
 from quintet.interfaces.params import read
 
 EDGE = 0.15  # m
@@ -129,14 +127,6 @@ def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
     assert np.abs(given["motion.velocity"]).max() < 1e-4
     np.testing.assert_allclose(given["contact.force"][:2, 2], 9.81 * pile.mass, rtol=1e-3)
     np.testing.assert_allclose(given["contact.force"].sum(axis=0), 0.0, atol=1e-9)
-
-
-def test_an_agglomerate_cannot_be_sampled_for_a_fluid(files):
-    described = build([body(files / "ball.ply")]).describe()
-    with pytest.raises(
-        LinkError, match=r"must be 0 \(sphere\) or 1 \(box\) to be sampled; found 2"
-    ):
-        fill(int(described["motion.shape"][0]), described["motion.size"][0], 0.02, 0.05)
 
 
 def test_what_is_wrong_with_a_file_is_told(files):

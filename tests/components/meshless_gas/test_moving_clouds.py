@@ -328,12 +328,12 @@ def test_a_body_whose_cloud_does_not_fit_into_the_box_is_a_mistake_of_the_scene(
 def test_partners_whose_bodies_are_smaller_or_fewer_are_refused():
     gas = made(scene(bodies=[two(0.5)[0] | {"is_driven": True}], gas=[0.0, 0.0, 0.0]))
     for size in (0.5, 0.75):  # larger ones keep others at a distance
-        gas.bind({"motion.size": np.full((1, 3), size)}, frozenset())
+        gas.bind({"motion.radius": np.full(1, 0.5 * size)}, frozenset())
     said = r"moving.bodies.0: .* at least as large as that in the gas, 0.5 m across, .* 0.4 m. Give"
     with pytest.raises(SceneError, match=said):
-        gas.bind({"motion.size": np.full((1, 3), 0.4)}, frozenset())
+        gas.bind({"motion.radius": np.full(1, 0.2)}, frozenset())
     with pytest.raises(SceneError, match=r"found 1 driven bodies and 2 of the partner"):
-        gas.bind({"motion.size": np.full((2, 3), 0.5)}, frozenset())
+        gas.bind({"motion.radius": np.full(2, 0.25)}, frozenset())
 
 
 @pytest.mark.parametrize(("position", "velocity"), [(0.01, 0.0), (0.0, 0.3)])

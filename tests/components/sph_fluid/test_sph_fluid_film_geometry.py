@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from fluid_params import fluid_params
+from sampled_bodies import BOX, fill, mirrors
 
 from quintet.components.sph_fluid.boundary.film_search import near
 from quintet.components.sph_fluid.boundary.kernels.films import face_normals, write_fluid_share
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.coupler.coupling.body_samples import BOX, fill, mirrors
 
 JOINED = frozenset({"surface", "surface_load"})
 SPACING = 0.01  # m

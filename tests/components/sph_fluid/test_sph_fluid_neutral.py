@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 from fluid_params import fluid_params
+from sampled_bodies import BOX, SPHERE, fill, mirrors
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.kernels import write_pressure
-from quintet.coupler.coupling.body_samples import BOX, SPHERE, fill, mirrors
 from quintet.interfaces.component import outputs_of
 
 JOINED = frozenset({"surface", "surface_load"})

@@ -1,25 +1,27 @@
 """A fluid of two dimensions and the bodies in it, 1 m deep: buoyancy, momentum, and its plane."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 from fluid_params import fluid_params
 
+from quintet.components.shared.geometry.surface_samples import Sampling, disc, polygon
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.coupler.coupling.planar_samples import fill, mirrors
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.ports import DIMENSIONS, DISC, POLYGON
+from quintet.interfaces.ports import DIMENSIONS
 
 JOINED = frozenset({"surface", "surface_load"})
 ACROSS, CELLS = 8, 14  # cells in the body's width and in the tank's
 SPACING = 0.15 / ACROSS  # m
 WEIGHT = 9810.0  # N/m3
-SQUARE = 0.075 * np.array([[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]])
-NONE = np.zeros((0, 3))
-SIZE = np.array([0.15, 1.0, 0.15])
-SHAPES = {"square": (POLYGON, SQUARE, 0.0225), "disc": (DISC, NONE, math.pi / 4.0 * 0.0225)}
+SQUARE = 0.075 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+SHAPES = {
+    "square": (partial(polygon, SQUARE), 0.0225),
+    "disc": (partial(disc, 0.15), math.pi / 4.0 * 0.0225),
+}
 CALM = {"kernel": "wendland", "courant": 0.3, "density_diffusion": 0.1, "negative_pressure": True}
 POTENTIAL = {"boundary.method": "potential", "integration": "symplectic", "courant": 1.0}
 DROP = {
@@ -46,13 +48,13 @@ def wet_cells(disc: bool) -> tuple:
 
 def sunk(name: str, **given: object) -> SphFluid:
     """Water at rest around a body that is fixed in the middle of a tank."""
-    shape, corner, _ = SHAPES[name]
+    body, _ = SHAPES[name]
     side = CELLS * SPACING
     settings = {
         "spacing": SPACING,
         "dimensions": 2,
         "sound_speed": 10.1 * math.sqrt(9.81 * side),
-        "fluid": wet_cells(shape == DISC),
+        "fluid": wet_cells(name == "disc"),
         "boundary.walls": ((0.0, 0.0, 0.0), (side, 1.0, side + 0.09)),
         "boundary.method": "mdbc",
     }
@@ -62,13 +64,13 @@ def sunk(name: str, **given: object) -> SphFluid:
     depth = side - state.position_density[rows, 2]
     state.position_density[rows, 3] = 1000.0 + WEIGHT * depth / fluid.params.sound_speed**2
     depth_asked = float(fluid.describe()["surface.depth"][0])
-    arm, normal, volume = fill(shape, SIZE, corner, SPACING, depth_asked)
-    static = {"surface.normal": normal, "surface.volume": volume}
+    found = body(Sampling(SPACING, depth_asked, 0.5 * SPACING, planar=True))
+    arm, static = found.arm, {"surface.normal": found.normal, "surface.volume": found.volume}
     fluid.bind(static | {"surface.body": np.zeros(len(arm))}, JOINED)
     middle = np.array([0.5 * side, 0.5, 0.5 * side])
     placed = {"surface.position": arm + middle, "surface.velocity": np.zeros_like(arm)}
     if fluid.params.mirrored:
-        placed["surface.mirror"] = mirrors(shape, SIZE, corner, arm, normal) + middle
+        placed["surface.mirror"] = found.image + middle
     fluid.take(placed)
     return fluid
 
@@ -96,7 +98,7 @@ def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
     ids=["square", "disc", "square held by the potential"],
 )
 def test_a_body_under_water_is_pushed_up_by_the_weight_of_its_area(name, given, end, within):
-    force = push(sunk(name, **given), 0.25, end) / (WEIGHT * SHAPES[name][2])
+    force = push(sunk(name, **given), 0.25, end) / (WEIGHT * SHAPES[name][1])
     assert force[2] == pytest.approx(1.0, abs=within)
     assert abs(force[0]) < 1e-3 and force[1] == 0.0
 

@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 import trimesh
 from fluid_params import fluid_params, nested
+from sampled_bodies import BOX, SPHERE, fill, mirrors
 
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
 from quintet.components.sph_fluid.boundary.removal import inside_body
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.setup.expressions import values_at
-from quintet.coupler.coupling.body_samples import fill, mirrors
 from quintet.interfaces.params import read
-from quintet.interfaces.ports import BOX, SPHERE
 
 SPACING = 0.02
 CUBE = ((0.0, 0.0, 0.0), (0.2, 0.2, 0.2))

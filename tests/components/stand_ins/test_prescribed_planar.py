@@ -7,9 +7,8 @@ import pytest
 
 from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
 from quintet.components.stand_ins.prescribed import Prescribed
-from quintet.coupler.coupling.rigid_samples import asked_sampling, sample_bodies
 from quintet.interfaces.params import read
-from quintet.interfaces.ports import DISC, PLANAR_MOTION, POLYGON
+from quintet.interfaces.ports import PLANAR_MOTION
 
 DISC_BODY = {"shape": "disc", "centre": [0.0, 0.0, 0.0], "radius": 0.1}
 WEDGE = {
@@ -24,18 +23,17 @@ def told(*bodies):
     return read(PrescribedParams, {"bodies": list(bodies)}, "paddle")
 
 
-def test_discs_and_polygons_are_sampled_as_they_describe_themselves():
+def test_discs_and_polygons_are_sampled_in_their_plane():
     params, mistakes = told(DISC_BODY, WEDGE)
     assert not mistakes and prescribed_ports(params)[1] == (PLANAR_MOTION,)
-    said = Prescribed(params).describe()
-    assert said["motion.shape"].tolist() == [DISC, POLYGON]
-    assert said["motion.size"].tolist() == [[0.2, 1.0, 0.2], [0.3, 1.0, 0.2]]
-    one = {"spacing": 0.02, "depth": 1.0, "dimensions": 2.0}
-    asked = asked_sampling({f"surface.{name}": np.array([value]) for name, value in one.items()})
-    found = sample_bodies(said, asked, mirrored=True)
-    area = np.bincount(found.body, found.volume)
+    asked = {"spacing": 0.02, "depth": 1.0, "inset": 0.01, "mirror": 1.0, "dimensions": 2.0}
+    request = {f"motion.{name}": np.array([value]) for name, value in asked.items()}
+    found = Prescribed(params).sample(request)
+    body, arm = found["motion.body"].astype(int), found["motion.arm"]
+    area = np.bincount(body, found["motion.volume"])
     np.testing.assert_allclose(area, [math.pi * 0.01, 0.03], rtol=1e-9)
-    wedge = found.arm[found.body == 1]  # about its position, a corner, not its centre of mass
+    assert found["motion.image"].shape == arm.shape
+    wedge = arm[body == 1]  # about its position, a corner, not its centre of mass
     assert wedge[:, 0].min() > 0.0 and wedge[:, 2].min() > 0.0
 
 

@@ -2,17 +2,17 @@
 
 import numpy as np
 import pytest
+from toy_samples import cubes, masses, mesh
 
 from quintet.coupler.coupling.exchange import (
     Binding,
     Demands,
     Exchange,
     Transfer,
-    misfits,
-    requires,
 )
 from quintet.coupler.coupling.links.fsi import join as join_fsi
 from quintet.coupler.coupling.links.glue import join as join_glue
+from quintet.coupler.coupling.links.port_checks import misfits, requires
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError
 from quintet.interfaces.ports import (
@@ -30,14 +30,6 @@ from quintet.interfaces.ports import (
 FLUID = ((SURFACE,), (SURFACE_LOAD,))
 BODY = ((LOAD,), (MOTION,))
 STATED = {"surface.spacing": np.array([0.1]), "surface.depth": np.array([0.3])}
-
-
-def _described(edge, count):
-    return {
-        "motion.shape": np.ones(count),
-        "motion.size": np.full((count, 3), edge),
-        "motion.mass": np.ones(count),
-    }
 
 
 def _at_rest(count, x):
@@ -63,8 +55,9 @@ def two_links(request):
     ports = {name: known[name] for name in request.param}
     links = [join_fsi(name, ("water", name), ports) for name in ("small", "large")]
     exchange = Exchange(links, ports)
-    described = {"water": STATED, "small": _described(0.2, 2), "large": _described(0.3, 1)}
-    static = exchange.bind(described)
+    described = {"water": STATED, "small": masses(2), "large": masses(1)}
+    answers = {"small": cubes(0.2, 2), "large": cubes(0.3)}
+    static = exchange.bind(described, lambda name, request: answers[name](request))
     outputs = {
         "water": {"surface_load.force": np.zeros((16 + 27, 3))},
         "small": _at_rest(2, 1.0),
@@ -107,8 +100,8 @@ def test_ends_are_known_when_all_links_bring_them(two_links):
 
 def test_forces_on_own_items_add_up():
     """A plate between two fluids, and glued to particles: one load on its nodes."""
-    mesh = ((NODE_LOAD,), (FACES, NODE_GLUE))
-    ports = {"a": FLUID, "b": FLUID, "plate": mesh, "rods": ((GLUED,), (GLUED_LOAD,))}
+    plate = ((NODE_LOAD,), (FACES, NODE_GLUE))
+    ports = {"a": FLUID, "b": FLUID, "plate": plate, "rods": ((GLUED,), (GLUED_LOAD,))}
     links = [join_fsi("a", ("a", "plate"), ports), join_fsi("b", ("plate", "b"), ports)]
     links += [join_glue(str(n), ("rods", "plate"), ports) for n in range(2)]
     exchange = Exchange(links, ports)
@@ -126,7 +119,8 @@ def test_forces_on_own_items_add_up():
             "glued_load.mass": np.array([4.0]),
         },
     }
-    static = exchange.bind(described)
+    plate = mesh(described["plate"])
+    static = exchange.bind(described, lambda _, request: plate(request))
     np.testing.assert_allclose(static["plate"]["node_load.added_mass"], 2.0)  # 1 of each link
     outputs = {
         "a": {"surface_load.force": np.full((4, 3), 1.0)},
@@ -181,13 +175,14 @@ def test_ports_that_do_not_fit_are_named():
 
 @pytest.mark.parametrize("first", ["left", "right"])
 def test_two_plates_in_one_fluid_get_their_own_forces_from_the_start(first):
-    mesh = ((NODE_LOAD,), (FACES,))
-    ports = {"left": mesh, "right": mesh, "water": FLUID}
+    plate = ((NODE_LOAD,), (FACES,))
+    ports = {"left": plate, "right": plate, "water": FLUID}
     exchange = Exchange([join_fsi(n, ("water", n), ports) for n in ("left", "right")], ports)
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     faces = {"faces.start": square, "faces.corner": np.array([[0.0, 1.0, 2.0, 3.0]])}
     asked = {"surface.spacing": np.ones(1), "surface.inset": np.zeros(1)}
-    exchange.bind({"left": faces, "right": faces, "water": STATED | asked})
+    described = {"left": faces, "right": faces, "water": STATED | asked}
+    exchange.bind(described, lambda _, request: mesh(faces)(request))
     moving = {"faces.position": square, "faces.velocity": square}
     force = {"surface_load.force": np.array([[4.0, 0.0, 0.0], [0.0, 8.0, 0.0]])}
     outputs = {"left": moving, "right": moving, "water": force}

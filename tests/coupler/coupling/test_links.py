@@ -1,10 +1,13 @@
 """Links: which ports they join, what they refuse, and what they carry."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
+from toy_samples import balls, bodies, bound, cubes, masses
 
+from quintet.components.shared.geometry.surface_samples import disc, polygon
 from quintet.coupler.coupling.exchange import Exchange
 from quintet.coupler.coupling.links import maker
 from quintet.coupler.coupling.links.direct import join as join_direct
@@ -14,9 +17,7 @@ from quintet.coupler.coupling.links.sampled_structures import FACES_OF_A_MESH, R
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.errors import LinkError, SceneError
 from quintet.interfaces.ports import (
-    CONTACT,
     DIMENSIONS,
-    DISC,
     FACES,
     FORCE,
     GLUED,
@@ -27,7 +28,6 @@ from quintet.interfaces.ports import (
     NODE_GLUE,
     NODE_LOAD,
     PLANAR_MOTION,
-    POLYGON,
     POSITION,
     SURFACE,
     SURFACE_LOAD,
@@ -57,23 +57,17 @@ def test_fsi_finds_who_is_who_in_either_order():
     assert len(join_fsi("link", ("water", "path"), PORTS).transfers) == 1  # it takes no load
 
 
-CHOOSING = replace(SURFACE, static=(*SURFACE.static, CONTACT))
-SINGLE = {"motion.shape": np.ones(1), "motion.size": np.full((1, 3), 0.3)}
+CHOOSING = replace(SURFACE, static=(*SURFACE.static, Field("contact", (), "1")))
 
 
 def test_bodies_of_links_one_after_the_other_are_numbered_on():
-    bodies = {"path": 2, "cubes": 3}
-    links = [maker("fsi")(n, {"between": ["water", name]}, PORTS) for n, name in enumerate(bodies)]
-    said = {
-        name: {
-            "motion.shape": np.ones(count),
-            "motion.size": np.full((count, 3), 0.1),
-            "motion.mass": np.ones(count),
-        }
-        for name, count in bodies.items()
-    }
+    counts = {"path": 2, "cubes": 3}
+    links = [maker("fsi")(n, {"between": ["water", name]}, PORTS) for n, name in enumerate(counts)]
+    said = {name: masses(count) for name, count in counts.items()}
     said["water"] = {"surface.spacing": np.array([0.05]), "surface.depth": np.array([0.1])}
-    body = Exchange(links, PORTS).bind(said)["water"]["surface.body"]
+    exchange = Exchange(links, PORTS)
+    static = exchange.bind(said, lambda name, request: cubes(0.1, counts[name])(request))
+    body = static["water"]["surface.body"]
     assert (np.unique(body) == np.arange(5.0)).all() and (np.diff(body) >= 0.0).all()
 
 
@@ -82,7 +76,8 @@ def test_fsi_tells_the_fluid_which_contact_a_link_asks_for(given, mark):
     ports = {**PORTS, "water": ((CHOOSING,), (SURFACE_LOAD,))}
     link = maker("fsi")(0, {"kind": "fsi", "between": ["water", "cubes"], **given}, ports)
     stated = {"surface.spacing": np.array([0.1]), "surface.depth": np.array([0.3])}
-    (static,) = link.bind({"water": stated, "cubes": SINGLE}).static.values()
+    made = bound(link, {"water": stated, "cubes": masses(1)}, cubes=cubes(0.3))
+    (static,) = made.static.values()
     assert static["surface.contact"].tolist() == [mark] * 27
 
 
@@ -101,21 +96,19 @@ def test_fsi_says_which_contacts_there_are_and_who_has_none():
         maker("glue")(3, {"between": ["rods", "plate"], "contact": "potential"}, PORTS)
 
 
-@pytest.mark.parametrize("shape", [0.0, 1.0])
+@pytest.mark.parametrize("body", [cubes, balls])
 @pytest.mark.parametrize("surface", [SURFACE, MIRRORED_SURFACE])
 @pytest.mark.parametrize(("inset", "least"), [(0.5, 0.1), (0.0, 0.1), (1.5, 0.3)])
-def test_fsi_refuses_bodies_smaller_than_a_spacing(shape, surface, inset, least):
+def test_bodies_smaller_than_a_spacing_are_refused(body, surface, inset, least):
     link = join_fsi("link", ("water", "cubes"), {**PORTS, "water": ((surface,), (SURFACE_LOAD,))})
-    sizes = np.array([[1.0, 1.0, 1.0], [0.09, 0.09, 0.09]])
-    body = {"motion.shape": np.full(2, shape), "motion.size": sizes}
     water = {"surface.spacing": 0.1, "surface.depth": 0.3, "surface.inset": 0.1 * inset}
     stated = {key: np.array([value]) for key, value in water.items()}
-    with pytest.raises(LinkError) as refused:
-        link.bind({"water": stated, "cubes": body})
+    with pytest.raises(SceneError) as refused:
+        bound(link, {"water": stated, "cubes": masses(2)}, cubes=body(0.09, 2))
     for words in (
         f"at least {least:g} m across",
-        "body 1 of cubes is 0.09 m",
-        "Refine the spacing",
+        "body 0 is 0.09 m",
+        "Refine the partner's spacing",
     ):
         assert words in str(refused.value)
 
@@ -136,16 +129,8 @@ def test_fsi_refuses_two_dimensions_beside_three_before_anything_starts(pair):
         join_fsi("a", pair[::-1], PLANAR)
 
 
-FLAT = {
-    "motion.shape": np.array([DISC, POLYGON], float),
-    "motion.size": np.array([[0.4, 1.0, 0.4], [0.3, 1.0, 0.2]]),
-    "motion.mass": np.ones(2),
-    "motion.dimensions": np.array([2.0]),
-    "motion.corners": np.array([0.0, 4.0]),
-    "motion.corner": np.array(
-        [[-0.15, 0.0, -0.1], [0.15, 0.0, -0.1], [0.15, 0.0, 0.1], [-0.15, 0.0, 0.1]]
-    ),
-}
+OBLONG = np.array([[-0.15, -0.1], [0.15, -0.1], [0.15, 0.1], [-0.15, 0.1]])
+FLAT = bodies(partial(disc, 0.4), partial(polygon, OBLONG))
 
 
 def _asked(**more):
@@ -154,23 +139,25 @@ def _asked(**more):
 
 
 def test_bodies_of_two_dimensions_are_sampled_in_one_row_for_one_metre():
-    bound = join_fsi("link", ("flume", "discs"), PLANAR).bind({"flume": _asked(), "discs": FLAT})
-    static = bound.static["flume"]
+    link = join_fsi("link", ("flume", "discs"), PLANAR)
+    made = bound(link, {"flume": _asked(), "discs": masses(2)}, discs=FLAT)
+    static = made.static["flume"]
     area = np.bincount(static["surface.body"].astype(int), static["surface.volume"])
     np.testing.assert_allclose(area, [np.pi * 0.04, 0.06], rtol=1e-12)
     pose = {name: np.repeat(value, 2, axis=0) for name, value in _pose(1.0, STILL).items()}
-    moved = bound.maps[0]({}, {"discs": pose})
+    moved = made.maps[0]({}, {"discs": pose})
     assert not moved["surface.position"][:, 1].any()
 
 
 def test_what_a_fluid_says_and_what_bodies_are_must_agree():
     link = join_fsi("link", ("flume", "discs"), PLANAR)
-    with pytest.raises(LinkError, match=r"must be 0 \(sphere\) or 1 \(box\).*found 3"):
-        link.bind({"flume": _asked(dimensions=3.0), "discs": FLAT})
-    with pytest.raises(LinkError, match=r"must be 3 \(disc\) or 4 \(polygon\).*found 1"):
-        link.bind({"flume": _asked(), "discs": SINGLE})
-    with pytest.raises(LinkError, match=r"at least 0\.25 m across.*body 1 of discs is 0\.2 m"):
-        link.bind({"flume": _asked(spacing=0.25), "discs": FLAT})
+    described = {"discs": masses(2)}
+    with pytest.raises(SceneError, match=r"both sides must have two.*Make the body a sphere"):
+        bound(link, described | {"flume": _asked(dimensions=3.0)}, discs=FLAT)
+    with pytest.raises(SceneError, match=r"both sides must have two.*Make the body a disc"):
+        bound(link, described | {"flume": _asked()}, discs=cubes(0.3))
+    with pytest.raises(SceneError, match=r"at least 0\.25 m across.*body 1 is 0\.2 m"):
+        bound(link, described | {"flume": _asked(spacing=0.25)}, discs=FLAT)
 
 
 def test_fsi_says_what_does_not_fit():
@@ -192,30 +179,21 @@ def test_glue_finds_who_is_who_in_either_order():
 
 def _cube_in_water():
     link = join_fsi("link", ("water", "cubes"), PORTS)
-    bound = link.bind(
-        {
-            "water": {"surface.spacing": np.array([0.1]), "surface.depth": np.array([1.0])},
-            "cubes": {
-                "motion.shape": np.ones(1),
-                "motion.size": np.full((1, 3), 0.4),
-                "motion.mass": np.ones(1),
-            },
-        }
-    )
-    return bound
+    water = {"surface.spacing": np.array([0.1]), "surface.depth": np.array([1.0])}
+    return bound(link, {"water": water, "cubes": masses(1)}, cubes=cubes(0.4))
 
 
-def _move(bound, pose):
+def _move(made, pose):
     """Samples of a cube in a pose."""
-    return bound.maps[0]({}, {"cubes": pose})
+    return made.maps[0]({}, {"cubes": pose})
 
 
-def _load(bound, force, first, second):
+def _load(made, force, first, second):
     """Load of a cube that moved from a pose to another, and its moment about the origin."""
     start = {"cubes": first}
     end = {"cubes": second, "water": {"surface_load.force": force}}
-    load = bound.maps[1](start, end)
-    return load, bound.moment[1](start, end, load)
+    load = made.maps[1](start, end)
+    return load, made.moment[1](start, end, load)
 
 
 def _pose(x, turn):
@@ -235,8 +213,8 @@ def test_a_rigid_body_is_sampled_as_the_fluid_asks():
 
 def test_loads_are_zero_before_anything_moved():
     """Forces follow from motion: a fluid that gave none yet loads nothing."""
-    bound = _cube_in_water()
-    load, moment = _load(bound, np.zeros((64, 3)), _pose(1.0, TURN), _pose(1.0, TURN))
+    made = _cube_in_water()
+    load, moment = _load(made, np.zeros((64, 3)), _pose(1.0, TURN), _pose(1.0, TURN))
     np.testing.assert_array_equal(load["load.force"], np.zeros((1, 3)))
     np.testing.assert_array_equal(load["load.torque"], np.zeros((1, 3)))
     np.testing.assert_array_equal(moment, np.zeros(3))
@@ -244,14 +222,14 @@ def test_loads_are_zero_before_anything_moved():
 
 def test_carrying_the_same_pose_twice_changes_nothing():
     """A link remembers nothing: what it makes of two poses does not depend on earlier ones."""
-    bound = _cube_in_water()
+    made = _cube_in_water()
     force = np.random.default_rng(3).normal(size=(64, 3))
     poses = _pose(1.0, STILL), _pose(1.2, TURN)
-    samples, (load, moment) = _move(bound, poses[1]), _load(bound, force, *poses)
+    samples, (load, moment) = _move(made, poses[1]), _load(made, force, *poses)
     for pose in (_pose(7.0, STILL), poses[1]):
-        _move(bound, pose)
-        _load(bound, force, pose, pose)
-    again, (same_load, same_moment) = _move(bound, poses[1]), _load(bound, force, *poses)
+        _move(made, pose)
+        _load(made, force, pose, pose)
+    again, (same_load, same_moment) = _move(made, poses[1]), _load(made, force, *poses)
     for first, second in ((samples, again), (load, same_load)):
         assert all(first[key].tobytes() == second[key].tobytes() for key in first)
     assert moment.tobytes() == same_moment.tobytes()
@@ -259,11 +237,11 @@ def test_carrying_the_same_pose_twice_changes_nothing():
 
 def test_loads_act_at_the_middle_of_the_way():
     """Force and moment about the origin are those of forces halfway between the two poses."""
-    bound = _cube_in_water()
+    made = _cube_in_water()
     poses = _pose(1.0, STILL), _pose(1.2, TURN)
-    first, second = (_move(bound, pose)["surface.position"] for pose in poses)
+    first, second = (_move(made, pose)["surface.position"] for pose in poses)
     force = np.random.default_rng(2).normal(size=(64, 3))
-    load, turned = _load(bound, force, *poses)
+    load, turned = _load(made, force, *poses)
     moment = np.cross(0.5 * (first + second), force).sum(axis=0)
     np.testing.assert_allclose(load["load.force"][0], force.sum(axis=0), atol=1e-13)
     np.testing.assert_allclose(turned, moment, atol=1e-12)
@@ -276,14 +254,14 @@ def test_samples_of_a_turning_body_move_with_it():
     np.testing.assert_allclose(moved["surface.velocity"], turned, atol=1e-14)
 
 
-def test_a_body_smaller_than_the_spacing_is_refused():
+def test_answers_that_are_no_samples_are_refused():
     link = join_fsi("link", ("water", "cubes"), PORTS)
-    described = {
-        "water": {"surface.spacing": np.array([0.1]), "surface.depth": np.array([1.0])},
-        "cubes": {"motion.shape": np.ones(1), "motion.size": np.full((1, 3), 0.05)},
-    }
-    with pytest.raises(LinkError, match=r"body 0 of cubes is 0\.05 m"):
-        link.bind(described)
+    water = {"surface.spacing": np.array([0.1]), "surface.depth": np.array([1.0])}
+    described = {"water": water, "cubes": masses(1)}
+    with pytest.raises(LinkError, match=r"sample of cubes must answer with motion.arm.*found none"):
+        bound(link, described, cubes=lambda _: {})
+    with pytest.raises(LinkError, match=r"motion.volume of shape \('n',\).*found \(3,\)"):
+        bound(link, described, cubes=lambda r: cubes(0.4)(r) | {"motion.volume": np.ones(3)})
 
 
 def test_direct_passes_only_what_is_taken():

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.face_samples import sample_faces
-from quintet.coupler.coupling.faces import bilinear, project
+from quintet.components.shared.geometry.face_projection import at_points, bilinear, project
+from quintet.components.shared.geometry.surface_samples import Sampling
+from quintet.components.shared.geometry.surface_samples_mesh import sample_faces
 from quintet.coupler.coupling.mapping import RigidMap, ShapeMap, sum_by
-from quintet.coupler.coupling.rigid_samples import Sampling
 from quintet.interfaces.rotation import matrix
 
 RANDOM = np.random.default_rng(5)
@@ -35,7 +35,14 @@ def _triangles():
 def _sampled(position, face, spacing):
     """Samples on the faces themselves: their map, areas and normals."""
     found = sample_faces(position, face, Sampling(spacing, spacing, inset=0.0, planar=False))
-    return found.offset.surface, found.volume / spacing, found.normal
+    shape = ShapeMap(found.node, found.weight, len(position))
+    return shape, found.volume / spacing, found.normal
+
+
+def _hung(points, position, face):
+    """Map of points that hang on faces."""
+    found = project(points, position, face)
+    return ShapeMap(found.node, found.weight, len(position))
 
 
 def _rigid(samples=200, bodies=4):
@@ -152,9 +159,9 @@ def test_points_on_faces_are_projected_onto_themselves(mesh):
     shape, _, normal = _sampled(position, face, 0.13)
     place = shape.map_consistent(position)
     np.testing.assert_allclose(
-        project(place, position, face).shape.map_consistent(position), place, atol=1e-9
+        _hung(place, position, face).map_consistent(position), place, atol=1e-9
     )
-    above = project(place + 0.02 * normal, position, face).shape.map_consistent(position)
+    above = _hung(place + 0.02 * normal, position, face).map_consistent(position)
     np.testing.assert_allclose(above, place, atol=1e-6)
 
 
@@ -163,13 +170,13 @@ def test_points_are_hung_on_the_nearest_face_however_unequal_the_faces_are():
     position = np.array([[a, b, 0.0] for b in (0.0, 1.0) for a in x])
     face = np.array([[i, i + 1, i + 5, i + 4] for i in range(3)], dtype=float)
     point = np.array([[9.5, 0.5, 0.1]])  # above the long face, nearer to the short one's centre
-    shape = project(point, position, face).shape
+    shape = _hung(point, position, face)
     np.testing.assert_allclose(shape.map_consistent(position), [[9.5, 0.5, 0.0]], atol=1e-12)
 
 
 def test_points_beyond_the_rim_hang_on_the_rim():
     position = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
-    shape = project(np.array([[1.5, 0.3, 0.2]]), position, np.array([[0, 1, 2, 3.0]])).shape
+    shape = _hung(np.array([[1.5, 0.3, 0.2]]), position, np.array([[0, 1, 2, 3.0]]))
     np.testing.assert_allclose(shape.map_consistent(position), [[1.0, 0.3, 0.0]], atol=1e-12)
     assert shape.weight.sum() == pytest.approx(1.0)
 
@@ -177,15 +184,15 @@ def test_points_beyond_the_rim_hang_on_the_rim():
 def test_points_on_edges_and_corners_of_faces_hang_on_one_face_each():
     position, face = _mesh()
     found = project(position, position, face)
-    np.testing.assert_allclose(found.shape.map_consistent(position), position, atol=1e-12)
+    np.testing.assert_allclose(at_points(found.weight, position[found.node]), position, atol=1e-12)
     np.testing.assert_allclose(found.gap, 0.0, atol=1e-12)
     np.testing.assert_allclose(found.beyond, 0.0, atol=1e-12)
-    assert found.shape.face.min() == 0 and found.shape.face.max() == len(face) - 1
+    assert found.face.min() == 0 and found.face.max() == len(face) - 1
 
 
 def test_projection_of_no_points_is_empty():
     position, face = _mesh()
-    shape = project(np.zeros((0, 3)), position, face).shape
+    shape = _hung(np.zeros((0, 3)), position, face)
     assert shape.map_consistent(position).shape == (0, 3)
     np.testing.assert_array_equal(shape.map_conservative(np.zeros((0, 3))), np.zeros_like(position))
 

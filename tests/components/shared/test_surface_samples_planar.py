@@ -6,13 +6,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.planar_samples import fill, inradius, mirrors, offset_inward, width
-from quintet.interfaces.errors import LinkError
-from quintet.interfaces.ports import BOX, DISC, POLYGON
+from quintet.components.shared.geometry.surface_samples_planar import (
+    fill_disc,
+    fill_polygon,
+    inradius,
+    offset_inward,
+    polygon_images,
+)
+from quintet.components.shared.geometry.surface_samples_solid import sphere_images
 
 DEEP = 1e9
-NONE = np.zeros((0, 3))
-UNKNOWN = np.full(3, np.nan)  # the size of a polygon is not looked at
 
 
 def ring(count, radius=0.5, turn=0.0):
@@ -37,14 +40,13 @@ SHAPES = {
     "hexagon": (ring(6), 1.5 * math.sqrt(3.0) * 0.25),
     "thin plate": (PLATE, 0.06),
 }
-DISC_SIZE = np.array([0.6, 1.0, 0.6])
 
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("spacing", [0.05, 0.043, 0.02])
 def test_volumes_of_a_polygon_add_up_to_its_area_on_one_metre(name, spacing):
     corner, area = SHAPES[name]
-    arm, normal, volume = fill(POLYGON, UNKNOWN, corner, spacing, DEEP)
+    arm, normal, volume = fill_polygon(corner[:, [0, 2]], spacing, DEEP)
     assert volume.sum() == pytest.approx(area, rel=1e-9)
     # No sample stands for much less than a square of the spacing, nor for much more.
     assert volume.min() > 0.3 * spacing**2 and volume.max() < 1.9 * spacing**2
@@ -54,7 +56,7 @@ def test_volumes_of_a_polygon_add_up_to_its_area_on_one_metre(name, spacing):
 
 @pytest.mark.parametrize("spacing", [0.05, 0.043, 0.02])
 def test_volumes_of_a_disc_add_up_to_its_area_on_one_metre(spacing):
-    arm, normal, volume = fill(DISC, DISC_SIZE, NONE, spacing, DEEP)
+    arm, normal, volume = fill_disc(0.6, spacing, DEEP)
     assert volume.sum() == pytest.approx(math.pi * 0.09, rel=1e-13)
     outermost = np.linalg.norm(arm, axis=1).max()
     assert outermost == pytest.approx(0.3 - 0.5 * spacing, rel=1e-12)
@@ -66,7 +68,7 @@ def test_volumes_of_a_disc_add_up_to_its_area_on_one_metre(spacing):
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 2.0])
 def test_a_rectangle_keeps_the_lattice_of_the_fluid(angle):
-    arm, _, volume = fill(POLYGON, UNKNOWN, turned(OBLONG, angle), 0.1, DEEP)
+    arm, _, volume = fill_polygon(turned(OBLONG, angle)[:, [0, 2]], 0.1, DEEP)
     np.testing.assert_allclose(volume, 0.01, rtol=1e-9)
     x, z = np.meshgrid([-0.15, -0.05, 0.05, 0.15], [-0.1, 0.0, 0.1])
     lattice = turned(np.stack([x.ravel(), 0.0 * x.ravel(), z.ravel()], axis=1), angle)
@@ -78,17 +80,16 @@ def test_a_rectangle_keeps_the_lattice_of_the_fluid(angle):
 def test_the_outermost_layer_lies_half_a_spacing_deep(name):
     corner, _ = SHAPES[name]
     spacing = inradius(corner[:, [0, 2]]) / 5.0
-    arm, normal, _ = fill(POLYGON, UNKNOWN, corner, spacing, DEEP)
-    below = 0.5 * np.linalg.norm(mirrors(POLYGON, UNKNOWN, corner, arm, normal) - arm, axis=1)
+    arm, normal, _ = fill_polygon(corner[:, [0, 2]], spacing, DEEP)
+    below = 0.5 * np.linalg.norm(polygon_images(corner[:, [0, 2]], arm, normal) - arm, axis=1)
     assert below.min() == pytest.approx(0.5 * spacing, rel=1e-9)
 
 
-@pytest.mark.parametrize("shape", [DISC, POLYGON])
-def test_only_a_skin_of_the_depth_is_filled(shape):
-    corner = ring(6) if shape == POLYGON else NONE
-    given = (shape, DISC_SIZE, corner, 0.02)
-    arm, _, volume = fill(*given, 0.06)
-    whole, _, all_volumes = fill(*given, DEEP)
+@pytest.mark.parametrize("fill", [fill_disc, fill_polygon])
+def test_only_a_skin_of_the_depth_is_filled(fill):
+    body = ring(6)[:, [0, 2]] if fill == fill_polygon else 0.6
+    arm, _, volume = fill(body, 0.02, 0.06)
+    whole, _, all_volumes = fill(body, 0.02, DEEP)
     assert 0 < len(arm) < len(whole)
     np.testing.assert_array_equal(arm, whole[: len(arm)])
     np.testing.assert_array_equal(volume, all_volumes[: len(arm)])
@@ -96,17 +97,17 @@ def test_only_a_skin_of_the_depth_is_filled(shape):
 
 @pytest.mark.parametrize(("inset", "outermost"), [(0.0, 0.3), (0.03, 0.27)])
 def test_the_outermost_samples_lie_where_the_fluid_wants_them(inset, outermost):
-    arm, *_ = fill(DISC, DISC_SIZE, NONE, 0.02, DEEP, inset)
+    arm, *_ = fill_disc(0.6, 0.02, DEEP, inset)
     assert np.linalg.norm(arm, axis=1).max() == pytest.approx(outermost, rel=1e-12)
-    arm, *_ = fill(POLYGON, UNKNOWN, SQUARE * 1.5, 0.02, DEEP, inset)
+    arm, *_ = fill_polygon(1.5 * SQUARE[:, [0, 2]], 0.02, DEEP, inset)
     assert np.abs(arm).max() == pytest.approx(outermost, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_mirror_points_lie_as_far_outside_a_polygon(name):
     corner, _ = SHAPES[name]
-    arm, normal, _ = fill(POLYGON, UNKNOWN, corner, 0.05, 0.08)
-    image = mirrors(POLYGON, UNKNOWN, corner, arm, normal)
+    arm, normal, _ = fill_polygon(corner[:, [0, 2]], 0.05, 0.08)
+    image = polygon_images(corner[:, [0, 2]], arm, normal)
     middle, closed = 0.5 * (arm + image), np.vstack([corner, corner[:1]])
     for one in middle:  # on the outline: the area is that of the triangles which it spans
         spans = [np.cross(a - one, b - one)[1] for a, b in pairwise(closed)]
@@ -116,8 +117,8 @@ def test_mirror_points_lie_as_far_outside_a_polygon(name):
 
 
 def test_mirror_points_lie_as_far_outside_a_disc():
-    arm, normal, _ = fill(DISC, DISC_SIZE, NONE, 0.05, 0.1)
-    image = mirrors(DISC, DISC_SIZE, NONE, arm, normal)
+    arm, normal, _ = fill_disc(0.6, 0.05, 0.1)
+    image = sphere_images(0.6, arm, normal)
     np.testing.assert_allclose(np.linalg.norm(0.5 * (arm + image), axis=1), 0.3, rtol=1e-12)
 
 
@@ -126,12 +127,6 @@ def test_offsets_and_widths_are_those_of_the_outline():
     np.testing.assert_allclose(np.abs(offset_inward(square, 0.05)), 0.15, rtol=1e-12)
     np.testing.assert_allclose(np.abs(offset_inward(square, -0.05)), 0.25, rtol=1e-12)
     assert len(offset_inward(square, 0.21)) == 0
-    assert width(POLYGON, UNKNOWN, turned(OBLONG, 0.7)) == pytest.approx(0.3, rel=1e-9)
-    assert width(DISC, DISC_SIZE, NONE) == 0.6
+    assert inradius(turned(OBLONG, 0.7)[:, [0, 2]]) == pytest.approx(0.15, rel=1e-9)
     # The triangle of sides 3, 4 and 5 has a circle of radius 1 in it.
     assert inradius(np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]])) == pytest.approx(1.0)
-
-
-def test_a_shape_of_three_dimensions_is_refused():
-    with pytest.raises(LinkError, match=r"must be 3 \(disc\) or 4 \(polygon\).*found 1"):
-        fill(BOX, np.ones(3), NONE, 0.1, DEEP)

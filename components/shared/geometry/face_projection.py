@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.coupler.coupling.mapping import ShapeMap
-from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
-    from quintet.coupler.coupling.face_kernels import Cells
+    from quintet.components.shared.geometry.face_kernels import Cells
 
 MOST_CELLS = 4.0  # per face, of the cells by which faces are found
 THIN = 1e-12  # of the length of its first tangent: a second one that adds nothing to it
@@ -20,7 +19,9 @@ THIN = 1e-12  # of the length of its first tangent: a second one that adds nothi
 class Projection:
     """Points hung on the faces of a mesh."""
 
-    shape: ShapeMap
+    node: Array  # (n, 4) corners of the face on which each point lies
+    weight: Array  # (n, 4) 1, shape functions there; each row sums to one
+    face: Array  # (n,) number of that face
     gap: Array  # (n,) m, distance to the nearest point of a face
     size: Array  # (n,) m, longest side of that face
     beyond: Array  # (n,) m, of that distance, what lies in the plane of the face: 0 above it
@@ -49,15 +50,15 @@ def corners(face: Array) -> Array:
     return np.stack([face[:, 0], face[:, 1], third, fourth], axis=1)
 
 
-def is_planar(mesh: Fields, port: str) -> bool:
-    """Whether a mesh says that it has two dimensions."""
-    return mesh.get(f"{port}.dimensions", [3.0])[0] == 2.0
+def at_points(weight: Array, values: Array) -> Array:
+    """Values (n, k) at points, of weights (n, 4) and values (n, 4, k) at corners."""
+    return np.einsum("nc,nck->nk", weight, values)
 
 
 def project(points: Array, position: Array, face: Array) -> Projection:
     """Hang points (n, 3) on the faces they lie nearest to, by bilinear shape functions."""
     # Kernels, and numba with them, are left out of reading scenes, and of those without meshes.
-    from quintet.coupler.coupling.face_kernels import Rivals, nearest_faces
+    from quintet.components.shared.geometry.face_kernels import Rivals, nearest_faces
 
     corner, count = corners(face), len(points)
     x = np.ascontiguousarray(position[corner])
@@ -65,11 +66,12 @@ def project(points: Array, position: Array, face: Array) -> Projection:
     every = Rivals(np.zeros((count, 3)), np.zeros((len(x), 3)), math.inf, math.inf)
     nearest_faces(np.ascontiguousarray(points), cells_of(x), every, owner, local, gap)
     own = x[owner]
-    shape = ShapeMap(corner[owner], bilinear(*local.T), len(position), owner)
-    foot = np.einsum("nc,nck->nk", shape.weight, own)
+    weight = bilinear(*local.T)
+    foot = at_points(weight, own)
     side = np.linalg.norm(own - np.roll(own, 1, axis=1), axis=2).max(axis=1, initial=0.0)
-    along, across = (np.einsum("nc,nck->nk", one, own) for one in derivatives(*local.T))
-    return Projection(shape, gap, side, _in_plane(points - foot, along, across))
+    along, across = (at_points(one, own) for one in derivatives(*local.T))
+    beyond = _in_plane(points - foot, along, across)
+    return Projection(corner[owner], weight, owner, gap, side, beyond)
 
 
 def _in_plane(away: Array, along: Array, across: Array) -> Array:
@@ -86,7 +88,7 @@ def _in_plane(away: Array, along: Array, across: Array) -> Array:
 def cells_of(x: Array) -> "Cells":
     """Put faces (m, 4, 3) m into cells."""
     # Late as in `project`.
-    from quintet.coupler.coupling.face_kernels import Cells, fill_cells
+    from quintet.components.shared.geometry.face_kernels import Cells, fill_cells
 
     low, extent = x.min(axis=(0, 1)), np.ptp(x, axis=(0, 1))
     size = max(float(np.median(np.ptp(x, axis=1).max(axis=1))), 1e-6 * float(extent.max()), 1e-300)

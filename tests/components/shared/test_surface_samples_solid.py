@@ -5,11 +5,29 @@ import math
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.body_samples import fill, mirrors
-from quintet.interfaces.errors import LinkError
-from quintet.interfaces.ports import BOX, SPHERE
+from quintet.components.shared.geometry.surface_samples_solid import (
+    box_images,
+    fill_box,
+    fill_sphere,
+    sphere_images,
+)
 
 DEEP = 1e9
+BOX, SPHERE = "box", "sphere"
+
+
+def fill(shape, size, spacing, depth):
+    """Samples of a box, or of a sphere."""
+    if shape == BOX:
+        return fill_box(size, spacing, depth)
+    return fill_sphere(size[0], spacing, depth)
+
+
+def mirrors(shape, size, arm, normal):
+    """Images of samples of a box, or of a sphere."""
+    if shape == BOX:
+        return box_images(size, arm, normal)
+    return sphere_images(size[0], arm, normal)
 
 
 @pytest.mark.parametrize("spacing", [0.1, 0.07, 0.5])
@@ -88,11 +106,6 @@ def test_a_body_smaller_than_the_spacing_has_one_sample(shape):
     np.testing.assert_array_equal(normal, [[0.0, 0.0, 1.0]])
     exact = 1e-3 * (math.pi / 6.0 if shape == SPHERE else 1.0)
     assert volume.sum() == pytest.approx(exact, rel=1e-13)
-
-
-def test_an_unknown_shape_is_refused():
-    with pytest.raises(LinkError, match="must be 0 \\(sphere\\) or 1 \\(box\\)"):
-        fill(3, np.full(3, 1.0), 0.1, DEEP)
 
 
 @pytest.mark.parametrize(("shape", "size"), [(BOX, (0.4, 0.3, 0.2)), (SPHERE, (0.4,) * 3)])

@@ -1,4 +1,4 @@
-"""Filling a rigid body's shape with samples, at the spacing that its partner asks for."""
+"""Samples of boxes and spheres: lattices and shells, at the spacing that is asked for."""
 
 import math
 from itertools import pairwise
@@ -6,24 +6,20 @@ from itertools import pairwise
 import numpy as np
 
 from quintet.interfaces.component import Array
-from quintet.interfaces.errors import LinkError
-from quintet.interfaces.ports import BOX, SPHERE
 
 # Shares of the cubes in a shell that its samples are, tried one after the other; 1 first.
 SHELL_FACTORS = (1.0, *(1.0 + sign * 0.005 * k for k in range(1, 17) for sign in (1, -1)))
 
 
-def fill(
-    shape: int, size: Array, spacing: float, depth: float, inset: float | None = None
+def fill_box(
+    size: Array, spacing: float, depth: float, inset: float | None = None
 ) -> tuple[Array, Array, Array]:
-    """Sample one body on a lattice, to a depth below its surface.
+    """Sample a box on a lattice, to a depth below its surface.
 
     Parameters
     ----------
-    shape : int
-        0 sphere, 1 box.
     size : (3,) float array, m
-        Edges of the box, or the sphere's diameter three times.
+        Edges.
     spacing, depth : float, m
         Distance of samples; how far below the outermost they reach (deeper ones act on nothing).
     inset : float, m
@@ -33,14 +29,30 @@ def fill(
     -------
     arm (n, 3) m from the centre, outward normal (n, 3), volume (n,) m3
     """
-    if shape not in (SPHERE, BOX):
-        raise LinkError(
-            f"a body's shape must be 0 (sphere) or 1 (box) to be sampled; found {shape}. Give the "
-            "body one of these shapes, or leave it out of the link."
-        )
-    if inset is not None:
-        size = size - 2.0 * (inset - 0.5 * spacing)
-    return box_lattice(size, spacing, depth) if shape == BOX else _sphere(size, spacing, depth)
+    return box_lattice(size - _less(spacing, inset), spacing, depth)
+
+
+def fill_sphere(
+    diameter: float, spacing: float, depth: float, inset: float | None = None
+) -> tuple[Array, Array, Array]:
+    """Sample a sphere [m] by shells, as `fill_box` does a box."""
+    diameter -= _less(spacing, inset)
+    radius, cubes = 0.5 * diameter, math.pi / 6 * (diameter / spacing) ** 3
+    # Water finds the body as large as its samples' cubes together: their number must be right.
+    tries = [_rings(radius, spacing, factor) for factor in SHELL_FACTORS]
+    rings = min(tries, key=lambda one: abs(sum(count for _, _, count in one) - cubes))
+    points = np.concatenate([_ring(*ring, 0.5 * (k % 2)) for k, ring in enumerate(rings)])
+    distance = np.linalg.norm(points, axis=1)
+    keep = radius - distance < depth
+    normal = points[keep] / np.maximum(distance[keep], 1e-12 * radius)[:, None]
+    normal[~normal.any(axis=1)] = (0.0, 0.0, 1.0)
+    volume = math.pi / 6 * diameter**3 / len(points)
+    return points[keep], normal, np.full(int(keep.sum()), volume)
+
+
+def _less(spacing: float, inset: float | None) -> float:
+    """By how much [m] a body is smaller whose outermost samples lie half a spacing deep."""
+    return 0.0 if inset is None else 2.0 * (inset - 0.5 * spacing)
 
 
 def box_lattice(
@@ -65,21 +77,6 @@ def box_lattice(
     normal[~normal.any(axis=1)] = (0.0, 0.0, 1.0)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     return points[keep], normal, np.full(int(keep.sum()), float(step.prod()))
-
-
-def _sphere(size: Array, spacing: float, depth: float) -> tuple[Array, Array, Array]:
-    radius = 0.5 * size[0]
-    cubes = math.pi / 6 * float(size[0] / spacing) ** 3
-    # Water finds the body as large as its samples' cubes together: their number must be right.
-    tries = [_rings(radius, spacing, factor) for factor in SHELL_FACTORS]
-    rings = min(tries, key=lambda one: abs(sum(count for _, _, count in one) - cubes))
-    points = np.concatenate([_ring(*ring, 0.5 * (k % 2)) for k, ring in enumerate(rings)])
-    distance = np.linalg.norm(points, axis=1)
-    keep = radius - distance < depth
-    normal = points[keep] / np.maximum(distance[keep], 1e-12 * radius)[:, None]
-    normal[~normal.any(axis=1)] = (0.0, 0.0, 1.0)
-    volume = math.pi / 6 * size[0] ** 3 / len(points)
-    return points[keep], normal, np.full(int(keep.sum()), volume)
 
 
 def _rings(radius: float, spacing: float, factor: float) -> list[tuple[float, float, int]]:
@@ -111,11 +108,14 @@ def _ring(aside: float, height: float, count: int, turn: float) -> Array:
     return np.stack([x, y, np.full(count, height)], axis=1)
 
 
-def mirrors(shape: int, size: Array, arm: Array, normal: Array) -> Array:
-    """Images (n, 3) m of samples that `fill` made, mirrored in the body's surface."""
-    if shape == SPHERE:
-        below = 0.5 * size[0] - np.linalg.norm(arm, axis=1)
-    else:
-        # On edges and corners the nearest surface point is as far along each of the faces' normals.
-        below = (0.5 * size - np.abs(arm)).min(axis=1) * np.sqrt((normal != 0.0).sum(axis=1))
+def sphere_images(diameter: float, arm: Array, normal: Array) -> Array:
+    """Images (n, 3) m of samples of a sphere or disc, mirrored in its surface."""
+    below = 0.5 * diameter - np.linalg.norm(arm, axis=1)
+    return np.asarray(arm + 2.0 * below[:, None] * normal)
+
+
+def box_images(size: Array, arm: Array, normal: Array) -> Array:
+    """Images (n, 3) m of samples of a box, mirrored in its surface."""
+    # On edges and corners the nearest surface point is as far along each of the faces' normals.
+    below = (0.5 * size - np.abs(arm)).min(axis=1) * np.sqrt((normal != 0.0).sum(axis=1))
     return np.asarray(arm + 2.0 * below[:, None] * normal)

@@ -8,10 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from quintet.coupler.coupling.body_samples import box_lattice
+from quintet.components.shared.geometry.surface_samples_solid import box_lattice
 from quintet.interfaces.component import Array
-from quintet.interfaces.errors import LinkError
-from quintet.interfaces.ports import DISC, POLYGON
 
 NEARLY = 1e-9  # of a body's size: what is less makes no difference
 HALVINGS = 60  # of the bracket around the largest circle in a polygon
@@ -19,24 +17,21 @@ HALVINGS = 60  # of the bracket around the largest circle in a polygon
 Samples = tuple[Array, Array, Array]  # arm (n, 3) m, outward normal (n, 3), volume (n,) m3
 
 
-def fill(
-    shape: int,
-    size: Array,
-    corner: Array,
-    spacing: float,
-    depth: float,
-    inset: float | None = None,
+def fill_disc(diameter: float, spacing: float, depth: float, inset: float | None = None) -> Samples:
+    """Sample a disc [m] by rings in its plane, as `fill_polygon` does a polygon."""
+    less = 0.0 if inset is None else inset - 0.5 * spacing
+    return _disc(0.5 * diameter - less, spacing, depth)
+
+
+def fill_polygon(
+    corner: Array, spacing: float, depth: float, inset: float | None = None
 ) -> Samples:
-    """Sample one body by a row of points in its plane, to a depth below its surface.
+    """Sample a convex polygon by a row of points in its plane, to a depth below its surface.
 
     Parameters
     ----------
-    shape : int
-        3 disc, 4 polygon.
-    size : (3,) float array, m
-        Of a disc its diameter, 1 m, its diameter.
-    corner : (k, 3) float array, m
-        Corners of a convex polygon, from x to z; (0, 3) of a disc.
+    corner : (k, 2) float array, m
+        Corners, from x to z.
     spacing, depth : float, m
         Distance of samples; how far below the outermost they reach (deeper ones act on nothing).
     inset : float, m
@@ -46,32 +41,16 @@ def fill(
     -------
     arm (n, 3) m from the centre, outward normal (n, 3), volume (n,) m3 of 1 m depth
     """
-    less = 0.0 if inset is None else inset - 0.5 * spacing
-    if shape == DISC:
-        return _disc(0.5 * size[0] - less, spacing, depth)
-    if shape == POLYGON:
-        outline = offset_inward(corner[:, [0, 2]], less)
-        axes = _right_angles(outline)
-        if axes is None:
-            return _layers(outline, spacing, depth)
-        return _rectangle(outline, axes, spacing, depth)
-    raise LinkError(
-        f"a body's shape must be {DISC} (disc) or {POLYGON} (polygon) to be sampled in two "
-        f"dimensions; found {shape}. Give it one of these shapes, or leave it out of the link."
-    )
+    outline = offset_inward(corner, 0.0 if inset is None else inset - 0.5 * spacing)
+    axes = _right_angles(outline)
+    if axes is None:
+        return _layers(outline, spacing, depth)
+    return _rectangle(outline, axes, spacing, depth)
 
 
-def width(shape: int, size: Array, corner: Array) -> float:
-    """Diameter [m] of the largest circle in a body."""
-    return 2.0 * inradius(corner[:, [0, 2]]) if shape == POLYGON else float(size[0])
-
-
-def mirrors(shape: int, size: Array, corner: Array, arm: Array, normal: Array) -> Array:
-    """Images (n, 3) m of samples that `fill` made, mirrored in the body's surface."""
-    if shape == DISC:
-        below = 0.5 * size[0] - np.linalg.norm(arm, axis=1)
-        return np.asarray(arm + 2.0 * below[:, None] * normal)
-    away, level = half_planes(corner[:, [0, 2]])
+def polygon_images(corner: Array, arm: Array, normal: Array) -> Array:
+    """Images (n, 3) m of samples of a convex polygon, mirrored in its surface."""
+    away, level = half_planes(corner)
     below = level - arm[:, [0, 2]] @ away.T  # (n, k) m, under each edge
     nearest = below.min(axis=1)
     # Where two edges are equally near the normal goes out between them, and meets both further off.

@@ -3,14 +3,23 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.face_samples import sample_faces
-from quintet.coupler.coupling.rigid_samples import Sampling
+from quintet.components.shared.geometry.surface_samples import Sampling
+from quintet.components.shared.geometry.surface_samples_mesh import sample_faces
+from quintet.coupler.coupling.mapping import OffsetMap, ShapeMap
 from quintet.interfaces.rotation import matrix
 
 RANDOM = np.random.default_rng(7)
 SPACING, DEPTH = 0.1, 0.3
 ASKED = Sampling(SPACING, DEPTH, 0.5 * SPACING, planar=False)
 FLAT = Sampling(SPACING, DEPTH, 0.5 * SPACING, planar=True)
+
+
+def offset(found):
+    """Map of samples as a link makes it."""
+    nodes = int(found.node.max()) + 1
+    weights = (found.weight, found.along, found.across)
+    shapes = [ShapeMap(found.node, one, nodes) for one in weights]
+    return OffsetMap(*shapes, found.depth, found.side)
 
 
 def _grid(n, m, size, normal=1.0):
@@ -42,7 +51,7 @@ def _ring(points):
 def test_a_side_is_sampled_to_the_depth_that_the_fluid_asks_for():
     position, face = _grid(4, 3, (1.2, 0.9))
     found = sample_faces(position, face, ASKED)
-    place, moving, mirror = found.offset.map_consistent(position, np.zeros_like(position))
+    place, moving, mirror = offset(found).map_consistent(position, np.zeros_like(position))
     assert len(place) == 12 * 9 * 3
     np.testing.assert_allclose(np.unique(place[:, 2].round(12)), [-0.25, -0.15, -0.05])
     np.testing.assert_allclose(mirror, place * [1.0, 1.0, -1.0], atol=1e-15)
@@ -55,7 +64,7 @@ def test_a_side_is_sampled_to_the_depth_that_the_fluid_asks_for():
 def test_a_plate_wetted_on_both_sides_is_filled_once(thickness):
     position, face = _plate(thickness)
     found = sample_faces(position, face, ASKED)
-    place, _, mirror = found.offset.map_consistent(position, np.zeros_like(position))
+    place, _, mirror = offset(found).map_consistent(position, np.zeros_like(position))
     sampled = min(thickness, 2 * DEPTH) * 1.2 * 0.9
     assert found.volume.sum() == pytest.approx(sampled, rel=1e-12)
     upper = found.normal[:, 2] > 0.0
@@ -71,7 +80,7 @@ def test_a_bar_wetted_all_around_is_filled_once():
     """At its edges each sample belongs to the face it is nearest to; on the diagonal to one."""
     position, edge = _ring([(0.0, 0.0), (0.8, 0.0), (0.8, 0.4), (0.0, 0.4)])
     found = sample_faces(position, edge, FLAT)
-    place = found.offset.map_consistent(position, np.zeros_like(position))[0]
+    place = offset(found).map_consistent(position, np.zeros_like(position))[0]
     lattice = {(round(x / SPACING - 0.5), round(z / SPACING - 0.5)) for x, _, z in place}
     assert len(place) == len(lattice) == 32
     assert found.volume.sum() == pytest.approx(0.32, rel=1e-12)
@@ -81,7 +90,7 @@ def test_a_bar_wetted_all_around_is_filled_once():
 def test_normals_of_edges_look_out_of_the_body():
     position, edge = _ring([(0.0, 0.0), (0.8, 0.0), (0.8, 0.4), (0.0, 0.4)])
     found = sample_faces(position, edge, FLAT)
-    place, _, mirror = found.offset.map_consistent(position, np.zeros_like(position))
+    place, _, mirror = offset(found).map_consistent(position, np.zeros_like(position))
     middle = np.array([0.4, 0.0, 0.2])
     assert (((mirror - place) * found.normal).sum(axis=1) > 0.0).all()
     out = np.abs(mirror - middle) > [0.4, 1.0, 0.2]
@@ -105,15 +114,15 @@ def test_samples_of_a_deformed_plate_keep_their_depth_and_move_as_it_does(asked)
     bent, velocity = _bent(position), RANDOM.normal(size=position.shape)
     if asked.planar:
         bent[:, 1], velocity[:, 1] = 0.0, 0.0
-    place, moving, mirror = found.offset.map_consistent(bent, velocity)
-    surface = found.offset.surface.map_consistent(bent)
+    place, moving, mirror = offset(found).map_consistent(bent, velocity)
+    surface = offset(found).surface.map_consistent(bent)
     np.testing.assert_allclose(
-        np.linalg.norm(surface - place, axis=1), found.offset.depth, rtol=1e-12
+        np.linalg.norm(surface - place, axis=1), offset(found).depth, rtol=1e-12
     )
     np.testing.assert_allclose(surface - place, mirror - surface, atol=1e-14)
     step = 1e-6
     after, before = (
-        found.offset.map_consistent(bent + sign * step * velocity, velocity)[0] for sign in (1, -1)
+        offset(found).map_consistent(bent + sign * step * velocity, velocity)[0] for sign in (1, -1)
     )
     np.testing.assert_allclose((after - before) / (2.0 * step), moving, atol=1e-8)
 
@@ -122,10 +131,10 @@ def test_a_velocity_that_is_linear_over_a_flat_plate_is_exact_below_it():
     position, face = _plate(0.4)
     found = sample_faces(position, face, ASKED)
     still = np.zeros_like(position)
-    place = found.offset.map_consistent(position, still)[0]
+    place = offset(found).map_consistent(position, still)[0]
     stretch = np.diag([0.3, -0.2, 0.0])
     stretch[0, 1] = 0.5
-    moving = found.offset.map_consistent(position, position @ stretch)[1]
+    moving = offset(found).map_consistent(position, position @ stretch)[1]
     np.testing.assert_allclose(moving, place @ stretch, atol=1e-13)
 
 
@@ -137,9 +146,9 @@ def test_a_body_that_turns_carries_its_samples_as_if_they_were_fixed_to_it():
     turn = np.concatenate([[np.cos(np.linalg.norm(half))], np.sin(np.linalg.norm(half)) * spin])
     turn[1:] /= np.linalg.norm(spin)
     rotation = matrix(turn[None])[0]
-    place = found.offset.map_consistent(position, np.zeros_like(position))[0] @ rotation.T
+    place = offset(found).map_consistent(position, np.zeros_like(position))[0] @ rotation.T
     turned = position @ rotation.T
-    there, moving, _ = found.offset.map_consistent(turned, np.cross(spin, turned))
+    there, moving, _ = offset(found).map_consistent(turned, np.cross(spin, turned))
     np.testing.assert_allclose(there, place, atol=1e-14)
     np.testing.assert_allclose(moving, np.cross(spin, place), atol=1e-14)
 
@@ -156,8 +165,8 @@ def test_loads_below_faces_conserve_force_moment_and_power(asked):
     velocity, force = RANDOM.normal(size=bent.shape), RANDOM.normal(size=(len(found.volume), 3))
     if asked.planar:
         velocity[:, 1], force[:, 1] = 0.0, 0.0
-    place, moving, _ = found.offset.map_consistent(bent, velocity)
-    nodal = found.offset.map_conservative(force, bent)
+    place, moving, _ = offset(found).map_consistent(bent, velocity)
+    nodal = offset(found).map_conservative(force, bent)
     assert np.vdot(nodal, velocity) == pytest.approx(np.vdot(force, moving), rel=1e-12)
     size = np.abs(force).sum()
     assert np.abs(nodal.sum(axis=0) - force.sum(axis=0)).max() <= 1e-14 * size
@@ -183,9 +192,9 @@ def test_faces_of_a_ball_are_sampled_without_holes():
     assert len(found.volume) == 3 * len(below.volume)
     assert (
         np.linalg.norm(
-            found.offset.map_consistent(position.reshape(-1, 3), np.zeros((position.size // 3, 3)))[
-                0
-            ],
+            offset(found).map_consistent(
+                position.reshape(-1, 3), np.zeros((position.size // 3, 3))
+            )[0],
             axis=1,
         )
         < radius

@@ -4,23 +4,73 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.coupler.coupling.faces import bilinear, cells_of, corners, derivatives
-from quintet.coupler.coupling.mapping import OffsetMap, ShapeMap
-from quintet.coupler.coupling.rigid_samples import Sampling
-from quintet.interfaces.component import Array
+from quintet.components.shared.geometry.face_projection import (
+    at_points,
+    bilinear,
+    cells_of,
+    corners,
+    derivatives,
+    project,
+)
+from quintet.components.shared.geometry.surface_samples import Sampling, sampling_of
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import SceneError
 
 # Half of the metre along y that edges stand for, turned so that normals point out of the body.
 PLANAR_SIDE = np.array([0.0, -0.5, 0.0])  # m
 HALF = 0.5  # of a layer's thickness: a sample nearer by so much to another face is that one's
 SAME_WAY = 0.7  # cosine of the angle between faces that go on from one another
 ROUNDING = 1e-9
+SAMPLES = ("node", "weight", "along", "across", "depth", "side", "normal", "volume")
+HUNG = ("node", "weight", "face", "gap", "size", "beyond")
+
+
+def mesh_answer(port: str, request: Fields, static: Fields) -> dict[str, Array]:
+    """Samples below the faces of a mesh; or, of given points, where on its faces they hang.
+
+    Parameters
+    ----------
+    port : str
+        Through which the mesh is given.
+    request : mapping of arrays
+        As `Component.sample` gets it.
+    static : mapping of arrays
+        What the component describes: where nodes start, the corners of faces.
+    """
+    position, face = static[f"{port}.start"], static[f"{port}.corner"]
+    if (points := request.get(f"{port}.points")) is not None:
+        hung = project(points, position, face)
+        return {f"{port}.{name}": np.asarray(getattr(hung, name), float) for name in HUNG}
+    asked = sampling_of(port, request)
+    if asked.planar != (static.get(f"{port}.dimensions", [3.0])[0] == 2.0):
+        raise SceneError(
+            "a mesh and its partner must have two dimensions or both three. Set dimensions = 2 in "
+            "both, or 3 in both."
+        )
+    samples = sample_faces(position, face, asked)
+    if samples.room < asked.least * (1.0 - ROUNDING):
+        raise SceneError(
+            f"a body must be at least {asked.least:g} m thick between its faces to be sampled: a "
+            "spacing of its partner, and twice the depth of the outermost samples that it asks "
+            f"for; behind face {samples.thin} it is {samples.room:g} m. Refine the partner's "
+            "spacing, or leave one of its sides out of its coupled faces."
+        )
+    return {f"{port}.{name}": np.asarray(getattr(samples, name), float) for name in SAMPLES}
 
 
 @dataclass(frozen=True, slots=True)
 class FaceSamples:
-    """Samples of the faces of a mesh."""
+    """Samples of the faces of a mesh: points below it, along its normal as it moves.
 
-    offset: OffsetMap
+    A sample lies at x(ξ, η) - d n, with n = t × s / |t × s| of the tangents t = ∂x/∂ξ, s = ∂x/∂η.
+    """
+
+    node: Array  # (n, 4) corners of the face of each sample
+    weight: Array  # (n, 4) 1, shape functions at its foot
+    along: Array  # (n, 4) 1, their derivatives by ξ
+    across: Array  # (n, 4) 1, and by η
+    depth: Array  # (n,) m below the face
+    side: Array  # (n, 3) m, added to s: half of the depth along y where faces are edges, else none
     normal: Array  # (n, 3) outward, at the start
     volume: Array  # (n,) m3
     room: float  # m, least distance of faces that look away from each other; ∞ if none are near
@@ -35,15 +85,13 @@ class Columns:
     face: Array  # (n,) int
     local: Array  # (n, 2) 1, ξ and η
     share: Array  # (n,) 1, of the face's area in ξ and η
-    nodes: int
     side: Array  # (3,) m
 
-    def offset(self, rows: Array, depth: Array) -> OffsetMap:
-        """Map of points (n,) m below some of them."""
-        node, face, local = self.node[rows], self.face[rows], self.local[rows].T
-        weights = bilinear(*local), *derivatives(*local)
-        surface, along, across = (ShapeMap(node, one, self.nodes, face) for one in weights)
-        return OffsetMap(surface, along, across, depth, self.side)
+    def places(self, position: Array) -> tuple[Array, Array]:
+        """Middles (n, 3) m, and t × s (n, 3) m2 there."""
+        weight, corner = bilinear(*self.local.T), position[self.node]
+        along, across = (at_points(one, corner) for one in derivatives(*self.local.T))
+        return at_points(weight, corner), np.cross(along, across + self.side)
 
 
 def sample_faces(position: Array, face: Array, asked: Sampling) -> FaceSamples:
@@ -55,31 +103,38 @@ def sample_faces(position: Array, face: Array, asked: Sampling) -> FaceSamples:
     to that one, as at the edges of a body.
     """
     columns = _columns(position, face, asked)
-    every = np.arange(len(columns.face))
-    surface = columns.offset(every, np.zeros(len(every)))
-    start, across = surface.surface.map_consistent(position), np.cross(*surface.tangents(position))
+    start, across = columns.places(position)
     length = np.linalg.norm(across, axis=1)
     normal = across / length[:, None]
     outward = _face_normals(position, face, columns.side)
     x = np.ascontiguousarray(position[corners(face)])
     room = _room(start, normal, columns.face, outward, x, asked)
     layers, thickness = _layers(room, asked)
-    rows = np.repeat(every, layers)
+    rows = np.repeat(np.arange(len(start)), layers)
     number = np.arange(len(rows)) - np.repeat(np.cumsum(layers) - layers, layers)
     thick = thickness[rows]
     depth = np.maximum(_shift(asked) + (number + 0.5) * thick, 0.0)
     place = start[rows] - depth[:, None] * normal[rows]
     kept = _own(place, normal[rows], columns.face[rows], depth, thick, outward, x)
     volume = (columns.share * length)[rows] * thick
-    offset = columns.offset(rows[kept], depth[kept])
-    least = int(np.argmin(room))
-    thin = int(columns.face[least])
-    return FaceSamples(offset, normal[rows[kept]], volume[kept], float(room[least]), thin)
+    least, rows = int(np.argmin(room)), rows[kept]
+    local = columns.local[rows].T
+    return FaceSamples(
+        columns.node[rows],
+        bilinear(*local),
+        *derivatives(*local),
+        depth[kept],
+        np.tile(columns.side, (len(rows), 1)),
+        normal[rows],
+        volume[kept],
+        float(room[least]),
+        int(columns.face[least]),
+    )
 
 
 def _columns(position: Array, face: Array, asked: Sampling) -> Columns:
     # Kernels, and numba with them, are left out of reading scenes, and of those without meshes.
-    from quintet.coupler.coupling.face_kernels import write_columns
+    from quintet.components.shared.geometry.face_kernels import write_columns
 
     corner = corners(face)
     x = position[corner]
@@ -92,15 +147,15 @@ def _columns(position: Array, face: Array, asked: Sampling) -> Columns:
     owner, local, share = np.zeros(total, np.int64), np.zeros((total, 2)), np.zeros(total)
     write_columns(count, owner, local, share)
     side = PLANAR_SIDE if asked.planar else np.zeros(3)
-    return Columns(corner[owner], owner, local, share, len(position), side)
+    return Columns(corner[owner], owner, local, share, side)
 
 
 def _face_normals(position: Array, face: Array, side: Array) -> Array:
     """Outward normals (m, 3) at the middles of faces."""
     corner, count = corners(face), len(face)
-    every, nothing = np.arange(count), np.zeros(count)
-    middles = Columns(corner, every, np.zeros((count, 2)), nothing, len(position), side)
-    return middles.offset(every, nothing).normals(position)
+    middles = Columns(corner, np.arange(count), np.zeros((count, 2)), np.zeros(count), side)
+    across = middles.places(position)[1]
+    return np.asarray(across / np.linalg.norm(across, axis=1)[:, None])
 
 
 def _room(
@@ -108,7 +163,7 @@ def _room(
 ) -> Array:
     """How far (n,) m it is from columns to where the body ends behind them; ∞ if that is far."""
     # Late as in `_columns`.
-    from quintet.coupler.coupling.face_kernels import opposite_faces
+    from quintet.components.shared.geometry.face_kernels import opposite_faces
 
     room, reach = np.full(len(start), np.inf), 2.0 * (asked.inset + asked.depth)
     opposite_faces(start, -normal, own, reach, cells_of(x), outward, room)
@@ -135,7 +190,7 @@ def _own(
 ) -> Array:
     """Numbers of the samples that lie below their own faces, and not rather below others."""
     # Late as in `_columns`.
-    from quintet.coupler.coupling.face_kernels import Rivals, nearest_faces
+    from quintet.components.shared.geometry.face_kernels import Rivals, nearest_faces
 
     count = len(place)
     rival, local, gap = np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count)

@@ -1,0 +1,34 @@
+"""How the surfaces of bodies are sampled for a partner."""
+
+from collections.abc import Sequence
+from functools import partial
+
+from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.shared.geometry import surface_samples as surfaces
+from quintet.interfaces.component import Array, Fields
+
+
+def sample(bodies: Sequence[RigidBody], request: Fields) -> dict[str, Array]:
+    """Samples of all bodies; equal ones are sampled once."""
+    known: dict[object, surfaces.Sampler] = {}
+    samplers = [known.setdefault(_form(body), _sampler(body)) for body in bodies]
+    return surfaces.rigid_answer("motion", request, samplers)
+
+
+def _form(body: RigidBody) -> object:
+    """What two bodies have in common whose samples are equal."""
+    return (
+        body.shape, body.size, body.radius, body.corners, body.centres, body.radii,
+        body.file, body.scale,
+    )  # fmt: skip
+
+
+def _sampler(body: RigidBody) -> surfaces.Sampler:
+    if body.size is not None:
+        return partial(surfaces.box, body.size)
+    if body.corners is not None:
+        return partial(surfaces.polygon, planar.corners(body))
+    assert body.radius is not None
+    shape = surfaces.disc if body.shape in planar.SHAPES else surfaces.sphere
+    return partial(shape, 2.0 * body.radius)

@@ -1,0 +1,151 @@
+"""Answers to whoever asks how the surface of a body or a mesh is sampled.
+
+A solver that moves bodies answers `Component.sample` by `rigid_answer`, one that moves a mesh by
+`mesh_answer`. Samples fill a body to a depth below its surface, in the body's own frame.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from quintet.components.shared.geometry import surface_samples_planar as plane
+from quintet.components.shared.geometry import surface_samples_solid as solid
+from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import SceneError
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """How a partner asks for surfaces to be sampled."""
+
+    spacing: float  # m
+    depth: float  # m, below the outermost samples: deeper ones act on nothing
+    inset: float  # m, of the outermost ones below the surface
+    planar: bool = False  # whether the partner has two dimensions
+    mirrored: bool = False  # whether it asks for the image of each sample in the surface
+
+    @property
+    def least(self) -> float:
+        """Width [m] that a body must have."""
+        return max(self.spacing, 2.0 * self.inset)
+
+
+@dataclass(frozen=True, slots=True)
+class BodySamples:
+    """Samples of one body."""
+
+    arm: Array  # (n, 3) m from the body's centre, in its frame
+    normal: Array  # (n, 3) outward
+    volume: Array  # (n,) m3
+    image: Array  # (n, 3) m, the arms mirrored in the surface
+
+
+Sampler = Callable[[Sampling], BodySamples]
+
+
+def sampling_of(port: str, request: Fields) -> Sampling:
+    """Read a request for samples of a port."""
+    names = "spacing", "depth", "inset", "dimensions", "mirror"
+    spacing, depth, inset, dimensions, mirror = (float(request[f"{port}.{k}"][0]) for k in names)
+    return Sampling(spacing, depth, inset, dimensions == 2.0, mirror == 1.0)
+
+
+def rigid_answer(port: str, request: Fields, bodies: Sequence[Sampler]) -> dict[str, Array]:
+    """Samples of all bodies, one after another.
+
+    Parameters
+    ----------
+    port : str
+        Through which the bodies' motion is given.
+    request : mapping of arrays
+        As `Component.sample` gets it.
+    bodies : sequence of functions
+        Of each body one such as `sphere` or `box` with its dimensions bound.
+    """
+    asked, parts = sampling_of(port, request), []
+    known: dict[Sampler, BodySamples] = {}  # equal bodies share one function
+    for number, body in enumerate(bodies):
+        if body not in known:
+            known[body] = _sampled(number, body, asked)
+        parts.append(known[body])
+    count = [len(part.arm) for part in parts]
+    answer = {
+        "arm": np.concatenate([part.arm for part in parts]),
+        "normal": np.concatenate([part.normal for part in parts]),
+        "volume": np.concatenate([part.volume for part in parts]),
+        "body": np.repeat(np.arange(len(parts)), count).astype(np.float64),
+    }
+    if asked.mirrored:
+        answer["image"] = np.concatenate([part.image for part in parts])
+    return {f"{port}.{name}": array for name, array in answer.items()}
+
+
+def _sampled(number: int, body: Sampler, asked: Sampling) -> BodySamples:
+    try:
+        return body(asked)
+    except ThinError as error:
+        raise SceneError(
+            f"a body must be at least {asked.least:g} m across to be sampled: a spacing of its "
+            "partner, and twice the depth of the outermost samples that it asks for; body "
+            f"{number} is {error} m. Refine the partner's spacing, or leave the body out."
+        ) from error
+
+
+class ThinError(ValueError):
+    """A body is thinner than its partner can sample: how thick it is."""
+
+
+def require_width(width: float, asked: Sampling) -> None:
+    """Refuse a body of a width [m] that is less than samples need."""
+    if width < asked.least:
+        raise ThinError(f"{width:g}")
+
+
+def sphere(diameter: float, asked: Sampling) -> BodySamples:
+    """Sample a sphere."""
+    _require_space(asked)
+    require_width(diameter, asked)
+    arm, normal, volume = solid.fill_sphere(diameter, asked.spacing, asked.depth, asked.inset)
+    return BodySamples(arm, normal, volume, solid.sphere_images(diameter, arm, normal))
+
+
+def box(size: Sequence[float], asked: Sampling) -> BodySamples:
+    """Sample a box with edges (3,) m."""
+    _require_space(asked)
+    edges = np.array(size)
+    require_width(float(edges.min()), asked)
+    arm, normal, volume = solid.fill_box(edges, asked.spacing, asked.depth, asked.inset)
+    return BodySamples(arm, normal, volume, solid.box_images(edges, arm, normal))
+
+
+def disc(diameter: float, asked: Sampling) -> BodySamples:
+    """Sample a disc of two dimensions."""
+    _require_plane(asked)
+    require_width(diameter, asked)
+    arm, normal, volume = plane.fill_disc(diameter, asked.spacing, asked.depth, asked.inset)
+    return BodySamples(arm, normal, volume, solid.sphere_images(diameter, arm, normal))
+
+
+def polygon(corner: Array, asked: Sampling) -> BodySamples:
+    """Sample a convex polygon with corners (k, 2) m about its centre, from x to z."""
+    _require_plane(asked)
+    require_width(2.0 * plane.inradius(corner), asked)
+    arm, normal, volume = plane.fill_polygon(corner, asked.spacing, asked.depth, asked.inset)
+    return BodySamples(arm, normal, volume, plane.polygon_images(corner, arm, normal))
+
+
+def _require_space(asked: Sampling) -> None:
+    if asked.planar:
+        raise SceneError(DIMENSIONS.format("three", "two", "disc or polygon"))
+
+
+def _require_plane(asked: Sampling) -> None:
+    if not asked.planar:
+        raise SceneError(DIMENSIONS.format("two", "three", "sphere, box or mesh"))
+
+
+DIMENSIONS = (
+    "both sides must have two dimensions or both three; a body has {}, its partner {}. Make the "
+    "body a {}, or give both sides the same dimensions."
+)

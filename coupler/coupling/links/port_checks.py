@@ -1,0 +1,38 @@
+"""What the ports of a component lack for a role in a link."""
+
+from quintet.coupler.coupling.exchange import Ports
+from quintet.interfaces.component import Port
+
+
+def requires(ports: Ports, name: str, takes: Port | None, gives: Port | None) -> list[str]:
+    """List what a component's ports lack for a role in a link; empty when it fits."""
+    lacks = []
+    for verb, needed, offered in (("take", takes, ports[0]), ("give", gives, ports[1])):
+        if needed is None:
+            continue
+        found = next((port for port in offered if port.name == needed.name), None)
+        if found is None:
+            lacks.append(f"{name} must {verb} a port {needed.name}")
+        else:
+            lacks += misfits(name, found, needed)
+    return lacks
+
+
+def misfits(name: str, found: Port, needed: Port) -> list[str]:
+    """Say which fields of a port are not as the other side has them."""
+    theirs = {field.name: field for field in needed.fields}
+    wrong = []
+    for mine in found.fields:
+        other = theirs.get(mine.name)
+        place = f"{name}.{found.name}.{mine.name}"
+        if other is None:
+            wrong.append(f"{place} is not known to the other side ({', '.join(theirs)})")
+        elif mine.unit != other.unit:
+            wrong.append(f"{place} is in {mine.unit}, the other side's in {other.unit}")
+        elif mine.centring != other.centring:
+            wrong.append(f"{place} is {mine.centring}, the other side's {other.centring}")
+        elif mine.shape != other.shape:
+            wrong.append(f"{place} has shape {mine.shape}, the other side's {other.shape}")
+        elif mine.kind != other.kind:
+            wrong.append(f"{place} is a {mine.kind}, the other side's a {other.kind}")
+    return wrong
