@@ -3,9 +3,13 @@
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
+
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry import surface_samples as surfaces
+from quintet.components.shared.geometry.mesh_files import read
 from quintet.interfaces.component import Array, Fields
 
 
@@ -29,6 +33,14 @@ def _sampler(body: RigidBody) -> surfaces.Sampler:
         return partial(surfaces.box, body.size)
     if body.corners is not None:
         return partial(surfaces.polygon, planar.corners(body))
-    assert body.radius is not None
+    if body.file is not None:
+        assert body.scale is not None
+        solid = read(body.file, body.scale)
+        return partial(surfaces.mesh, solid.triangles - solid.centre, solid.volume)
+    if body.radius is None:
+        assert body.centres is not None and body.radii is not None
+        volume, centre, _ = measure_union((body.centres, body.radii))
+        centres = np.array(body.centres) - centre
+        return partial(surfaces.spheres, centres, np.array(body.radii), volume)
     shape = surfaces.disc if body.shape in planar.SHAPES else surfaces.sphere
     return partial(shape, 2.0 * body.radius)

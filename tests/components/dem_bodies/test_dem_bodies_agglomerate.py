@@ -129,6 +129,15 @@ def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
     np.testing.assert_allclose(given["contact.force"].sum(axis=0), 0.0, atol=1e-9)
 
 
+def test_an_agglomerate_is_sampled_as_the_shape_in_its_file(files):
+    ball = build([body(files / "ball.ply")])
+    asked = {"spacing": 0.02, "depth": 1.0, "inset": 0.01, "mirror": 1.0, "dimensions": 3.0}
+    samples = ball.sample({f"motion.{key}": np.array([value]) for key, value in asked.items()})
+    volume = ball.mass[0] / body(files / "ball.ply")["density"]
+    assert samples["motion.volume"].sum() == pytest.approx(volume, rel=1e-12)
+    np.testing.assert_allclose(samples["motion.arm"].mean(axis=0), 0.0, atol=1e-3)
+
+
 def test_what_is_wrong_with_a_file_is_told(files):
     cube = trimesh.creation.box((EDGE,) * 3)
     cube.update_faces(np.arange(12) != 5)
