@@ -16,13 +16,13 @@ import numpy as np
 
 from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
+from quintet.coupler.coupling.judgement.settling_watch import SettlingWatch
+from quintet.coupler.coupling.judgement.stability_watch import StabilityWatch
+from quintet.coupler.coupling.judgement.start_check import StartCheck
+from quintet.coupler.coupling.judgement.time_error import TimeErrors
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.coupler.coupling.run_warnings import RunWarnings
-from quintet.coupler.coupling.settling_watch import SettlingWatch
-from quintet.coupler.coupling.stability_watch import StabilityWatch
-from quintet.coupler.coupling.start_check import StartCheck
-from quintet.coupler.coupling.time_error import TimeErrors
 from quintet.coupler.files.table_file import TableFile
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.rotation import vector_between

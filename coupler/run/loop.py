@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from quintet.coupler.coupling.checks import Checks
 from quintet.coupler.coupling.group import join_ports
+from quintet.coupler.coupling.judgement.checks import Checks
 from quintet.coupler.coupling.participant import describe_all
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.schemes import advance

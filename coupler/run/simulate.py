@@ -15,10 +15,10 @@ import tomli_w
 
 from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import assemble
+from quintet.coupler.coupling.judgement.time_check import suspects
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs, Coupling
-from quintet.coupler.coupling.time_check import suspects
 from quintet.coupler.files.disk import (
     REASONS,
     disk_error,

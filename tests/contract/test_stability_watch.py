@@ -3,7 +3,7 @@
 import laboratory
 import pytest
 
-from quintet.coupler.coupling.stability_watch import FEWEST, Made, StabilityWatch
+from quintet.coupler.coupling.judgement.stability_watch import FEWEST, Made, StabilityWatch
 
 LINK = {
     "kind": "direct",

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.start_check import StartCheck
+from quintet.coupler.coupling.judgement.start_check import StartCheck
 
 KEY = ("plate", "faces.position")
 LOADED, FREE = [3], []  # transfers whose impulses wait for the next window

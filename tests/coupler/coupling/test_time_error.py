@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.settling_watch import UNSETTLED, Settling
-from quintet.coupler.coupling.time_error import TimeErrors, is_sampled, sample
+from quintet.coupler.coupling.judgement.settling_watch import UNSETTLED, Settling
+from quintet.coupler.coupling.judgement.time_error import TimeErrors, is_sampled, sample
 
 KEY = ("body", "motion.position")
 

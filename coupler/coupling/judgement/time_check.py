@@ -6,9 +6,15 @@ window is looked at or not.
 
 from typing import TYPE_CHECKING
 
+from quintet.coupler.coupling.judgement.time_error import (
+    PIECES,
+    FieldError,
+    Key,
+    is_sampled,
+    sample,
+)
+from quintet.coupler.coupling.judgement.trial_window import Outputs, step_in_pieces
 from quintet.coupler.coupling.participant import TrialFailed
-from quintet.coupler.coupling.time_error import PIECES, FieldError, Key, is_sampled, sample
-from quintet.coupler.coupling.trial_window import Outputs, step_in_pieces
 from quintet.interfaces.component import Field, Fields
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Protocol
 
+from quintet.coupler.coupling.judgement.time_check import TimeCheck
 from quintet.coupler.coupling.schedule import Coupling
-from quintet.coupler.coupling.time_check import TimeCheck
 
 Texts = Mapping[str, Mapping[str, str]]  # by link and subject
 

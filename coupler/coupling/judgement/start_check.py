@@ -7,7 +7,7 @@ window late, and stays so on its way to rest, although every later window is rig
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from quintet.coupler.coupling.time_error import Key
+from quintet.coupler.coupling.judgement.time_error import Key
 from quintet.interfaces.component import Array
 from quintet.interfaces.sums import norm
 

@@ -1,0 +1,1 @@
+"""What judges a coupling as it runs: its start, its windows, its stability, whether it settles."""
