@@ -1,0 +1,80 @@
+"""Run one command and turn its errors into sentences and an exit status."""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from quintet.coupler.cli import kinds, reference, runs, studies
+from quintet.coupler.cli.options import BAD, Action
+from quintet.interfaces.errors import QuintetError, SceneError
+
+LONGEST = 2000  # characters of a sentence
+INTERRUPTED = 130  # exit status after Ctrl-C
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run one command and exit with its status."""
+    options = parser().parse_args(arguments)
+    try:
+        if isinstance(path := getattr(options, "json", None), Path):
+            _require_writable(path)
+        status = options.action(options)
+    except SceneError as error:
+        for mistake in error.mistakes:
+            print(f"quintet: {sentence(mistake)}", file=sys.stderr)
+        status = BAD
+    except QuintetError as error:
+        print(f"quintet: {error}", file=sys.stderr)
+        status = BAD
+    except KeyboardInterrupt:  # before anything was started, or after all was written
+        print("\nquintet: interrupted", file=sys.stderr)
+        status = INTERRUPTED
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 0
+    sys.exit(status)
+
+
+def sentence(mistake: str) -> str:
+    """Write a mistake on one line, whatever names are in it; of a very long one both ends."""
+    line = " ".join(mistake.splitlines())
+    return line if len(line) <= LONGEST else f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
+
+
+def _require_writable(path: Path) -> None:
+    # Start-up: only commands that leave a file need it.
+    from quintet.coupler.files.json_file import require_writable
+
+    require_writable(path)
+
+
+def parser() -> argparse.ArgumentParser:
+    """All commands and their options."""
+    top = argparse.ArgumentParser(
+        prog="quintet", description="Independent solvers, one interface, one coupler."
+    )
+    top.add_argument("--version", action=Version, nargs=0, help="of quintet")
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name: str, action: Action, text: str) -> argparse.ArgumentParser:
+        added = commands.add_parser(name, help=text, description=text)
+        added.set_defaults(action=action, command=name)
+        return added
+
+    for group in (reference, runs, studies, kinds):
+        group.add_commands(command)
+    return top
+
+
+class Version(argparse.Action):
+    """Print the version that is installed, and end."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Read it from the package's metadata."""
+        # Start-up: only this option needs it.
+        from importlib.metadata import version
+
+        print(f"quintet {version('quintet')}")
+        parser.exit()

@@ -1,0 +1,57 @@
+"""Options that several commands share."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from quintet.coupler.scene.scene import Scene
+
+BAD = 2  # exit status of bad input, with which nothing is started
+
+Action = Callable[[argparse.Namespace], int]
+Command = Callable[[str, Action, str], argparse.ArgumentParser]
+
+PRESET = "a preset of the scene"
+SET = "set a key of the scene, as in components.plate.thickness=0.002; may be repeated"
+SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME=module:Class"
+TRANSPORT = "what carries the messages (default: the key transport of the scene)"
+FORCE = "replace a former one in that folder: only the files that it wrote"
+IMPORT = "import kinds that are code of the scene's own, module:Class, and check them too"
+FOR_PROGRAMS = "what was found, for programs"
+
+
+def add_scene(command: argparse.ArgumentParser, **more: Any) -> None:
+    """Add a scene and everything that changes it."""
+    command.add_argument("scene", help="a name from quintet list, or a TOML file", **more)
+    command.add_argument("--preset", default="", help=PRESET)
+    add_settings(command)
+    command.add_argument("--swap", action="append", default=[], metavar="NAME=KIND", help=SWAP)
+    transports = ["memory", "zenoh", "mpi"]
+    command.add_argument("--transport", choices=transports, default="", help=TRANSPORT)
+
+
+def add_settings(command: argparse.ArgumentParser) -> None:
+    """Add keys of a scene that are set on the command line."""
+    command.add_argument(
+        "--set", action="append", default=[], metavar="PATH=VALUE", dest="settings", help=SET
+    )
+
+
+def add_report(command: argparse.ArgumentParser, folder: str) -> None:
+    """Add where a command that runs a scene many times writes."""
+    command.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)
+    command.add_argument("--out", type=Path, metavar="DIR", help=f"of all runs (default: {folder})")
+    command.add_argument("--force", action="store_true", help=FORCE)
+
+
+def load_scene(options: argparse.Namespace) -> "Scene":
+    """Read the scene that the options name and change."""
+    # Start-up: only commands that read a scene need it.
+    from quintet.coupler.scene.overrides import tell_repeated
+    from quintet.coupler.scene.read import load
+
+    tell_repeated(options.settings, options.swap)
+    changes = (options.preset, options.settings, options.swap, options.transport)
+    return load(options.scene, *changes, imports=getattr(options, "imports", True))

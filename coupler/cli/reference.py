@@ -1,0 +1,82 @@
+"""Commands that start no solver: list, check, describe, schema."""
+
+import argparse
+from pathlib import Path
+
+from quintet.coupler.cli.options import IMPORT, Command, add_scene, load_scene
+
+GRAPH = "draw components, ports and links instead of the plan"
+MERMAID = "the same as a Mermaid flowchart, for texts that draw it"
+SUBJECT = (
+    "scene, a kind, or link and its kind; then one table or key of it; a list if none is given"
+)
+WRITE = "fill in the tables between <!-- describe SUBJECT --> and <!-- described --> of texts"
+
+
+def add_commands(command: Command) -> None:
+    """Add what starts no solver."""
+    listing = command("list", list_scenes, "scenes: name, title, components, presets, run times")
+    listing.add_argument("--json", action="store_true", help="for programs")
+    plan = command("check", check, "read a scene, print its plan; start no solver")
+    add_scene(plan)
+    plan.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
+    shape = plan.add_mutually_exclusive_group()
+    shape.add_argument("--graph", action="store_true", help=GRAPH)
+    shape.add_argument("--mermaid", action="store_true", help=MERMAID)
+    keys = command("describe", describe, "every key of a scene, a kind or a link, with its unit")
+    keys.add_argument("subject", nargs="*", metavar="SUBJECT", help=SUBJECT)
+    keys.add_argument("--json", action="store_true", help="for programs")
+    keys.add_argument("--write", nargs="+", type=Path, default=[], metavar="FILE", help=WRITE)
+    editors = command("schema", schema, "keys of scene files as a JSON schema, for editors")
+    editors.add_argument("scene", nargs="?", help="whose module:Class kinds it is to know as well")
+    editors.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
+
+
+def list_scenes(options: argparse.Namespace) -> int:
+    """List the scenes that come with quintet."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.scene.listing import list_all
+
+    list_all(options.json)
+    return 0
+
+
+def check(options: argparse.Namespace) -> int:
+    """Print the plan of a scene, or draw who is linked to whom."""
+    scene = load_scene(options)
+    # Start-up: only this command needs it.
+    from quintet.coupler.scene import graph
+    from quintet.coupler.scene.listing import console, print_plan, tell_unread
+    from quintet.coupler.scene.needs import require_memory
+
+    require_memory(scene)
+    if options.graph or options.mermaid:
+        print(graph.mermaid(scene) if options.mermaid else graph.drawing(scene))
+        tell_unread(scene)
+    else:
+        print_plan(scene, console())
+    return 0
+
+
+def describe(options: argparse.Namespace) -> int:
+    """Print what a scene, a kind or a link may say."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.reference.describe import run_describe
+
+    return run_describe(options)
+
+
+def schema(options: argparse.Namespace) -> int:
+    """Print the JSON schema of scene files."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.reference.schema import as_text, scene_schema
+    from quintet.coupler.scene.listing import tell_unread
+    from quintet.coupler.scene.read import load
+
+    scene = load(options.scene, imports=options.imports) if options.scene else None
+    plans = scene.components.values() if scene else ()
+    kinds = [plan.kind for plan in plans if not plan.unread]
+    if scene:
+        tell_unread(scene)
+    print(as_text(scene_schema(kinds)))
+    return 0

@@ -1,0 +1,157 @@
+"""Commands that run a scene, and that read runs: run, join, compile, show, diff."""
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from quintet.coupler.cli.options import (
+    BAD,
+    FORCE,
+    Command,
+    add_scene,
+    add_settings,
+    load_scene,
+)
+from quintet.interfaces.errors import LineError, SceneError
+
+if TYPE_CHECKING:
+    from quintet.coupler.scene.scene import Scene
+
+OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"
+RESUME = "go on with an interrupted or failed run, from its last snapshot"
+ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
+COMPILED = "scenes, and kinds: all scenes of quintet that use them; all if none is given"
+
+
+def add_commands(command: Command) -> None:
+    """Add what runs a scene, and what reads runs."""
+    running = command("run", run, "run a scene, compare it with what it must reproduce")
+    add_scene(running, nargs="?")
+    running.add_argument("--out", type=Path, help=OUT)
+    running.add_argument("--force", action="store_true", help=FORCE)
+    running.add_argument("--resume", type=Path, metavar="DIR", help=RESUME)
+    running.add_argument("--elsewhere", action="append", default=[], metavar="NAME", help=ELSEWHERE)
+    running.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
+    joining = command("join", join, "start one component here and join it to a coupler elsewhere")
+    add_scene(joining)
+    joining.add_argument("name", help="of the component in the scene")
+    joining.add_argument("--at", required=True, metavar="ENDPOINT", help="of the coupler")
+    compiling = command("compile", compile_kernels, "fill the caches of compiled kernels")
+    compiling.add_argument("names", nargs="*", metavar="SCENE|KIND", help=COMPILED)
+    compiling.add_argument("--preset", default="", help="a preset of the scene (default: quick)")
+    add_settings(compiling)
+    showing = command("show", show, "what happened in a run")
+    showing.add_argument("folder", type=Path)
+    showing.add_argument("--json", action="store_true", help="for programs")
+    comparing = command("diff", diff, "first difference between two runs; 0 if there is none")
+    comparing.add_argument("folders", nargs=2, type=Path, metavar="DIR")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run a scene, from the start or from a snapshot."""
+    scene, out, snapshot = _resumed(options) if options.resume else _begun(options)
+    scene.elsewhere = set(options.elsewhere)
+    unknown = scene.elsewhere - set(scene.components)
+    if unknown or (scene.elsewhere and scene.transport != "zenoh"):
+        raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
+    # Start-up: only this command needs it.
+    from quintet.coupler.report import show as report
+    from quintet.coupler.run.run_scene import resume_scene, run_scene
+
+    if options.inside_mpi:
+        return _run_rank(scene, out or Path(), snapshot)
+    if snapshot and out:
+        folder, status = out, resume_scene(scene, out, snapshot, own_process=True)
+    else:
+        folder, status = run_scene(scene, out, options.force, own_process=True)
+    if status != BAD and (folder / report.NAME).is_file():
+        report.show(folder)
+        print(f"left in {os.path.relpath(folder)}", flush=True)
+    return status
+
+
+def _run_rank(scene: "Scene", folder: Path, snapshot: Path | None) -> int:
+    """Run as the coupler's rank of an MPI job."""
+    # Start-up: only this way of running needs it.
+    from quintet.coupler.launch.mpi_job import begin_rank, end_rank
+    from quintet.coupler.run.simulate import simulate
+
+    begin_rank(folder)
+    status = simulate(scene, folder, snapshot, own_process=True)
+    end_rank(folder, status)
+    return 0  # who started the job reads the status; MPI takes any other for a failure
+
+
+def _begun(options: argparse.Namespace) -> tuple["Scene", Path | None, None]:
+    """Read the scene of a new run; return it with the folder that is given for the run."""
+    if options.scene is None:
+        raise SceneError("run needs a scene, or --resume DIR. Give one.")
+    return load_scene(options), options.out, None
+
+
+def _resumed(options: argparse.Namespace) -> tuple["Scene", Path, Path]:
+    """Read the scene of a run to be resumed, as it was run or as it is given now."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.run import snapshots
+    from quintet.coupler.run.folder import check_ours
+
+    if options.out:
+        raise SceneError("--resume goes on in the folder of the run. Remove --out.")
+    if options.force:
+        raise SceneError("--resume replaces nothing. Remove --force.")
+    folder = options.resume.resolve()
+    check_ours(folder, "run")
+    snapshot = snapshots.latest(folder, options.inside_mpi)
+    changed = load_scene(options) if options.scene else None
+    scene = changed or snapshots.scene_of(snapshot, options.transport)
+    snapshots.check_same(scene, folder)
+    return scene, folder, snapshot
+
+
+def join(options: argparse.Namespace) -> int:
+    """Start one component of a scene, joined to a coupler elsewhere."""
+    # Start-up: only this command needs it.
+    from quintet.interfaces.lines.endpoint import check_endpoint
+    from quintet.interfaces.params import unknown
+    from quintet.interfaces.serving.process import main as serve_component
+
+    scene = load_scene(options)
+    if options.name not in scene.components:
+        raise SceneError(unknown(f"component {options.name}", options.name, scene.components))
+    try:
+        check_endpoint(options.at, scene.security)
+    except LineError as error:
+        raise SceneError(f"--at {error}") from error
+    arguments = ["--name", options.name, "--at", options.at]
+    if scene.tls:
+        arguments += ["--tls", *scene.tls]
+    serve_component(scene.components[options.name].manifest, arguments)
+    return 0
+
+
+def compile_kernels(options: argparse.Namespace) -> int:
+    """Compile the kernels of scenes, as after an installation or in a container's build."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.run.compilation import run_compile
+
+    return run_compile(options)
+
+
+def show(options: argparse.Namespace) -> int:
+    """Print the summary of a run."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.report.show import show as print_run
+
+    print_run(options.folder, options.json)
+    return 0
+
+
+def diff(options: argparse.Namespace) -> int:
+    """Compare two runs bit by bit."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.report.diff import compare, sentence
+
+    difference = compare(*options.folders)
+    print(sentence(difference))
+    return 0 if difference is None else 1
