@@ -14,6 +14,7 @@ from typing import Any
 
 from quintet.interfaces.component import Array, Component, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import unknown
 
 PATIENCE = 60.0  # s, where neither a kind nor a scene says
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
@@ -180,6 +181,18 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
 def known_kinds() -> dict[str, str]:
     """Names under which components are installed, with the paths that they stand for."""
     return {entry.name: entry.value for entry in entry_points(group="quintet.components")}
+
+
+def unknown_kind(where: str, kind: str, more: Iterable[str] = ()) -> str:
+    """Sentence about a kind that is not installed; a renamed one is answered with its new names.
+
+    New names stand in a tuple, named by an entry point of the group
+    ``quintet.renamed_components``.
+    """
+    for entry in entry_points(group="quintet.renamed_components"):
+        if entry.name == kind:
+            return f"{where} is now {' or '.join(entry.load())}. Rename it."
+    return unknown(where, kind, [*more, *known_kinds()])
 
 
 def find(kind: str) -> Manifest:

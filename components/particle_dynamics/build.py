@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from quintet.components.particle_dynamics.integrators import STAGES
 from quintet.components.particle_dynamics.kernels.stiffness import highest_eigenvalue, tridiagonal
 from quintet.components.particle_dynamics.laws import force as pair_force
 from quintet.components.particle_dynamics.neighbours import pairs_within
@@ -12,7 +13,7 @@ from quintet.components.particle_dynamics.params import (
     Bath,
     Drive,
     Lattice,
-    ParticleDynamicsParams,
+    ParticleLatticeParams,
 )
 from quintet.components.particle_dynamics.potential import (
     ForceTable,
@@ -33,8 +34,6 @@ LARGEST = 2000  # points of which the highest frequency is found; of more that o
 KRYLOV = 150  # steps of Lanczos
 CLOSE = 1.0 - 1e-9  # of a cut-off: a shell that stands on it is not within
 AXES = "xyz"
-YOSHIDA = 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
-STAGES = {"velocity_verlet": (1.0,), "yoshida": (YOSHIDA, 1.0 - 2.0 * YOSHIDA, YOSHIDA)}
 
 
 class Built(NamedTuple):
@@ -51,12 +50,6 @@ class Built(NamedTuple):
     wall: Whole  # rows of the bathed points that are coupled
 
 
-def lattice_of(params: ParticleDynamicsParams) -> Lattice:
-    """Return the lattice of parameters that have one."""
-    assert params.lattice is not None
-    return params.lattice
-
-
 def lattice_points(lattice: Lattice) -> Array:
     """Places (n, 3) m, counted along z first."""
     axes = [np.arange(count) for count in lattice.points]
@@ -64,9 +57,9 @@ def lattice_points(lattice: Lattice) -> Array:
     return np.array(lattice.lowest) + lattice.spacing * grid
 
 
-def build(params: ParticleDynamicsParams) -> Built:
+def build(params: ParticleLatticeParams) -> Built:
     """Build a lattice."""
-    lattice = lattice_of(params)
+    lattice = params.lattice
     start = lattice_points(lattice)
     spacing = lattice.spacing
     period = _period(lattice)
@@ -100,9 +93,9 @@ def build(params: ParticleDynamicsParams) -> Built:
     return Built(start, period, law, made, frequency, model, bonds, temperature, wall)
 
 
-def initial_state(params: ParticleDynamicsParams, built: Built) -> State:
+def initial_state(params: ParticleLatticeParams, built: Built) -> State:
     """Points at their places, with random velocities if they are warm."""
-    lattice, model, count = lattice_of(params), built.model, len(built.start)
+    lattice, model, count = params.lattice, built.model, len(built.start)
     random = np.random.default_rng(params.seed)
     width = math.sqrt(2.0 * params.boltzmann * lattice.temperature / lattice.mass)
     velocity = width * random.normal(size=(count, 3))
@@ -144,10 +137,10 @@ def _bonds(start: Array, reach: float, lowest: Array, period: Array | None) -> W
 
 
 def _law(
-    params: ParticleDynamicsParams, start: Array, period: Array | None, frozen: Whole
+    params: ParticleLatticeParams, start: Array, period: Array | None, frozen: Whole
 ) -> tuple[Law, float]:
     """Pair law, and the highest angular frequency [rad/s] of the lattice that it holds together."""
-    lattice, given = lattice_of(params), params.seven_roots
+    lattice, given = params.lattice, params.seven_roots
     table = params.force_table
     law: Law
     if given is None:
@@ -172,10 +165,10 @@ def _law(
 
 
 def _highest(
-    law: Law, params: ParticleDynamicsParams, start: Array, period: Array | None, frozen: Whole
+    law: Law, params: ParticleLatticeParams, start: Array, period: Array | None, frozen: Whole
 ) -> float:
     """Highest angular frequency [rad/s] with the frozen points held."""
-    lattice = lattice_of(params)
+    lattice = params.lattice
     reach = math.sqrt(law.cutoff2) * CLOSE
     bonds = _bonds(start, reach, np.array(lattice.lowest), period)
     arm = start[bonds[:, 0]] - start[bonds[:, 1]]

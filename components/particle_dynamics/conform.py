@@ -39,33 +39,7 @@ def cases() -> tuple[ConformCase, ...]:
     heated = {**LATTICE, "baths": [{**wall, "coupled": True}, other], "collision_rate": 100.0}
     still = {"wall_temperature.temperature": np.zeros(WALL)}
     warm = {**LATTICE["lattice"], "cells": [6, 6, 6], "periodic": ["x", "y", "z"]}
-    row = [[0.1 * k, 0.0, 0.0] for k in range(3)]
-    spheres = [{"centre": one, "radius": 0.025, "density": 800.0} for one in row]
-    loads = {
-        "load.force": np.zeros((3, 3)),
-        "load.torque": np.zeros((3, 3)),
-        "heat.heat_flow": np.zeros(3),
-    }
     return (
-        ConformCase(
-            "spheres",
-            {"spheres": spheres, "longest_step": 1e-3},
-            rest=loads,
-            scale={"load.force": 1.0, "load.torque": 1e-3, "heat.heat_flow": 10.0},
-            dt=1e-3,
-            forces=("load.force",),
-        ),
-        ConformCase(
-            "spheres on springs, Yoshida",
-            {
-                "spheres": [{**one, "tether": 50.0, "parcel": 2.0} for one in spheres],
-                "collisions": False,
-                "integrator": "yoshida",
-            },
-            rest=loads,
-            scale={"load.force": 1.0, "load.torque": 1e-3, "heat.heat_flow": 10.0},
-            dt=1e-3,
-        ),
         ConformCase("lattice", LATTICE, dt=STEP),
         ConformCase("driven", driven, dt=STEP, still=False),
         ConformCase(

@@ -1,15 +1,13 @@
-"""What a scene says about a lattice of mass points, or about spheres."""
+"""What a scene says about a lattice of mass points."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from quintet.components.particle_dynamics.spheres.params import Sphere, Wall
 from quintet.interfaces.params import (
     Count,
     DataFile,
-    Fraction,
     NotNegative,
     Positive,
     Vector,
@@ -224,25 +222,13 @@ class Averages:
 
 
 @parameters
-class ParticleDynamicsParams:
-    """A lattice, its pair force, what holds, drives and heats it; or spheres that fly freely.
+class ParticleLatticeParams:
+    """A lattice of mass points, its pair force, and what holds, drives and heats it.
 
     Parameters
     ----------
     lattice
-        The points; this or `spheres`. All keys but those of spheres are the lattice's.
-    spheres
-        That fly freely under what a partner tells, bounce from each other and from walls.
-    walls
-        Planes from which spheres bounce.
-    gravity : m/s2
-        Acceleration of free fall of spheres.
-    restitution : 1
-        Of spheres that strike each other or a wall: normal velocity after over that before.
-    collisions
-        Whether spheres strike each other; parcels do not.
-    longest_step : s
-        Of spheres; without it tethers and closing speeds alone limit the step.
+        The points.
     seven_roots
         Their pair force, of seven roots; this or `force_table`.
     force_table
@@ -257,31 +243,27 @@ class ParticleDynamicsParams:
         Of points that are kept at temperatures.
     collision_rate : 1/s
         Of each pair of nearest points: their relative velocity turns into a random direction, which
-        keeps momentum and energy.
+        conserves momentum and energy.
     seed : 1
-        Of all that is random.
+        Of all random numbers.
     boltzmann : J/K
         k: a point has 3/2 k T of kinetic energy.
     integrator
-        Of second order, or Yoshida's of fourth; of lattices with damping both are of second.
+        Of second order, or Yoshida's of fourth; with damping both are of second.
     courant : 1
-        Share of the greatest stable step by the highest frequency: 2/ω, of Yoshida's 1.573/ω.
-    steps_at_once : 1
-        Steps that are computed without asking the coupler.
+        Step over the greatest stable one of the highest frequency: 2/ω, of Yoshida's 1.573/ω.
+    substeps : 1
+        Steps that are computed in one call of the coupler.
     averages
-        What is averaged.
-    on_loss
+        Of temperatures, hotness and heat flows.
+    if_point_lost
         What happens when a point has left all others behind, or when a twentieth of the bonds to
-        the nearest is broken: the run ends, or goes on and says so.
+        the nearest is broken: the run stops, or continues with a warning.
     """
 
-    lattice: Lattice | None = None
-    spheres: tuple[Sphere, ...] = ()
-    walls: tuple[Wall, ...] = ()
-    gravity: Vector = (0.0, 0.0, 0.0)
-    restitution: Fraction = 1.0
-    collisions: bool = True
-    longest_step: Positive | None = None
+    RENAMED: ClassVar = {"on_loss": "if_point_lost", "steps_at_once": "substeps"}
+
+    lattice: Lattice
     seven_roots: SevenRootForce | None = None
     force_table: DataFile | None = None
     damping: Damping | None = None
@@ -293,9 +275,9 @@ class ParticleDynamicsParams:
     boltzmann: Positive = 1.380649e-23
     integrator: Literal["velocity_verlet", "yoshida"] = "velocity_verlet"
     courant: Annotated[float, Field(gt=0.0, le=1.0)] = 0.03
-    steps_at_once: Count = 1
+    substeps: Count = 1
     averages: Averages = Averages()
-    on_loss: Literal["stop", "report"] = "stop"
+    if_point_lost: Literal["stop", "report"] = "stop"
 
     def __post_init__(self) -> None:
         wrong = [sentence for is_wrong, sentence in self._rules() if is_wrong]
@@ -303,20 +285,6 @@ class ParticleDynamicsParams:
             raise ValueError(" ".join(wrong))
 
     def _rules(self) -> list[tuple[bool, str]]:
-        if (self.lattice is None) == (not self.spheres):
-            return [(True, "points are needed of one kind; give lattice or spheres.")]
-        if self.lattice is None:
-            strange = {"seven_roots", "force_table", "damping", "drive", "frozen", "baths"}
-            found = [name for name in sorted(strange) if getattr(self, name)]
-            parcels = any(one.parcel != 1.0 for one in self.spheres)
-            return [
-                (bool(found), f"{', '.join(found)}: of lattices only; remove from spheres."),
-                (
-                    parcels and self.collisions,
-                    "spheres: a parcel has no size of its own to strike with; "
-                    "say collisions = false.",
-                ),
-            ]
         table, roots = self.force_table is not None, self.seven_roots is not None
         is_random = bool(self.baths) or self.collision_rate > 0.0
         is_literal = self.damping is not None and self.damping.range == "all"
@@ -326,7 +294,7 @@ class ParticleDynamicsParams:
             (table == roots, "one pair force is needed; give seven_roots or force_table."),
             (
                 is_random and self.integrator == "yoshida",
-                "baths and collisions need the integrator velocity_verlet, as Yoshida's goes "
+                "baths and collisions need the integrator velocity_verlet, as Yoshida's steps "
                 "backwards in time; change the integrator.",
             ),
             (
@@ -340,7 +308,7 @@ class ParticleDynamicsParams:
                 f"meet; found {amplitude:g} m. Make it smaller.",
             ),
             (
-                sum(one.coupled for one in self.baths) > 1,
+                sum(bath.coupled for bath in self.baths) > 1,
                 "baths: only one may be coupled, as there is one wall. Couple one.",
             ),
         ]

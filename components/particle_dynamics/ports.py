@@ -1,17 +1,10 @@
-"""What particle dynamics takes and gives: places and hotness, energies, baths, a wall of heat."""
+"""What a lattice takes and gives: positions and hotness, energies, baths, a wall of heat."""
 
-from dataclasses import replace
-
-from quintet.components.particle_dynamics.params import ParticleDynamicsParams
+from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
-    HEAT,
-    LOAD,
-    MOTION,
-    PARTICLES,
     POSITION,
-    RADIUS,
     TEMPERATURE,
     VELOCITY,
     WALL_HEAT,
@@ -48,15 +41,10 @@ BATHS = Port(
     ),
 )
 
-ROUND_BODIES = replace(MOTION, static=(*MOTION.static, RADIUS))
-SPHERES = replace(PARTICLES, name="spheres")
 
-
-def ports(params: ParticleDynamicsParams) -> Ports:
+def ports(params: ParticleLatticeParams) -> Ports:
     """Ports taken and given."""
-    if params.lattice is None:
-        return (LOAD, HEAT), (ROUND_BODIES, SPHERES)
     baths = (BATHS,) if params.baths else ()
-    coupled = any(one.coupled for one in params.baths)
+    coupled = any(bath.coupled for bath in params.baths)
     wall = (WALL_HEAT,) if coupled else ()
     return (WALL_TEMPERATURE,) if coupled else (), (POINTS, ENERGIES, *baths, *wall)

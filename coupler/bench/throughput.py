@@ -18,7 +18,7 @@ from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.launch.processes import start, tail
 from quintet.coupler.report.show import console
 from quintet.interfaces.errors import QuintetError, SceneError
-from quintet.interfaces.manifest import BenchCase, find, known_kinds, look_in
+from quintet.interfaces.manifest import BenchCase, find, look_in, unknown_kind
 from quintet.interfaces.params import unknown
 
 Found = dict[str, Any]
@@ -47,7 +47,7 @@ def select_cases(kind: str, name: str) -> list[tuple[int, BenchCase]]:
     try:
         cases = find(kind).cases()
     except KeyError as error:
-        raise SceneError(unknown(f"bench {kind}", kind, ["exchange", *known_kinds()])) from error
+        raise SceneError(unknown_kind(f"bench {kind}", kind, ["exchange"])) from error
     except ImportError as error:
         raise SceneError(f"bench {kind}: it cannot be imported ({error}).") from error
     if not cases:

@@ -9,8 +9,8 @@ import numpy as np
 from quintet.coupler.scene.foreign_code import is_trusted, unread_manifest
 from quintet.coupler.scene.scene import NAME, ComponentKeys, ComponentPlan
 from quintet.interfaces.errors import QuintetError, SceneError
-from quintet.interfaces.manifest import Manifest, find, known_kinds
-from quintet.interfaces.params import beyond_computing, read, shown, unknown
+from quintet.interfaces.manifest import Manifest, find, known_kinds, unknown_kind
+from quintet.interfaces.params import beyond_computing, read, shown
 
 Table = dict[str, Any]
 
@@ -95,7 +95,7 @@ def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:
     try:
         return find(kind)
     except KeyError:
-        mistakes.append(unknown(f"{where}.kind {kind}", kind, known_kinds()))
+        mistakes.append(unknown_kind(f"{where}.kind {kind}", kind))
     except QuintetError as error:
         mistakes.append(f"{where}.{error}")
     except (Exception, SystemExit) as error:  # of any kind: the module is its author's

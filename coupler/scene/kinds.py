@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from quintet.interfaces.errors import QuintetError, SceneError
-from quintet.interfaces.manifest import Manifest, find, known_kinds, look_in
-from quintet.interfaces.params import unknown
+from quintet.interfaces.manifest import Manifest, find, look_in, unknown_kind
 
 
 def named_kind(kind: str, where: str) -> Manifest:
@@ -16,7 +15,7 @@ def named_kind(kind: str, where: str) -> Manifest:
     try:
         return find(kind)
     except KeyError as error:
-        raise SceneError(unknown(f"{where} {kind}", kind, known_kinds())) from error
+        raise SceneError(unknown_kind(f"{where} {kind}", kind)) from error
     except QuintetError:
         raise
     except AttributeError as error:

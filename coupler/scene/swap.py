@@ -7,7 +7,7 @@ from typing import Any
 from quintet.coupler.files.run_files import RECORDING, read_marker
 from quintet.coupler.scene.scene import PLAIN
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.manifest import known_kinds
+from quintet.interfaces.manifest import known_kinds, unknown_kind
 from quintet.interfaces.params import shown, unknown
 
 Table = dict[str, Any]
@@ -38,7 +38,7 @@ def put_swap(table: Table, swap: str) -> list[str]:
             f"component of this scene. Name its kind, {_kind_of(components[kind])}, or another."
         ]
     if ":" not in kind and kind not in known_kinds():
-        return [unknown(f"--swap {swap}: kind {kind}", kind, known_kinds())]
+        return [unknown_kind(f"--swap {swap}: kind {kind}", kind)]
     try:
         new = _recorded(table, name, source) if kind == "replay" else _stand_in(table, name, kind)
     except SceneError as error:

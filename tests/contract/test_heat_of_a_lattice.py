@@ -4,8 +4,8 @@ import laboratory
 import numpy as np
 import pytest
 
-from quintet.components.particle_dynamics.component import ParticleDynamics
-from quintet.components.particle_dynamics.params import ParticleDynamicsParams
+from quintet.components.particle_dynamics.component import ParticleLattice
+from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.interfaces.params import read
 
 HOT, COLD, BETWEEN = 400.0, 200.0, 310.0  # K
@@ -39,7 +39,7 @@ LATTICE = {
     "boltzmann": 4e-5 * UNIT / 300.0,
     "collision_rate": FREQUENCY,
     "courant": 0.125,
-    "steps_at_once": 1000,
+    "substeps": 1000,
     "averages": {"begin": 20.0, "block": 20.0},
     "baths": [bath(0.0, BETWEEN, True), bath(2.0, COLD, False)],
 }
@@ -47,9 +47,9 @@ LATTICE = {
 
 def conductance(folder):
     """Heat flow [W/K] through the lattice over the difference of its baths, in a run of its own."""
-    params, mistakes = read(ParticleDynamicsParams, LATTICE, "lattice", folder)
+    params, mistakes = read(ParticleLatticeParams, LATTICE, "lattice", folder)
     assert not mistakes
-    made = ParticleDynamics(params)
+    made = ParticleLattice(params)
     for _ in range(20):
         made.step(WINDOW)
     flow = made.give({"baths.heat_flow"})["baths.heat_flow"]
@@ -64,7 +64,7 @@ def test_a_lattice_and_a_slab_find_the_temperature_between_them(tmp_path):
     slab = own * (BETWEEN - COLD) / (HOT - BETWEEN)  # W/K, so that it should be BETWEEN
     components = {
         "slab": {"kind": "toy_heat:Slab", "hot": HOT, "conductance": slab / 4},
-        "bar": {"kind": "particle_dynamics"} | LATTICE,
+        "bar": {"kind": "particle_lattice"} | LATTICE,
     }
     link = {"kind": "heat", "name": "heat", "between": ["bar", "slab"], "relaxation": [0.5, 0.2]}
     settings = {"window": WINDOW, "end": 24 * WINDOW, "order": ["slab", "bar"]}

@@ -1,4 +1,4 @@
-"""Spheres of particle_dynamics in a creeping flow, over a direct link: exact by exponentials.
+"""Spheres of particle_spheres in a creeping flow, over a direct link: exact by exponentials.
 
 Pose, spin and temperature go one way, force, torque and heat come back.
 """
@@ -38,7 +38,7 @@ def _scene(folder, window, ratio=1, scheme="iterated", **settings):
     parcel = {**one, "centre": [0.0, 1.0, 0.0], "velocity": [0.0, 3.0, 0.0], "parcel": 50.0}
     components = {
         "balls": {
-            "kind": "particle_dynamics",
+            "kind": "particle_spheres",
             "spheres": [still, parcel],
             "collisions": False,
             "longest_step": window,

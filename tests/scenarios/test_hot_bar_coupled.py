@@ -16,8 +16,8 @@ from quintet.coupler.scene.read import load
 from quintet.scenarios.hot_bar_coupled.exchanges import reached, standard_error
 
 SHORT = {  # of each scene: settings with which it takes a second
-    "hot_bar": {"end": 1.0, "window": 0.1, "components.bar.steps_at_once": 200},
-    "hot_bar_baths": {"end": 2.0, "window": 0.2, "components.bar.steps_at_once": 200},
+    "hot_bar": {"end": 1.0, "window": 0.1, "components.bar.substeps": 200},
+    "hot_bar_baths": {"end": 2.0, "window": 0.2, "components.bar.substeps": 200},
     "heated_slab": {"end": 0.5},
     "hot_bar_coupled": {"end": 0.8, "window": 0.1},
 }

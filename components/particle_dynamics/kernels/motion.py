@@ -24,6 +24,7 @@ from quintet.components.particle_dynamics.state import (
     State,
 )
 from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.search.verlet_list import furthest
 from quintet.interfaces.component import Array
 
 EARLY = 0.6  # share of the skin at which lists are made anew: the rest is for the step that is made
@@ -177,17 +178,6 @@ def average(dt: float, mass: float, velocity: Array, kinetic: Array) -> float:
         kinetic[i] += dt * 0.5 * mass * square
         found += square
     return found
-
-
-@njit(**EXACT)
-def furthest(position: Array, listed: Array) -> float:
-    """Furthest [m] that a point is from where it was listed."""
-    found = 0.0
-    for i in range(position.shape[0]):
-        x, y = position[i, 0] - listed[i, 0], position[i, 1] - listed[i, 1]
-        z = position[i, 2] - listed[i, 2]
-        found = max(found, x * x + y * y + z * z)
-    return math.sqrt(found)
 
 
 @njit(**EXACT)

@@ -1,9 +1,12 @@
-"""What a scene says about spheres."""
+"""What a scene says about spheres in free flight."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
 
 from quintet.interfaces.params import (
     Count,
+    Fraction,
     NotNegative,
     Number,
     Positive,
@@ -34,7 +37,7 @@ class Copies:
 
 @parameters
 class Sphere:
-    """A rigid sphere, or a lattice of equal ones; as a point, if nobody looks at its size.
+    """A rigid sphere, or a lattice of equal ones.
 
     Parameters
     ----------
@@ -43,20 +46,18 @@ class Sphere:
     centre : m
         At the start.
     radius : m
-        Of the sphere: what it strikes with, and what loads and heat act on. That of a body with
-        nodes in a gas is no smaller than the body, and larger if it strikes others: two layers of
-        nodes on each must fit between.
+        Of the sphere. A body with nodes in a gas must not be larger; if it strikes others, its
+        sphere must be larger, so that two layers of nodes fit between them.
     density : kg/m3
-        Of its material. The mass is that of a sphere, also where it moves a cylinder 1 m long in a
-        gas of two dimensions: 0.75 m/r of the cylinder's density, r the radius of both, makes it
-        the cylinder's.
+        Of its material. The mass is that of a sphere. For a cylinder 1 m long in a gas of two
+        dimensions give 0.75 m/r of the cylinder's density; r is the radius of both.
     velocity : m/s
         With which it is launched.
     angular_velocity : rad/s
         With which it is launched.
     launch : s
-        When it is launched; before it rests where it is, whatever acts on it, and is not there for
-        a gas that is coarser than it.
+        When it is launched. Until then it rests, whatever acts on it, and is absent for a gas that
+        is coarser than it.
     temperature : K
         At the start, the same throughout.
     specific_heat : J/(kg K)
@@ -64,7 +65,7 @@ class Sphere:
     tether : N/m
         Of a spring that pulls it back to where it started.
     parcel : 1
-        How many equal ones it stands for: mass, loads and heat are those of all of them.
+        Number of equal spheres that it represents; mass, loads and heat are their totals.
     copies
         A lattice of such spheres, the first at `centre`.
     """
@@ -110,3 +111,44 @@ class Wall:
     def __post_init__(self) -> None:
         if not any(self.normal):
             raise ValueError("wall: normal must have a length; found 0.")
+
+
+@parameters
+class ParticleSpheresParams:
+    """Spheres in free flight under the loads of a partner.
+
+    Parameters
+    ----------
+    spheres
+        Spheres, in the order in which ports count them.
+    walls
+        Planes from which spheres bounce.
+    gravity : m/s2
+        Acceleration of free fall.
+    restitution : 1
+        Normal velocity after an impact over that before, among spheres and with walls.
+    collisions
+        Whether spheres strike each other; parcels cannot.
+    longest_step : s
+        Upper limit of the step. Without it only tethers and closing speeds limit the step.
+    integrator
+        Of second order, or Yoshida's of fourth; without tethers both are exact.
+    courant : 1
+        Step over the greatest stable one of the stiffest tether: 2/ω, of Yoshida's 1.573/ω.
+    """
+
+    spheres: Annotated[tuple[Sphere, ...], Field(min_length=1)]
+    walls: tuple[Wall, ...] = ()
+    gravity: Vector = (0.0, 0.0, 0.0)
+    restitution: Fraction = 1.0
+    collisions: bool = True
+    longest_step: Positive | None = None
+    integrator: Literal["velocity_verlet", "yoshida"] = "velocity_verlet"
+    courant: Annotated[float, Field(gt=0.0, le=1.0)] = 0.03
+
+    def __post_init__(self) -> None:
+        if self.collisions and any(sphere.parcel != 1.0 for sphere in self.spheres):
+            raise ValueError(
+                "spheres: a parcel has no size to strike with; it must not collide. "
+                "Set collisions = false."
+            )

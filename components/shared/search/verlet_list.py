@@ -7,6 +7,9 @@ until two particles have moved by more than the skin together (Verlet, Phys. Rev
 import math
 from dataclasses import dataclass
 
+from numba import njit
+
+from quintet.components.shared.numba_options import EXACT
 from quintet.interfaces.component import Array
 
 
@@ -41,3 +44,14 @@ def longest(vectors: Array) -> float:
     """Length of the longest of vectors (n, 3 or more)."""
     x, y, z = vectors[:, 0], vectors[:, 1], vectors[:, 2]
     return math.sqrt((x * x + y * y + z * z).max())
+
+
+@njit(**EXACT)
+def furthest(position: Array, listed: Array) -> float:
+    """Furthest [m] that a point (n, 3) is from where it was listed."""
+    square = 0.0
+    for i in range(position.shape[0]):
+        x, y = position[i, 0] - listed[i, 0], position[i, 1] - listed[i, 1]
+        z = position[i, 2] - listed[i, 2]
+        square = max(square, x * x + y * y + z * z)
+    return math.sqrt(square)

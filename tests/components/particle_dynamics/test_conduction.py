@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from quintet.components.particle_dynamics.lattice_dynamics import LatticeDynamics
+from quintet.components.particle_dynamics.component import ParticleLattice
 from quintet.components.particle_dynamics.params import (
     Averages,
     Bath,
     Lattice,
-    ParticleDynamicsParams,
+    ParticleLatticeParams,
     SevenRootForce,
 )
 
@@ -36,14 +36,14 @@ def test_fast_collisions_conduct_three_quarters_of_their_rate():
     scatter.
     """
     rate, warm = 4.0 * OMEGA, 4e-5 * UNIT
-    made = LatticeDynamics(
-        ParticleDynamicsParams(
+    made = ParticleLattice(
+        ParticleLatticeParams(
             lattice=Lattice(cells=(LAYERS - 1, 3, 3), spacing=A, mass=MASS, temperature=warm),
             seven_roots=SevenRootForce(top_frequency=TOP),
             boltzmann=1.0,
             collision_rate=rate,
             courant=0.125,
-            steps_at_once=1000,
+            substeps=1000,
             averages=Averages(begin=4.0, block=2.0),
             baths=(bath(0, 1.3 * warm), bath(LAYERS - 1, 0.7 * warm)),
         )

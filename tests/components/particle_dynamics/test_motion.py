@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from quintet.components.particle_dynamics.averages import BlockMeans
-from quintet.components.particle_dynamics.lattice_dynamics import LatticeDynamics
+from quintet.components.particle_dynamics.component import ParticleLattice
+from quintet.components.particle_dynamics.integrators import LIMIT
 from quintet.components.particle_dynamics.params import (
     Averages,
     Bath,
     Damping,
     Drive,
     Lattice,
-    ParticleDynamicsParams,
+    ParticleLatticeParams,
     SevenRootForce,
 )
-from quintet.components.particle_dynamics.plan import LIMIT
 from quintet.components.particle_dynamics.potential import stiffness as slope
 from quintet.components.particle_dynamics.state import TIME, WORK
 from quintet.interfaces.errors import SceneError, StepError
@@ -29,7 +29,7 @@ def lattice(cells=(3, 1, 1), **given):
     keys = {name: given.pop(name) for name in ("periodic", "temperature") if name in given}
     force = {"seven_roots": SevenRootForce(top_frequency=TOP), "boltzmann": 1.0}
     made = Lattice(cells=cells, spacing=A, mass=MASS, **keys)
-    return LatticeDynamics(ParticleDynamicsParams(lattice=made, **(force | given)))
+    return ParticleLattice(ParticleLatticeParams(lattice=made, **(force | given)))
 
 
 def bar(
@@ -70,7 +70,7 @@ def energy(made):
 
 def test_a_driven_and_damped_bar_accounts_for_its_energy_over_15_s():
     """Kinetic + potential + dissipated - work within 1e-3 of the work, at the default step."""
-    made = bar(steps_at_once=200)
+    made = bar(substeps=200)
     for second in range(1, 16):
         run(made, second)
         found = made.give({"energies.audit", "energies.work", "energies.intact"})
@@ -191,7 +191,7 @@ def test_a_bath_brings_all_points_to_its_temperature():
     warm = 1e-5 * UNIT
     bath = Bath(lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=warm, rate=100.0)
     made = lattice(
-        (3, 1, 1), baths=(bath,), collision_rate=200.0, courant=0.1, steps_at_once=100,
+        (3, 1, 1), baths=(bath,), collision_rate=200.0, courant=0.1, substeps=100,
         averages=Averages(begin=2.0, block=2.0),
     )  # fmt: skip
     run(made, 60.0)
@@ -208,7 +208,7 @@ def test_heat_flows_through_the_wall_that_a_partner_holds():
     wall = Bath(
         lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=0.0, rate=200.0, coupled=True
     )
-    made = lattice((3, 1, 1), baths=(cold, wall), collision_rate=300.0, steps_at_once=20)
+    made = lattice((3, 1, 1), baths=(cold, wall), collision_rate=300.0, substeps=20)
     assert made.describe()["wall_heat.position"] == pytest.approx(
         np.array([[0.0, y, z] for y in (0.0, A) for z in (0.0, A)])
     )
@@ -249,7 +249,7 @@ def test_a_hot_bath_evaporates_the_lattice_and_this_is_told():
     hot = Bath(lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=1e-2 * UNIT, rate=100.0)
     with pytest.raises(StepError, match=r"point|bonds"):
         run(lattice((3, 1, 1), baths=(hot,)), 5.0)
-    told = lattice((3, 1, 1), baths=(hot,), on_loss="report")
+    told = lattice((3, 1, 1), baths=(hot,), if_point_lost="report")
     run(told, 1.0)
     assert any(
         "left all others behind" in one or "bonds" in one for one in told.warnings().values()
@@ -271,12 +271,12 @@ def test_aluminium_itself_is_stepped():
     one = lattice((3, 1, 1), seven_roots=given)
     unit = one.built.law
     force = SevenRootForce(amplitude=stiffness / slope(unit, A))
-    made = LatticeDynamics(
-        ParticleDynamicsParams(
+    made = ParticleLattice(
+        ParticleLatticeParams(
             lattice=Lattice(cells=(3, 1, 1), spacing=A, mass=mass, temperature=300.0),
             seven_roots=force,
             boltzmann=1e-6,  # 300 K are 0.5 mJ of a point
-            steps_at_once=100,
+            substeps=100,
         )
     )
     assert 1e4 < made.built.frequency / (2.0 * math.pi) < 1e6

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from quintet.components.particle_dynamics.build import build
+from quintet.components.particle_dynamics.component import ParticleLattice
 from quintet.components.particle_dynamics.kernels.forces import sum_forces
 from quintet.components.particle_dynamics.kernels.motion import accelerate
-from quintet.components.particle_dynamics.lattice_dynamics import LatticeDynamics
 from quintet.components.particle_dynamics.laws import energy, force
 from quintet.components.particle_dynamics.neighbours import pairs_within
 from quintet.components.particle_dynamics.params import (
     Damping,
     Lattice,
-    ParticleDynamicsParams,
+    ParticleLatticeParams,
     SevenRootForce,
 )
 from quintet.components.particle_dynamics.potential import (
@@ -41,7 +41,7 @@ def bar(cells=(3, 1, 1), **given):
     given = {"seven_roots": SevenRootForce(top_frequency=50.0), "boltzmann": 1.0} | given
     lattice = given.pop("lattice", {})
     made = Lattice(**({"cells": cells, "spacing": A, "mass": 1e-3} | lattice))
-    return LatticeDynamics(ParticleDynamicsParams(lattice=made, **given))
+    return ParticleLattice(ParticleLatticeParams(lattice=made, **given))
 
 
 def frequencies(made):

@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from quintet.components.particle_dynamics.component import ParticleDynamics
-from quintet.components.particle_dynamics.params import (
-    Lattice,
-    ParticleDynamicsParams,
-    SevenRootForce,
+from quintet.components.particle_dynamics.integrators import LIMIT
+from quintet.components.particle_dynamics.spheres.component import ParticleSpheres
+from quintet.components.particle_dynamics.spheres.params import (
+    Copies,
+    ParticleSpheresParams,
+    Sphere,
+    Wall,
 )
-from quintet.components.particle_dynamics.plan import LIMIT
-from quintet.components.particle_dynamics.spheres.pairs import NearPairs
-from quintet.components.particle_dynamics.spheres.params import Copies, Sphere, Wall
+from quintet.components.shared.search.sphere_pairs import NearPairs
+from quintet.coupler.scene.kinds import named_kind
 from quintet.interfaces import rotation
 from quintet.interfaces.errors import SceneError
 
@@ -20,7 +21,7 @@ G = (0.0, 0.0, -9.81)  # m/s2
 
 def spheres(*given, **keys):
     made = tuple(Sphere(**({"radius": 0.01, "density": 1000.0} | one)) for one in given)
-    return ParticleDynamics(ParticleDynamicsParams(spheres=made, **keys))
+    return ParticleSpheres(ParticleSpheresParams(spheres=made, **keys))
 
 
 def test_flight_under_constant_loads_is_exact_at_any_step():
@@ -204,16 +205,9 @@ def test_spheres_that_begin_behind_a_wall_are_refused(height, found):
         spheres({"centre": (0.0, 0.0, 1.0)}, {"centre": (0.0, 0.0, height)}, walls=walls)
 
 
-def test_parameters_are_of_a_lattice_or_of_spheres():
-    lattice = Lattice(cells=(1, 1, 1), spacing=1.0, mass=1.0)
-    force = SevenRootForce(top_frequency=1.0)
-    one = Sphere(centre=(0.0, 0.0, 0.0), radius=0.5, density=1.0)
-    with pytest.raises(ValueError, match="give lattice or spheres"):
-        ParticleDynamicsParams()
-    with pytest.raises(ValueError, match="give lattice or spheres"):
-        ParticleDynamicsParams(lattice=lattice, spheres=(one,), seven_roots=force)
-    with pytest.raises(ValueError, match="of lattices only"):
-        ParticleDynamicsParams(spheres=(one,), seven_roots=force)
+def test_the_former_kind_is_refused_with_the_kinds_in_its_place():
+    with pytest.raises(SceneError, match=r"is now particle_lattice or particle_spheres. Rename it"):
+        named_kind("particle_dynamics", "kind")
 
 
 def _orders(errors):
@@ -360,7 +354,7 @@ def test_a_parcel_moves_as_one_of_its_spheres():
     for made in (one, many):
         made.step(0.01)
     for key, array in one.save().items():
-        if key not in ("force", "torque", "heat", "rest"):
+        if key not in ("force", "torque", "heat", "sums"):
             assert many.save()[key] == pytest.approx(array, rel=1e-12, abs=1e-15), key
     assert many.totals().kinetic == pytest.approx(1e4 * one.totals().kinetic)
     with pytest.raises(ValueError, match="collisions = false"):

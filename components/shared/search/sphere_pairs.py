@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from quintet.components.particle_dynamics.kernels.motion import furthest
 from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.search.cells import (
     BITS,
@@ -21,6 +20,7 @@ from quintet.components.shared.search.cells import (
     number_along,
     row_of_keys,
 )
+from quintet.components.shared.search.verlet_list import furthest
 from quintet.interfaces.component import Array
 
 SKIN = 0.5  # of the largest diameter
