@@ -26,9 +26,6 @@ FILES_IN_CIRCLES = {
     "components/dem_bodies/shapes",
     "components/sph_fluid/params",
     "components/sph_fluid/setup",
-    "coupler/coupling/judgement",
-    "coupler/coupling/ledger",
-    "coupler/coupling/schedule",
 }
 PARTS_IN_CIRCLES = {
     "components/dem_bodies",
@@ -36,7 +33,6 @@ PARTS_IN_CIRCLES = {
     "components/meshless_gas",
     "components/particle_dynamics",
     "components/sph_fluid",
-    "coupler/coupling",
 }
 UPWARD = {
     "components/dem_bodies/plan: build",

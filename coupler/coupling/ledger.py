@@ -16,10 +16,6 @@ import numpy as np
 
 from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
-from quintet.coupler.coupling.judgement.settling_watch import SettlingWatch
-from quintet.coupler.coupling.judgement.stability_watch import StabilityWatch
-from quintet.coupler.coupling.judgement.start_check import StartCheck
-from quintet.coupler.coupling.judgement.time_error import TimeErrors
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.coupler.coupling.run_warnings import RunWarnings
@@ -83,11 +79,7 @@ class Ledger:
         self.accounts = {link.name: Account(link.name) for link in exchange.links}
         self.totals: dict[str, dict[str, Any]] = {}
         self.energy = EnergyBalance()
-        self.watch = StabilityWatch(self.accounts)
         self.warnings = RunWarnings()
-        self.time_errors = TimeErrors()
-        self.start = StartCheck()
-        self.settling = SettlingWatch()
         self._balance = RunBalance(exchange)
         self._motion = MotionAudit(exchange)
         self._table = TableFile(path, size)
@@ -234,11 +226,7 @@ class Ledger:
             "accounts": [_as_row(account) for account in self.accounts.values()],
             "totals": self.totals,
             "energy": self.energy.save(),
-            "watch": self.watch.save(),
             "warnings": self.warnings.save(),
-            "time_errors": self.time_errors.save(),
-            "start": self.start.save(),
-            "settling": self.settling.save(),
             "balance": self._balance.save(),
             "motion": self._motion.save(),
             "size": self._table.flush(),
@@ -250,11 +238,7 @@ class Ledger:
             self.accounts[row["link"]] = Account(**{**row, "impulse": np.array(row["impulse"])})
         self.totals = dict(state["totals"])
         self.energy.load(state["energy"])
-        self.watch.load(state["watch"])
         self.warnings.load(state["warnings"])
-        self.time_errors.load(state["time_errors"])
-        self.start.load(state["start"])
-        self.settling.load(state["settling"])
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])
 

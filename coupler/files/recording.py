@@ -16,7 +16,7 @@ import numpy as np
 from quintet.coupler.files.disk import told
 from quintet.coupler.files.hdf5 import OF_DATASET, OF_FILE, create, room
 from quintet.coupler.files.run_files import RECORDING as NAME
-from quintet.interfaces.component import Array, Fields, Port
+from quintet.interfaces.component import Array, Fields, Port, fields_of
 from quintet.interfaces.errors import PortError, SceneError
 from quintet.interfaces.params import unknown
 from quintet.interfaces.ports import from_json, to_json
@@ -154,7 +154,7 @@ class _Track:
 
     def __init__(self, group: h5py.Group, name: str, ports: tuple[Port, ...]) -> None:
         self.group, self.name = group, name
-        self.shapes = {f"{port.name}.{f.name}": f.shape for port in ports for f in port.fields}
+        self.shapes = {key: field.shape for key, field in fields_of(ports).items()}
         for key, dtype in MARKS.items():
             if key not in group:
                 group.create_dataset(key, (0,), dtype, maxshape=(None,), chunks=(1024,))

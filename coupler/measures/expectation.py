@@ -16,7 +16,7 @@ import pydantic
 from quintet.coupler.measures import time_series
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
-from quintet.interfaces.component import Field, Fields, Port, lacked
+from quintet.interfaces.component import Field, Fields, Port, fields_of, lacked
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters, shown, unknown
 from quintet.interfaces.units import INTEGRATED, same
@@ -188,7 +188,7 @@ def check(
         mistakes.append(unknown(place, expectation.component, gives))
     else:
         ports = gives[expectation.component]
-        fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
+        fields = fields_of(ports)
         mistakes += _check_field(expectation, fields, ports) or _check_unit(
             expectation, fields[expectation.field]
         )
@@ -252,7 +252,7 @@ def _check_unit(expectation: Expectation, field: Field) -> list[str]:
 def curve(expectation: Expectation, recording: "Recording") -> Curve:
     """Return the computed curve, offset and scaled; an impulse as its mean rate at mid-window."""
     ports = recording.ports(expectation.component)
-    fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
+    fields = fields_of(ports)
     if mistakes := _check_field(expectation, fields, ports):
         raise SceneError(mistakes)
     name, key, item = expectation.component, expectation.field, expectation.item

@@ -22,7 +22,7 @@ from quintet.coupler.measures.expectation import (
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve, between, mean
 from quintet.coupler.report.panels import curve_panels, save
-from quintet.interfaces.component import Field
+from quintet.interfaces.component import Field, fields_of
 
 IN_UNIT = ("rms", "at", "max", "min", "mean")  # measures that have the unit of their curve
 PANELS = 12  # at most
@@ -216,8 +216,7 @@ def _number(value: float) -> str:
 
 
 def _field(one: Expectation, recording: Recording) -> Field:
-    ports = recording.ports(one.component)
-    return next(f for port in ports for f in port.fields if f"{port.name}.{f.name}" == one.field)
+    return fields_of(recording.ports(one.component))[one.field]
 
 
 def _verdict(one: Expectation, outcome: Outcome | None) -> str:

@@ -17,7 +17,7 @@ from quintet.coupler.files.recording import NAME, Recording
 from quintet.coupler.files.run_files import LEDGER, PICTURES, SCENE
 from quintet.coupler.report import show
 from quintet.coupler.scene.read import parse
-from quintet.interfaces.component import Array, Field
+from quintet.interfaces.component import Array, Field, fields_of
 from quintet.interfaces.errors import RunError, SceneError
 from quintet.interfaces.params import unknown
 from quintet.interfaces.units import INTEGRATED
@@ -75,10 +75,9 @@ class RecordedFields(Mapping[str, Series]):
             return
         with Recording(folder) as recording:
             for name in recording.names:
-                for port in recording.ports(name):
-                    for field in port.fields:
-                        if (key := f"{port.name}.{field.name}") in recording.fields(name):
-                            self._fields[f"{name}.{key}"] = (name, field)
+                for key, field in fields_of(recording.ports(name)).items():
+                    if key in recording.fields(name):
+                        self._fields[f"{name}.{key}"] = (name, field)
 
     def __getitem__(self, key: str) -> Series:
         if key not in self._fields:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from quintet.coupler.coupling.group import assemble
+from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows
@@ -71,7 +72,8 @@ def compile_scene(scene: Scene) -> None:
         try:
             ledger = Ledger(exchange)
             coupling = assemble(scene.coupling, connection.participants, exchange, ledger)
-            run(coupling, scene.file.end, OneWindow(), scene.asked_outputs())
+            asked, judgement = scene.asked_outputs(), Judgement(ledger.accounts)
+            run(coupling, scene.file.end, OneWindow(), asked, judgement)
         finally:
             connection.close(False)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from quintet.coupler.coupling.group import join_ports
-from quintet.coupler.coupling.judgement.checks import Checks
+from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.participant import describe_all
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.schemes import advance
@@ -52,7 +52,8 @@ def run(
     end: float,
     observer: Observer,
     asked: Mapping[str, Iterable[str]],
-    resume: Callable[[Coupling], None] = lambda _: None,
+    judgement: Judgement,
+    resume: Callable[[Coupling], None] | None = None,
 ) -> RunEnd:
     """Couple to the end [s], from the start or from where `resume` brings the coupling.
 
@@ -65,14 +66,15 @@ def run(
     length = float("inf") if plan.window == "auto" else plan.window
     coupling.windows = windows = run_windows(end, length, follows, plan.follows(exchange))
     observer.plan(windows)
-    resume(coupling)
+    if resume:
+        resume(coupling)
     observer.begin(coupling, described)
-    ledger, checks = coupling.ledger, Checks(coupling)
+    ledger = coupling.ledger
     while not windows.finished and not observer.wants_end():
-        checks.before_window()
-        advance(coupling, lambda now: ledger.watch.asks or observer.due(now))
+        judgement.before_window(coupling)
+        advance(coupling, lambda now: judgement.stability.needs_totals or observer.due(now))
         ledger.close_window(coupling.all_late(), coupling.all_in_transit())
-        checks.after_window()
+        judgement.after_window(coupling)
         raised = ledger.warnings.close_window(windows.time)
         observer.end_window(coupling)
         for warning in raised:

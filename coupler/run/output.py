@@ -8,6 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows, in_ticks
 from quintet.coupler.files.recording import NAME, Instant, Recorder
@@ -40,12 +41,14 @@ class OutputWriter:
         folder: Path,
         stop: StopRequest,
         logs: Mapping[str, ConvergenceLog],
+        judgement: Judgement,
         first: int | None = None,
         view_checks: Mapping[str, int] = MappingProxyType({}),
     ) -> None:
         """Begin the files, or continue them after the first windows of an earlier run."""
         self.scene, self.folder, self.stop, self.first = scene, folder, stop, first
         self.logs, self.begun, self._view_checks = logs, False, view_checks
+        self._judgement = judgement
         self.on_begin: Callable[[], None] = lambda: None  # called when the first window is next
         self.on_window: Callable[[int, float], None] = lambda *_: None  # windows done, time [s]
         self.done, self.time = first or 0, 0.0  # windows, s
@@ -170,7 +173,7 @@ class OutputWriter:
         if self._recorder:
             self._recorder.sync()
         checks = {name: one.check for name, one in self._files.items()}
-        save(coupling, self.scene, self.folder, self.logs, checks)
+        save(coupling, self.scene, self.folder, self.logs, self._judgement, checks)
         self._kept = time.monotonic()
         self._cost = self._kept - began
 

@@ -15,7 +15,7 @@ import tomli_w
 
 from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import assemble
-from quintet.coupler.coupling.judgement.time_check import suspects
+from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs, Coupling
@@ -96,13 +96,16 @@ class Running:
             snapshots.check_files(snapshot)
         size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
         self.ledger = Ledger(self.exchange, folder / LEDGER, size)
+        self.judgement = Judgement(self.ledger.accounts)
         self.logs = {
             name: ConvergenceLog(folder / log_file(name), lengths.get(name, 0))
             for name in scene.coupling.iterated()
         }
         first = snapshots.window_of(snapshot) if snapshot else None
         view_checks = snapshots.view_checks(snapshot) if snapshot else {}
-        self.writer = OutputWriter(scene, folder, stop, self.logs, first, view_checks)
+        self.writer = OutputWriter(
+            scene, folder, stop, self.logs, self.judgement, first, view_checks
+        )
         self.files: tuple[Closable, ...] = (self.writer, self.ledger, *self.logs.values())
         self.costs = Costs()
         self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
@@ -133,8 +136,9 @@ class Running:
             scene.coupling, self.participants, self.exchange, self.ledger, self.logs, self.costs
         )
         path = self.snapshot
-        resume = partial(snapshots.restore, path=path) if path else lambda _: None
-        end = run(coupling, scene.file.end, self.writer, scene.asked_outputs(), resume)
+        restore = partial(snapshots.restore, judgement=self.judgement, path=path) if path else None
+        asked = scene.asked_outputs()
+        end = run(coupling, scene.file.end, self.writer, asked, self.judgement, restore)
         for one in self.files:
             one.close()
         connection.close(True)
@@ -214,10 +218,9 @@ class Running:
         fault = self.outcome.get("fault")
         if fault is None or self._coupling is None or not self.writer.begun:
             return
-        for text in (found := suspects(self._coupling)):
-            print(f"  {text}", file=sys.stderr, flush=True)
-        if found:
-            fault["coupling"] = found
+        if suspects := self.judgement.suspects(self._coupling):
+            print(*(f"  {text}" for text in suspects), sep="\n", file=sys.stderr, flush=True)
+            fault["coupling"] = suspects
 
     def leave(self) -> None:
         """End from another thread: the main one is in a solver that does not come back."""
@@ -326,7 +329,7 @@ def conclude(made: Running) -> int:
         "ledger": made.ledger.summary(),
         "repetitions": made.costs.repetitions,
         "unconverged": made.costs.unconverged,
-        "time_errors": made.ledger.time_errors.summary(),
+        "time_errors": made.judgement.time.errors.summary(),
         "notes": notes(made),
         "timing": results.timing(made.participants, made.clock(), made.costs),
     }

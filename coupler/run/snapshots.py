@@ -19,6 +19,7 @@ import numpy as np
 
 from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import Group
+from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.files.checksums import of_files, require_same
 from quintet.coupler.files.disk import PART, is_sound, put_in_place, removed_on_failure, seal, told
@@ -54,6 +55,7 @@ def save(
     scene: Scene,
     folder: Path,
     logs: Mapping[str, ConvergenceLog],
+    judgement: Judgement,
     views: Mapping[str, int] = MappingProxyType({}),
 ) -> Path:
     """Write a snapshot at the end of a window, and remove all but the last few.
@@ -70,6 +72,7 @@ def save(
         "windows": {name: one.window for name, one in participants.items()},
         "coupling": states(coupling),
         "ledger": coupling.ledger.save(),
+        "judgement": judgement.save(),
         "costs": asdict(coupling.costs),
         "logs": {name: log.size() for name, log in logs.items()},
         "asked": scene.asked,
@@ -110,7 +113,7 @@ def states(coupling: Coupling) -> dict[str, Any]:
     return {"own": coupling.save(), "groups": groups}
 
 
-def restore(coupling: Coupling, path: Path) -> None:
+def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
     """Bring a coupling whose ports are joined to a snapshot."""
     with h5py.File(path, "r", locking=False) as file:
         tick = _get(file, "tick")
@@ -129,6 +132,7 @@ def restore(coupling: Coupling, path: Path) -> None:
             assert isinstance(group, Group)
             group.load(saved)
         coupling.ledger.load(_get(file, "ledger"))
+        judgement.load(_get(file, "judgement"))
         for name, cost in _get(file, "costs").items():
             setattr(coupling.costs, name, cost)
     # Later ones were cut or changed, or are of windows that are now done again.

@@ -5,7 +5,7 @@ from typing import Any
 from quintet.coupler.scene.read import parse
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.stability_table import LimitTable
-from quintet.coupler.scene.study_table import value_at
+from quintet.coupler.scene.varied_tables import value_at
 from quintet.interfaces.params import read, shown
 
 # Parts of a scene that decide its stability.

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.measures.expectation import Expectation, check
-from quintet.coupler.scene import variants
 from quintet.coupler.scene.component_tables import read_components, require_components
 from quintet.coupler.scene.foreign_code import announce, trusted_tables
 from quintet.coupler.scene.groups import begins_wrong, lay_out, refused, unknown_outputs
@@ -25,17 +24,19 @@ from quintet.coupler.scene.scene import (
     kinds_of,
     wrong_name,
 )
-from quintet.coupler.scene.stability_table import Scope
+from quintet.coupler.scene.stability_checks import Scope
 from quintet.coupler.scene.swap import put_swap
 from quintet.coupler.scene.tables import SceneTables
 from quintet.coupler.scene.toml import read_file, too_many
+from quintet.coupler.scene.variants import VARIED, Variants, read_variants, variant_maker
+from quintet.coupler.scene.varied_tables import read_tables
 from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
 from quintet.interfaces.manifest import look_in
 from quintet.interfaces.params import extremes, read, shown, unknown
 
 MOST_TOLD = 20  # mistakes of one kind
-TABLES = tuple(one.name for one in fields(SceneTables))
+TABLES = tuple(field.name for field in fields(SceneTables))
 
 
 def library() -> dict[str, Path]:
@@ -64,7 +65,6 @@ def load(
     settings: Iterable[str] = (),
     swaps: Iterable[str] = (),
     transport: str = "",
-    for_variants: bool = False,
     imports: bool = True,
 ) -> Scene:
     """Read a scene and check all of it; nothing is started.
@@ -77,8 +77,6 @@ def load(
         Set on top of the preset; values are TOML.
     swaps : iterable of ``NAME=KIND``
         Components to be replaced by another kind.
-    for_variants : bool
-        Whether refinements, stability limits or scans will be run, and must suit the settings.
     imports : bool
         Whether code of the scene's own may be imported, as a run does: kinds ``module:Class``.
         Without it their keys and ports are not checked.
@@ -88,7 +86,32 @@ def load(
     SceneError
         With every mistake found.
     """
-    path, settings = locate(scene), list(settings)
+    settings = list(settings)
+    # Variants need not suit settings of a run that belongs to none of them.
+    return _load(scene, preset, settings, swaps, transport, not settings, imports)[0]
+
+
+def load_variants(
+    scene: str,
+    preset: str = "",
+    settings: Iterable[str] = (),
+    swaps: Iterable[str] = (),
+    transport: str = "",
+) -> tuple[Scene, Variants]:
+    """Read a scene with its refinements, stability limits and scans, which must suit it."""
+    return _load(scene, preset, list(settings), swaps, transport, True, True)
+
+
+def _load(
+    scene: str,
+    preset: str,
+    settings: list[str],
+    swaps: Iterable[str],
+    transport: str,
+    with_variants: bool,
+    imports: bool,
+) -> tuple[Scene, Variants]:
+    path, swaps = locate(scene), list(swaps)
     table = parse(path)
     mistakes = put_preset(table, preset) if preset else []
     for swap in swaps:
@@ -100,13 +123,11 @@ def load(
     mistakes = mistakes or too_many(table)
     if mistakes := mistakes or list(islice(extremes(table, ""), MOST_TOLD)):
         raise SceneError([f"{path.name}: {mistake}" for mistake in mistakes])
-    # Variants were told for the components of the file: each is checked when it is run instead.
-    # They need not suit what is set for a run that none of them belongs to.
-    asked_for = for_variants or not settings
-    made = _check(path, table, preset, not swaps, asked_for, imports)
-    asked = {"preset": preset, "settings": settings, "swaps": list(swaps)}
-    made.asked = {"scene": str(path.resolve()), "transport": transport, **asked}
-    return made
+    # Variants are written for the components of the file: with a swap each is checked when it runs.
+    checked, variants = _check(path, table, preset, not swaps, with_variants, imports)
+    changes = {"preset": preset, "settings": settings, "swaps": swaps}
+    checked.asked = {"scene": str(path.resolve()), "transport": transport, **changes}
+    return checked, variants
 
 
 def parse(path: Path) -> dict[str, Any]:
@@ -119,20 +140,20 @@ def _check(
     table: dict[str, Any],
     preset: str,
     try_variants: bool = True,
-    read_variants: bool = True,
+    with_variants: bool = True,
     imports: bool = True,
-) -> Scene:
+) -> tuple[Scene, Variants]:
     tables = table.get("components")
     tables = tables if imports else trusted_tables(tables, path.parent)
     look_in(import_folders(path, tables))
     announce(kinds_of(tables), path.parent)
-    own = {key: value for key, value in table.items() if key not in TABLES}
-    file, mistakes = read(SceneFile, own, "scene")
+    keys = {key: value for key, value in table.items() if key not in TABLES}
+    file, mistakes = read(SceneFile, keys, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
-    given = require_components(path, table, mistakes)
-    components = read_components(given, path.parent, mistakes, imports)
-    wrong = set(given) - set(components)  # told of already
-    unread = {name for name, one in components.items() if one.unread}
+    component_tables = require_components(path, table, mistakes)
+    components = read_components(component_tables, path.parent, mistakes, imports)
+    wrong = set(component_tables) - set(components)  # their mistakes are known already
+    unread = {name for name, plan in components.items() if plan.unread}
     links = read_links(_tables(table, "links", mistakes), components, wrong | unread, mistakes)
     expect = _expect(_tables(table, "expect", mistakes), components, wrong, path.parent, mistakes)
     coupling = None
@@ -151,25 +172,23 @@ def _check(
                 " Shorten it."
             )
         mistakes += _reachable(file) + wrong_name(file.name)
-    series = {key: _tables(table, key, mistakes) for key in variants.TABLES}
-    series = series if read_variants else {key: [] for key in series}
+    series = {key: _tables(table, key, mistakes) for key in VARIED}
+    series = series if with_variants else {key: [] for key in series}
     scope, check = None, None
     if file is not None and not mistakes:
-        gives = {name: one.gives for name, one in components.items()}
-        expected = {one.name: one for one in expect}
+        gives = {name: plan.gives for name, plan in components.items()}
+        expected = {expectation.name: expectation for expectation in expect}
         scope = Scope(file.end, gives, len(links), expected, frozenset(unread))
         check = partial(_check, path, preset=preset, imports=imports) if try_variants else None
-    make_variant = variants.variant_maker(table, check)
+    make_variant = variant_maker(table, check)
     inherits = bool(preset) and "scan" not in table["presets"][preset]
-    series_of_runs, wrong_variants = variants.read_variants(series, make_variant, scope, inherits)
+    variants, wrong_variants = read_variants(series, make_variant, scope, inherits)
     mistakes += wrong_variants
     if mistakes or file is None or coupling is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])
-    resolved = {k: v for k, v in table.items() if k not in ("presets", *variants.TABLES)}
-    made = Scene(file, path, preset, components, links, coupling, expect, resolved, file.transport)
-    made.study, made.stability = series_of_runs.study, series_of_runs.stability
-    made.scan = series_of_runs.scan
-    return made
+    resolved = {k: v for k, v in table.items() if k not in ("presets", *VARIED)}
+    scene = Scene(file, path, preset, components, links, coupling, expect, resolved, file.transport)
+    return scene, variants
 
 
 def _also_tables(mistake: str) -> str:
@@ -203,30 +222,29 @@ def _reachable(file: SceneFile) -> list[str]:
 
 def _tables(table: dict[str, Any], key: str, mistakes: list[str]) -> list[dict[str, Any]]:
     """Return what must be a list of tables, or nothing."""
-    found = table.get(key, [])
-    if isinstance(found, list) and all(isinstance(one, dict) for one in found):
-        return found
-    mistakes.append(f"{key} must be a list of tables; found {shown(found)}. Write [[{key}]].")
+    tables = table.get(key, [])
+    if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
+        return tables
+    mistakes.append(f"{key} must be a list of tables; found {shown(tables)}. Write [[{key}]].")
     return []
 
 
 def _expect(
-    table: list[dict[str, Any]],
+    tables: list[dict[str, Any]],
     components: dict[str, ComponentPlan],
     wrong: set[str],
     folder: Path,
     mistakes: list[str],
 ) -> list[Expectation]:
-    found = []
-    gives = {name: one.gives for name, one in components.items()}
-    for number, given in enumerate(table):
-        one, lacks = read(Expectation, given, f"expect.{given.get('name', number)}")
-        mistakes += lacks
-        if one is not None and one.component not in wrong:
-            is_read = one.component not in components or not components[one.component].unread
-            mistakes += check(one, gives, folder) if is_read else []
-            found.append(one)
-    for name, count in Counter(one.name for one in found).items():
+    expectations = []
+    gives = {name: plan.gives for name, plan in components.items()}
+    for _, expectation in read_tables(Expectation, "expect", "name", tables, mistakes):
+        name = expectation.component
+        if name not in wrong:
+            is_read = name not in components or not components[name].unread
+            mistakes += check(expectation, gives, folder) if is_read else []
+            expectations.append(expectation)
+    for name, count in Counter(expectation.name for expectation in expectations).items():
         if count > 1:  # results and studies know an expectation by its name alone
             mistakes.append(f"expect: {count} have the name {shown(name)}. Give each its own.")
-    return found
+    return expectations

@@ -17,11 +17,16 @@ from typing import Any
 import pydantic
 
 from quintet.coupler.measures.expectation import DISTANCES, Expectation
-from quintet.coupler.scene.study_table import MakeVariant, Table, folder_name
-from quintet.interfaces.params import Number, Positive, parameters, read, shown, unknown
+from quintet.coupler.scene.varied_tables import (
+    REDUCED,
+    MakeVariant,
+    Table,
+    folder_name,
+    read_tables,
+)
+from quintet.interfaces.params import Number, Positive, parameters, shown, unknown
 
 AUTO = "auto"  # of a number: it may stand beside numbers
-REDUCED = {"output.pictures": [], "output.interval": 0.0, "output.record": True}  # output of runs
 
 
 @parameters
@@ -118,7 +123,12 @@ class Scan:
     def settings(self, number: int) -> Table:
         """Settings of the run with one of the values."""
         table = self.table
-        return {**REDUCED, **table.settings, table.parameter: table.values[number]}
+        return {
+            **REDUCED,
+            "output.record": True,
+            **table.settings,
+            table.parameter: table.values[number],
+        }
 
     def exact(self, name: str, number: int) -> float | None:
         """Exact answer for one of the values; None if it is the expectation's reference."""
@@ -138,22 +148,19 @@ def read_scans(
     """
     scans: list[Scan] = []
     mistakes: list[str] = []
-    for number, table in enumerate(tables):
-        where = f"scan.{table.get('name', number)}"
-        checked, wrong = read(ScanTable, table, where)
-        mistakes += wrong
-        if checked is None or expected is None:
+    for place, table in read_tables(ScanTable, "scan", "name", tables, mistakes):
+        if expected is None:
             continue
-        name = checked.name or checked.parameter
-        wrong, judged, scale = _judged(checked, expected)
-        scan = Scan(checked, name, judged, scale)
+        name = table.name or table.parameter
+        wrong, judged, scale = _judged(table, expected)
+        scan = Scan(table, name, judged, scale)
         if scan.folder in {other.folder for other in scans}:
             wrong.append(f"two scans have the name {name}. Give each its own.")
         wrong += make_variant(scan.settings(0))[1]
         if wrong and is_inherited:
             continue
         scans.append(scan)
-        mistakes += [f"{where}: {mistake}" for mistake in dict.fromkeys(wrong)]
+        mistakes += [f"{place}: {mistake}" for mistake in dict.fromkeys(wrong)]
     return scans, mistakes
 
 

@@ -1,4 +1,4 @@
-"""What is simulated: a checked scene. ``coupler/read.py`` makes it from TOML."""
+"""A checked scene: what is simulated. ``coupler/scene/read.py`` makes it from TOML."""
 
 import re
 from dataclasses import dataclass, field
@@ -11,9 +11,6 @@ from quintet.coupler.coupling.exchange import Exchange, Link
 from quintet.coupler.coupling.iteration_settings import IterationSettings
 from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
-from quintet.coupler.scene.scan_table import Scan
-from quintet.coupler.scene.stability_table import Limit
-from quintet.coupler.scene.study_table import Refinement
 from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
@@ -204,9 +201,6 @@ class Scene:
     resolved: dict[str, Any]  # the scene as it runs, for scene.toml
     transport: Transport = "zenoh"
     asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
-    study: list[Refinement] = field(default_factory=list)
-    stability: list[Limit] = field(default_factory=list)
-    scan: list[Scan] = field(default_factory=list)
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand
 
     @property

@@ -13,27 +13,16 @@
 scene times the parameter, which is then a factor. A run that fails is always unstable.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 import pydantic
 
-from quintet.coupler.measures.expectation import Expectation, Index
-from quintet.coupler.scene.study_table import MakeVariant, Table, folder_name, value_at
-from quintet.interfaces.component import Port
-from quintet.interfaces.params import (
-    NotNegative,
-    Number,
-    Positive,
-    parameters,
-    read,
-    shown,
-    unknown,
-)
+from quintet.coupler.measures.expectation import Index
+from quintet.coupler.scene.varied_tables import REDUCED, folder_name
+from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 
 SAMPLES = 200  # rows of the ledger in a short run
-FEWEST_WINDOWS = 20  # in a run whose window is varied: windows are whole, so the last is rounded
 
 
 @parameters
@@ -183,17 +172,6 @@ class LimitTable:
 
 
 @dataclass(frozen=True, slots=True)
-class Scope:
-    """Parts of the scene that a stability limit may refer to."""
-
-    end: float  # s
-    gives: Mapping[str, tuple[Port, ...]]  # ports that each component gives
-    links: int
-    expected: Mapping[str, Expectation]  # by name
-    unread: frozenset[str] = frozenset()  # components whose ports are not known
-
-
-@dataclass(frozen=True, slots=True)
 class Limit:
     """One stability limit, checked."""
 
@@ -209,109 +187,24 @@ class Limit:
 
     def settings(self, value: float, other: float | None) -> dict[str, Any]:
         """Settings of a run: reduced output, those of the short runs, and the parameters."""
-        one = self.table
-        totals = self.end / SAMPLES if one.energy or one.momentum is not None else 0.0
-        output = {"output.pictures": [], "output.interval": 0.0, "output.totals": totals}
-        output["output.record"] = bool(one.bounds or one.expectation)
-        bounded = [f"{bounds.component}.{bounds.field}" for bounds in one.bounds]
+        table = self.table
+        totals = self.end / SAMPLES if table.energy or table.momentum is not None else 0.0
+        output = {**REDUCED, "output.totals": totals}
+        output["output.record"] = bool(table.bounds or table.expectation)
+        bounded = [f"{bounds.component}.{bounds.field}" for bounds in table.bounds]
         output["output.fields"] = list(dict.fromkeys(bounded))
         varied = {path: value * base for path, base in self.scaled.items()}
-        if isinstance(one.parameter, str):
-            varied = {one.parameter: value}
-        if one.against and other is not None:
-            varied[one.against.parameter] = other
-        return {**output, "end": self.end, **one.settings, **varied}
+        if isinstance(table.parameter, str):
+            varied = {table.parameter: value}
+        if table.against and other is not None:
+            varied[table.against.parameter] = other
+        return {**output, "end": self.end, **table.settings, **varied}
 
     def others(self) -> tuple[float | None, ...]:
-        """Values of the second parameter, or one None."""
+        """Values of the second parameter, or one Ntable."""
         return self.table.against.values if self.table.against else (None,)
 
     def predicted(self, number: int) -> float | None:
         """Prediction for one value of the second parameter."""
         predicted = self.table.predicted
         return predicted[number] if isinstance(predicted, tuple) else predicted
-
-
-def read_limits(
-    given: list[Table], make_variant: MakeVariant, scope: Scope | None
-) -> tuple[list[Limit], list[str]]:
-    """Check the limits of a scene; without a scope only their form."""
-    found, mistakes, names = [], [], set()
-    for number, table in enumerate(given):
-        where = f"stability.{table.get('name', number)}"
-        one, wrong = read(LimitTable, table, where)
-        mistakes += wrong
-        if one is None or scope is None:
-            continue
-        paths = [one.parameter] if isinstance(one.parameter, str) else list(one.parameter)
-        name = one.name or " ".join(paths)
-        if name in names:
-            mistakes.append(f"{where}: two limits have the name {name}. Give each its own.")
-        names.add(name)
-        limit, wrong = _limit(one, name, scope, make_variant)
-        wrong += _check_references(one, scope) or _check_ends(limit, make_variant)
-        mistakes += [f"{where}: {mistake}" for mistake in dict.fromkeys(wrong)]
-        found.append(limit)
-    return found, mistakes
-
-
-def _limit(
-    one: LimitTable, name: str, scope: Scope, make_variant: MakeVariant
-) -> tuple[Limit, list[str]]:
-    if isinstance(one.parameter, str):
-        return Limit(one, name, one.end or scope.end), []
-    variant, mistakes = make_variant(one.settings)
-    scaled = {}
-    for path in one.parameter:
-        value, wrong = value_at(variant, path)
-        if not wrong and (isinstance(value, bool) or not isinstance(value, (int, float))):
-            wrong = f"{path} must be a number to be scaled; found {shown(value)}. Name another."
-        mistakes += [wrong] if wrong else []
-        scaled[path] = 1.0 if wrong else float(value)
-    return Limit(one, name, one.end or scope.end, scaled), mistakes
-
-
-def _check_ends(limit: Limit, make_variant: MakeVariant) -> list[str]:
-    """Check the scene at both ends of the range."""
-    one, mistakes = limit.table, []
-    for other in limit.others():
-        for value in (one.from_, one.to):
-            mistakes += make_variant(limit.settings(value, other))[1]
-    if one.parameter == "window" and limit.end < FEWEST_WINDOWS * max(one.from_, one.to):
-        mistakes.append(
-            f"end must be {FEWEST_WINDOWS} windows or more, as windows are whole; found "
-            f"{limit.end:g} s for windows up to {max(one.from_, one.to):g} s. Raise end."
-        )
-    return mistakes
-
-
-def _check_references(one: LimitTable, scope: Scope) -> list[str]:
-    """Check that the links, expectations and fields that an invariant names exist."""
-    mistakes = []
-    if one.momentum is not None and not (scope.links or scope.unread):
-        mistakes.append("momentum is that of links; the scene has none. Remove it.")
-    for name in one.expectation:
-        if name not in scope.expected:
-            mistakes.append(unknown(f"expectation {name}", name, scope.expected))
-    for bounds in one.bounds:
-        mistakes += _bounds(bounds, scope)
-    return mistakes
-
-
-def _bounds(bounds: Bounds, scope: Scope) -> list[str]:
-    if bounds.component not in scope.gives:
-        return [unknown(f"bounds.component {bounds.component}", bounds.component, scope.gives)]
-    if bounds.component in scope.unread:
-        return []
-    ports = scope.gives[bounds.component]
-    fields = {f"{port.name}.{f.name}": f for port in ports for f in port.fields}
-    if bounds.field not in fields:
-        return [unknown(f"bounds.field {bounds.field}", bounds.field, fields)]
-    one, wrong = fields[bounds.field], []
-    if one.centring == "impulse":
-        wrong.append(f"bounds.field {bounds.field} must be an instant; it is an impulse.")
-    if bounds.axis is not None and bounds.axis >= sum(one.shape):
-        wrong.append(f"bounds.axis must be below {sum(one.shape)}; found {bounds.axis}.")
-    if bounds.low is None and bounds.high is None:
-        wrong.append("bounds must have low or high; found neither. Give one.")
-    return wrong

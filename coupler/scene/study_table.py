@@ -8,17 +8,18 @@
 A refinement that names a `size` takes part in the observed order of the error against it.
 """
 
-import re
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from quintet.coupler.scene.overrides import is_index
-from quintet.interfaces.params import parameters, read, shown, unknown
-
-Table = dict[str, Any]
-MakeVariant = Callable[[Table], tuple[Table, list[str]]]  # settings -> scene with them, mistakes
+from quintet.coupler.scene.varied_tables import (
+    MakeVariant,
+    Table,
+    folder_name,
+    read_tables,
+    value_at,
+)
+from quintet.interfaces.params import parameters, shown
 
 
 @parameters
@@ -54,71 +55,47 @@ class Refinement:
         return folder_name(self.label)
 
 
-def folder_name(text: str) -> str:
-    """Turn a text into the name of a folder."""
-    return re.sub(r"[^A-Za-z0-9_.+-]+", "_", text).strip("._") or "_"
-
-
 def read_refinements(
-    given: list[Table], make_variant: MakeVariant
+    tables: list[Table], make_variant: MakeVariant
 ) -> tuple[list[Refinement], list[str]]:
     """Check the refinements of a scene; return them, and every mistake."""
-    found, mistakes, sizes = [], [], set()
-    for number, table in enumerate(given):
-        where = f"study.{table.get('label', number)}"
-        one, wrong = read(RefinementTable, table, where)
-        mistakes += wrong
-        if one is None:
-            continue
-        variant, wrong = make_variant(one.settings)
-        mistakes += [f"{where}: {mistake}" for mistake in wrong]
-        if one.size and not wrong:
-            size, wrong = _size(where, one.size, variant)
+    refinements: list[Refinement] = []
+    mistakes: list[str] = []
+    paths: set[str] = set()
+    for place, table in read_tables(RefinementTable, "study", "label", tables, mistakes):
+        variant, wrong = make_variant(table.settings)
+        mistakes += [f"{place}: {mistake}" for mistake in wrong]
+        size = None
+        if table.size and not wrong:
+            size, wrong = _size(place, table.size, variant)
             mistakes += wrong
-            sizes.add(one.size)
-            found.append(Refinement(one.label, one.settings, size))
-        else:
-            found.append(Refinement(one.label, one.settings))
-    return found, [*mistakes, *_clashes(found, sizes)]
+            paths.add(table.size)
+        refinements.append(Refinement(table.label, table.settings, size))
+    return refinements, [*mistakes, *_clashes(refinements, paths)]
 
 
-def _clashes(found: list[Refinement], sizes: set[str]) -> list[str]:
+def _clashes(refinements: list[Refinement], paths: set[str]) -> list[str]:
     mistakes = [
         f"study: {count} refinements have the label {label}. Give each its own, in letters "
         "and digits."
-        for label, count in Counter(one.folder for one in found).items()
+        for label, count in Counter(refinement.folder for refinement in refinements).items()
         if count > 1
     ]
-    if len(sizes) > 1:
+    if len(paths) > 1:
         mistakes.append(
             "study: one size must serve all refinements that name one; found "
-            f"{', '.join(sorted(sizes))}. Name the same, or none."
+            f"{', '.join(sorted(paths))}. Name the same, or none."
         )
     return mistakes
 
 
-def _size(where: str, path: str, table: Table) -> tuple[float | None, list[str]]:
+def _size(place: str, path: str, table: Table) -> tuple[float | None, list[str]]:
     value, wrong = value_at(table, path)
     if wrong:
-        return None, [f"{where}.size {wrong}"]
+        return None, [f"{place}.size {wrong}"]
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
         return None, [
-            f"{where}.size {path} must be a positive number; found {shown(value)}. Name what "
+            f"{place}.size {path} must be a positive number; found {shown(value)}. Name what "
             "is refined."
         ]
     return (1.0 / value if isinstance(value, int) else value), []
-
-
-def value_at(table: Table, path: str) -> tuple[Any, str]:
-    """Find the value at a dotted path of a scene's tables; return it, or why there is none."""
-    at: Any = table
-    for part in path.split("."):
-        if isinstance(at, list) and is_index(part, at):
-            at = at[int(part)]
-        elif isinstance(at, dict) and part in at:
-            at = at[part]
-        else:
-            known = at if isinstance(at, dict) else map(str, range(len(at or ())))
-            reason = unknown(path, part, known if isinstance(at, (dict, list)) else ())
-            return None, reason.replace("is not known", "has no value in the scene", 1)
-    return at, ""

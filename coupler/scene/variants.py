@@ -6,11 +6,13 @@ from dataclasses import dataclass, field
 
 from quintet.coupler.scene.overrides import put
 from quintet.coupler.scene.scan_table import Scan, read_scans
-from quintet.coupler.scene.stability_table import Limit, Scope, read_limits
-from quintet.coupler.scene.study_table import MakeVariant, Refinement, Table, read_refinements
+from quintet.coupler.scene.stability_checks import Scope, read_limits
+from quintet.coupler.scene.stability_table import Limit
+from quintet.coupler.scene.study_table import Refinement, read_refinements
+from quintet.coupler.scene.varied_tables import MakeVariant, Table
 from quintet.interfaces.errors import SceneError
 
-TABLES = ("study", "stability", "scan")
+VARIED = ("study", "stability", "scan")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +42,7 @@ def variant_maker(table: Table, check: Callable[[Table], object] | None) -> Make
     """Return a function that applies settings to a scene and checks it, or their paths alone."""
 
     def make_variant(settings: Table) -> tuple[Table, list[str]]:
-        plain = deepcopy({key: value for key, value in table.items() if key not in TABLES})
+        plain = deepcopy({key: value for key, value in table.items() if key not in VARIED})
         mistakes = [m for path, value in settings.items() for m in put(plain, path, value)]
         if check is None or mistakes:
             return plain, mistakes

@@ -21,7 +21,7 @@ from quintet.coupler.report.work_precision import three_digits
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.scene.read import library, load, parse
+from quintet.coupler.scene.read import library, load_variants, parse
 from quintet.coupler.scene.scan_table import Scan
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.study.child_run import FOREVER, ChildRun
@@ -117,8 +117,8 @@ def _scenes_with_scans(quick: bool) -> list[tuple[str, str]]:
 def _scan_scene(given: argparse.Namespace) -> tuple[Row, int]:
     """Run the scans of one scene in its folder; return what was found and the exit status."""
     asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
-    scene = load(*asked, for_variants=True)
-    scans = _chosen(scene, given.name)
+    scene, variants = load_variants(*asked)
+    scans = _chosen(scene, variants.scan, given.name)
     name = scene.file.name
     with begin_series("scan", name, (NAME,), given.out, given.force, given.keep) as place:
         runs = [Path(one.folder) / one.run_folder(k) for one in scans for k in _numbers(one)]
@@ -131,16 +131,16 @@ def _numbers(scan: Scan) -> range:
     return range(len(scan.table.values))
 
 
-def _chosen(scene: Scene, name: str) -> list[Scan]:
+def _chosen(scene: Scene, scans: list[Scan], name: str) -> list[Scan]:
     """Scans of a scene, or the one of a name."""
-    if not scene.scan:
+    if not scans:
         raise SceneError(
             f"{scene.path.name}: there is nothing to be scanned. Add a [[scan]] for each setting."
         )
-    names = [scan.name for scan in scene.scan]
+    names = [scan.name for scan in scans]
     if name and name not in names:
         raise SceneError(unknown(f"--name {name}", name, names))
-    return [scan for scan in scene.scan if name in ("", scan.name)]
+    return [scan for scan in scans if name in ("", scan.name)]
 
 
 def _run_all(

@@ -19,10 +19,9 @@ from quintet.coupler.report.work_precision import three_digits
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.scene.read import load
-from quintet.coupler.scene.scene import Scene
+from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.stability_table import Limit
-from quintet.coupler.scene.study_table import folder_name
+from quintet.coupler.scene.varied_tables import folder_name
 from quintet.coupler.study.bisection import bisect, middle
 from quintet.coupler.study.child_run import FOREVER, ChildRun
 from quintet.coupler.study.invariants import Verdict, judge
@@ -73,23 +72,25 @@ class Search:
 def run_stability(given: argparse.Namespace) -> int:
     """Find every limit of the scene; print them, and write them as JSON."""
     asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
-    scene = load(*asked, for_variants=True)
+    scene, variants = load_variants(*asked)
     wanted = JsonFile(given.json, ("scene", "limits"))
-    if not scene.stability:
+    if not variants.stability:
         raise SceneError(
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
         )
     name = scene.file.name
     with begin_series("stability", name, (NAME,), given.out, given.force) as place:
         discard_former(place.path)
-        return _find_all(given, scene, place.path, wanted)
+        return _find_all(given, name, variants.stability, place.path, wanted)
 
 
-def _find_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: JsonFile) -> int:
+def _find_all(
+    given: argparse.Namespace, scene: str, searched: list[Limit], folder: Path, wanted: JsonFile
+) -> int:
     """Find every limit in a folder; return the exit status."""
     stop, limits, interrupted = StopRequest(), [], False
     with stop.listening():
-        for limit in scene.stability:
+        for limit in searched:
             for number, other in enumerate(limit.others()):
                 if not interrupted:
                     place = folder / limit.folder
@@ -98,7 +99,7 @@ def _find_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: Jso
                     search = Search(limit, other, child, place)
                     interrupted = not find_limit(search)
                     limits.append(summary(search, limit.predicted(number)))
-    found = {"scene": scene.file.name, "limits": limits, "machine": results.machine()}
+    found = {"scene": scene, "limits": limits, "machine": results.machine()}
     write_whole(folder / NAME, json.dumps(found, indent=2))
     wanted.write(found)
     console().print(table(limits))

@@ -17,8 +17,7 @@ from quintet.coupler.report.work_precision import draw, table
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.scene.read import load
-from quintet.coupler.scene.scene import Scene
+from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.child_run import ChildRun
 from quintet.interfaces.errors import SceneError
@@ -30,23 +29,29 @@ Row = dict[str, Any]
 def run_study(given: argparse.Namespace) -> int:
     """Run all refinements, compare them, and recommend the cheapest that meets all expectations."""
     asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
-    scene = load(*asked, for_variants=True)
+    scene, variants = load_variants(*asked)
     wanted = JsonFile(given.json, ("scene", "rows"))
-    if not scene.study:
+    if not variants.study:
         raise SceneError(f"{scene.path.name}: there is no [[study]]. Add one for every refinement.")
     files = (NAME, PICTURE)
     with begin_series("study", scene.file.name, files, given.out, given.force, given.keep) as place:
-        place.check_runs(one.folder for one in scene.study)
+        place.check_runs(refinement.folder for refinement in variants.study)
         discard_former(place.path)
-        return _run_all(given, scene, place.path, wanted)
+        return _run_all(given, scene.file.name, variants.study, place.path, wanted)
 
 
-def _run_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: JsonFile) -> int:
+def _run_all(
+    given: argparse.Namespace,
+    scene: str,
+    refinements: list[Refinement],
+    folder: Path,
+    wanted: JsonFile,
+) -> int:
     """Run all refinements in a folder; return the exit status."""
     stop, rows = StopRequest(), []
     child = ChildRun.of(given, stop)
     with stop.listening():
-        for refinement in scene.study:
+        for refinement in refinements:
             place = folder / refinement.folder
             kept = child.earlier(refinement.settings, place) if given.keep else None
             print(f"{refinement.label}: {'kept' if kept else 'running'} in {place}", flush=True)
@@ -54,11 +59,11 @@ def _run_all(given: argparse.Namespace, scene: Scene, folder: Path, wanted: Json
             print(f"{refinement.label}: {rows[-1]['status']}, {rows[-1]['wall']:.1f} s", flush=True)
             if rows[-1]["status"] == "interrupted" or stop():
                 break
-    found = conclude(scene.file.name, rows)
+    found = conclude(scene, rows)
     write_whole(folder / NAME, json.dumps(found, indent=2))
     wanted.write(found)
     print_summary(found, folder / PICTURE)
-    return status_of(found, len(scene.study))
+    return status_of(found, len(refinements))
 
 
 def row_of(refinement: Refinement, found: Row) -> Row:

@@ -10,6 +10,7 @@ import numpy as np
 import tomli_w
 
 from quintet.coupler.coupling.group import assemble
+from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.ledger import Account, Ledger
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.schedule import Coupling
@@ -30,6 +31,7 @@ class Trace:
     """What a run gave, window by window, and the coupling that it was made with."""
 
     coupling: Coupling
+    judgement: Judgement
     components: dict[str, Component]
     outputs: list[dict[str, Fields]] = field(default_factory=list)
     energies: list[float] = field(default_factory=list)  # J
@@ -105,10 +107,12 @@ def couple(path: Path) -> Trace:
     watchdog = Watchdog(StopRequest())
     participants = connect(checked, path.parent, watchdog).participants
     coupling = assemble(checked.coupling, participants, exchange, Ledger(exchange))
-    trace = Trace(coupling, {name: component_of(one) for name, one in participants.items()})
+    judgement = Judgement(coupling.ledger.accounts)
+    components = {name: component_of(one) for name, one in participants.items()}
+    trace = Trace(coupling, judgement, components)
     asked = {name: list(exchange.gives[name]) for name in participants}
     try:
-        run(coupling, checked.file.end, trace, asked)
+        run(coupling, checked.file.end, trace, asked, judgement)
     finally:
         watchdog.close()
     return trace

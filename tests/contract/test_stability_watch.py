@@ -3,7 +3,7 @@
 import laboratory
 import pytest
 
-from quintet.coupler.coupling.judgement.stability_watch import FEWEST, Made, StabilityWatch
+from quintet.coupler.coupling.judgement.stability_watch import FEWEST, LinkWork, StabilityWatch
 
 LINK = {
     "kind": "direct",
@@ -58,13 +58,13 @@ def test_windows_longer_than_the_step_of_who_pushes_are_to_be_repeated_and_short
 
 def test_what_was_seen_outlives_a_snapshot(tmp_path):
     trace = swing(tmp_path, 2.0, "serial")
-    watch = trace.coupling.ledger.watch
-    kept = StabilityWatch(watch.found)
+    watch = trace.judgement.stability
+    kept = StabilityWatch(watch.unstable)
     kept.load(watch.save())
-    assert kept.save() == watch.save() and kept.found == watch.found
+    assert kept.save() == watch.save() and kept.unstable == watch.unstable
 
 
 def test_no_link_is_judged_by_work_that_is_rounding_beside_the_energies_of_the_run():
-    made = Made(given=0.0, taken=7e-17, turnover=1e-16, late=7e-17, late_turnover=1e-16)
+    made = LinkWork(given=0.0, taken=7e-17, turnover=1e-16, late=7e-17, late_turnover=1e-16)
     assert made.is_unstable(FEWEST, 0.0)
     assert not made.is_unstable(FEWEST, 1e-9 * 20.0)  # J

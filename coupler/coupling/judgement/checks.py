@@ -1,8 +1,10 @@
 """All checks of a run's coupling, at every window's end and of the whole run."""
 
-from collections.abc import Mapping
-from typing import Protocol
+from collections.abc import Iterable, Mapping
+from typing import Any, Protocol
 
+from quintet.coupler.coupling.judgement.settling_watch import SettlingWatch
+from quintet.coupler.coupling.judgement.stability_watch import StabilityWatch
 from quintet.coupler.coupling.judgement.time_check import TimeCheck
 from quintet.coupler.coupling.schedule import Coupling
 
@@ -12,34 +14,55 @@ Texts = Mapping[str, Mapping[str, str]]  # by link and subject
 class Check(Protocol):
     """Watches the links of a run for one kind of error."""
 
-    def look(self, coupling: Coupling) -> Texts:
+    def check(self, coupling: Coupling) -> Texts:
         """Judge the links at a window's end."""
 
     def final_warnings(self, coupling: Coupling) -> Texts:
         """Judge the links by the whole run, once, at its end."""
 
+    def save(self) -> dict[str, Any]:
+        """All of it, for a snapshot."""
 
-class Checks:
-    """The checks of one run; what they find is noted in its ledger."""
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to what was saved."""
 
-    def __init__(self, coupling: Coupling) -> None:
-        self._coupling, self._time = coupling, TimeCheck()
-        ledger = coupling.ledger
-        self._checks: tuple[Check, ...] = (self._time, ledger.settling, ledger.watch)
 
-    def before_window(self) -> None:
-        """Step the coming window in pieces, if it is due for a look."""
-        self._time.before(self._coupling)
+class Judgement:
+    """The checks of one run; their warnings are noted in its ledger."""
 
-    def after_window(self) -> None:
+    def __init__(self, links: Iterable[str]) -> None:
+        self.time, self.stability = TimeCheck(), StabilityWatch(links)
+        self._checks: dict[str, Check] = {
+            "time": self.time,
+            "settling": SettlingWatch(),
+            "stability": self.stability,
+        }
+
+    def before_window(self, coupling: Coupling) -> None:
+        """Step the coming window in pieces, if it is due for a comparison."""
+        self.time.before(coupling)
+
+    def after_window(self, coupling: Coupling) -> None:
         """Judge all links; at the run's end also the whole run, its components included."""
-        coupling, note = self._coupling, self._coupling.ledger.warnings.note
-        finished = coupling.windows.finished
-        for check in self._checks:
-            rounds = [check.look(coupling)]
+        note, finished = coupling.ledger.warnings.note, coupling.windows.finished
+        for check in self._checks.values():
+            rounds = [check.check(coupling)]
             rounds += [check.final_warnings(coupling)] if finished else []
             for texts in rounds:
-                for link, found in texts.items():
-                    note(f"link {link}", found)
+                for link, warnings in texts.items():
+                    note(f"link {link}", warnings)
         for name, participant in coupling.components.items() if finished else ():
             note(f"component {name}", participant.final_warnings())
+
+    def suspects(self, coupling: Coupling) -> list[str]:
+        """Couplings that were doubtful before a failure, in sentences."""
+        return [*self.stability.suspects(coupling), *self.time.suspects(coupling)]
+
+    def save(self) -> dict[str, Any]:
+        """All of it, for a snapshot."""
+        return {name: check.save() for name, check in self._checks.items()}
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to what was saved."""
+        for name, check in self._checks.items():
+            check.load(state[name])

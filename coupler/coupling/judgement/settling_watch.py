@@ -9,15 +9,13 @@ over the last windows shows how far u still is from its rest.
 """
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from quintet.coupler.coupling.schedule import Coupling
 from quintet.interfaces.component import Array
 from quintet.interfaces.sums import dot, norm
-
-if TYPE_CHECKING:
-    from quintet.coupler.coupling.schedule import Coupling
 
 SPAN = 8  # windows that count most: each older one by 1 - 1/SPAN less
 FEWEST = 6  # changes before a link is judged
@@ -80,7 +78,7 @@ class SettlingWatch:
         self._settling: dict[Key, Settling] = {}
         self._watched: dict[Key, tuple[float, ...]] | None = None  # known once the run has begun
 
-    def look(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+    def check(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Add a window's end of the run, and warn of swings."""
         if self._watched is None:
             self._watched = _watched(coupling)
@@ -95,7 +93,7 @@ class SettlingWatch:
                 texts[link] = {"settling": _swings(place, settling, factors[-1])}
         return texts
 
-    def final_warnings(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+    def final_warnings(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Warn of links that are still far from their rest."""
         return {
             link: {"settling": _unsettled((link, name, key), settling, coupling.windows.done)}
@@ -105,7 +103,7 @@ class SettlingWatch:
 
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
-        return {"/".join(key): dict(vars(one)) for key, one in self._settling.items()}
+        return {"/".join(key): dict(vars(settling)) for key, settling in self._settling.items()}
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
@@ -117,7 +115,7 @@ class SettlingWatch:
                 setattr(settling, item, value)
 
 
-def _watched(coupling: "Coupling") -> dict[Key, tuple[float, ...]]:
+def _watched(coupling: Coupling) -> dict[Key, tuple[float, ...]]:
     """Relaxation of every instant that crosses a link which must settle, by window."""
     exchange = coupling.exchange
     return {

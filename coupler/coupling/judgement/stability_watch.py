@@ -14,13 +14,11 @@ windows to at most 0.18, as a body struck the floor, and to 0.37 and more.
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from quintet.coupler.coupling.energy_balance import KINDS
-
-if TYPE_CHECKING:
-    from quintet.coupler.coupling.ledger import Account
-    from quintet.coupler.coupling.schedule import Coupling
+from quintet.coupler.coupling.ledger import Account
+from quintet.coupler.coupling.schedule import Coupling
 
 LIMIT = 0.2  # of the work that went through a link: what a stable coupling makes is less
 LATE_LIMIT = 0.3  # the same over the last windows
@@ -36,7 +34,7 @@ QUIET = 0.1  # of the mean work of a window so far: with less going through, no 
 
 
 @dataclass(slots=True)
-class Made:
+class LinkWork:
     """Work that a link made, and what went through it [J]: in all, and of late."""
 
     given: float = 0.0  # as the ledger had them last
@@ -47,11 +45,11 @@ class Made:
     low: float = 0.0  # least and most that was given by the end of any window [J]
     high: float = 0.0
 
-    def add(self, account: "Account") -> None:
+    def add(self, account: Account) -> None:
         """Add a window."""
-        made = (account.work_taken - self.taken) - (account.work_given - self.given)
+        gain = (account.work_taken - self.taken) - (account.work_given - self.given)
         fade = 1.0 - 1.0 / SPAN
-        self.late = fade * self.late + made
+        self.late = fade * self.late + gain
         self.late_turnover = fade * self.late_turnover + account.turnover - self.turnover
         self.given, self.taken = account.work_given, account.work_taken
         self.turnover = account.turnover
@@ -71,11 +69,11 @@ class Made:
             return False
         usual = self.turnover * min(1.0, SPAN / windows)
         loud = self.late_turnover > QUIET * usual
-        return (loud and self.made_of_late()) or (
+        return (loud and self.gains_of_late()) or (
             self.taken - self.given > LIMIT * self.turnover > 0.0
         )
 
-    def made_of_late(self) -> bool:
+    def gains_of_late(self) -> bool:
         """Whether too much of what went through in the last windows was made of nothing."""
         return self.late > LATE_LIMIT * self.late_turnover
 
@@ -84,36 +82,36 @@ class StabilityWatch:
     """Looks at every link at the end of every window of the run."""
 
     def __init__(self, links: Iterable[str]) -> None:
-        self._made = {name: Made() for name in links}
-        self.found: set[str] = set()  # links
+        self._works = {name: LinkWork() for name in links}
+        self.unstable: set[str] = set()  # links
         self._negligible = 0.0  # J, as seen last
-        self.asks = False  # for the energies at the next window's end: a link is judged by them
+        self.needs_totals = False  # at the next window's end: a link is judged by its energies
 
-    def look(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+    def check(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Judge all links at a window's end; warn once of each.
 
         A link that seems unstable is judged again a window later, by the energies of then: since
         they were last told a wave may have begun.
         """
         texts, ledger = {}, coupling.ledger
-        energy, known = ledger.energy, self.asks
+        energy, known = ledger.energy, self.needs_totals
         if known:
             energy.note(ledger.totals)
-        self.asks = False
+        self.needs_totals = False
         self._negligible = negligible = max(
             MOVING * energy.largest("kinetic", "internal"), NEGLIGIBLE * energy.largest(*KINDS)
         )
         for name, account in ledger.accounts.items():
-            made = self._made[name]
-            made.add(account)
-            if name not in self.found and made.is_unstable(coupling.windows.done, negligible):
-                self.asks = self.asks or not known
+            work = self._works[name]
+            work.add(account)
+            if name not in self.unstable and work.is_unstable(coupling.windows.done, negligible):
+                self.needs_totals = self.needs_totals or not known
                 if not known:
                     continue
-                gain, turnover = made.taken - made.given, made.turnover
-                if made.made_of_late():
-                    gain, turnover = made.late, made.late_turnover
-                self.found.add(name)
+                gain, turnover = work.taken - work.given, work.turnover
+                if work.gains_of_late():
+                    gain, turnover = work.late, work.late_turnover
+                self.unstable.add(name)
                 text = (
                     f"its coupling is unstable: by t = {coupling.windows.time:.4g} s its sides "
                     f"took {gain:.3g} J more work than they gave, {100.0 * gain / turnover:.0f} % "
@@ -122,50 +120,49 @@ class StabilityWatch:
                 texts[name] = {"stability": text}
         return texts
 
-    def final_warnings(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+    def final_warnings(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Warn of links that made or lost too much of the work that they exchanged in the run."""
         texts = {}
-        for name, made in self._made.items():
-            drift = made.drift()
-            if name in self.found or abs(drift) < DRIFT_LIMIT or made.turnover <= self._negligible:
-                continue
-            if _foresees(coupling, name):
+        for name, work in self._works.items():
+            drift = work.drift()
+            quiet = abs(drift) < DRIFT_LIMIT or work.turnover <= self._negligible
+            if quiet or name in self.unstable or _foresees(coupling, name):
                 continue
             verb = "more" if drift > 0.0 else "less"
             text = (
-                f"its sides took {abs(made.taken - made.given):.3g} J {verb} work than they gave, "
-                f"{100.0 * abs(drift):.0f} % of the {made.high - made.low:.3g} J that were "
+                f"its sides took {abs(work.taken - work.given):.3g} J {verb} work than they gave, "
+                f"{100.0 * abs(drift):.0f} % of the {work.high - work.low:.3g} J that were "
                 f"exchanged; {advice(coupling, name)}"
             )
             texts[name] = {"work": text}
         return texts
 
-    def suspects(self, coupling: "Coupling") -> list[str]:
+    def suspects(self, coupling: Coupling) -> list[str]:
         """Say which links made much of what went through them of late, after any few windows."""
         return [
-            f"the coupling of link {name} seems unstable: its sides took {made.late:.3g} J more "
-            f"work than they gave in the last windows, {100.0 * made.late / made.late_turnover:.0f}"
+            f"the coupling of link {name} seems unstable: its sides took {work.late:.3g} J more "
+            f"work than they gave in the last windows, {100.0 * work.late / work.late_turnover:.0f}"
             f" % of what went through it; {advice(coupling, name)}"
-            for name, made in self._made.items()
-            if made.made_of_late() and made.late_turnover > self._negligible
+            for name, work in self._works.items()
+            if work.gains_of_late() and work.late_turnover > self._negligible
         ]
 
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
         return {
-            "asks": self.asks,
-            "made": {name: asdict(one) for name, one in self._made.items()},
-            "found": sorted(self.found),
+            "needs_totals": self.needs_totals,
+            "works": {name: asdict(work) for name, work in self._works.items()},
+            "unstable": sorted(self.unstable),
         }
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
-        self.asks = bool(state["asks"])
-        self._made = {name: Made(**one) for name, one in state["made"].items()}
-        self.found = set(state["found"])
+        self.needs_totals = bool(state["needs_totals"])
+        self._works = {name: LinkWork(**work) for name, work in state["works"].items()}
+        self.unstable = set(state["unstable"])
 
 
-def _foresees(coupling: "Coupling", link: str) -> bool:
+def _foresees(coupling: Coupling, link: str) -> bool:
     """Whether the side that gives the force steps first, and only expects where the other moves.
 
     The work that it counts is along the expected way, which begins anew in every window.
@@ -178,7 +175,7 @@ def _foresees(coupling: "Coupling", link: str) -> bool:
     )
 
 
-def advice(coupling: "Coupling", link: str) -> str:
+def advice(coupling: Coupling, link: str) -> str:
     """Say what makes the coupling of a link stable.
 
     Staggered windows are unstable where what is carried along weighs more than what carries it:
@@ -190,7 +187,7 @@ def advice(coupling: "Coupling", link: str) -> str:
     """
     inner = coupling.carries(link) or coupling
     key = f"groups.{inner.plan.name}." if inner.plan.name else ""
-    (works,) = (one.works for one in coupling.exchange.links if one.name == link)
+    (works,) = (other.works for other in coupling.exchange.links if other.name == link)
     step = min((inner.components[name].stable for name in works), default=math.inf)
     window = inner.last_dt
     shorter = 0.5 * min(window, step)

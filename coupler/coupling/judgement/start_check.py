@@ -5,14 +5,12 @@ window late, and stays so on its way to rest, although every later window is rig
 """
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from quintet.coupler.coupling.judgement.time_error import Key
+from quintet.coupler.coupling.schedule import Coupling
 from quintet.interfaces.component import Array
 from quintet.interfaces.sums import norm
-
-if TYPE_CHECKING:
-    from quintet.coupler.coupling.schedule import Coupling
 
 LATE_LIMIT = 0.1  # of a motion's range: change that the first loads bring in one window
 AIM = 0.01
@@ -25,7 +23,7 @@ class StartCheck:
         self._changes: dict[Key, tuple[float, Array]] = {}  # window [s], change in the first one
         self._late: dict[Key, float] = {}  # norm of what the second one changed more
 
-    def look(self, coupling: "Coupling", moves: Iterable[Key]) -> None:
+    def check(self, coupling: Coupling, moves: Iterable[Key]) -> None:
         """Note what the first two windows of a run change of some positions."""
         dt = coupling.last_dt
         for name, path in moves:
@@ -57,6 +55,6 @@ class StartCheck:
         self._changes, self._late = dict(state["changes"]), dict(state["late"])
 
 
-def _is_pushed_late(coupling: "Coupling", name: str) -> bool:
+def _is_pushed_late(coupling: Coupling, name: str) -> bool:
     """Whether loads reach a component a window late."""
     return any(coupling.exchange.transfers[number].taker == name for number in coupling.late)

@@ -4,21 +4,22 @@ Which windows are looked at depends on their number alone. What counts has the s
 window is looked at or not.
 """
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import Any
 
+from quintet.coupler.coupling.judgement.start_check import StartCheck
 from quintet.coupler.coupling.judgement.time_error import (
     PIECES,
     FieldError,
     Key,
+    TimeErrors,
     is_sampled,
     sample,
 )
 from quintet.coupler.coupling.judgement.trial_window import Outputs, step_in_pieces
 from quintet.coupler.coupling.participant import TrialFailed
+from quintet.coupler.coupling.schedule import Coupling
 from quintet.interfaces.component import Field, Fields
-
-if TYPE_CHECKING:
-    from quintet.coupler.coupling.schedule import Coupling
 
 FEW = 4  # windows of a run of which the first is looked at, too
 SAME = 1e-9  # by which two windows of one length may differ, relative
@@ -37,15 +38,16 @@ AIM = 0.01  # error of the window that is advised
 
 
 class TimeCheck:
-    """Compares windows with the same ones in pieces; the estimates are in the ledger."""
+    """Compares windows with the same ones in pieces."""
 
     def __init__(self) -> None:
+        self.errors, self._beginning = TimeErrors(), StartCheck()
         self._pieces: Outputs | None = None
         self._start: dict[str, Fields] = {}
 
-    def before(self, coupling: "Coupling") -> None:
+    def before(self, coupling: Coupling) -> None:
         """Step the coming window in pieces, if it is one to be looked at."""
-        windows, errors = coupling.windows, coupling.ledger.time_errors
+        windows, errors = coupling.windows, self.errors
         errors.due = errors.due or is_sampled(windows.done + 1)
         if not errors.due or errors.skipped or not judged(coupling):
             return
@@ -64,11 +66,11 @@ class TimeCheck:
         except TrialFailed as error:
             errors.skipped = str(error)
 
-    def look(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+    def check(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Compare the window with its pieces, if it was stepped so; warn early of large errors."""
         pieces, self._pieces = self._pieces, None
         if coupling.windows.done <= 2:
-            coupling.ledger.start.look(coupling, _moves(coupling))
+            self._beginning.check(coupling, _moves(coupling))
         if pieces is None:
             return {}
         samples = {}
@@ -76,20 +78,45 @@ class TimeCheck:
             field, whole = coupling.exchange.gives[name][path], coupling.outputs[name][path]
             start = None if field.centring == "impulse" else self._start[name][path]
             samples[name, path] = sample(whole, pieces[name, path], start, field.kind)
-        coupling.ledger.time_errors.add(coupling.windows.done, samples)
-        return _coarse_windows(coupling, EARLY, FEWEST)
+        self.errors.add(coupling.windows.done, samples)
+        return self._coarse_windows(coupling, EARLY, FEWEST)
 
-    def final_warnings(self, coupling: "Coupling") -> dict[str, dict[str, str]]:
+    def final_warnings(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Warn of every link whose estimated error is above its limit, or whose start is late."""
-        texts, errors = _coarse_windows(coupling), coupling.ledger.time_errors
+        texts, errors = self._coarse_windows(coupling), self.errors
         for key, link in _moves(coupling).items():
             extent = errors.fields[key].extent if key in errors.fields else 0.0
-            if text := coupling.ledger.start.warning(key, extent, coupling.last_dt):
+            if text := self._beginning.warning(key, extent, coupling.last_dt):
                 texts.setdefault(link, {})["start"] = text
         return texts
 
+    def suspects(self, coupling: Coupling) -> list[str]:
+        """Links whose windows were too long so far, in sentences."""
+        coarse = self._coarse_windows(coupling)
+        return [f"link {link}: {texts['window']}" for link, texts in coarse.items()]
 
-def _moves(coupling: "Coupling") -> dict[Key, str]:
+    def _coarse_windows(
+        self, coupling: Coupling, factor: float = 1.0, samples: int = 1
+    ) -> dict[str, dict[str, str]]:
+        """Texts of the links whose estimated error is above so many times its limit."""
+        fields = self.errors.fields
+        return {
+            link: {"window": _text(coupling, link, key, fields[key])}
+            for link, (key, over) in _worst_fields(coupling, fields).items()
+            if over > factor and fields[key].samples >= samples
+        }
+
+    def save(self) -> dict[str, Any]:
+        """All of it, for a snapshot."""
+        return {"errors": self.errors.save(), "start": self._beginning.save()}
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Come back to what was saved."""
+        self.errors.load(state["errors"])
+        self._beginning.load(state["start"])
+
+
+def _moves(coupling: Coupling) -> dict[Key, str]:
     """Positions by which links are judged whose windows are those of the run, and the links."""
     fields = {key: coupling.exchange.gives[key[0]][key[1]] for key in judged(coupling)}
     return {
@@ -99,50 +126,29 @@ def _moves(coupling: "Coupling") -> dict[Key, str]:
     }
 
 
-def _coarse_windows(
-    coupling: "Coupling", factor: float = 1.0, samples: int = 1
-) -> dict[str, dict[str, str]]:
-    """Texts of the links whose estimated error is above so many times its limit."""
-    fields = coupling.ledger.time_errors.fields
-    return {
-        link: {"window": _text(coupling, link, key)}
-        for link, (key, over) in worst_fields(coupling).items()
-        if over > factor and fields[key].samples >= samples
-    }
-
-
-def suspects(coupling: "Coupling") -> list[str]:
-    """Say of which links the windows looked at so far were too long, and which seem unstable."""
-    coarse = _coarse_windows(coupling)
-    return [
-        *coupling.ledger.watch.suspects(coupling),
-        *(f"link {link}: {texts['window']}" for link, texts in coarse.items()),
-    ]
-
-
-def worst_fields(coupling: "Coupling") -> dict[str, tuple[Key, float]]:
+def _worst_fields(
+    coupling: Coupling, errors: Mapping[Key, FieldError]
+) -> dict[str, tuple[Key, float]]:
     """Field of each link with the largest error over its limit, and that ratio."""
     worst: dict[str, tuple[Key, float]] = {}
     for key, link in judged(coupling).items():
-        found = coupling.ledger.time_errors.fields.get(key)
-        if found is None:
-            continue
-        over = _over(found, coupling.exchange.gives[key[0]][key[1]])
-        if over > worst.get(link, (key, 0.0))[1]:
-            worst[link] = key, over
+        if key in errors:
+            over = _over(errors[key], coupling.exchange.gives[key[0]][key[1]])
+            if over > worst.get(link, (key, 0.0))[1]:
+                worst[link] = key, over
     return worst
 
 
-def _over(found: FieldError, field: Field) -> float:
+def _over(error: FieldError, field: Field) -> float:
     """How many times its limit the estimated error of a field is."""
-    if field.kind == "rotation" and found.change < SMALL_TURN:
+    if field.kind == "rotation" and error.change < SMALL_TURN:
         return 0.0
     if field.centring == "impulse":
-        return max(found.bias / BIAS_LIMIT, found.local / LOAD_LIMIT)
-    return max(found.local / MOTION_LIMIT, found.drift / DRIFT_LIMIT)
+        return max(error.bias / BIAS_LIMIT, error.local / LOAD_LIMIT)
+    return max(error.local / MOTION_LIMIT, error.drift / DRIFT_LIMIT)
 
 
-def judged(coupling: "Coupling") -> dict[Key, str]:
+def judged(coupling: Coupling) -> dict[Key, str]:
     """Outputs by which links are judged, and the links: loads, and instants that add up a rate.
 
     A force that comes a window late changes a velocity back and forth, not the way. Torques are
@@ -157,17 +163,17 @@ def judged(coupling: "Coupling") -> dict[Key, str]:
         if demands.relaxation or demands.settles:
             continue
         crossing = [
-            (one.giver, key)
-            for at, one in enumerate(exchange.transfers)
+            (transfer.giver, key)
+            for at, transfer in enumerate(exchange.transfers)
             if exchange.link_of[at] == number
-            for key in one.reads
+            for key in transfer.reads
         ]
         fields = {(name, key): exchange.gives[name][key] for name, key in crossing}
-        fields = {key: one for key, one in fields.items() if one.kind != "flag"}
-        loads = [key for key, one in fields.items() if one.centring == "impulse"]
-        moves = [key for key, one in fields.items() if one.rate]
+        fields = {key: field for key, field in fields.items() if field.kind != "flag"}
+        loads = [key for key, field in fields.items() if field.centring == "impulse"]
+        moves = [key for key, field in fields.items() if field.rate]
         if demands.equal_steps:
-            chosen = [key for key, one in fields.items() if one.unit not in FORCES]
+            chosen = [key for key, field in fields.items() if field.unit not in FORCES]
         elif loads:
             chosen = [*moves, *(key for key in loads if fields[key].unit != FORCES[1])]
         else:
@@ -176,9 +182,8 @@ def judged(coupling: "Coupling") -> dict[Key, str]:
     return keys
 
 
-def _text(coupling: "Coupling", link: str, key: Key) -> str:
-    found = coupling.ledger.time_errors.fields[key]
-    error = found.motion if len(found.low) else found.bias or found.local
+def _text(coupling: Coupling, link: str, key: Key, estimate: FieldError) -> str:
+    error = estimate.motion if len(estimate.low) else estimate.bias or estimate.local
     inner = coupling.carries(link) or coupling
     window, place = inner.last_dt, f"groups.{inner.plan.name}." if inner.plan.name else ""
     order = 2.0 if inner.plan.scheme == "iterated" else 1.0

@@ -139,8 +139,8 @@ class TimeErrors:
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
         fields = {
-            key: {name: getattr(one, name) for name in FieldError.__slots__}
-            for key, one in self.fields.items()
+            key: {name: getattr(error, name) for name in FieldError.__slots__}
+            for key, error in self.fields.items()
         }
         flags = {"due": self.due, "skipped": self.skipped}
         return {"window": self.window, **flags, "fields": fields}
@@ -157,12 +157,12 @@ class TimeErrors:
             {
                 "component": name,
                 "field": path,
-                "local": found.local,
-                "bias": found.bias,
-                "drift": found.drift,
-                "samples": found.samples,
+                "local": error.local,
+                "bias": error.bias,
+                "drift": error.drift,
+                "samples": error.samples,
             }
-            for (name, path), found in self.fields.items()
+            for (name, path), error in self.fields.items()
         ]
 
 

@@ -16,7 +16,7 @@ def check_of(ways, late, windows=(0.1, 0.1)):
     check, at = StartCheck(), np.zeros((5, 3))
     transfers = [SimpleNamespace(taker=name) for name in ("water", "water", "water", "plate")]
     for done, (way, window) in enumerate(zip(ways, windows, strict=True), 1):
-        check.look(
+        check.check(
             SimpleNamespace(
                 windows=SimpleNamespace(done=done),
                 last_dt=window,

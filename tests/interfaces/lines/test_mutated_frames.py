@@ -11,6 +11,7 @@ from frames import in_header, mutated, taken_apart
 from started import write_scene
 
 from quintet.coupler.coupling.group import assemble
+from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.launch.connect import InMemory, free_port
 from quintet.coupler.run.loop import run
@@ -68,7 +69,13 @@ def run_of(scene, tap=lambda line: None):
         tap(line)
     exchange = scene.exchange()
     coupling = assemble(scene.coupling, connection.participants, exchange, Ledger(exchange))
-    run(coupling, scene.file.end, Silent(), scene.asked_outputs())
+    run(
+        coupling,
+        scene.file.end,
+        Silent(),
+        scene.asked_outputs(),
+        Judgement(coupling.ledger.accounts),
+    )
     for one in connection.participants.values():
         state = one.save()
         one.order_keep(0)
