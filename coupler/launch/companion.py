@@ -1,4 +1,4 @@
-"""A process beside this one that acts once this one is gone, however it ended.
+"""A process beside this one that goes on once this one is gone, however it ended.
 
 A process that is killed says nothing and cleans nothing up. Its companion is forked before
 libraries start threads, polls its parent, and needs nothing that the parent's threads may hold.
@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from quintet.coupler.launch.signal_handler import ENDING
 
-LOOKING = 0.1  # s between two looks at the parent
+INTERVAL = 0.1  # s between two polls of the parent
 
 
 class Companion:
@@ -24,10 +24,10 @@ class Companion:
     Parameters
     ----------
     act : function
-        Called in the companion once this process is gone.
+        Called in the companion with the number of this process; the companion ends with it.
     """
 
-    def __init__(self, act: Callable[[], object]) -> None:
+    def __init__(self, act: Callable[[int], object]) -> None:
         parent = os.getpid()
         signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
         with warnings.catch_warnings():
@@ -35,7 +35,7 @@ class Companion:
             warnings.simplefilter("ignore", DeprecationWarning)
             self._pid = os.fork()
         if not self._pid:
-            _wait_and_act(parent, act)
+            _act_and_leave(parent, act)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
 
     def close(self) -> None:
@@ -48,16 +48,25 @@ class Companion:
         self._pid = 0
 
 
-def _wait_and_act(parent: int, act: Callable[[], object]) -> NoReturn:
+def once_gone(act: Callable[[], object]) -> Callable[[int], None]:
+    """Return what a companion does that acts once its parent is gone."""
+
+    def wait_and_act(parent: int) -> None:
+        while os.getppid() == parent:
+            time.sleep(INTERVAL)
+        act()
+
+    return wait_and_act
+
+
+def _act_and_leave(parent: int, act: Callable[[int], object]) -> NoReturn:
     try:
         os.setsid()  # what ends the parent's session or process group must not end this
         signal.set_wakeup_fd(-1)
         for number in ENDING:
             signal.signal(number, signal.SIG_IGN)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
-        while os.getppid() == parent:
-            time.sleep(LOOKING)
-        act()
+        act(parent)
         sys.stdout.flush()
         sys.stderr.flush()
     finally:

@@ -13,8 +13,8 @@ from typing import Any, Protocol
 from quintet.coupler.coupling.participant import LONGEST_WAIT, ComponentFailed, Participant
 from quintet.coupler.launch import stack
 from quintet.coupler.launch.mpi_job import exit_file, write_processes
+from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
-from quintet.coupler.launch.watch import Watch
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.read import library
@@ -77,8 +77,8 @@ class InMemory:
             for name, one in scene.components.items():
                 line = MemoryLine(run, name)
                 participant = self.participants[name] = Participant(name, line)
-                watch = Watch(name, os.getpid(), where=stack.of_main_thread)
-                self.watchdog.add(participant, watch, scene.patience(name))
+                probe = ProcessProbe(name, os.getpid(), where=stack.of_main_thread)
+                self.watchdog.add(participant, probe, scene.patience(name))
                 with participant.keeping_others_waiting:
                     component = _built(one, settings(scene, name))
                 line.handle = partial(answer, Server(component, name), line.far)
@@ -116,7 +116,7 @@ class OverZenoh:
         endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.participants: dict[str, Participant] = {}
         self.watchdog = watchdog
-        self.watches: dict[str, Watch] = {}
+        self.probes: dict[str, ProcessProbe] = {}
         self.secret = secrets.token_hex(16)
         try:
             self.session = Session(endpoint, True, "coupler", scene.security, self.secret)
@@ -135,17 +135,17 @@ class OverZenoh:
             if scene.security and kinds.keys() - awaited.keys():
                 require_reachable(endpoint, scene.security)
             for name, line in lines.items():
-                self.watches[name] = Watch(name, awaited=name in awaited)
+                self.probes[name] = ProcessProbe(name, awaited=name in awaited)
                 if name in scene.elsewhere:
                     print(f"{name} is awaited: {join_command(scene, name, endpoint)}", flush=True)
                 else:
                     self._start(scene, name, endpoint, folder)
                 self.participants[name] = Participant(name, line)
-                self.watchdog.add(self.participants[name], self.watches[name], scene.patience(name))
+                self.watchdog.add(self.participants[name], self.probes[name], scene.patience(name))
             for name, line in lines.items():
                 seconds = JOINING_BY_HAND if name in scene.elsewhere else LONGEST_WAIT
                 hello = self.participants[name].await_hello(seconds, line.wait_for_partner)
-                accept(scene, self.participants[name], hello, self.watches[name], folder)
+                accept(scene, self.participants[name], hello, self.probes[name], folder)
         except BaseException:
             self.close(False)
             raise
@@ -166,12 +166,12 @@ class OverZenoh:
         for place in scene.import_folders:
             arguments += ["--look-in", place]
         process = start(arguments, log_of(folder, name), one.threads, self.run, self.secret)
-        self.watches[name].pid, self.watches[name].process = process.pid, process
+        self.probes[name].pid, self.probes[name].process = process.pid, process
 
     def close(self, well: bool) -> None:
         """See `Connection.close`."""
         self.watchdog.expect_ends()
-        end_all(self.participants, list(self.watches.values()), well, self.watchdog)
+        end_all(self.participants, list(self.probes.values()), well, self.watchdog)
         self.watchdog.close()
         self.watchdog.news = lambda: ""
         end_marked(RUN, self.run)
@@ -211,21 +211,21 @@ class OverMpi:
         run = secrets.token_hex(4)
         self.participants: dict[str, Participant] = {}
         self.watchdog = watchdog
-        self.watches: dict[str, Watch] = {}
+        self.probes: dict[str, ProcessProbe] = {}
         write_processes(folder, None, shared_files())
         try:
             for rank, name in enumerate(scene.components, start=1):
                 one = Participant(name, mpi.MpiLine(run, "coupler", name, rank))
-                watch = self.watches[name] = Watch(name, exit_file=exit_file(folder, name))
-                self.watchdog.add(one, watch, scene.patience(name))
+                probe = self.probes[name] = ProcessProbe(name, exit_file=exit_file(folder, name))
+                self.watchdog.add(one, probe, scene.patience(name))
                 hello = one.await_hello(LONGEST_WAIT, lambda seconds: None)
                 self.participants[name] = one
-                accept(scene, one, hello, watch, folder)
+                accept(scene, one, hello, probe, folder)
         except BaseException:
             self.close(False)
             raise
-        pids = [watch.pid for watch in self.watches.values() if watch.pid]
-        shared = [path for watch in self.watches.values() for path in watch.shared]
+        pids = [probe.pid for probe in self.probes.values() if probe.pid]
+        shared = [path for probe in self.probes.values() for path in probe.shared]
         write_processes(folder, pids, [*shared_files(), *shared])
 
     def close(self, well: bool) -> None:
@@ -236,29 +236,31 @@ class OverMpi:
         self.watchdog.close()
         if not well:
             # A dead rank would keep MPI from ending in order: end the others ourselves.
-            for watch in self.watches.values():
-                watch.end(0.0)
+            for probe in self.probes.values():
+                probe.end(0.0)
 
     def notes(self) -> list[str]:
         """See `Connection.notes`."""
         return []
 
 
-def accept(scene: Scene, one: Participant, hello: Message, watch: Watch, folder: Path) -> None:
-    """Accept a component: check its kind, watch its process, send its parameters."""
+def accept(
+    scene: Scene, one: Participant, hello: Message, probe: ProcessProbe, folder: Path
+) -> None:
+    """Accept a component: check its kind, find its process, send its parameters."""
     expected = scene.components[one.name].manifest.kind
     header = hello.header
     if hello.order != "hello" or header.get("kind") != expected:
         raise ComponentFailed(
             one.name, 0, f"{expected} must say hello; found {header.get('kind')!r}. Start that."
         )
-    watch.awaited = False
+    probe.awaited = False
     if header.get("host") == socket.gethostname():
-        watch.pid = int(header["pid"])
+        probe.pid = int(header["pid"])
         told = map(Path, map(str, header.get("shared", [])))
-        watch.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
-        watch.where = partial(
-            stack.of_process, watch.pid, int(header["stack"]), log_of(folder, one.name)
+        probe.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
+        probe.where = partial(
+            stack.of_process, probe.pid, int(header["stack"]), log_of(folder, one.name)
         )
     one.send_order("go", **settings(scene, one.name))
 
@@ -277,21 +279,21 @@ def finish(participants: dict[str, Participant]) -> None:
 
 
 def end_all(
-    participants: dict[str, Participant], watches: list[Watch], well: bool, dog: Watchdog
+    participants: dict[str, Participant], probes: list[ProcessProbe], well: bool, dog: Watchdog
 ) -> None:
     """End all component processes: in order, or at once."""
     if well:
         finish(participants)
     elif dog.verdict:  # some may not listen any more
-        for watch in watches:
-            watch.kill()
+        for probe in probes:
+            probe.kill()
     else:
         for one in participants.values():
             with contextlib.suppress(QuintetError):
                 one.line.send({"order": "abort"}, {})
     limit = time.monotonic() + (GRACE if well and not dog.stop() else ABORTING)
-    for watch in watches:
-        watch.end(max(0.0, limit - time.monotonic()))
+    for probe in probes:
+        probe.end(max(0.0, limit - time.monotonic()))
 
 
 def free_port() -> int:

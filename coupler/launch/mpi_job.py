@@ -23,7 +23,7 @@ from typing import IO, NamedTuple
 
 import psutil
 
-from quintet.coupler.launch.companion import Companion
+from quintet.coupler.launch.companion import Companion, once_gone
 from quintet.coupler.launch.processes import PYTHON, end_marked, environment, marked, tail
 from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
@@ -134,7 +134,7 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
             stack.enter_context(open(job_file.with_name(name), "w+b")) for name in COUPLER_OUTPUT
         ]
         signals = stack.enter_context(_forward_signals(job_file))
-        companion = Companion(partial(_see_to_end, job_file, output, starter))
+        companion = Companion(once_gone(partial(_see_to_end, job_file, output, starter)))
         stack.callback(companion.close)
         reason = _await(process, job_file, output, signals)
         found = _read(job_file)

@@ -1,7 +1,7 @@
 """The watchdog of a run: a thread that sees who died and who keeps the others waiting.
 
 It decides; the thread that couples carries it out when it next looks, or is made to look. What
-a component may take is never known, so that a false alarm is worse than a late one: nobody is
+a component may take is never known, so that a false alarm is worse than a late component: nobody is
 ended who compiles kernels, or who has not kept the others waiting for its patience beyond three of
 its usual windows. A component that is built may compute for thirty times its patience, and may do
 nothing for its patience. A stopped process is ended at once: nothing goes on by itself there.
@@ -19,10 +19,10 @@ from typing import Protocol
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch import stack
-from quintet.coupler.launch.watch import IDLE, Watch
+from quintet.coupler.launch.process_probe import IDLE, ProcessProbe
 
-LOOKING = 0.05  # s between two looks at all components
-LONGEST_LOOK = 1.0  # s; if more has passed, this process itself was stopped meanwhile
+INTERVAL = 0.05  # s between two rounds of all components
+LONGEST_ROUND = 1.0  # s; if more has passed, this process itself was stopped meanwhile
 USUAL, EXTRA = 3.0, 5.0  # told after 3 usual windows and 5 s
 DEAD = 0.3  # s until a death is told; before, whoever waits for the component knows more
 ENDING, SAVING = 0.7, 1.1  # s to end a window, and to save, after an end was asked for
@@ -45,14 +45,14 @@ class Request(Protocol):
         """Ends this process, with all that is left to do; None where it may not be ended."""
 
 
-class Guard(Protocol):
+class Substitute(Protocol):
     """Watches in this watchdog's place when no Python runs in its process."""
 
     def follow(self, participant: Participant) -> None:
         """Note when the coupler waits for a component."""
 
-    def look(self, participants: Iterable[Participant]) -> None:
-        """Note that this watchdog looks."""
+    def note_round(self, participants: Iterable[Participant]) -> None:
+        """Note that this watchdog is at work."""
 
 
 @dataclass(slots=True)
@@ -60,7 +60,7 @@ class Watched:
     """One component, and for how long it has kept the others waiting."""
 
     participant: Participant
-    watch: Watch
+    probe: ProcessProbe
     patience: float  # s
     since: float = 0.0  # when the wait began, as the participant has it
     waited: float = 0.0  # s
@@ -74,13 +74,13 @@ class Watched:
     def begin(self, since: float) -> None:
         """Begin a new wait."""
         self.since, self.waited, self.idle, self.told = since, 0.0, 0.0, False
-        self.watch.begin()
+        self.probe.begin()
         usual = USUAL * self.participant.timing.usual
         if self.participant.built:
             self.end_at = usual + self.patience
             self.tell_at = min(usual + EXTRA, self.end_at)
         else:
-            begun = self.watch.pid or self.participant.order  # else it is awaited from elsewhere
+            begun = self.probe.pid or self.participant.order  # else it is awaited from elsewhere
             self.end_at = BUILDING * self.patience if begun else math.inf
             self.tell_at = self.patience
 
@@ -88,8 +88,8 @@ class Watched:
         """Find out what its process does, now and then; add to the time in which it is idle."""
         built = self.participant.built
         if not built or self.waited > 0.2 * self.tell_at:
-            self.watch.read()
-        self.idle = self.idle + passed if not built and self.watch.activity == IDLE else 0.0
+            self.probe.read()
+        self.idle = self.idle + passed if not built and self.probe.activity == IDLE else 0.0
 
     def is_over(self) -> bool:
         """Whether it has taken longer than it may."""
@@ -113,9 +113,9 @@ class Watchdog:
     stop: Request
     own: bool = False
     acts: Callable[[], bool] = lambda: True
-    guard: Guard | None = None
+    substitute: Substitute | None = None
     mark: str = field(default_factory=lambda: secrets.token_hex(8))  # of all processes of the run
-    news: Callable[[], str] = lambda: ""  # what else the user should know, at every look
+    news: Callable[[], str] = lambda: ""  # what else the user should know, in every round
     verdict: BaseException | None = None  # why the run is to end
     _all: dict[str, Watched] = field(default_factory=dict)
     _asked_at: float = 0.0
@@ -125,13 +125,13 @@ class Watchdog:
     _closed: threading.Event = field(default_factory=threading.Event)
     _thread: threading.Thread | None = None
 
-    def add(self, participant: Participant, watch: Watch, patience: float) -> None:
+    def add(self, participant: Participant, probe: ProcessProbe, patience: float) -> None:
         """Watch a component too."""
-        one = self._all[participant.name] = Watched(participant, watch, patience)
+        component = self._all[participant.name] = Watched(participant, probe, patience)
         participant.verdict = lambda: self.verdict
-        participant.line.watch = lambda: self.check(one)
-        if self.guard:
-            self.guard.follow(participant)
+        participant.line.watch = lambda: self.check(component)
+        if self.substitute:
+            self.substitute.follow(participant)
         if self._thread is None:
             self._last = time.monotonic()
             self._thread = threading.Thread(target=self._run, name="watchdog", daemon=True)
@@ -142,18 +142,18 @@ class Watchdog:
         if self.verdict:
             raise self.verdict
         now = time.monotonic()
-        if now - self._peeked_at > 2 * LOOKING:
-            self._peeked_at = now + LONGEST_LOOK  # what is received now looks here too
-            for one in self._all.values():
-                if one is not awaited and one.participant.has_failed():
-                    one.participant.receive()  # raises its failure
+        if now - self._peeked_at > 2 * INTERVAL:
+            self._peeked_at = now + LONGEST_ROUND  # what is received now comes here too
+            for component in self._all.values():
+                if component is not awaited and component.participant.has_failed():
+                    component.participant.receive()  # raises its failure
             self._peeked_at = now
-        return "" if awaited.watch.alive() else awaited.watch.ending()
+        return "" if awaited.probe.alive() else awaited.probe.ending()
 
     def expect_ends(self) -> None:
         """From now on components may end."""
-        for one in self._all.values():
-            one.may_end = True
+        for component in self._all.values():
+            component.may_end = True
 
     def close(self) -> None:
         """Watch no more."""
@@ -162,94 +162,96 @@ class Watchdog:
             self._thread.join(1.0)
 
     def _run(self) -> None:
-        while not self._closed.wait(LOOKING):
+        while not self._closed.wait(INTERVAL):
             now = time.monotonic()
-            passed, self._last = min(now - self._last, LONGEST_LOOK), now
-            if self.guard:
-                self.guard.look([one.participant for one in list(self._all.values())])
+            passed, self._last = min(now - self._last, LONGEST_ROUND), now
+            if self.substitute:
+                self.substitute.note_round(
+                    [component.participant for component in list(self._all.values())]
+                )
             if news := self.news():
                 say(news)
             if self.verdict:
                 self._enforce(now)
                 continue
-            self._look_for_stop(now)
-            for one in list(self._all.values()):
-                self._look_for_death(one, now)
-                self.look_for_wait(one, passed)
+            self._check_stop(now)
+            for component in list(self._all.values()):
+                self._check_death(component, now)
+                self.check_wait(component, passed)
 
-    def _look_for_stop(self, now: float) -> None:
+    def _check_stop(self, now: float) -> None:
         if not self.stop():
             return
         self._asked_at = self._asked_at or now
         waited = [
-            one.participant
-            for one in self._all.values()
-            if one.participant.keeping_others_waiting.since
+            component.participant
+            for component in self._all.values()
+            if component.participant.keeping_others_waiting.since
         ]
-        saves = any(one.order in ("save", "finish") for one in waited)
+        saves = any(component.order in ("save", "finish") for component in waited)
         late = bool(waited) and now - self._asked_at > (SAVING if saves else ENDING)
         if late or self.stop.at_once():
             self._judge(KeyboardInterrupt())
 
-    def _look_for_death(self, one: Watched, now: float) -> None:
-        if one.may_end or one.watch.alive():
+    def _check_death(self, component: Watched, now: float) -> None:
+        if component.may_end or component.probe.alive():
             return
-        one.dead_since = one.dead_since or now
-        if now - one.dead_since > DEAD:
-            joined = "" if one.participant.order else "did not join: "
-            self.fail(one, joined + one.watch.ending())
+        component.dead_since = component.dead_since or now
+        if now - component.dead_since > DEAD:
+            joined = "" if component.participant.order else "did not join: "
+            self.fail(component, joined + component.probe.ending())
 
-    def look_for_wait(self, one: Watched, passed: float) -> None:
+    def check_wait(self, component: Watched, passed: float) -> None:
         """Tell of a component that keeps the others waiting; end it if that takes too long."""
-        participant, watch = one.participant, one.watch
+        participant, probe = component.participant, component.probe
         since = participant.keeping_others_waiting.since
-        if since != one.since:
-            if one.told:
-                say(f"{participant.name} goes on after {one.waited:.1f} s")
-            one.begin(since)
+        if since != component.since:
+            if component.told:
+                say(f"{participant.name} goes on after {component.waited:.1f} s")
+            component.begin(since)
             passed = min(passed, time.monotonic() - since)
         if not since:
             return
-        one.waited += passed
-        if not self.own and watch.stopped():
-            watch.activity = "stopped"
-            self.fail(one, f"stopped responding: {watch.described()}")
+        component.waited += passed
+        if not self.own and probe.stopped():
+            probe.activity = "stopped"
+            self.fail(component, f"stopped responding: {probe.described()}")
             return
-        one.read(passed)
-        if (one.waited > one.tell_at or one.is_over()) and self.acts():
-            self._tell_or_end(one)
+        component.read(passed)
+        if (component.waited > component.tell_at or component.is_over()) and self.acts():
+            self._tell_or_end(component)
 
-    def _tell_or_end(self, one: Watched) -> None:
-        calls = one.watch.where()
-        if one.participant.keeping_others_waiting.since != one.since:
+    def _tell_or_end(self, component: Watched) -> None:
+        calls = component.probe.where()
+        if component.participant.keeping_others_waiting.since != component.since:
             return  # it has answered
-        participant, doing = one.participant, one.watch.described()
+        participant, doing = component.participant, component.probe.described()
         place = participant.window
         if stack.compiles(calls):
             doing = doing.replace("computing", "compiling")
-        what = f"for {one.waited:.1f} s " + (
+        what = f"for {component.waited:.1f} s " + (
             f"in window {place}" if participant.built else "to be built"
         )
-        if one.watch.awaited:
-            one.told, one.tell_at = True, 2.0 * one.waited
+        if component.probe.awaited:
+            component.told, component.tell_at = True, 2.0 * component.waited
             say(f"the run waits for {participant.name}: {doing}")
             return
         usual = f", usually {participant.timing.usual:.2g} s" if participant.timing.usual else ""
         where = stack.innermost(calls)
-        over = one.is_over()
+        over = component.is_over()
         if over and not stack.compiles(calls):
             at = f", at {where[0].removeprefix('  File ')}" if where else ""
             cause = f"stopped responding: kept the others waiting {what}{usual}; {doing}{at}"
-            self.fail(one, cause, calls)
+            self.fail(component, cause, calls)
             return
         if over:
-            one.end_at, one.idle = one.end_at + one.patience, 0.0
-        one.told, one.tell_at = True, 2.0 * one.waited
+            component.end_at, component.idle = component.end_at + component.patience, 0.0
+        component.told, component.tell_at = True, 2.0 * component.waited
         say(f"{participant.name} keeps the others waiting {what}{usual}: {doing}", where)
 
-    def fail(self, one: Watched, cause: str, calls: str = "") -> None:
+    def fail(self, component: Watched, cause: str, calls: str = "") -> None:
         """Decide that the run ends, as a component has failed."""
-        participant = one.participant
+        participant = component.participant
         self._judge(ComponentFailed(participant.name, participant.window, cause, calls))
 
     def _judge(self, verdict: BaseException) -> None:
@@ -265,8 +267,8 @@ class Watchdog:
         self._judged_at = now
         self._poke()
         if not self.own:
-            for one in self._all.values():
-                one.watch.kill()
+            for component in self._all.values():
+                component.probe.kill()
         elif self.stop.at_once() or isinstance(self.verdict, ComponentFailed):
             if self.stop.leave:
                 self.stop.leave()

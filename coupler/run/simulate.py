@@ -30,7 +30,7 @@ from quintet.coupler.files.disk import (
 from quintet.coupler.files.reached import NAME as REACHED
 from quintet.coupler.files.reached import Reached
 from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
-from quintet.coupler.launch.companion import Companion
+from quintet.coupler.launch.companion import Companion, once_gone
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.processes import RUN, OwnProcesses, end_marked, tail
 from quintet.coupler.launch.watchdog import Watchdog
@@ -117,7 +117,7 @@ class Running:
         self._coupling: Coupling | None = None
         self.notes_of_lines: Callable[[], list[str]] = list
         self._ending = threading.Lock()
-        self._guard: Closable | None = None
+        self._companion: Closable | None = None
         self._started: OwnProcesses | None = None
 
     def run(self) -> None:
@@ -127,7 +127,7 @@ class Running:
         if self.stop.leave and self.watchdog.own:
             self._started = OwnProcesses(self.watchdog.mark)
         if self.stop.leave and main:
-            self._begin_guard() if self.watchdog.own else self._begin_companion()
+            self._begin_watchdog_process() if self.watchdog.own else self._begin_companion()
         self._start.show()
         self._warn_of_limits()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
@@ -152,21 +152,22 @@ class Running:
         for warning in self.ledger.warnings.close_window(0.0):
             self.writer.warn(str(warning))
 
-    def _begin_guard(self) -> None:
+    def _begin_watchdog_process(self) -> None:
         """Have it ended from another process too: here a solver may stop all Python."""
         # Only runs over memory have one, and load what it needs.
-        from quintet.coupler.run.guard import Guard
+        from quintet.coupler.run.watchdog_process import WatchdogProcess
 
         patience = {name: self.scene.patience(name) for name in self.scene.components}
-        self._guard = self.watchdog.guard = guard = Guard(patience, self.stop, self._report)
-        self.writer.on_window = guard.note
+        process = WatchdogProcess(patience, self.stop, self._report)
+        self._companion = self.watchdog.substitute = process
+        self.writer.on_window = process.note
 
     def _begin_companion(self) -> None:
         """Have it written down if this process is killed: the others are processes of their own."""
         path = self.folder / "log" / REACHED
         self.writer.on_window = Reached(path).note
         if self.scene.transport == "zenoh":  # who started an MPI job sees to its ranks
-            self._guard = Companion(self._report_death)
+            self._companion = Companion(once_gone(self._report_death))
 
     def _report_death(self) -> None:
         """Write down that this process is gone, from its companion."""
@@ -185,8 +186,8 @@ class Running:
     def end(self, error: BaseException | None) -> int:
         """End it, with what went wrong if something did; write the results; tell the status."""
         with self._ending:
-            if self._guard:
-                self._guard.close()
+            if self._companion:
+                self._companion.close()
             if self._started:
                 self._started.end()
             self._start.close()

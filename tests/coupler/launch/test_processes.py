@@ -11,8 +11,8 @@ import pytest
 from started import write_scene
 
 from quintet.coupler.launch import mpi_job
+from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.processes import end_marked, environment, marked, tail
-from quintet.coupler.launch.watch import Watch
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
@@ -48,7 +48,7 @@ def watched():
     def start(code):
         process = subprocess.Popen([sys.executable, "-c", code])
         started.append(process)
-        return Watch("water", process.pid, process)
+        return ProcessProbe("water", process.pid, process)
 
     yield start
     for process in started:
@@ -107,7 +107,7 @@ def test_a_process_is_stopped_when_it_is_found_so_twice(watched):
 
 
 def test_of_a_process_on_another_host_nothing_is_known():
-    watch = Watch("water")
+    watch = ProcessProbe("water")
     watch.read()
     watch.kill()
     assert watch.alive() and not watch.stopped()
@@ -129,7 +129,7 @@ def test_how_a_process_ended_is_said(watched, code, words):
 
 def test_a_process_that_is_not_our_child_is_gone_when_it_is():
     process = subprocess.Popen([sys.executable, "-c", SLEEPS])
-    watch = Watch("water", process.pid)
+    watch = ProcessProbe("water", process.pid)
     assert watch.alive() and running(process.pid)
     process.kill()
     while running(process.pid):
@@ -153,18 +153,18 @@ def test_a_process_that_is_not_our_child_is_gone_when_it_is():
 )
 def test_how_a_rank_ended_is_read_from_the_file_of_its_parent(tmp_path, written, words):
     (tmp_path / "pong.exit").write_text(written)
-    assert words in Watch("pong", 7, exit_file=tmp_path / "pong.exit").ending()
+    assert words in ProcessProbe("pong", 7, exit_file=tmp_path / "pong.exit").ending()
 
 
 def test_a_lack_of_memory_is_said_where_the_system_has_killed_for_it(monkeypatch, tmp_path):
     (tmp_path / "pong.exit").write_text("137")
-    watch = Watch("pong", 7, exit_file=tmp_path / "pong.exit")
-    monkeypatch.setattr("quintet.coupler.launch.watch.killed_for_memory", lambda: 1 << 40)
+    watch = ProcessProbe("pong", 7, exit_file=tmp_path / "pong.exit")
+    monkeypatch.setattr("quintet.coupler.launch.process_probe.killed_for_memory", lambda: 1 << 40)
     assert "most likely by the system, whose memory ran out" in watch.ending()
 
 
 def test_who_has_not_joined_is_on_no_other_host():
-    assert Watch("water", awaited=True).described() == "nobody has joined as water yet"
+    assert ProcessProbe("water", awaited=True).described() == "nobody has joined as water yet"
 
 
 def test_ending_leaves_no_process_and_no_file(watched, tmp_path):

@@ -1,10 +1,11 @@
 """A process beside a run over memory, which ends it where the run's own watchdog cannot.
 
 A solver that waits, or computes, with the interpreter's lock held stops all Python of its process,
-the watchdog's thread included. The guard reads in memory that both share whom the run waits for and
-when the watchdog last looked. When it looks no more, the guard watches in its place, by the same
-rules; the stack and the exit status come from signal handlers that need no interpreter. If the
-process dies without a word, as one that the system kills for want of memory, it writes that down.
+the watchdog's thread included. This process reads in memory that both share whom the run waits for
+and when the watchdog was last at work. When the watchdog is silent, this process watches in its
+place, by the same rules; the stack and the exit status come from signal handlers that need no
+interpreter. If the run's process is killed, as by the system for want of memory, this one writes
+that down.
 """
 
 import contextlib
@@ -16,7 +17,6 @@ import signal
 import sys
 import threading
 import time
-import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -27,16 +27,16 @@ import psutil
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch import stack
-from quintet.coupler.launch.signal_handler import ENDING
-from quintet.coupler.launch.watch import Watch
-from quintet.coupler.launch.watchdog import LONGEST_LOOK, Watchdog, Watched
+from quintet.coupler.launch.companion import Companion
+from quintet.coupler.launch.process_probe import ProcessProbe
+from quintet.coupler.launch.watchdog import LONGEST_ROUND, Watchdog, Watched
 from quintet.coupler.run.signals import StopRequest
 from quintet.interfaces.component import Array
 from quintet.interfaces.lines.memory import MemoryLine
 from quintet.interfaces.serving.process import STACK_SIGNAL
 
-LOOKING = 0.2  # s between two looks
-SILENT = 1.0  # s without a look of its watchdog, after which a run is watched from here
+INTERVAL = 0.2  # s between two rounds
+SILENT = 1.0  # s without a round of its watchdog, after which a run is watched from here
 ENDED = 1.0  # s for the run to end by itself
 STILL = (psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP)
 CELLS = 4  # numbers that are kept of the run, and of every component
@@ -45,8 +45,8 @@ CELLS = 4  # numbers that are kept of the run, and of every component
 FAIL = signal.SIGQUIT
 
 
-class Guard:
-    """The guard of this process, and what it is told.
+class WatchdogProcess:
+    """The process beside this one, and what is noted for it.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Guard:
     stop : StopRequest
         Listening: signals that nobody has read are counted in its pipe.
     report : function
-        Called in the guard's process to write down why the run has failed, with the windows that
+        Called in the other process to write down why the run has failed, with the windows that
         were done and the time [s] that was reached.
     """
 
@@ -69,16 +69,9 @@ class Guard:
         self._shared = np.frombuffer(mmap.mmap(-1, 8 * CELLS * (1 + len(patience))))
         self._stacks = os.memfd_create("stacks")
         self._run = os.getpid()
-        self.look(())
+        self.note_round(())
         faulthandler.register(STACK_SIGNAL, file=self._stacks, all_threads=False)
-        signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
-        with warnings.catch_warnings():
-            # Of threads, as those of OpenBLAS: the guard uses none of what they may hold.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            self._pid = os.fork()
-        if not self._pid:
-            self._guard()
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
+        self._companion: Companion | None = Companion(self._watch)
         self._former = signal.getsignal(FAIL) or signal.SIG_DFL
         library = ctypes.CDLL(None)
         library.signal(FAIL, ctypes.cast(library._exit, ctypes.c_void_p))
@@ -99,76 +92,66 @@ class Guard:
         first = CELLS * (1 + list(self.patience).index(name))
         return self._shared[first : first + CELLS]
 
-    def look(self, participants: Iterable[Participant]) -> None:
-        """Note that the run's watchdog looks, and what is usual."""
+    def note_round(self, participants: Iterable[Participant]) -> None:
+        """Note that the run's watchdog is at work, and what is usual."""
         self._shared[0], self._shared[1] = time.monotonic(), self.stop.signals
-        for one in participants:
-            self._row(one.name)[3] = one.timing.usual
+        for participant in participants:
+            self._row(participant.name)[3] = participant.timing.usual
 
     def note(self, windows: int, reached: float) -> None:
         """Note how many windows are done, and the time that was reached [s]."""
         self._shared[2], self._shared[3] = windows, reached
 
     def close(self) -> None:
-        """End the guard; a second call does nothing."""
-        if not self._pid:
+        """End the other process; a second call does nothing."""
+        if not self._companion:
             return
-        with contextlib.suppress(ProcessLookupError, ChildProcessError):
-            os.kill(self._pid, signal.SIGKILL)
-            os.waitpid(self._pid, 0)
-        self._pid = 0
+        self._companion.close()
+        self._companion = None
         if threading.current_thread() is threading.main_thread():  # else the process is left now
             signal.signal(FAIL, self._former)
             faulthandler.unregister(STACK_SIGNAL)
             os.close(self._stacks)
 
-    # In the guard's process
+    # In the other process
 
-    def _guard(self) -> NoReturn:
+    def _watch(self, run: int) -> None:
         """Watch until the run ends, by itself or from here."""
-        try:
-            os.setsid()
-            signal.set_wakeup_fd(-1)
-            for number in ENDING:
-                signal.signal(number, signal.SIG_IGN)
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
-            self._watch()
-        finally:
-            os._exit(0)
-
-    def _watch(self) -> None:
         watchdog = Watchdog(self.stop, own=True, acts=self._is_silent)
         watched = [self._watched(name) for name in self.patience]
         last = time.monotonic()
-        while os.getppid() == self._run:
-            time.sleep(LOOKING)
-            passed, last = min(time.monotonic() - last, LONGEST_LOOK), time.monotonic()
+        while os.getppid() == run:
+            time.sleep(INTERVAL)
+            passed, last = min(time.monotonic() - last, LONGEST_ROUND), time.monotonic()
             if self._stands_still():
                 continue
-            for one in watched:
-                self._read(one.participant)
-                watchdog.look_for_wait(one, passed)
-                if one.since and self._is_silent() and self._signals() > 1:
-                    watchdog.fail(one, "kept the interpreter's lock when asked to end")
+            for component in watched:
+                self._read(component.participant)
+                watchdog.check_wait(component, passed)
+                if component.since and self._is_silent() and self._signals() > 1:
+                    watchdog.fail(component, "kept the interpreter's lock when asked to end")
             if isinstance(watchdog.verdict, ComponentFailed):
                 self._end(watchdog.verdict)
-        for one in watched:
-            self._read(one.participant)
-        self._write_down(self._death([one.participant for one in watched]))
+        participants = [component.participant for component in watched]
+        for participant in participants:
+            self._read(participant)
+        self._write_down(self._death(participants))
 
     def _death(self, participants: Iterable[Participant]) -> ComponentFailed:
         """Why the run's process is gone: whoever it waited for has most likely ended it."""
         cause = f"process {self._run} is gone: it ended or was killed"
-        for one in participants:
-            if one.keeping_others_waiting.since:
-                return ComponentFailed(one.name, one.window, cause)
+        for participant in participants:
+            if participant.keeping_others_waiting.since:
+                return ComponentFailed(participant.name, participant.window, cause)
         return ComponentFailed("coupler", int(self._shared[2]), cause)
 
     def _watched(self, name: str) -> Watched:
         participant = Participant(name, MemoryLine("", name))
         log = Path(f"/proc/self/fd/{self._stacks}")
-        watch = Watch(name, self._run, where=lambda: stack.of_process(self._run, STACK_SIGNAL, log))
-        return Watched(participant, watch, self.patience[name])
+        probe = ProcessProbe(
+            name, self._run, where=lambda: stack.of_process(self._run, STACK_SIGNAL, log)
+        )
+        return Watched(participant, probe, self.patience[name])
 
     def _read(self, participant: Participant) -> None:
         since, window, built, usual = self._row(participant.name).tolist()

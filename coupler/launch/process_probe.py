@@ -1,4 +1,4 @@
-"""One watched process: whether it lives, what it does, and where in its code it is."""
+"""One process of a run: whether it lives, what it does, and where in its code it is."""
 
 import contextlib
 import os
@@ -30,8 +30,8 @@ def killed_for_memory() -> int:
 
 
 @dataclass(slots=True)
-class Watch:
-    """Watches a process of this host; of one elsewhere nothing is known.
+class ProcessProbe:
+    """Reads what a process of this host does; of one elsewhere nothing is known.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Watch:
     shared : list of str
         Files in shared memory that it maps.
     where : function
-        Tells where in its code it is, the innermost call first; "" if it does not say.
+        Returns where in its code it is, the innermost call first; "" if unknown.
     """
 
     name: str
@@ -97,10 +97,10 @@ class Watch:
     def stopped(self) -> bool:
         """Whether the process was stopped, and is not being debugged; asked again and again."""
         try:
-            found = bool(self.pid) and psutil.Process(self.pid).status() == psutil.STATUS_STOPPED
+            stopped = bool(self.pid) and psutil.Process(self.pid).status() == psutil.STATUS_STOPPED
         except psutil.Error:
-            found = False
-        self._stopped = self._stopped + 1 if found else 0
+            stopped = False
+        self._stopped = self._stopped + 1 if stopped else 0
         return self._stopped > 1
 
     def begin(self) -> None:
@@ -116,11 +116,11 @@ class Watch:
             process = psutil.Process(self.pid)
             times = _processor_times(process)
             if self._read_at:
-                own, children = (
+                parent, children = (
                     (new - old) / (now - self._read_at)
                     for new, old in zip(times, self._times, strict=True)
                 )
-                self.activity = _activity(process.status(), own, children)
+                self.activity = _activity(process.status(), parent, children)
             self._read_at, self._times = now, times
 
     def described(self) -> str:
@@ -152,21 +152,21 @@ class Watch:
 
 def _processor_times(process: psutil.Process) -> tuple[float, float]:
     """Processor time of a process and of all its children, those that ended included [s]."""
-    own = process.cpu_times()
-    children = own.children_user + own.children_system
+    parent = process.cpu_times()
+    children = parent.children_user + parent.children_system
     for child in process.children(recursive=True):
         with contextlib.suppress(psutil.Error):
             times = child.cpu_times()
             children += times.user + times.system + times.children_user + times.children_system
-    return own.user + own.system, children
+    return parent.user + parent.system, children
 
 
-def _activity(status: str, own: float, children: float) -> str:
+def _activity(status: str, parent: float, children: float) -> str:
     """What a process does, from its state and the shares of a core that are used."""
     if status == psutil.STATUS_STOPPED:
         return "stopped"
     if status == psutil.STATUS_DISK_SLEEP:
         return "waiting for a disk"
-    if own > BUSY:
+    if parent > BUSY:
         return "computing"
     return "waiting for its children, which compute" if children > BUSY else IDLE
