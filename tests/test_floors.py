@@ -31,33 +31,27 @@ PARTS_IN_CIRCLES = {
     "components/dem_bodies",
     "components/fe_plate",
     "components/meshless_gas",
-    "components/particle_dynamics",
     "components/sph_fluid",
 }
 UPWARD = {
     "components/dem_bodies/plan: build",
     "components/fe_plate/heat/state: kernels",
     "components/fe_plate/state: kernels",
-    "components/particle_dynamics/state: kernels",
 }
-ABOVE_COMPONENT = {"analysis", "timing"}  # sub-folders and files that drive the whole solver
+ABOVE_COMPONENT = {"analysis"}  # sub-folders and files that drive the whole solver
 LACKING = {
     "dem_bodies": {"features", "view"},
     "fe_plate": {"laws"},
     "heat": {"features", "diagnostics"},
-    "particle_dynamics": {"features", "diagnostics"},
     "sph_fluid": {"plan", "view"},
 }
 LOOSE_KERNELS = {
     "components/dem_bodies/contact",
     "components/dem_bodies/integration",
-    "components/particle_dynamics/neighbours",
-    "components/particle_dynamics/spheres",
 }
 VAGUE = {"one", "found", "given", "made", "kept", "own"}
 VAGUE_LOCALS = {
     "components/dem_bodies",
-    "components/particle_dynamics",
     "components/shared",
     "components/sph_fluid",
     "components/stand_ins",

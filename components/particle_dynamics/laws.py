@@ -1,16 +1,52 @@
 """Laws of one pair: the seven-root force, a force from a table, and damping along the pair.
 
-F > 0 is attraction. What a kernel needs is F over the distance, of the squared distance.
+F > 0 is attraction. Kernels take F over the distance, as a function of the squared distance.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from numba import njit
 from numba.extending import overload
 
-from quintet.components.particle_dynamics.potential import MIDDLE, ForceTable
 from quintet.components.shared.numba_options import EXACT
+from quintet.interfaces.component import Array
+
+MIDDLE = 1.5  # spacings, about which potentials are expanded: cancellation is least there
+
+
+class SevenRoots(NamedTuple):
+    """F = c Π(x - x_i) (x - b)^p STEP(x, 2s, 1, 2, 0) with x = r/a (Arinchev, formula 3)."""
+
+    strength: float  # N, c = A a^(7+p), or A a^7 of the ratio envelope
+    per_metre: float  # 1/a
+    roots: tuple[float, ...]  # seven, of x: stable ones at 1, √2, √3, 2
+    base: float  # b: 1 of the literal envelope, 0 of the ratio (r/a)^p
+    factors: tuple[float, ...]  # p ones: how many is known to the compiler
+    begin: float  # 2s, where the cut-off begins
+    per_width: float  # 1/(2 - 2s)
+    cutoff2: float  # m2
+    inner: Array  # (m,) of the potential over c a, in powers of x - 1.5: before the cut-off begins
+    outer: Array  # (m,) and from there to 2
+
+
+class ForceTable(NamedTuple):
+    """A force that is linear between equal steps of distance, and constant before the first."""
+
+    first: float  # m
+    per_metre: float  # 1/m, of its steps
+    force: Array  # (n,) N
+    energy: Array  # (n,) J, integral of the force, 0 at the last
+    cutoff2: float  # m2
+
+
+class PairDamping(NamedTuple):
+    """δ ṙ along each pair, times a step that falls from 1 to 0."""
+
+    coefficient: float  # N s/m, δ
+    per_metre: float  # 1/a
+    begin: float  # spacings, where the step begins
+    per_width: float  # 1/spacings
 
 
 @njit(inline="always")
@@ -43,11 +79,11 @@ def _force_over_distance(law, square):  # type: ignore[no-untyped-def]
     def of_roots(law, square):  # type: ignore[no-untyped-def]
         x = math.sqrt(square) * law.per_metre
         a, b, c, d, e, f, g = law.roots
-        found = (x - a) * (x - b) * (x - c) * (x - d) * (x - e) * (x - f) * (x - g)
+        product = (x - a) * (x - b) * (x - c) * (x - d) * (x - e) * (x - f) * (x - g)
         for _ in range(len(law.factors)):
-            found *= x - law.base
+            product *= x - law.base
         step = falling_step((x - law.begin) * law.per_width)
-        return law.strength * law.per_metre * found * step / x
+        return law.strength * law.per_metre * product * step / x
 
     return of_roots
 
@@ -79,10 +115,10 @@ def _pair_energy(law, square):  # type: ignore[no-untyped-def]
             return 0.0
         x = math.sqrt(square) * law.per_metre
         series = law.inner if x <= law.begin else law.outer
-        found, t = 0.0, x - MIDDLE
+        value, t = 0.0, x - MIDDLE
         for k in range(series.shape[0] - 1, -1, -1):
-            found = found * t + series[k]
-        return law.strength / law.per_metre * found
+            value = value * t + series[k]
+        return law.strength / law.per_metre * value
 
     return of_roots
 

@@ -1,20 +1,52 @@
-"""Neighbour lists of a lattice: each pair once, across periodic sides too."""
+"""Neighbour lists of a lattice: each pair once, also across periodic sides."""
+
+import math
 
 import numpy as np
-from numba import njit
 
-from quintet.components.particle_dynamics.kernels.forces import Pairs, Whole
-from quintet.components.shared.numba_options import EXACT
+from quintet.components.particle_dynamics.kernels.forces import Pairs
+from quintet.components.particle_dynamics.kernels.motion import EARLY
+from quintet.components.particle_dynamics.kernels.pair_lists import write_pairs
+from quintet.components.particle_dynamics.state import Whole
 from quintet.components.shared.search.cells import grid_around, sorted_into
-from quintet.components.shared.search.neighbours import Lists, neighbours_within
+from quintet.components.shared.search.neighbours import neighbours_within
+from quintet.components.shared.search.verlet_list import furthest
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 
 TEAM = Team(1)
+SKIN = 0.1  # of the cut-off
+
+
+class Neighbours:
+    """Lists of all pairs within the cut-off and a skin.
+
+    Parameters
+    ----------
+    cutoff2 : float, m2
+        Square of the cut-off.
+    lowest : (3,) float array, m
+    period : (6,) float array, m and 1/m, or None
+        As in `pairs_within`.
+    """
+
+    def __init__(self, cutoff2: float, lowest: Array, period: Array | None) -> None:
+        self.skin = SKIN * math.sqrt(cutoff2)  # m
+        self.reach = math.sqrt(cutoff2) + self.skin
+        self.lowest, self.period = lowest, period
+        self.pairs = Pairs(np.zeros(1, np.int64), np.zeros(0, np.int32))
+
+    def rebuild(self, position: Array) -> None:
+        """List the pairs of points at positions (n, 3) m."""
+        self.pairs = pairs_within(self.reach, position, self.lowest, self.period)
+
+    def needs_rebuild(self, position: Array, listed: Array) -> bool:
+        """Whether unlisted points may interact soon; `listed` are positions of the last rebuild."""
+        return 2.0 * furthest(position, listed) > EARLY * self.skin
 
 
 def pairs_within(reach: float, position: Array, lowest: Array, period: Array | None) -> Pairs:
-    """List all pairs that are nearer than a reach.
+    """List all pairs within a reach.
 
     Parameters
     ----------
@@ -33,22 +65,22 @@ def pairs_within(reach: float, position: Array, lowest: Array, period: Array | N
         images, source = _images(points, reach, lowest, sides)
     order = sorted_into(points, grid_around(points, reach))[2]
     if len(images):
-        # Sorted by the cells of the first group, which is the only one that looks for them.
-        mine = sorted_into(images, grid_around(points, reach))[2]
-        images, source = images[mine], source[mine]
+        # Sorted by the cells of the first group, which alone searches for them.
+        rising = sorted_into(images, grid_around(points, reach))[2]
+        images, source = images[rising], source[rising]
     count = len(points)
-    found = neighbours_within(reach, np.concatenate([points[order], images]), count, TEAM)
+    lists = neighbours_within(reach, np.concatenate([points[order], images]), count, TEAM)
     place = np.empty(count, np.int64)
     place[order] = np.arange(count)
     begin: Whole = np.zeros(count + 1, np.int64)
-    room = int((found.end - found.begin).sum())
+    room = int((lists.end - lists.begin).sum())
     neighbour = np.empty(room, np.int32)
-    written = _write_pairs(found.arrays, place, order, source, begin, neighbour)
+    written = write_pairs(lists.arrays, place, order, source, begin, neighbour)
     return Pairs(begin, neighbour[:written].copy())
 
 
 def _images(points: Array, reach: float, lowest: Array, sides: Array) -> tuple[Array, Whole]:
-    """Images (m, 3) m of points near periodic sides, and of which points."""
+    """Images (m, 3) m of points near periodic sides, and the numbers (m,) of these points."""
     places, source = points, np.arange(len(points))
     for axis in range(3):
         if sides[axis] == 0.0:
@@ -60,26 +92,3 @@ def _images(points: Array, reach: float, lowest: Array, sides: Array) -> tuple[A
         places = np.concatenate([places, places[low] + shift, places[high] - shift])
         source = np.concatenate([source, source[low], source[high]])
     return places[len(points) :], source[len(points) :]
-
-
-@njit(**EXACT)
-def _write_pairs(
-    lists: Lists, place: Whole, order: Whole, source: Whole, begin: Whole, neighbour: Whole
-) -> int:
-    """Write each pair of full lists once, in the order of the points; return how many."""
-    count = place.shape[0]
-    k = 0
-    for i in range(count):
-        row = place[i]
-        for m in range(lists.begin[row], lists.middle[row]):
-            j = lists.neighbour[m]
-            if j > row:
-                neighbour[k] = order[j]
-                k += 1
-        for m in range(lists.middle[row], lists.end[row]):
-            j = source[lists.neighbour[m] - count]
-            if j > i:
-                neighbour[k] = j
-                k += 1
-        begin[i + 1] = k
-    return k

@@ -1,61 +1,31 @@
 """Pair laws from parameters: roots, potentials and stiffnesses by polynomials; tables of files."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
 
+from quintet.components.particle_dynamics.laws import (
+    MIDDLE,
+    ForceTable,
+    PairDamping,
+    SevenRoots,
+)
 from quintet.components.particle_dynamics.params import Damping, SevenRootForce
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
 SHELLS = (1.0, math.sqrt(2.0), math.sqrt(3.0), 2.0)  # spacings, the stable roots
 STEPS = 4096  # of a table, between its first and its last distance
-MIDDLE = 1.5  # spacings, about which potentials are expanded: cancellation is least there
 
 
-class SevenRoots(NamedTuple):
-    """F = c Π(x - x_i) (x - b)^p STEP(x, 2s, 1, 2, 0) with x = r/a (Arinchev, formula 3)."""
-
-    strength: float  # N, c = A a^(7+p), or A a^7 of the ratio envelope
-    per_metre: float  # 1/a
-    roots: tuple[float, ...]  # seven, of x: stable ones at 1, √2, √3, 2
-    base: float  # b: 1 of the literal envelope, 0 of the ratio (r/a)^p
-    factors: tuple[float, ...]  # p ones: how many is known to the compiler
-    begin: float  # 2s, where the cut-off begins
-    per_width: float  # 1/(2 - 2s)
-    cutoff2: float  # m2
-    inner: Array  # (m,) of the potential over c a, in powers of x - 1.5: before the cut-off begins
-    outer: Array  # (m,) and from there to 2
-
-
-class ForceTable(NamedTuple):
-    """A force that is linear between equal steps of distance, and constant before the first."""
-
-    first: float  # m
-    per_metre: float  # 1/m, of its steps
-    force: Array  # (n,) N
-    energy: Array  # (n,) J, integral of the force, 0 at the last
-    cutoff2: float  # m2
-
-
-class PairDamping(NamedTuple):
-    """δ ṙ along each pair, times a step that falls from 1 to 0."""
-
-    coefficient: float  # N s/m, δ
-    per_metre: float  # 1/a
-    begin: float  # spacings, where the step begins
-    per_width: float  # 1/spacings
-
-
-def seven_roots(given: SevenRootForce, spacing: float, strength: float = 1.0) -> SevenRoots:
+def seven_roots(keys: SevenRootForce, spacing: float, strength: float = 1.0) -> SevenRoots:
     """Law of a strength c [N] for a lattice of a spacing [m]."""
-    first, second, third = given.unstable_roots
-    one, two, three, four = SHELLS
-    roots = (one, first, two, second, three, third, four)
-    base = 1.0 if given.envelope == "power" else 0.0
-    exponent, begin = int(given.exponent), 2.0 * given.cut_off
+    a, b, c, d = SHELLS
+    first, second, third = keys.unstable_roots
+    roots = (a, first, b, second, c, third, d)
+    base = 1.0 if keys.envelope == "power" else 0.0
+    exponent, begin = int(keys.exponent), 2.0 * keys.cut_off
     inner, outer = _potential(roots, base, exponent, begin)
     return SevenRoots(
         strength=strength,
@@ -106,7 +76,7 @@ def stiffness(law: SevenRoots | ForceTable, r: float) -> float:
 def highest_frequency(law: SevenRoots | ForceTable, spacing: float, mass: float) -> float:
     """Highest angular frequency [rad/s] of the infinite lattice, over wave vectors in steps of π/6.
 
-    What is cut out of it has lower ones: a bond that is left out takes stiffness away.
+    A finite lattice has lower ones, because each bond that is missing reduces the stiffness.
     """
     reach = math.floor(math.sqrt(law.cutoff2) / spacing + 1e-9)
     axis = np.arange(-reach, reach + 1)
@@ -114,13 +84,13 @@ def highest_frequency(law: SevenRoots | ForceTable, spacing: float, mass: float)
     length = np.linalg.norm(bonds, axis=1)
     near = (length > 0.0) & (length * spacing < math.sqrt(law.cutoff2) * (1.0 - 1e-12))
     bonds, length = bonds[near], length[near]
-    along = np.array([stiffness(law, spacing * one) for one in length.tolist()])
+    along = np.array([stiffness(law, spacing * shell) for shell in length.tolist()])
     direction = bonds / length[:, None]
     dyads = along[:, None, None] * direction[:, :, None] * direction[:, None, :]
     wave = np.pi / 6.0 * np.arange(7)
     highest = 0.0
-    for one in np.stack(np.meshgrid(wave, wave, wave, indexing="ij"), -1).reshape(-1, 3):
-        weight = 1.0 - np.cos(bonds @ one)
+    for vector in np.stack(np.meshgrid(wave, wave, wave, indexing="ij"), -1).reshape(-1, 3):
+        weight = 1.0 - np.cos(bonds @ vector)
         matrix = (weight[:, None, None] * dyads).sum(axis=0)
         highest = max(highest, float(np.linalg.eigvalsh(matrix)[-1]))
     return math.sqrt(highest / mass)
@@ -150,11 +120,11 @@ def force_table(name: str) -> ForceTable:
     return ForceTable(float(r[0]), 1.0 / width, even, energy, float(r[-1]) ** 2)
 
 
-def pair_damping(given: Damping | None, spacing: float) -> PairDamping | None:
+def pair_damping(damping: Damping | None, spacing: float) -> PairDamping | None:
     """Damping within two spacings; None if there is none, or if it acts on all pairs."""
-    if given is None or given.coefficient == 0.0 or given.range == "all":
+    if damping is None or damping.coefficient == 0.0 or damping.range == "all":
         return None
-    if given.range == "cut-off":
-        return PairDamping(given.coefficient, 1.0 / spacing, 2.0, 1e12)
-    begin = 2.0 * given.cut_off
-    return PairDamping(given.coefficient, 1.0 / spacing, begin, 1.0 / (2.0 - begin))
+    if damping.range == "cut-off":
+        return PairDamping(damping.coefficient, 1.0 / spacing, 2.0, 1e12)
+    begin = 2.0 * damping.cut_off
+    return PairDamping(damping.coefficient, 1.0 / spacing, begin, 1.0 / (2.0 - begin))

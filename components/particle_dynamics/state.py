@@ -5,14 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.particle_dynamics.kernels.generator import State as Generator
 from quintet.interfaces.component import Array
 
 Whole = NDArray[np.int64]
+Generator = NDArray[np.uint64]  # (1,) state of the random numbers
 
 
 class Driven(NamedTuple):
-    """Two points whose distance along an axis is told; `first` is -1 without."""
+    """Two points at a prescribed distance along an axis; `first` is -1 without."""
 
     first: int
     second: int
@@ -20,7 +20,7 @@ class Driven(NamedTuple):
     distance: float  # m, of the first from the second along the axis, at rest
     amplitude: float  # m, with the sign of the distance
     frequency: float  # rad/s
-    share_first: float  # of the amplitude, that the first moves by
+    share_first: float  # of the amplitude, by which the first moves
     share_second: float
     is_free: bool  # whether their mean along the axis moves freely
     rest_first: float  # m, along the axis
@@ -28,7 +28,7 @@ class Driven(NamedTuple):
 
 
 class Bathed(NamedTuple):
-    """Points that baths keep at temperatures; each is in one bath."""
+    """Points that baths keep at temperatures; a point is in one bath at most."""
 
     point: Whole  # (b,)
     bath: Whole  # (b,) its number
@@ -44,7 +44,7 @@ class Model(NamedTuple):
     frozen: Whole  # (f,) points
     driven: Driven
     bathed: Bathed
-    bonds: Whole  # (m, 2) nearest points, those that collide
+    bonds: Whole  # (m, 2) pairs of nearest points that collide
     collision_rate: float  # 1/s
     stages: Array  # (s,) shares of a step: 1, or Yoshida's three
     literal_damping: float  # N s/m, of all pairs at any distance
@@ -56,7 +56,7 @@ class State(NamedTuple):
     position: Array  # (n, 3) m
     velocity: Array  # (n, 3) m/s
     acceleration: Array  # (n, 3) m/s2
-    listed: Array  # (n, 3) m, positions for which the neighbour lists were made
+    listed: Array  # (n, 3) m, positions at the last rebuild of the neighbour lists
     kinetic: Array  # (n,) J s, ½ m v² over time since the averages began
     temperature: Array  # (b,) K, of bathed points
     heat: Array  # (b,) J, from the bath to each point

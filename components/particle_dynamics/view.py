@@ -1,31 +1,29 @@
-"""What a picture shows of a lattice: its points, by hotness."""
+"""What a picture shows of a lattice: its points with their hotness."""
 
 import numpy as np
 
-from quintet.components.particle_dynamics.state import State
 from quintet.interfaces.component import Array, Fields
 
 RADIUS = 0.25  # spacings, at which points are drawn
 
 
-def hotness(state: State, since: float, least: float) -> tuple[Array, Array]:
-    """Mean kinetic energy (n,) J over a time [s], and over that of the hottest point.
+def view(
+    position: Array, velocity: Array, mean: Array, relative: Array, boltzmann: float, spacing: float
+) -> Fields:
+    """Points with hotness, temperature and velocity.
 
-    Where this has less than a least [J], which is rounding, nothing is hot.
+    Parameters
+    ----------
+    position, velocity : (n, 3) float array, m and m/s
+    mean, relative : (n,) float array, J and 1
+        Hotness, and its ratio to that of the hottest point.
+    boltzmann, spacing : float, J/K and m
     """
-    mean = state.kinetic / since if since > 0.0 else np.zeros(len(state.kinetic))
-    highest = mean.max()
-    return mean, mean / highest if highest > least else np.zeros(len(mean))
-
-
-def view(state: State, since: float, least: float, boltzmann: float, spacing: float) -> Fields:
-    """Points with hotness, temperature and velocity."""
-    mean, relative = hotness(state, since, least)
     return {
-        "points": state.position.copy(),
+        "points": position.copy(),
         "radius": np.full(len(mean), RADIUS * spacing),
         "relative_hotness": relative,
         "hotness": mean,
         "temperature": mean / (1.5 * boltzmann),
-        "velocity": state.velocity.copy(),
+        "velocity": velocity.copy(),
     }

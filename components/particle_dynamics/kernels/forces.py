@@ -1,4 +1,4 @@
-"""Forces and energies of all pairs; each pair stands once in the lists."""
+"""Forces and energies of all pairs; the lists hold each pair once."""
 
 import math
 from typing import Any, NamedTuple
@@ -13,10 +13,9 @@ from quintet.components.particle_dynamics.laws import (
     force_over_distance,
     pair_energy,
 )
+from quintet.components.particle_dynamics.state import Whole
 from quintet.components.shared.numba_options import EXACT, FAST
 from quintet.interfaces.component import Array
-
-Whole = NDArray[np.int64]
 
 
 class Pairs(NamedTuple):
@@ -51,16 +50,16 @@ def _opposed(damping, velocity, i, j, x, y, z):  # type: ignore[no-untyped-def]
     return along
 
 
-def shifted(period: Any, axis: int, x: float) -> float:
+def minimum_image(period: Any, axis: int, x: float) -> float:
     """Difference of coordinates [m] to the nearest image."""
     raise NotImplementedError("it is called by compiled functions only")
 
 
-@overload(shifted, inline="always")
-def _shifted(period, axis, x):  # type: ignore[no-untyped-def]
+@overload(minimum_image, inline="always")
+def _minimum_image(period, axis, x):  # type: ignore[no-untyped-def]
     if isinstance(period, types.NoneType):
         return lambda period, axis, x: x
-    # Lengths of open sides are 0: nothing is then taken away.
+    # Lengths of open sides are 0, which leaves x unchanged.
     return lambda period, axis, x: x - period[axis] * np.rint(x * period[axis + 3])
 
 
@@ -99,11 +98,11 @@ def sum_forces(
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
         for k in range(count):
             j = np.uint64(neighbour[first + np.uint64(k)])
-            dx[k] = shifted(period, 0, x - position[j, 0])
-            dy[k] = shifted(period, 1, y - position[j, 1])
-            dz[k] = shifted(period, 2, z - position[j, 2])
+            dx[k] = minimum_image(period, 0, x - position[j, 0])
+            dy[k] = minimum_image(period, 1, y - position[j, 1])
+            dz[k] = minimum_image(period, 2, z - position[j, 2])
         fx, fy, fz = 0.0, 0.0, 0.0
-        # Of its own, so that the compiler makes vectors of it.
+        # A loop of its own, so that the compiler vectorises it.
         for k in range(count):
             f = -force_over_distance(law, dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k])
             if damping is not None:
@@ -155,29 +154,29 @@ def damp_all_pairs(position: Array, velocity: Array, coefficient: float, force: 
 @njit(**EXACT)
 def sum_energies(position: Array, pairs: Pairs, law: Any, period: Any) -> float:
     """Potential energy [J] of all pairs."""
-    found = 0.0
+    energy = 0.0
     for i in range(position.shape[0]):
         for k in range(pairs.begin[i], pairs.begin[i + 1]):
             j = pairs.neighbour[k]
-            x = shifted(period, 0, position[i, 0] - position[j, 0])
-            y = shifted(period, 1, position[i, 1] - position[j, 1])
-            z = shifted(period, 2, position[i, 2] - position[j, 2])
-            found += pair_energy(law, x * x + y * y + z * z)
-    return found
+            x = minimum_image(period, 0, position[i, 0] - position[j, 0])
+            y = minimum_image(period, 1, position[i, 1] - position[j, 1])
+            z = minimum_image(period, 2, position[i, 2] - position[j, 2])
+            energy += pair_energy(law, x * x + y * y + z * z)
+    return energy
 
 
 @njit(**EXACT)
 def count_near(
     position: Array, pairs: Pairs, reach2: float, period: Any, near: Whole
 ) -> None:  # fmt: skip
-    """Count for each point how many others are nearer than a squared distance [m2]."""
+    """Count the neighbours of each point within a squared distance [m2]."""
     near[:] = 0
     for i in range(position.shape[0]):
         for k in range(pairs.begin[i], pairs.begin[i + 1]):
             j = pairs.neighbour[k]
-            x = shifted(period, 0, position[i, 0] - position[j, 0])
-            y = shifted(period, 1, position[i, 1] - position[j, 1])
-            z = shifted(period, 2, position[i, 2] - position[j, 2])
+            x = minimum_image(period, 0, position[i, 0] - position[j, 0])
+            y = minimum_image(period, 1, position[i, 1] - position[j, 1])
+            z = minimum_image(period, 2, position[i, 2] - position[j, 2])
             if x * x + y * y + z * z < reach2:
                 near[i] += 1
                 near[j] += 1
@@ -186,12 +185,12 @@ def count_near(
 @njit(**EXACT)
 def count_intact(position: Array, bonds: Whole, spacing: float, period: Any) -> int:
     """Count the bonds (b, 2) that are between 0.8 and 1.2 spacings [m] long."""
-    found = 0
+    intact = 0
     for k in range(bonds.shape[0]):
         i, j = bonds[k, 0], bonds[k, 1]
-        x = shifted(period, 0, position[i, 0] - position[j, 0])
-        y = shifted(period, 1, position[i, 1] - position[j, 1])
-        z = shifted(period, 2, position[i, 2] - position[j, 2])
+        x = minimum_image(period, 0, position[i, 0] - position[j, 0])
+        y = minimum_image(period, 1, position[i, 1] - position[j, 1])
+        z = minimum_image(period, 2, position[i, 2] - position[j, 2])
         r = math.sqrt(x * x + y * y + z * z) / spacing
-        found += int(0.8 < r < 1.2)
-    return found
+        intact += int(0.8 < r < 1.2)
+    return intact

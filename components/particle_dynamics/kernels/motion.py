@@ -7,9 +7,6 @@ import numpy as np
 from numba import njit
 
 from quintet.components.particle_dynamics.kernels.forces import Pairs, damp_all_pairs, sum_forces
-from quintet.components.particle_dynamics.kernels.generator import (
-    State as Generator,
-)
 from quintet.components.particle_dynamics.kernels.generator import direction, normal, uniform
 from quintet.components.particle_dynamics.state import (
     DISSIPATED,
@@ -20,6 +17,7 @@ from quintet.components.particle_dynamics.state import (
     WORK,
     Bathed,
     Driven,
+    Generator,
     Model,
     State,
 )
@@ -27,12 +25,12 @@ from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.search.verlet_list import furthest
 from quintet.interfaces.component import Array
 
-EARLY = 0.6  # share of the skin at which lists are made anew: the rest is for the step that is made
+EARLY = 0.6  # of the skin: distance at which lists are rebuilt; the rest covers the next step
 
 
 @njit(**EXACT)
 def constrain(driven: Driven, time: float, position: Array, velocity: Array) -> None:
-    """Set places and velocities of the driven pair along its axis to what is told at a time [s]."""
+    """Set the prescribed motion of the driven pair along its axis, at a time [s]."""
     i, j, k = driven.first, driven.second, driven.axis
     moved = driven.amplitude * math.sin(driven.frequency * time)
     speed = driven.amplitude * driven.frequency * math.cos(driven.frequency * time)
@@ -51,20 +49,23 @@ def constrain(driven: Driven, time: float, position: Array, velocity: Array) -> 
 
 @njit(**EXACT)
 def drive(model: Model, time: float, acceleration: Array, energies: Array) -> None:
-    """Let the constraint accelerate the driven pair, and write the forces [N] that this takes."""
+    """Write the prescribed acceleration of the driven pair, and the forces [N] of the drive."""
     driven = model.driven
     i, j, k = driven.first, driven.second, driven.axis
     turning = driven.frequency * driven.frequency
-    told = -driven.amplitude * turning * math.sin(driven.frequency * time)
-    one, other = acceleration[i, k], acceleration[j, k]
+    aim = -driven.amplitude * turning * math.sin(driven.frequency * time)
+    first, second = acceleration[i, k], acceleration[j, k]
     if driven.is_free:
-        middle = 0.5 * (one + other)
-        acceleration[i, k], acceleration[j, k] = middle + 0.5 * told, middle - 0.5 * told
+        middle = 0.5 * (first + second)
+        acceleration[i, k], acceleration[j, k] = (
+            middle + 0.5 * aim,
+            middle - 0.5 * aim,
+        )
     else:
-        acceleration[i, k] = driven.share_first * told
-        acceleration[j, k] = -driven.share_second * told
-    energies[PULL_FIRST] = model.mass * (acceleration[i, k] - one)
-    energies[PULL_SECOND] = model.mass * (acceleration[j, k] - other)
+        acceleration[i, k] = driven.share_first * aim
+        acceleration[j, k] = -driven.share_second * aim
+    energies[PULL_FIRST] = model.mass * (acceleration[i, k] - first)
+    energies[PULL_SECOND] = model.mass * (acceleration[j, k] - second)
 
 
 @njit(**EXACT)
@@ -83,19 +84,20 @@ def exchange_with_baths(
     """Ornstein and Uhlenbeck's velocities after a step: the O of BAOAB (Leimkuhler & Matthews)."""
     velocity = state.velocity
     for b in range(bathed.point.shape[0]):
-        i, kept = bathed.point[b], math.exp(-bathed.rate[b] * dt)
-        width = math.sqrt(boltzmann * state.temperature[b] / mass * (1.0 - kept * kept))
+        i, decay = bathed.point[b], math.exp(-bathed.rate[b] * dt)
+        width = math.sqrt(boltzmann * state.temperature[b] / mass * (1.0 - decay * decay))
         for k in range(3):
             old = velocity[i, k]
-            velocity[i, k] = kept * old + width * normal(state.generator)
+            velocity[i, k] = decay * old + width * normal(state.generator)
             state.heat[b] += 0.5 * mass * (velocity[i, k] * velocity[i, k] - old * old)
 
 
 @njit(**EXACT)
 def collide(bonds: Array, expected: float, velocity: Array, generator: Generator) -> None:
-    """Turn relative velocities of so many random pairs, in the mean, into random directions.
+    """Rotate the relative velocities of random pairs into random directions.
 
-    Masses are equal, so that momentum and energy of each pair stay as they are.
+    `expected` is the mean number of pairs. Masses are equal, so that each pair keeps its momentum
+    and energy.
     """
     waited = -math.log(uniform(generator))
     while waited < expected:
@@ -144,7 +146,7 @@ def accelerate(
 
 @njit(**EXACT)
 def begin(model: Model, state: State, pairs: Pairs, law: Any, damping: Any, period: Any) -> None:
-    """Find what acts at the start; the driven pair has its first velocities."""
+    """Compute the accelerations at the start, after setting the driven pair."""
     time = state.energies[TIME]
     if model.driven.first >= 0:
         constrain(model.driven, time, state.position, state.velocity)
@@ -169,15 +171,15 @@ def kick(dt: float, velocity: Array, acceleration: Array) -> None:
 
 @njit(**EXACT)
 def average(dt: float, mass: float, velocity: Array, kinetic: Array) -> float:
-    """Add kinetic energies times the step to their integrals; return the sum of the squares."""
-    found = 0.0
+    """Add kinetic energies times the step to their integrals; return the sum of squared speeds."""
+    squares = 0.0
     for i in range(velocity.shape[0]):
         square = 0.0
         for k in range(3):
             square += velocity[i, k] * velocity[i, k]
         kinetic[i] += dt * 0.5 * mass * square
-        found += square
-    return found
+        squares += square
+    return squares
 
 
 @njit(**EXACT)
@@ -200,7 +202,7 @@ def make_stage(
     h: float, boltzmann: float, model: Model, state: State, predicted: Array, pairs: Pairs,
     law: Any, damping: Any, period: Any,
 ) -> None:  # fmt: skip
-    """Make a step of velocity Verlet of a time [s]; `predicted` is memory for what damps."""
+    """Advance by a step h [s] of velocity Verlet; `predicted` is memory for damped velocities."""
     position, velocity, acceleration = state.position, state.velocity, state.acceleration
     energies, driven = state.energies, model.driven
     energies[DISSIPATED] += 0.5 * h * energies[LOST]
@@ -209,7 +211,7 @@ def make_stage(
     drift_in_baths(h, boltzmann, model, state)
     energies[TIME] += h
     if damping is not None or model.literal_damping > 0.0:
-        # What damps is the velocity at the step's end, to the accuracy of the step.
+        # Damping takes the velocity at the step's end, to the accuracy of the step.
         predicted[:] = velocity
         kick(0.5 * h, predicted, acceleration)
     if driven.first >= 0:
@@ -228,14 +230,14 @@ def advance(
     steps: int, dt: float, skin: float, averaged_from: float, boltzmann: float, model: Model,
     state: State, pairs: Pairs, law: Any, damping: Any, period: Any,
 ) -> int:  # fmt: skip
-    """Make steps until they are done or the neighbour lists no longer hold.
+    """Advance until all steps are done or the neighbour lists must be rebuilt.
 
     Parameters
     ----------
     steps : int
     dt : float, s
     skin : float, m
-        Two points that moved by this together may have come into reach unlisted.
+        Distance that two points may move together before an unlisted pair can interact.
     averaged_from : float, s
         From when kinetic energies are averaged.
     boltzmann : float, J/K
@@ -245,8 +247,8 @@ def advance(
     Returns
     -------
     int
-        Steps that were made; -1 if points moved further in a step than the lists allow, or if
-        their velocities are not finite.
+        Number of steps done; -1 if points moved further in a step than the lists allow, or if
+        velocities are not finite.
     """
     predicted = state.velocity
     if damping is not None or model.literal_damping > 0.0:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from quintet.components.particle_dynamics.kernels.forces import Whole
+from quintet.components.particle_dynamics.state import Whole
 from quintet.components.shared.numba_options import EXACT
 from quintet.interfaces.component import Array
 
@@ -48,11 +48,11 @@ def apply_stiffness(
 @njit(**EXACT)
 def dot(x: Array, y: Array) -> float:
     """Scalar product of two displacements (n, 3)."""
-    found = 0.0
+    product = 0.0
     for i in range(x.shape[0]):
         for k in range(3):
-            found += x[i, k] * y[i, k]
-    return found
+            product += x[i, k] * y[i, k]
+    return product
 
 
 @njit(**EXACT)
@@ -64,18 +64,18 @@ def tridiagonal(
     basis = np.zeros((steps, *start.shape))
     diagonal, beside = np.zeros(steps), np.zeros(steps)
     basis[0] = start / math.sqrt(dot(start, start))
-    found = np.empty_like(start)
+    residual = np.empty_like(start)
     for m in range(steps):
-        apply_stiffness(bonds, direction, along, across, free, basis[m], found)
-        diagonal[m] = dot(found, basis[m])
+        apply_stiffness(bonds, direction, along, across, free, basis[m], residual)
+        diagonal[m] = dot(residual, basis[m])
         for _ in range(2):
             for k in range(m + 1):
-                found -= dot(found, basis[k]) * basis[k]
-        length = math.sqrt(dot(found, found))
+                residual -= dot(residual, basis[k]) * basis[k]
+        length = math.sqrt(dot(residual, residual))
         if m + 1 == steps or length < 1e-10 * abs(diagonal[0]):
             return diagonal[: m + 1], beside[:m]
         beside[m] = length
-        basis[m + 1] = found / length
+        basis[m + 1] = residual / length
     return diagonal, beside
 
 

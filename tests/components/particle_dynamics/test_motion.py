@@ -142,7 +142,7 @@ def test_results_depend_on_ratios_only():
 @pytest.mark.parametrize("mode", ["relative", "symmetric", "point", "partner"])
 def test_the_driven_pair_has_the_distance_that_is_told(mode):
     made = bar(mode=mode)
-    driven = made.built.model.driven
+    driven = made.model.driven
     start = made.built.start
     for _ in range(97):
         made.step(2e-4)
@@ -159,7 +159,7 @@ def test_the_driven_pair_has_the_distance_that_is_told(mode):
     else:
         assert moved.sum() != 0.0  # their mean is free
     assert abs(made.give({"energies.audit"})["energies.audit"][0]) < 1e-2
-    frozen = made.built.model.frozen
+    frozen = made.model.frozen
     assert (made.state.position[frozen] == start[frozen]).all()
 
 
@@ -217,7 +217,7 @@ def test_heat_flows_through_the_wall_that_a_partner_holds():
     for _ in range(400):
         made.step(made.stable_dt())
         joules += made.stable_dt() * made.give({"wall_heat.heat_flow"})["wall_heat.heat_flow"].sum()
-    into_bar, out = made._heat_of_baths()[[1, 0]]
+    into_bar, out = made._integrals()[[2, 1]]
     assert joules == pytest.approx(-into_bar, rel=1e-12)
     assert into_bar > 0.0 > out
     assert made.totals().internal + made.totals().kinetic - made.initial == pytest.approx(

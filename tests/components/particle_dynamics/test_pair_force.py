@@ -60,7 +60,7 @@ def frequencies(made):
             sum_forces(moved, np.zeros_like(place), pairs, made.built.law, None, None, out)
             found.append(out.ravel())
         matrix[k] = -(found[0] - found[1]) / (2.0 * step)
-    held = np.repeat(np.isin(np.arange(count), made.built.model.frozen), 3)
+    held = np.repeat(np.isin(np.arange(count), made.model.frozen), 3)
     matrix = 0.5 * (matrix + matrix.T)[~held][:, ~held]
     squares = np.linalg.eigvalsh(matrix) / made.params.lattice.mass
     return np.sqrt(np.maximum(squares, 0.0))
@@ -211,10 +211,10 @@ def test_damping_takes_what_the_pairs_lose(kind):
     # Off its places, as the shell at two spacings would stand on the edge of the cut-off.
     made.state.position[:] *= 1.01
     random = np.random.default_rng(5)
-    state, built = made.state, made.built
+    state = made.state
     speed = 0.1 * random.normal(size=state.velocity.shape)
     state.velocity[:] = speed
-    accelerate(0.0, built.model, state, speed, made.pairs, built.law, built.damping, built.period)
+    accelerate(0.0, made.model, state, speed, made.neighbours.pairs, *made.forces)
     force_of = 1e-3 * state.acceleration
     assert np.abs(force_of.sum(axis=0)).max() < 1e-13 * np.abs(force_of).max()
     # Written out: which pairs are damped, and how much.

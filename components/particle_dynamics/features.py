@@ -1,0 +1,97 @@
+"""What holds, drives, damps and heats a lattice; each is absent unless the scene has it."""
+
+import math
+
+import numpy as np
+
+from quintet.components.particle_dynamics.build import Built, nearest_point
+from quintet.components.particle_dynamics.integrators import STAGES
+from quintet.components.particle_dynamics.params import Bath, Drive, Lattice, ParticleLatticeParams
+from quintet.components.particle_dynamics.state import Bathed, Driven, Model, Whole
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
+
+NO_DRIVE = Driven(-1, -1, 0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0, 0.0)
+
+
+def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
+    """All constants of the equations of motion but the pair force."""
+    damping, start, drive = params.damping, built.start, params.drive
+    driven = NO_DRIVE if drive is None else _driven(start, params.lattice, drive)
+    held = {*built.frozen.tolist(), *({driven.first, driven.second} - {-1})}
+    if shared := held & set(bathed.point.tolist()):
+        raise SceneError(
+            f"baths: points in a bath must be neither frozen nor driven; found "
+            f"{start[min(shared)].tolist()} m. Make the boxes smaller."
+        )
+    loose = ~np.isin(built.bonds, sorted(held)).any(axis=1)
+    is_literal = damping is not None and damping.range == "all"
+    return Model(
+        mass=params.lattice.mass,
+        frozen=built.frozen,
+        driven=driven,
+        bathed=bathed,
+        bonds=built.bonds[loose],
+        collision_rate=params.collision_rate if loose.any() else 0.0,
+        stages=np.array(STAGES[params.integrator]),
+        literal_damping=damping.coefficient if damping is not None and is_literal else 0.0,
+    )
+
+
+def _driven(start: Array, lattice: Lattice, drive: Drive) -> Driven:
+    first, axis = nearest_point(start, drive.point), "xyz".index(drive.partner[1])
+    towards = 1.0 if drive.partner[0] == "+" else -1.0
+    place = start[first].copy()
+    place[axis] += towards * lattice.spacing
+    second = nearest_point(start, tuple(place.tolist()))
+    if np.abs(start[second] - place).max() > 0.5 * lattice.spacing:
+        raise SceneError(
+            f"drive: partner must be a point of the lattice; towards {drive.partner} of "
+            f"{start[first].tolist()} m there is none. Take another direction."
+        )
+    distance = -towards * lattice.spacing
+    shares = {"relative": (0.5, 0.5), "symmetric": (0.5, 0.5), "point": (1.0, 0.0)}
+    share_first, share_second = shares.get(drive.mode, (0.0, 1.0))
+    return Driven(
+        first=first,
+        second=second,
+        axis=axis,
+        distance=distance,
+        amplitude=math.copysign(drive.amplitude, distance),
+        frequency=2.0 * math.pi * drive.frequency,
+        share_first=share_first,
+        share_second=share_second,
+        is_free=drive.mode == "relative",
+        rest_first=float(start[first, axis]),
+        rest_second=float(start[second, axis]),
+    )
+
+
+def bathed(start: Array, baths: tuple[Bath, ...]) -> Bathed:
+    """Points in baths; each box must hold points that no other bath has."""
+    slack = 1e-9 * float(np.abs(start).max() + 1e-300)
+    bath_of = np.full(len(start), -1)
+    for number, bath in enumerate(baths):
+        low, high = np.array(bath.lowest) - slack, np.array(bath.highest) + slack
+        inside = ((start >= low) & (start <= high)).all(axis=1)
+        if not inside.any() or (bath_of[inside] >= 0).any():
+            mistake = "holds none" if not inside.any() else "shares one with another bath"
+            raise SceneError(
+                f"baths.{number}: its box must hold points of its own; it {mistake}. Correct the "
+                "box."
+            )
+        bath_of[inside] = number
+    point = np.flatnonzero(bath_of >= 0)
+    number_of = bath_of[point]
+    return Bathed(
+        point=point,
+        bath=number_of,
+        rate=np.array([bath.rate for bath in baths], float)[number_of],
+        tether=np.array([bath.tether for bath in baths], float)[number_of],
+        rest=start[point].copy(),
+    )
+
+
+def wall_of(bathed: Bathed, baths: tuple[Bath, ...]) -> Whole:
+    """Rows of the bathed points that are coupled, which are the wall of a link `heat`."""
+    return np.flatnonzero(np.array([bath.coupled for bath in baths], bool)[bathed.bath])

@@ -1,0 +1,30 @@
+"""Pairs of a lattice from the neighbour lists of its points and of their periodic images."""
+
+from numba import njit
+
+from quintet.components.particle_dynamics.state import Whole
+from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.search.neighbours import Lists
+
+
+@njit(**EXACT)
+def write_pairs(
+    lists: Lists, place: Whole, order: Whole, source: Whole, begin: Whole, neighbour: Whole
+) -> int:
+    """Write each pair of full lists once, in the order of the points; count the pairs."""
+    count = place.shape[0]
+    k = 0
+    for i in range(count):
+        row = place[i]
+        for m in range(lists.begin[row], lists.middle[row]):
+            j = lists.neighbour[m]
+            if j > row:
+                neighbour[k] = order[j]
+                k += 1
+        for m in range(lists.middle[row], lists.end[row]):
+            j = source[lists.neighbour[m] - count]
+            if j > i:
+                neighbour[k] = j
+                k += 1
+        begin[i + 1] = k
+    return k
