@@ -149,6 +149,7 @@ class Component(ABC):
 
     takes: tuple[Port, ...] = ()
     gives: tuple[Port, ...] = ()
+    compiles: bool = False  # whether to try a step, which is undone, before the run's clock starts
     shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
     manifest: ClassVar[Any] = None  # of a kind that publishes one; classes derived from it have it
 
@@ -203,17 +204,6 @@ class Component(ABC):
 
     def prime(self, fields: Fields) -> None:  # noqa: B027  (most need none)
         """Learn what the inputs that are instants are as the run begins; once, after `bind`."""
-
-    def prepare(self, fields: Fields) -> None:  # noqa: B027  (most need none)
-        """Do what takes long before the first step, such as compiling; the state stays as it is.
-
-        All components of a run do so at the same time, and its clock starts afterwards.
-
-        Parameters
-        ----------
-        fields : mapping of arrays
-            Inputs at the start, as `take` gets them.
-        """
 
     @abstractmethod
     def stable_dt(self) -> float:

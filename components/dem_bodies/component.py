@@ -109,12 +109,6 @@ class DemBodies(Component):
         """Sample the surfaces of all bodies as a partner asks for it."""
         return sample(self.bodies, request)
 
-    def prepare(self, fields: Fields) -> None:
-        """Compile the kernels of a step, and those that read its end."""
-        self._begin()
-        self.give(frozenset(MOTION))
-        self.totals()
-
     def _begin(self) -> None:
         """Detect the contacts of the start, once.
 
@@ -124,12 +118,14 @@ class DemBodies(Component):
         if not self.begun:
             self.begun = True
             self._move(0.0)
+            self.give(frozenset(MOTION))
+            self.totals()
 
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
+        self._begin()
         if self.params.fixed_step is not None:
             return self.params.fixed_step
-        self._begin()
         report, longest = self.state.report, self.params.longest_step
         stiffest = math.sqrt(report[rows.STIFFEST])  # rad/s
         ω = max(self.frequency, stiffest)

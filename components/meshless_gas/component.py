@@ -28,7 +28,6 @@ from quintet.interfaces.component import (
     Keys,
     Resources,
     Totals,
-    fields_of,
 )
 from quintet.interfaces.errors import StepError
 
@@ -43,6 +42,7 @@ class MeshlessGas(Component):
     Params: type[MeshlessGasParams] = MeshlessGasParams
     manifest = MANIFEST
     shows = SHOWS
+    compiles = True
 
     def __init__(self, params: MeshlessGasParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
@@ -80,14 +80,6 @@ class MeshlessGas(Component):
         """Take the places of particles at the start."""
         for part in self.parts:
             part.prime(fields, self.fluxes.primitive)
-
-    def prepare(self, fields: Fields) -> None:
-        """Compile all kernels: try a step, and come back."""
-        state = self.save()
-        self.take(fields)
-        self.step(1e-3 * self.stable_dt())
-        self.give(frozenset(fields_of(self.gives)))
-        self.load(state)
 
     def stable_dt(self) -> float:
         """Return the share `courant` of the shortest stable step, or what particles allow."""

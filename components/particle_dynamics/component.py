@@ -17,7 +17,7 @@ from quintet.components.particle_dynamics.ports import SHOWS
 from quintet.components.particle_dynamics.potential import pair_damping
 from quintet.components.particle_dynamics.state import DISSIPATED, TIME, WORK
 from quintet.components.particle_dynamics.view import view
-from quintet.interfaces.component import Array, Component, Fields, Keys, Totals, fields_of
+from quintet.interfaces.component import Array, Component, Fields, Keys, Totals
 from quintet.interfaces.errors import StepError
 
 
@@ -33,6 +33,7 @@ class ParticleLattice(Component):
     Params: type[ParticleLatticeParams] = ParticleLatticeParams
     manifest = MANIFEST
     shows = SHOWS
+    compiles = True
 
     def __init__(self, params: ParticleLatticeParams) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
@@ -65,14 +66,6 @@ class ParticleLattice(Component):
         if not len(self.wall):
             return {}
         return {"wall_heat.position": self.model.bathed.rest[self.wall]}
-
-    def prepare(self, fields: Fields) -> None:
-        """Compile all kernels by a step that is then undone."""
-        before = self.save()
-        self.take(fields)
-        self.step(self.substep)
-        self.give(frozenset(fields_of(self.gives)))
-        self.load(before)
 
     def stable_dt(self) -> float:
         """Return the length of all substeps."""

@@ -29,7 +29,6 @@ from quintet.interfaces.component import (
     Keys,
     Resources,
     Totals,
-    fields_of,
 )
 from quintet.interfaces.errors import OrderError, StepError
 from quintet.interfaces.faces import polygons
@@ -48,6 +47,7 @@ class SphFluid(Component):
 
     manifest = MANIFEST
     shows = SHOWS
+    compiles = True
 
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
@@ -92,14 +92,6 @@ class SphFluid(Component):
             self._notes += features.remove_inside_bodies(
                 self.state, self.samples, fields, self.params
             )
-
-    def prepare(self, fields: Fields) -> None:
-        """Compile all kernels: try a step, and come back."""
-        before = self.save()
-        self.take(fields)
-        self.step(self.stable_dt())
-        self.give(frozenset(fields_of(self.gives)))
-        self.load(before)
 
     def stable_dt(self) -> float:
         """Largest step [s]; Monaghan & Kos 1999 and Morris 1997, from the rates of the last one."""

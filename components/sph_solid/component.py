@@ -33,7 +33,6 @@ from quintet.interfaces.component import (
     Keys,
     Resources,
     Totals,
-    fields_of,
 )
 from quintet.interfaces.errors import StepError
 
@@ -51,6 +50,7 @@ class SphSolid(Component):
     Params: type[SphSolidParams] = SphSolidParams
     manifest = MANIFEST
     shows = SHOWS
+    compiles = True
 
     def __init__(self, params: SphSolidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
@@ -78,14 +78,6 @@ class SphSolid(Component):
     def bind(self, static: Fields, joined: Keys) -> None:
         """Take down whether a mesh carries the glued particles."""
         self.is_carried = "glued" in joined or "glued_load" in joined
-
-    def prepare(self, fields: Fields) -> None:
-        """Compile all kernels: try a step, then restore the state."""
-        saved = self.save()
-        self.take(fields)
-        self.step(self.stable_dt())
-        self.give(frozenset(fields_of(self.gives)))
-        self.load(saved)
 
     def stable_dt(self) -> float:
         """Return the share `courant` of the smallest stable step of all particles."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from quintet.interfaces.component import Component, Fields
+from quintet.interfaces.component import Component, Fields, outputs_of
 from quintet.interfaces.errors import LineError, OrderError, QuintetError, StepError
 from quintet.interfaces.lines.message import Message, require_finite
 from quintet.interfaces.lines.transport import Line
@@ -25,6 +25,7 @@ from quintet.interfaces.serving.port_view import look_at
 from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
+TRIED = 1e-3  # of the stable step: the length of a step that is undone
 MOST = 1e9  # steps in a window; more would never end
 LONGEST_TEXT = 1 << 16  # characters of an error's text or traceback
 # s between two orders, in which others may build or compute; the coupler's death ends the wait.
@@ -57,6 +58,7 @@ class Server:
         self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
         self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
         self._told = 0  # notes
+        self._prepared = 0.0  # s, spent on the outputs of the start
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
             "describe": self._describe,
@@ -111,14 +113,29 @@ class Server:
         return {"notes": self._notes()}, {}
 
     def _prepare(self, _: Message) -> Answer:
+        """Compile: find the stable step, and try one where the component asks for it."""
         began = time.perf_counter()
-        self.component.prepare(self.inputs.at_start())
+        if self.component.compiles:
+            self._try_step()
         self._stable = None
-        return {"stable": self.stable(), "seconds": time.perf_counter() - began}, {}
+        stable = self.stable()
+        return {"stable": stable, "seconds": self._prepared + time.perf_counter() - began}, {}
+
+    def _try_step(self) -> None:
+        """Take the inputs of the start, step and give, then restore the state."""
+        component = self.component
+        state = component.save()
+        component.take(self.inputs.at_start())
+        component.step(TRIED * component.stable_dt())
+        outputs_of(component)
+        component.load(state)
 
     def _give(self, _: Message) -> Answer:
+        began = time.perf_counter()
         self.outputs.begin()
-        return {}, self.outputs.collect(self._given(self.outputs.wanted))
+        fields = self.outputs.collect(self._given(self.outputs.wanted))
+        self._prepared += time.perf_counter() - began
+        return {}, fields
 
     def _advance(self, message: Message) -> Answer:
         header, began, spent = message.header, time.perf_counter(), time.process_time()

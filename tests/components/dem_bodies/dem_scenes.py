@@ -77,7 +77,7 @@ def mistakes(bodies, **given):
 def build(bodies, materials=None, threads=1, **given):
     """Bodies as they are before the first step of a run: their contacts are known."""
     made = DemBodies(params(bodies, materials, **given), Resources(threads))
-    made.prepare({})
+    made.stable_dt()
     return made
 
 

@@ -88,10 +88,16 @@ from quintet.interfaces.serving.notices import notice
 from toys import Toy
 class Slow(Toy):
     '''Takes long before its first step.'''
-    def prepare(self, fields):
+    compiles = True
+    def take(self, fields):
         assert fields["in.number"].shape == (5, 3)
-        notice("reading the mesh")
-        time.sleep(3.0)
+        super().take(fields)
+    def step(self, dt):
+        if self.compiles:
+            self.compiles = False
+            notice("reading the mesh")
+            time.sleep(3.0)
+        super().step(dt)
 """
 
 
