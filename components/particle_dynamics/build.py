@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from quintet.components.particle_dynamics.coefficients import ForceTable, SevenRoots
 from quintet.components.particle_dynamics.kernels.stiffness import highest_eigenvalue, tridiagonal
-from quintet.components.particle_dynamics.laws import ForceTable, SevenRoots
 from quintet.components.particle_dynamics.laws import force as pair_force
 from quintet.components.particle_dynamics.neighbours import pairs_within
 from quintet.components.particle_dynamics.params import Lattice, ParticleLatticeParams

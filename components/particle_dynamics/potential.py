@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.polynomial import polynomial
 
-from quintet.components.particle_dynamics.laws import (
+from quintet.components.particle_dynamics.coefficients import (
     MIDDLE,
     ForceTable,
     PairDamping,

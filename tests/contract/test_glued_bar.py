@@ -76,7 +76,7 @@ def test_energy_of_a_glued_bar_stays_over_thirty_transits(tmp_path):
 def _momentum(trace):
     """Momentum along x at the middle of the last step, in which both sides know each other."""
     bar, rods = trace.components["bar"], trace.components["rods"]
-    return float(bar.mass @ bar.state.mean_velocity[:, 0] + (rods.mass * rods.v).sum())
+    return float(bar.built.mass @ bar.state.mean_velocity[:, 0] + (rods.mass * rods.v).sum())
 
 
 TORN = {"material": {"spall_stress": 0.05}, "velocity": [-0.1, 0.0, 0.0]}
@@ -86,18 +86,18 @@ TORN = {"material": {"spall_stress": 0.05}, "velocity": [-0.1, 0.0, 0.0]}
 def test_where_a_face_erodes_its_particles_are_freed_and_momentum_stays(tmp_path, end):
     trace = _run(tmp_path, end, TORN)
     bar, rods = trace.components["bar"], trace.components["rods"]
-    start = -0.1 * (bar.mass.sum() + 4 * 0.5)  # what is glued moves with its nodes
+    start = -0.1 * (bar.built.mass.sum() + 4 * 0.5)  # what is glued moves with its nodes
     assert _momentum(trace) == pytest.approx(start, rel=1e-12)
     # Totals close at every end of a window: as an element erodes, a window later, as its particles
     # are told and its nodes let them go, and ever after.
     totals = [one.totals() for one in (bar, rods)]
-    assert sum(one.mass for one in totals) == pytest.approx(bar.mass.sum() + rods.mass.sum())
+    assert sum(one.mass for one in totals) == pytest.approx(bar.built.mass.sum() + rods.mass.sum())
     assert sum(one.momentum[0] for one in totals) == pytest.approx(start, rel=1e-12)
     assert (bar.places.active(bar.state).min() == 0.0) == (end > 0.9)
     torn = end > 1.1
     assert bool(rods.held.all()) is not torn
     # Their mass hangs on the nodes as long as they do.
-    hung = 1.0 / bar.model.inverse_mass - bar.mass
+    hung = 1.0 / bar.model.inverse_mass - bar.built.mass
     assert hung.sum() == pytest.approx(0.0 if torn else 4 * 0.5, abs=1e-12)
     assert trace.account.momentum_residual <= 1e-12
     assert trace.account.other_residual <= 1e-12

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from quintet.coupler.cli import main
-from quintet.coupler.coupling import time_check
+from quintet.coupler.coupling.judgement import time_check
 from quintet.coupler.report.diff import compare
 from quintet.coupler.scene.predicted_limits import beyond_limits
 from quintet.coupler.scene.read import library, load

@@ -117,7 +117,8 @@ def test_stiff_cubes_rest_on_the_floor_under_water(go: Run, young: float) -> Non
         f"{BODY}.lowest": [0.1, 0.1, 0.0001],
         f"{BODY}.highest": [0.25, 0.25, 0.1501],
         "components.cube.materials.plastic.youngs_modulus": young,
-        "components.water.fluid": [{"lowest": [0.0, 0.0, 0.2], "highest": [0.35, 0.35, 0.4]}],
+        "components.water.fluid.0.lowest": [0.0, 0.0, 0.2],
+        "components.water.fluid.0.highest": [0.35, 0.35, 0.4],
         "end": 0.1,
     }
     found = go(sunk)

@@ -24,10 +24,10 @@ from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.laws import PairLaw
 from quintet.components.sph_fluid.pairs.constants import NO_REPULSION, pair_law
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ports import CONTACT
 from quintet.interfaces.component import Fields, outputs_of
 from quintet.interfaces.errors import PortError
 from quintet.interfaces.params import read
-from quintet.interfaces.ports import CONTACT
 
 Make = Callable[..., SphFluid]
 Join = Callable[..., Fields]
