@@ -15,6 +15,8 @@ SCENE = str(Path(__file__).parent / "small_tank.toml")
 BODY = "components.cube.bodies.0"
 EDGE, SOUND, G = 0.15, 18.0, 9.81  # m, m/s, m/s2
 DISPLACED = 0.1  # m, draught as it is let go
+# A slab of water above a cube that starts at the floor.
+SLAB = '[{shape = "box", lowest = [0.0, 0.0, 0.2], highest = [0.35, 0.35, 0.4]}]'
 
 
 @pytest.fixture(scope="module")
@@ -117,8 +119,7 @@ def test_stiff_cubes_rest_on_the_floor_under_water(go: Run, young: float) -> Non
         f"{BODY}.lowest": [0.1, 0.1, 0.0001],
         f"{BODY}.highest": [0.25, 0.25, 0.1501],
         "components.cube.materials.plastic.youngs_modulus": young,
-        "components.water.fluid.0.lowest": [0.0, 0.0, 0.2],
-        "components.water.fluid.0.highest": [0.35, 0.35, 0.4],
+        "components.water.fluid": SLAB,
         "end": 0.1,
     }
     found = go(sunk)
