@@ -14,7 +14,7 @@ its faces are exact. Two boxes touch where a corner of one is near the other (8 
 rounded boxes) and where two edges cross; that is all that convex polyhedra can do. A sharp edge
 yields until it is blunt: contacts of boxes and polygons have at least the radius of a default edge
 radius, and that of a body a tenth as thick as it is long, however sharp or thin they are; so they
-may be deeper than edges are round (`contact/sharp.py`). Spheres and their unions touch boxes by
+may be deeper than edges are round (`kernels/sharp.py`). Spheres and their unions touch boxes by
 their exact distance. Contacts along an edge or face thus need no row of small spheres, whose bumps
 would add to the friction.
 
@@ -32,7 +32,7 @@ momentum are those of the prisms.
 
 Two materials in contact have the lower of their frictions, restitutions and rolling coefficients;
 `pairs` in a scene overrides each of them for two materials, or for one and itself. Rolling
-resistance is that of `contact/rolling_resistance.py`, between spheres, and spheres and planes.
+resistance is that of `kernels/rolling_resistance.py`, between spheres, and spheres and planes.
 
 Spheres on their own, the many of a packing, have a list of pairs and kernels of their own: rows
 sorted in space, several contacts computed at once, blocks of rows shared out among threads. All

@@ -5,28 +5,26 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from quintet.components.dem_bodies import MANIFEST, build, diagnostics, kernels
+from quintet.components.dem_bodies import MANIFEST, build, diagnostics
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.contact import search
 from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, no_ball_pairs
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
+from quintet.components.dem_bodies.contact.step_limit import many_contacts_step
 from quintet.components.dem_bodies.diagnostics import (
     ALLOWED_DEPTH,
     contact_points,
     doubts,
     failure,
 )
-from quintet.components.dem_bodies.integration.step_limit import (
-    count_ball_contacts,
-    count_contacts,
-    many_contacts_step,
-)
+from quintet.components.dem_bodies.kernels import step as kernels
+from quintet.components.dem_bodies.kernels.contact_counts import count_ball_contacts, count_contacts
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import SHOWS
 from quintet.components.dem_bodies.shapes.sampling import sample
-from quintet.components.dem_bodies.shapes.view import planes_view, view
 from quintet.components.dem_bodies.start import described
 from quintet.components.dem_bodies.state import BallPairs
+from quintet.components.dem_bodies.view import planes_view, view
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,

@@ -3,7 +3,7 @@
 import numpy as np
 
 from quintet.components.dem_bodies.contact import ball_search
-from quintet.components.dem_bodies.integration.locked_motion import write_momenta_of_locked
+from quintet.components.dem_bodies.kernels.locked_motion import write_momenta_of_locked
 from quintet.components.dem_bodies.state import (
     DEEPEST,
     DEEPEST_PAIR,

@@ -7,25 +7,19 @@ whose ends only move on from one ball to the next; and so that all that a step r
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, bodies_of, transfer_history
-from quintet.components.dem_bodies.contact.geometry import row_vector, sphere_plane
+from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs, transfer_history
+from quintet.components.dem_bodies.kernels.ball_lists import Sorted, list_partners
+from quintet.components.dem_bodies.kernels.ball_pairs import bodies_of
 from quintet.components.dem_bodies.state import (
     RADIUS,
     BallPairs,
     Model,
     Numbers,
-    Short,
     State,
     Whole,
 )
-from quintet.components.shared.numba_options import EXACT
-from quintet.components.shared.rotations import dot, sub
-from quintet.components.shared.search.cells import LAYER, ROW, keys_of
-
-# First key, and how many follow, of each range of later rows that may be near.
-AHEAD = ((0, 1), (ROW - 1, 2), (LAYER - ROW - 1, 2), (LAYER - 1, 2), (LAYER + ROW - 1, 2))
+from quintet.components.shared.search.cells import keys_of
 
 
 class Touching(NamedTuple):
@@ -36,45 +30,6 @@ class Touching(NamedTuple):
     normal: Numbers  # (k, 3) to the first body
     force: Numbers  # (k, 3) N, on the first body
     depth: Numbers  # (k,) m
-
-
-class Sorted(NamedTuple):
-    """Balls in the order of the keys of their cells."""
-
-    keys: Whole  # (b,) rising
-    width: float  # m, of a cell
-
-
-@njit(**EXACT)
-def list_partners(
-    model: Model, motion: Numbers, keys: Whole, skin: float, begin: Whole, partner: Short
-) -> int:
-    """Write the partners of each row, while there is room, and where rows begin; count them."""
-    planes, rows, count, found = model.plane.shape[0], motion.shape[0], keys.shape[0], 0
-    low, high = np.zeros(5, np.int64), np.zeros(5, np.int64)
-    for a in range(count):
-        begin[a] = found
-        x, radius = row_vector(motion, a), motion[a, RADIUS]
-        for p in range(planes):
-            if sphere_plane(x, radius, row_vector(model.plane, p), model.plane[p, 3])[0] < skin:
-                if found < partner.shape[0]:
-                    partner[found] = rows + p
-                found += 1
-        for k in range(5):
-            first = keys[a] + AHEAD[k][0]
-            last = first + AHEAD[k][1]
-            while low[k] < count and keys[low[k]] < first:
-                low[k] += 1
-            while high[k] < count and keys[high[k]] <= last:
-                high[k] += 1
-            for b in range(max(low[k], a + 1), high[k]):
-                d, near = sub(x, row_vector(motion, b)), radius + motion[b, RADIUS] + skin
-                if dot(d, d) < near * near:
-                    if found < partner.shape[0]:
-                        partner[found] = b
-                    found += 1
-    begin[count] = found
-    return found
 
 
 def sorted_balls(model: Model, state: State, skin: float) -> tuple[Sorted, Whole]:

@@ -4,7 +4,7 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import (
+from quintet.components.dem_bodies.kernels.geometry import (
     Gap,
     edge_edge,
     row_vector,
@@ -12,7 +12,8 @@ from quintet.components.dem_bodies.contact.geometry import (
     sphere_plane,
     sphere_sphere,
 )
-from quintet.components.dem_bodies.contact.sharp import (
+from quintet.components.dem_bodies.kernels.locked_motion import free_inverse_mass
+from quintet.components.dem_bodies.kernels.sharp import (
     SUNK,
     box_of,
     edge_of,
@@ -20,7 +21,6 @@ from quintet.components.dem_bodies.contact.sharp import (
     sunk_edges,
     sunk_in_polygon,
 )
-from quintet.components.dem_bodies.integration.locked_motion import free_inverse_mass
 from quintet.components.dem_bodies.laws import contact_force, damping_weight, pair_constants
 from quintet.components.dem_bodies.state import (
     DEEPEST,

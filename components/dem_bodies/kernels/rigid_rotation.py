@@ -2,7 +2,7 @@
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import quaternion, row_vector, set_quaternion
+from quintet.components.dem_bodies.kernels.geometry import quaternion, row_vector, set_quaternion
 from quintet.components.dem_bodies.state import Model, Numbers, State
 from quintet.components.shared.numba_options import INNER
 from quintet.components.shared.rotations import (

@@ -2,7 +2,7 @@
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import (
+from quintet.components.dem_bodies.kernels.geometry import (
     quaternion,
     rotation_matrix,
     row_vector,
@@ -11,13 +11,13 @@ from quintet.components.dem_bodies.contact.geometry import (
     set_vector,
     vector,
 )
-from quintet.components.dem_bodies.integration.locked_motion import (
+from quintet.components.dem_bodies.kernels.locked_motion import (
     locked_angular_velocity,
     masked,
     rotate_locked,
     turns_evenly,
 )
-from quintet.components.dem_bodies.integration.rigid_rotation import (
+from quintet.components.dem_bodies.kernels.rigid_rotation import (
     angular_velocity,
     rotate_body,
     symmetric_product,

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import (
+from quintet.components.dem_bodies.kernels.geometry import (
     FAR,
     Gap,
     nearest_on_lines,

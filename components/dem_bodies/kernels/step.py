@@ -2,15 +2,15 @@
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.balls import ball_loads, begin_block
-from quintet.components.dem_bodies.contact.batch import batch_of
-from quintet.components.dem_bodies.contact.geometry import (
+from quintet.components.dem_bodies.kernels.ball_contacts import ball_loads, begin_block
+from quintet.components.dem_bodies.kernels.batch import batch_of
+from quintet.components.dem_bodies.kernels.body_contacts import contact_loads, detect_contacts
+from quintet.components.dem_bodies.kernels.geometry import (
     row_vector,
     set_row_vector,
 )
-from quintet.components.dem_bodies.contact.pairs import contact_loads, detect_contacts
-from quintet.components.dem_bodies.integration.reductions import reduce_bodies, reduce_pairs
-from quintet.components.dem_bodies.integration.velocity_verlet import drift, end_kick
+from quintet.components.dem_bodies.kernels.reductions import reduce_bodies, reduce_pairs
+from quintet.components.dem_bodies.kernels.velocity_verlet import drift, end_kick
 from quintet.components.dem_bodies.state import (
     OMEGA,
     TOUCHING,

@@ -17,7 +17,7 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import row_vector
+from quintet.components.dem_bodies.kernels.geometry import row_vector
 from quintet.components.dem_bodies.laws import (
     ROLLING_DAMPING,
     ROLLING_STIFFNESS,

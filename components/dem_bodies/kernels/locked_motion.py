@@ -12,7 +12,7 @@ the start.
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import (
+from quintet.components.dem_bodies.kernels.geometry import (
     quaternion,
     row_vector,
     set_quaternion,

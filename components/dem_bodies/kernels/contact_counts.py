@@ -1,10 +1,7 @@
-"""How many contacts one body has at once, and the step that so many springs and dampers allow."""
-
-import math
+"""Number of contacts of each row."""
 
 from numba import njit
 
-from quintet.components.dem_bodies.laws import DAMPING
 from quintet.components.dem_bodies.state import (
     EDGE_EDGE,
     SPHERE_SPHERE,
@@ -13,8 +10,6 @@ from quintet.components.dem_bodies.state import (
     Whole,
 )
 from quintet.components.shared.numba_options import EXACT
-
-SHARE = 0.75  # of the limits: the sums leave out how neighbours move
 
 
 @njit(**EXACT)
@@ -43,27 +38,3 @@ def count_ball_contacts(row: Short, partner: Short, history: Numbers, count: Who
             count[row[k]] += 1
             if partner[k] < count.shape[0]:
                 count[partner[k]] += 1
-
-
-def many_contacts_step(contacts: int, ω: float, ζ: float) -> float:
-    """Largest step that is stable where many contacts hold one body.
-
-    n springs side by side hold a body n times as fast, velocity Verlet's limit being 2/ω. Its
-    dampers, whose velocity is predicted from the last force, are stable for Σ c/m* dt < 1.
-
-    Parameters
-    ----------
-    contacts : int
-    ω : float, rad/s
-        Frequency of the stiffest, √(S_n/m*).
-    ζ : float
-        Damping ratio of the most damped.
-
-    Returns
-    -------
-    float, s
-    """
-    if not contacts or not ω > 0.0:
-        return math.inf
-    damper, spring = contacts * DAMPING * ζ * ω, math.sqrt(contacts) * ω  # 1/s
-    return SHARE * min(2.0 / spring, 1.0 / damper if damper > 0.0 else math.inf)

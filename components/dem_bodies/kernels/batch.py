@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import (
+from quintet.components.dem_bodies.kernels.geometry import (
     row_vector,
     set_row_vector,
     vector,

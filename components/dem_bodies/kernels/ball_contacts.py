@@ -8,7 +8,7 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.batch import (
+from quintet.components.dem_bodies.kernels.batch import (
     BATCH,
     BEFORE,
     CONSTANTS,
@@ -43,11 +43,11 @@ from quintet.components.dem_bodies.contact.batch import (
     set_column,
     store_history,
 )
-from quintet.components.dem_bodies.contact.geometry import (
+from quintet.components.dem_bodies.kernels.geometry import (
     FAR,
     set_row_vector,
 )
-from quintet.components.dem_bodies.contact.rolling_resistance import rolling_moments
+from quintet.components.dem_bodies.kernels.rolling_resistance import rolling_moments
 from quintet.components.dem_bodies.laws import LEAST, contact_force, damping_weight
 from quintet.components.dem_bodies.state import (
     BLOCK,

@@ -4,7 +4,7 @@ import math
 
 from numba import njit
 
-from quintet.components.dem_bodies.contact.geometry import FAR
+from quintet.components.dem_bodies.kernels.geometry import FAR
 from quintet.components.dem_bodies.state import (
     ACCELERATION2,
     CENTRIPETAL,

@@ -1,1 +1,0 @@
-"""Advancing bodies in time: rotation, sums over blocks of rows, the limit of the step."""
