@@ -83,8 +83,8 @@ class Port:
     added up, what they bring as the partner's items stands in rows one after another. Their
     number never changes: items that may die have a field ``active`` (`ports.ACTIVE`), which is 0
     from then on.
-    ``lacks`` has names of fields that other settings would add, each with what to set: a scene that
-    asks for one is told so.
+    ``lacks`` has names of fields of this port, and of other ports of the component, that other
+    settings would add, each with what to set: a scene that asks for one is told so.
     """
 
     name: str
@@ -299,4 +299,13 @@ def outputs_of(component: Component) -> Fields:
 
 def fields_of(ports: tuple[Port, ...]) -> dict[str, Field]:
     """All fields of some ports, by their keys ``"port.field"``."""
-    return {f"{port.name}.{one.name}": one for port in ports for one in port.fields}
+    return {f"{port.name}.{field.name}": field for port in ports for field in port.fields}
+
+
+def port_text(port: Port) -> str:
+    """A port and its fields with their units, in words."""
+    fields = [
+        f"{field.name} [{field.unit}{', impulse' * (field.centring == 'impulse')}]"
+        for field in port.fields
+    ]
+    return f"{port.name} ({', '.join(fields)})"

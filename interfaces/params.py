@@ -61,7 +61,8 @@ def is_data_file(metadata: object) -> bool:
     return isinstance(metadata, AfterValidator) and metadata.func is _data_file
 
 
-TAG = re.compile(r"constrained-\w+|(?:literal|tuple|dict)\[.*\]")  # what pydantic adds to a place
+# What pydantic adds to a place.
+TAG = re.compile(r"constrained-\w+|(?:literal|tuple|dict|function-\w+)\[.*\]")
 LARGEST = 1e30  # no quantity in SI units is as large; of ten of them a product is still finite
 DEEPEST = 32  # tables and lists within each other
 SHOWN = 200  # characters of a value in a sentence
@@ -101,8 +102,7 @@ def read(
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             return _adapter(params).validate_json(text, strict=True, context=context), []
     except ValidationError as error:
-        found = _by_place(error.errors())
-        wrong = _without_old(params, found)
+        wrong = _drop_renamed(params, _by_place(error.errors(), given))
         more = [f"{where}: {len(wrong) - MOST_SAID} more mistakes."] if wrong[MOST_SAID:] else []
         return None, [*(_sentence(params, where, one) for one in wrong[:MOST_SAID]), *more]
     except (ArithmeticError, np.linalg.LinAlgError) as error:
@@ -158,19 +158,39 @@ def shown(value: Any) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
-def _by_place(mistakes: Iterable[Any]) -> list[dict[str, Any]]:
+def _by_place(mistakes: Iterable[Any], given: Any) -> list[dict[str, Any]]:
     """One mistake for each place; where a value may be of several kinds, their rules joined."""
-    found: dict[tuple[Any, ...], dict[str, Any]] = {}
-    for one in mistakes:
-        place = tuple(part for part in one["loc"] if not TAG.fullmatch(str(part)))
-        if place in found:
-            found[place]["msg"] += " or " + one["msg"].removeprefix("Input should be ")
+    joined: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for mistake in mistakes:
+        place = _without_kinds(mistake["loc"], given)
+        around = joined.get(place[:-1])
+        if around and around["input"] == mistake["input"]:  # the same value, as another kind
+            place = place[:-1]
+        if place in joined:
+            joined[place]["msg"] += " or " + mistake["msg"].removeprefix("Input should be ")
         else:
-            found[place] = {**one, "loc": place}
-    return list(found.values())
+            joined[place] = {**mistake, "loc": place}
+    # Of a table that may stand in the place of a text, only what is wrong in it is said.
+    outer = {place[:n] for place in joined for n in range(len(place))}
+    return [one for place, one in joined.items() if place not in outer]
 
 
-def _without_old(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def _without_kinds(place: tuple[Any, ...], given: Any) -> tuple[Any, ...]:
+    """Place of a mistake without the names of kinds that a value may be of."""
+    names, value = [], given
+    for number, part in enumerate(place):
+        is_last = number + 1 == len(place)
+        is_key = isinstance(value, Mapping) and part in value
+        is_item = isinstance(value, list) and isinstance(part, int) and part < len(value)
+        if is_key or is_item:
+            value = value[part]
+        elif TAG.fullmatch(str(part)) or not is_last:
+            continue
+        names.append(part)
+    return tuple(names)
+
+
+def _drop_renamed(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """All but keys said to be missing that are there under their old names."""
     there = {
         (*one["loc"][:-1], *new.split("."))
@@ -234,6 +254,6 @@ def _names(params: Any) -> list[str]:
 def _inner(annotation: Any) -> Any:
     """Return the parameter class inside a tuple, a table or an optional, or the annotation."""
     for part in get_args(annotation):
-        if dataclasses.is_dataclass(_inner(part)):
-            return _inner(part)
+        if isinstance(inner := _inner(part), type) and dataclasses.is_dataclass(inner):
+            return inner
     return annotation

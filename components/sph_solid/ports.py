@@ -1,5 +1,7 @@
 """What bodies of particles take and give: glue to a mesh; motion of each body; gauges."""
 
+from dataclasses import replace
+
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
@@ -23,6 +25,7 @@ SHOWS = (
     Field("body", (), "1"),
 )
 # Of each body, in the order of the scene: of what is computed, without images.
+UNGLUED = "it has no table glued"  # where a link needs glued particles
 BODIES = Port(
     "bodies",
     fields=(
@@ -69,4 +72,5 @@ def ports(params: SphSolidParams) -> Ports:
     taken = (GLUED, GLUE_ACTIVITY) if glued else ()
     load = (GLUED_LOAD,) if glued else ()
     read = (*((GAUGES,) if params.gauges else ()), *((LEVELS,) if params.levels else ()))
-    return taken, (BODIES, *load, *read)
+    bodies = BODIES if glued else replace(BODIES, lacks=((GLUED_LOAD.name, UNGLUED),))
+    return taken, (bodies, *load, *read)

@@ -3,7 +3,8 @@
 import math
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
 
 from quintet.components.shared.materials.library import LIBRARY, Table
 from quintet.interfaces.params import Fraction, NotNegative, Number, Positive, parameters
@@ -211,7 +212,17 @@ class Material:
         return 2.0 * self.shear * (1.0 + ν) / (3.0 * (1.0 - 2.0 * ν))
 
 
-MaterialName = Annotated[str, Field(pattern="^(" + "|".join(LIBRARY) + ")$")]
+def _material_name(name: str) -> str:
+    """Return the name of a material of the library."""
+    if name not in LIBRARY:
+        names = ", ".join(LIBRARY)
+        raise PydanticCustomError(
+            "material", f"Input should be a material of the library ({names})"
+        )
+    return name
+
+
+MaterialName = Annotated[str, AfterValidator(_material_name)]
 
 
 def material(given: "Material | str") -> Material:

@@ -24,7 +24,7 @@ from quintet.coupler.coupling.exchange import (
     Works,
 )
 from quintet.coupler.coupling.links.keys import Between, is_stand_in, with_keys
-from quintet.coupler.coupling.links.port_checks import requires
+from quintet.coupler.coupling.links.port_checks import fewest, requires
 from quintet.coupler.coupling.links.sampled_structures import OF_POINTS, answered
 from quintet.coupler.coupling.mapping import ShapeMap
 from quintet.interfaces.component import Array, Fields
@@ -92,7 +92,7 @@ def join(
     first, second = pair
     complaints = []
     for particles, mesh in ((first, second), (second, first)):
-        moved, loaded = (not is_stand_in(ports[one]) for one in (particles, mesh))
+        moved, loaded = (not is_stand_in(ports[side]) for side in (particles, mesh))
         lacks = requires(ports[particles], particles, GLUED if moved else None, GLUED_LOAD)
         lacks += requires(ports[mesh], mesh, NODE_LOAD if loaded else None, NODE_GLUE)
         if not lacks:
@@ -101,8 +101,8 @@ def join(
             frees = FACE_ACTIVITY.name in gives and freed
             returns = frees and NODE_MASS.name in takes
             return Glue(name, (particles, mesh), Ways(loaded, moved, frees, returns), reach)
-        complaints.append("; ".join(lacks))
-    raise SceneError(f"link {name}: glue needs: {' or: '.join(complaints)}. Link others.")
+        complaints.append(lacks)
+    raise SceneError(f"link {name}: glue needs: {fewest(complaints)}. Link others.")
 
 
 class Ways(NamedTuple):
@@ -138,7 +138,7 @@ class Glue:
 
     def _those(self, each: tuple[T, T, T]) -> tuple[T, ...]:
         """Of three things for the first three ways, those of the ways that it has."""
-        return tuple(one for one, has in zip(each, self.ways[:3], strict=True) if has)
+        return tuple(way for way, has in zip(each, self.ways[:3], strict=True) if has)
 
     def demands(self) -> Demands:
         """One step of both sides in every window, one after the other."""

@@ -23,7 +23,7 @@ from quintet.coupler.coupling.exchange import (
     Works,
 )
 from quintet.coupler.coupling.links.keys import Between, with_keys
-from quintet.coupler.coupling.links.port_checks import requires
+from quintet.coupler.coupling.links.port_checks import fewest, requires
 from quintet.coupler.coupling.links.sampled_structures import OF_POINTS, answered
 from quintet.coupler.coupling.mapping import ShapeMap
 from quintet.interfaces.component import Fields
@@ -76,8 +76,8 @@ def join(
         lacks += requires(ports[mesh], mesh, NODE_HEAT, NODE_TEMPERATURE)
         if not lacks:
             return Heat(name, wall, mesh, relaxation)
-        complaints.append("; ".join(lacks))
-    raise SceneError(f"link {name}: heat needs: {' or: '.join(complaints)}. Link others.")
+        complaints.append(lacks)
+    raise SceneError(f"link {name}: heat needs: {fewest(complaints)}. Link others.")
 
 
 class Heat:

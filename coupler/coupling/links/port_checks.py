@@ -10,21 +10,29 @@ def requires(ports: Ports, name: str, takes: Port | None, gives: Port | None) ->
     for verb, needed, offered in (("take", takes, ports[0]), ("give", gives, ports[1])):
         if needed is None:
             continue
-        found = next((port for port in offered if port.name == needed.name), None)
-        if found is None:
-            lacks.append(f"{name} must {verb} a port {needed.name}")
-        else:
-            lacks += misfits(name, found, needed)
+        match = next((port for port in offered if port.name == needed.name), None)
+        if match is not None:
+            lacks += misfits(name, match, needed)
+            continue
+        remedies = (port.lacks for side in ports for port in side)
+        remedy = dict(pair for pairs in remedies for pair in pairs).get(needed.name, "")
+        lacks.append(f"{name} must {verb} a port {needed.name}{f': {remedy}' if remedy else ''}")
     return lacks
 
 
-def misfits(name: str, found: Port, needed: Port) -> list[str]:
+def fewest(complaints: list[list[str]]) -> str:
+    """Say what is lacking for the roles that two components come nearest to."""
+    least = min(map(len, complaints))
+    return " or: ".join("; ".join(lacks) for lacks in complaints if len(lacks) == least)
+
+
+def misfits(name: str, port: Port, needed: Port) -> list[str]:
     """Say which fields of a port are not as the other side has them."""
     theirs = {field.name: field for field in needed.fields}
     wrong = []
-    for mine in found.fields:
+    for mine in port.fields:
         other = theirs.get(mine.name)
-        place = f"{name}.{found.name}.{mine.name}"
+        place = f"{name}.{port.name}.{mine.name}"
         if other is None:
             wrong.append(f"{place} is not known to the other side ({', '.join(theirs)})")
         elif mine.unit != other.unit:

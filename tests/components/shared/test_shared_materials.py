@@ -15,9 +15,11 @@ from quintet.components.shared.materials.params import (
     JohnsonCook,
     JohnsonCookDamage,
     Material,
+    MaterialName,
     material,
 )
 from quintet.components.shared.materials.solid import densest, solid
+from quintet.interfaces.params import parameters, read
 
 
 # The laws are inlined into solvers' kernels; here each is called from Python.
@@ -286,3 +288,20 @@ def test_moduli_follow_from_each_other():
     assert made.shear == pytest.approx(3.6e9) and made.bulk == pytest.approx(6e9)
     aluminium = material("aluminium")
     assert aluminium.bulk == pytest.approx(78.92e9, rel=1e-4)
+
+
+@parameters
+class Part:
+    material: MaterialName | Material
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("stele", "part.material should be a material of the library (steel, aluminium,"),
+        ({"densty": 7800.0}, "part.material.densty is not known. Did you mean density?"),
+    ],
+)
+def test_a_wrong_material_is_refused_once_and_in_words(value, said):
+    checked, (mistake,) = read(Part, {"material": value}, "part")
+    assert checked is None and mistake.startswith(said)

@@ -298,3 +298,14 @@ def test_direct_names_ports_that_are_not_there():
 def test_tables_of_links_are_checked(table, rule):
     with pytest.raises(SceneError, match=rule):
         maker(table["kind"])(0, table, PORTS)
+
+
+def test_a_link_that_lacks_a_port_says_what_would_add_it():
+    lacking = Port("bodies", (VELOCITY,), lacks=((GLUED_LOAD.name, "it has no table glued"),))
+    ports = {"rod": ((), (lacking,)), "bar": ((NODE_LOAD,), (NODE_GLUE,))}
+    with pytest.raises(SceneError) as refused:
+        join_glue("rod-bar", ("rod", "bar"), ports)
+    assert refused.value.mistakes == [
+        "link rod-bar: glue needs: rod must give a port glued_load: it has no table glued. "
+        "Link others."
+    ]
