@@ -14,6 +14,7 @@ from quintet.coupler.cli.options import (
     load_scene,
 )
 from quintet.interfaces.errors import LineError, SceneError
+from quintet.interfaces.serving.log_stream import outlive_readers
 
 if TYPE_CHECKING:
     from quintet.coupler.scene.scene import Scene
@@ -50,6 +51,7 @@ def add_commands(command: Command) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run a scene, from the start or from a snapshot."""
+    outlive_readers()
     scene, out, snapshot = _resumed(options) if options.resume else _begun(options)
     scene.elsewhere = set(options.elsewhere)
     unknown = scene.elsewhere - set(scene.components)

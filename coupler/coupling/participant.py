@@ -38,6 +38,7 @@ class Timing:
     compute: float = 0.0  # s, as the component itself measured
     cpu: float = 0.0  # s of processor time in its windows, all threads
     wait: float = 0.0  # s that the coupler waited for it
+    build: float = 0.0  # s of its construction, with what that compiles
     prepare: float = 0.0  # s, what it did before its first window, such as compiling
     first: float = 0.0  # s, its first window
     steps: int = 0
@@ -265,4 +266,9 @@ class Participant:
 
 def describe_all(participants: Mapping[str, Participant]) -> dict[str, Fields]:
     """Ask every component for its static fields."""
-    return {name: one.call("describe").fields for name, one in participants.items()}
+    described: dict[str, Fields] = {}
+    for name, participant in participants.items():
+        answer = participant.call("describe")
+        participant.timing.build = float(answer.header.get("seconds", 0.0))
+        described[name] = answer.fields
+    return described

@@ -79,9 +79,11 @@ class InMemory:
                 participant = self.participants[name] = Participant(name, line)
                 probe = ProcessProbe(name, os.getpid(), where=stack.of_main_thread)
                 self.watchdog.add(participant, probe, scene.patience(name))
+                began = time.perf_counter()
                 with participant.keeping_others_waiting:
                     component = _built(one, settings(scene, name))
-                line.handle = partial(answer, Server(component, name), line.far)
+                server = Server(component, name, time.perf_counter() - began)
+                line.handle = partial(answer, server, line.far)
         except BaseException:
             self.watchdog.close()
             raise

@@ -78,11 +78,16 @@ def marked(name: str, value: str) -> Iterator[int]:
                 yield int(entry.parent.name)
 
 
-def tail(path: Path, lines: int = 12) -> list[str]:
-    """Last lines of a log; empty when there is none."""
+def size_of(path: Path) -> int:
+    """Size of a file [bytes]; 0 where there is none."""
+    return path.stat().st_size if path.is_file() else 0
+
+
+def tail(path: Path, lines: int = 12, first: int = 0) -> list[str]:
+    """Last lines of a log after its first bytes; empty when there are none."""
     try:
         with open(path, "rb") as file:
-            file.seek(max(0, path.stat().st_size - 16384))
+            file.seek(max(first, path.stat().st_size - 16384))
             return file.read().decode(errors="replace").splitlines()[-lines:]
     except OSError:
         return []

@@ -229,7 +229,7 @@ class Watchdog:
         place = participant.window
         if stack.compiles(calls):
             doing = doing.replace("computing", "compiling")
-        what = f"for {component.waited:.1f} s " + (
+        what = f"{component.waited:.1f} s " + (
             f"in window {place}" if participant.built else "to be built"
         )
         if component.probe.awaited:
@@ -241,13 +241,15 @@ class Watchdog:
         over = component.is_over()
         if over and not stack.compiles(calls):
             at = f", at {where[0].removeprefix('  File ')}" if where else ""
-            cause = f"stopped responding: kept the others waiting {what}{usual}; {doing}{at}"
+            cause = f"stopped responding: kept the others waiting for {what}{usual}; {doing}{at}"
             self.fail(component, cause, calls)
             return
         if over:
             component.end_at, component.idle = component.end_at + component.patience, 0.0
         component.told, component.tell_at = True, 2.0 * component.waited
-        say(f"{participant.name} keeps the others waiting {what}{usual}: {doing}", where)
+        wait = "keeps the others waiting for" if len(self._all) > 1 else "has taken"
+        where = [] if stack.compiles(calls) else where  # calls of the compiler say nothing
+        say(f"{participant.name} {wait} {what}{usual}: {doing}", where)
 
     def fail(self, component: Watched, cause: str, calls: str = "") -> None:
         """Decide that the run ends, as a component has failed."""

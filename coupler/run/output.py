@@ -152,7 +152,8 @@ class OutputWriter:
         compute = {name: one.timing.compute for name, one in coupling.components.items()}
         repeated = any(True for _ in coupling.plan.iterated())
         repetitions = coupling.costs.repetitions if repeated else None
-        return Reading(self.done, self.time, coupling.ledger.worst, compute, repetitions)
+        residual = coupling.ledger.worst if coupling.ledger.accounts else None
+        return Reading(self.done, self.time, residual, compute, repetitions)
 
     def warn(self, text: str) -> None:
         """See `Observer.warn`."""

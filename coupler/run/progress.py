@@ -25,7 +25,7 @@ class Reading:
 
     windows: int
     time: float  # s, simulated
-    residual: float = 0.0  # of momentum
+    residual: float | None = None  # of momentum; None in runs without links
     compute: Mapping[str, float] = field(default_factory=dict)  # s that each component computed
     repetitions: int | None = None  # of windows; None where none are repeated
 
@@ -151,7 +151,8 @@ def details(reading: Reading, pace: Pace) -> list[str]:
         said += [f"{name} computes {share:.0%}" for name, share in pace.shares().items()]
         repeated = pace.repetitions()
         said += [] if repeated is None else [f"windows repeated {repeated:.1f} times"]
-    return [*said, f"momentum residual {reading.residual:.0e}"]
+    residual = reading.residual
+    return said if residual is None else [*said, f"momentum residual {residual:.0e}"]
 
 
 def shows_bar() -> bool:

@@ -103,29 +103,37 @@ def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
 
 
 def timing(participants: dict[str, Participant], wall: float, costs: Costs) -> dict[str, Any]:
-    """Wall time and its parts [s], and the sum of the peak memories of all processes [bytes]."""
+    """Wall time and its parts [s], and the sum of the peak memories of all processes [bytes].
+
+    Components that are processes of their own build, compile and compute at the same time.
+    """
     components = {}
-    exchange = compile_time = 0.0
+    exchange = compile_time = build_time = 0.0
+    memory = peak_memory()
     for name, participant in participants.items():
-        one = participant.timing
+        times = participant.timing
         components[name] = {
-            "compute": one.compute,
-            "cpu": one.cpu,
-            "wait": max(0.0, wall - one.compute),
-            "steps": one.steps,
-            "items": one.items,
-            "memory": one.memory or None,
+            "compute": times.compute,
+            "cpu": times.cpu,
+            "build": times.build,
+            "wait": max(0.0, wall - times.build - times.prepare - times.compute),
+            "steps": times.steps,
+            "items": times.items,
+            "memory": times.memory or None,
         }
-        exchange += max(0.0, one.wait - one.compute)
-        compile_time += one.prepare + max(0.0, one.first - one.usual)
+        exchange += max(0.0, times.wait - times.compute)
+        compile_time += times.prepare + max(0.0, times.first - times.usual)
+        build_time += times.build
+        memory += times.memory
     return {
         "wall": wall,
+        "build": build_time,
         "compile": compile_time,
         "components": components,
         "exchange": exchange,
         "mapping": costs.mapping,
         "checks": costs.checks,
-        "memory": peak_memory() + sum(one.timing.memory for one in participants.values()),
+        "memory": memory,
     }
 
 

@@ -1,6 +1,7 @@
 """What a run does before its first window, on the screen: who is imported, built, compiled."""
 
 import contextlib
+import re
 import threading
 import time
 from collections.abc import Mapping
@@ -9,13 +10,16 @@ from pathlib import Path
 from rich.live import Live
 from rich.text import Text
 
-from quintet.coupler.launch.processes import tail
+from quintet.coupler.launch.processes import size_of, tail
 from quintet.coupler.run.progress import shows_bar
 from quintet.interfaces.serving.notices import listen
 
 LINE_INTERVAL = 2.0  # s between two lines where there is no terminal
 LONG = 10.0  # s after which a line is printed again though nothing has changed; then twice as long
 SHOWN = 60  # characters of what one component says
+LINES = 200  # of a log that are looked through: a stack may be as long
+# Lines of a stack that a process writes into its log when it is asked where it is.
+STACK = re.compile(r'  File ".*", line |(Current thread|Thread|Stack|Extension modules|  \.\.\.)')
 
 
 class StartReport:
@@ -29,6 +33,7 @@ class StartReport:
 
     def __init__(self, logs: Mapping[str, Path]) -> None:
         self.logs = logs
+        self._sizes = {name: size_of(log) for name, log in logs.items()}  # bytes of former runs
         self._said = ""  # by components in this process
         self._began = time.monotonic()
         self._over = threading.Event()
@@ -62,7 +67,7 @@ class StartReport:
 
     def doing(self) -> str:
         """What every component is at."""
-        said = [f"{name}: {last_line(log)}" for name, log in self.logs.items()]
+        said = [f"{name}: {last_line(log, self._sizes[name])}" for name, log in self.logs.items()]
         return "; ".join([*said, *filter(None, [self._said])])
 
     def _text(self) -> Text:
@@ -79,7 +84,7 @@ class StartReport:
             shown = doing
 
 
-def last_line(log: Path) -> str:
-    """Last line of a component's log; that it is starting while there is none."""
-    lines = [line.strip() for line in tail(log, 3) if line.strip()]
-    return lines[-1][:SHOWN] if lines else "starting"
+def last_line(log: Path, first: int = 0) -> str:
+    """Last line that a component wrote after the first bytes of its log, stacks left out."""
+    lines = [line for line in tail(log, LINES, first) if line.strip() and not STACK.match(line)]
+    return lines[-1].strip()[:SHOWN] if lines else "starting"

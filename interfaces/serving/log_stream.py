@@ -1,10 +1,11 @@
-"""What is printed into a log whose disk may be full: what finds no room there is left out."""
+"""Output into a log whose disk may be full, or to a reader that may leave: what fails is lost."""
 
 import contextlib
 import io
 import os
 import stat
 import sys
+from collections.abc import Callable
 from typing import Any
 
 
@@ -31,9 +32,19 @@ class LogStream(io.RawIOBase):
 
 def print_into_logs() -> None:
     """Let this process print into logs, where its standard output and errors are files."""
+    _replace_streams(stat.S_ISREG)
+
+
+def outlive_readers() -> None:
+    """Let this process go on where nobody reads its standard output and errors any more."""
+    _replace_streams(stat.S_ISFIFO)
+
+
+def _replace_streams(is_replaced: Callable[[int], bool]) -> None:
     for name, number in (("stdout", 1), ("stderr", 2)):
-        if not stat.S_ISREG(os.fstat(number).st_mode):
-            continue
-        stream = io.BufferedWriter(LogStream(number))
-        text = io.TextIOWrapper(stream, "utf-8", "backslashreplace", line_buffering=True)
-        setattr(sys, name, text)
+        if getattr(sys, name) is getattr(sys, f"__{name}__") and is_replaced(
+            os.fstat(number).st_mode
+        ):
+            stream = io.BufferedWriter(LogStream(number))
+            text = io.TextIOWrapper(stream, "utf-8", "backslashreplace", line_buffering=True)
+            setattr(sys, name, text)

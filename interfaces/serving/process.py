@@ -86,8 +86,9 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     try:
         start = time.perf_counter()
         component = build(manifest, order.header)
-        say(f"built in {time.perf_counter() - start:.1f} s: {component.items()} items")
-        if serve(Server(component, given.name), line):
+        seconds = time.perf_counter() - start
+        say(f"built in {seconds:.1f} s: {component.items()} items")
+        if serve(Server(component, given.name, seconds), line):
             status = 0
     except LineError as error:
         say(f"{given.name}: the coupler: {error}")

@@ -47,8 +47,8 @@ def divide(left: float, stable: float) -> int:
 class Server:
     """Carries out the coupler's orders on one component."""
 
-    def __init__(self, component: Component, name: str) -> None:
-        self.component = component
+    def __init__(self, component: Component, name: str, build_seconds: float = 0.0) -> None:
+        self.component, self.build_seconds = component, build_seconds
         self.guard = OrderGuard(name)
         self.inputs = Inputs(component.takes)
         self.outputs = Outputs(component.gives, getattr(component, "gives_integrals", False))
@@ -84,7 +84,7 @@ class Server:
         return self._orders[message.order](message)
 
     def _describe(self, _: Message) -> Answer:
-        return {}, self.component.describe()
+        return {"seconds": self.build_seconds}, self.component.describe()
 
     def _bind(self, message: Message) -> Answer:
         header = message.header

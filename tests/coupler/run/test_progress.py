@@ -1,5 +1,6 @@
 """A run says what it does from its first second on, and how long it will take."""
 
+import faulthandler
 import subprocess
 import sys
 import threading
@@ -40,7 +41,7 @@ def test_what_became_slower_counts_after_a_while():
 def test_nobody_tells_the_time_left_of_the_first_window():
     pace = paced([(0.0, Reading(1, 1e-3))])
     assert time_left(pace, 1.0) == ""
-    assert details(Reading(1, 1e-3), pace) == ["window 1", "momentum residual 0e+00"]
+    assert details(Reading(1, 1e-3), pace) == ["window 1"]
 
 
 def test_who_computes_and_how_often_windows_are_repeated_is_told():
@@ -61,6 +62,31 @@ def test_the_last_line_of_a_log_says_what_a_component_is_at(tmp_path):
     assert last_line(log) == "starting"
     log.write_text("water: a fluid, process 1\ncompiling pair_rates\n\n")
     assert last_line(log) == "compiling pair_rates"
+
+
+def test_neither_a_stack_nor_a_former_log_is_what_a_component_does(tmp_path):
+    log = tmp_path / "water.log"
+    log.write_text("water: finished\n")
+    former = log.stat().st_size
+    assert last_line(log, former) == "starting"
+    with open(log, "a") as file:
+        file.write("building\n")
+        faulthandler.dump_traceback(file)
+    assert last_line(log, former) == "building"
+
+
+def test_a_run_without_links_has_no_residual():
+    assert details(Reading(3, 0.1), Pace()) == ["window 3"]
+    assert details(Reading(3, 0.1, 0.0), Pace()) == ["window 3", "momentum residual 0e+00"]
+
+
+def test_a_reader_that_leaves_silences_the_screen_and_the_run_goes_on(tmp_path):
+    run = Started(write_scene(tmp_path, end=0.3))
+    run.process.stdout.readline()
+    run.process.stdout.close()
+    run.process.stdout = None
+    assert run.wait() == 0, run.err
+    assert run.results["status"] == "done" and "Broken pipe" not in run.err
 
 
 def test_notices_are_heard_by_who_listens_and_by_nobody_else():
@@ -89,6 +115,9 @@ from toys import Toy
 class Slow(Toy):
     '''Takes long before its first step.'''
     compiles = True
+    def __init__(self, params):
+        super().__init__(params)
+        time.sleep(0.5)
     def take(self, fields):
         assert fields["in.number"].shape == (5, 3)
         super().take(fields)
@@ -111,6 +140,9 @@ def test_what_takes_long_before_the_first_window_is_on_the_screen(tmp_path, tran
     assert "reading the mesh" in run.out.split("window 1,")[0]
     timing = run.results["timing"]
     both = 2 if transport == "memory" else 1  # processes of their own prepare side by side
+    assert 1.0 <= timing["build"] < 3.0, "of both"
+    for times in timing["components"].values():
+        assert times["build"] >= 0.5 and times["wait"] <= timing["wall"] - 3.5
     assert 3.0 * both <= timing["compile"] and timing["wall"] >= 3.0 * both
 
 

@@ -1,0 +1,57 @@
+"""What the screen says of a component that takes long."""
+
+import os
+import time
+
+import pytest
+
+from quintet.coupler.coupling.participant import Participant
+from quintet.coupler.launch.process_probe import ProcessProbe
+from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.run.signals import StopRequest
+from quintet.interfaces.lines.memory import MemoryLine
+
+SOLVER = '  File "/x/water/component.py", line 12 in step'
+COMPILING = "\n".join(
+    [
+        '  File "/usr/lib/python3/copy.py", line 9 in deepcopy',
+        '  File "/x/numba/core/ir.py", line 1 in copy',
+        SOLVER,
+    ]
+)
+
+
+@pytest.fixture
+def told(capsys):
+    def wait(names, calls):
+        """What is printed while the first component keeps the coupler waiting."""
+        watchdog = Watchdog(StopRequest(), own=True)
+        for name in names:
+            probe = ProcessProbe(name, os.getpid(), where=lambda: calls)
+            participant = Participant(name, MemoryLine("", name))
+            watchdog.add(participant, probe, 60.0)
+            participant.built = True
+            if name == names[0]:
+                participant.keeping_others_waiting.since = time.monotonic()
+        (component,) = (c for c in watchdog._all.values() if c.participant.name == names[0])
+        limit = time.monotonic() + 5.0
+        while not component.since and time.monotonic() < limit:
+            time.sleep(0.01)
+        component.tell_at = 0.0
+        while not component.told and time.monotonic() < limit:
+            time.sleep(0.01)
+        watchdog.close()
+        return capsys.readouterr().err
+
+    return wait
+
+
+def test_of_kernels_that_compile_no_call_of_the_compiler_is_shown(told):
+    said = told(["water"], COMPILING)
+    assert "quintet: water has taken " in said
+    assert "File" not in said and "waiting" not in said, "nobody else waits"
+
+
+def test_who_computes_is_shown_with_its_place_and_the_others_that_wait(told):
+    said = told(["water", "cubes"], SOLVER)
+    assert "quintet: water keeps the others waiting for " in said and SOLVER in said
