@@ -10,32 +10,45 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from quintet.coupler.files.disk import write_whole
-from quintet.coupler.reference.sections import Reference, Section, first_line, reference, subjects
+from quintet.coupler.reference.sections import (
+    Reference,
+    Section,
+    first_line,
+    ports_of_cases,
+    reference_of,
+    subjects,
+)
+from quintet.interfaces.component import port_text
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import Key
+from quintet.interfaces.manifest import known_kinds
 from quintet.interfaces.params import unknown
 
 PLACE = re.compile(r"(<!-- describe ([^>]+?) -->\n).*?(<!-- described -->)", re.DOTALL)
 HEADS = ("key", "unit", "type", "default", "meaning")
 
 
-def run_describe(given: argparse.Namespace) -> int:
+def run_describe(options: argparse.Namespace) -> int:
     """Print what a scene, a kind or a link may say, or write it into texts."""
-    if given.write:
-        for path in given.write:
+    if options.write:
+        for path in options.write:
             write_whole(path, filled(path.read_text(), str(path)))
         return 0
-    if not given.subject:
+    if not options.subject:
         rows = list(subjects())
         room = max(len(name) for name, _ in rows)
         print("\n".join(f"{name:<{room}}  {title}" for name, title in rows))
         return 0
-    found, part = chosen(given.subject)
-    if given.json:
-        print(json.dumps([as_data(one) for one in found.sections], indent=2, ensure_ascii=False))
+    reference, part = chosen(options.subject)
+    if options.json:
+        print(
+            json.dumps(
+                [as_data(section) for section in reference.sections], indent=2, ensure_ascii=False
+            )
+        )
         return 0
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    print("\n".join(lines(found, width) if not part else part_lines(found, part, width)))
+    print("\n".join(lines(reference, width) if not part else part_lines(reference, part, width)))
     return 0
 
 
@@ -46,31 +59,35 @@ def chosen(words: list[str]) -> tuple[Reference, str]:
         raise SceneError("describe link needs a kind of link. Name one, as in describe link fsi.")
     if len(words) > count + 1:
         raise SceneError(f"describe: one subject at a time; found {' '.join(words)}. Name one.")
-    return reference(*words[:count]), "".join(words[count:])
+    return reference_of(*words[:count]), "".join(words[count:])
 
 
-def part_lines(found: Reference, part: str, width: int | None) -> Iterator[str]:
+def part_lines(reference: Reference, part: str, width: int | None) -> Iterator[str]:
     """Write one table of a reference, or one key by its path."""
-    tables = {".".join(one.path): one for one in found.sections}
+    tables = {".".join(section.path): section for section in reference.sections}
     if part in tables:
         return section_lines(tables[part], width)
     rows = {
-        ".".join([*one.path, key.name]): replace(one, about="", keys=(key,))
-        for one in found.sections
-        for key in one.keys
+        ".".join([*section.path, key.name]): replace(section, about="", keys=(key,))
+        for section in reference.sections
+        for key in section.keys
     }
     if part not in rows:
         known = [*tables, *rows]
-        raise SceneError(unknown(f"describe {found.name}: {part}", part, filter(None, known)))
+        raise SceneError(unknown(f"describe {reference.name}: {part}", part, filter(None, known)))
     return section_lines(rows[part], width)
 
 
-def lines(found: Reference, width: int | None) -> Iterator[str]:
+def lines(reference: Reference, width: int | None) -> Iterator[str]:
     """Write a reference as lines, its texts wrapped at a width if one is given."""
-    yield f"{found.name}: {found.title}"
-    for section in found.sections:
+    yield f"{reference.name}: {reference.title}"
+    sides = ports_of_cases(reference.name) if reference.name in known_kinds() else ((), ())
+    for verb, ports in zip(("takes", "gives"), sides, strict=True):
+        for port in ports:
+            yield from _wrapped(f"{verb} {port_text(port)}", width, "")
+    for section in reference.sections:
         yield ""
-        same = first_line(section.about) == found.title
+        same = first_line(section.about) == reference.title
         yield from section_lines(replace(section, about="") if same else section, width)
 
 
@@ -81,7 +98,7 @@ def section_lines(section: Section, width: int | None) -> Iterator[str]:
     if section.about:
         yield from _wrapped(section.about, width, "")
         yield ""
-    rows = [(one.name, one.unit, may_be(one), default(one)) for one in section.keys]
+    rows = [(key.name, key.unit, may_be(key), default(key)) for key in section.keys]
     widths = [max((len(row[n]) for row in rows), default=0) for n in range(3)]
     for row, key in zip(rows, section.keys, strict=True):
         parts = [f"{part:<{room}}" for part, room in zip(row, widths, strict=False)]
@@ -109,15 +126,15 @@ def as_data(section: Section) -> dict[str, object]:
     """One table, for programs."""
     names = ("unit", "range", "default", "needed", "meaning")
     rows = [
-        {"key": one.name, "type": one.words, **{name: getattr(one, name) for name in names}}
-        for one in section.keys
+        {"key": key.name, "type": key.words, **{name: getattr(key, name) for name in names}}
+        for key in section.keys
     ]
     return {"table": section.head, "about": section.about, "keys": rows}
 
 
-def markdown(found: Reference) -> Iterator[str]:
+def markdown(reference: Reference) -> Iterator[str]:
     """Write a reference as tables of Markdown."""
-    for section in found.sections:
+    for section in reference.sections:
         if section.head:
             about = " ".join(section.about.split("\n\n")[0].split())
             yield f"`{section.head}`: {about}" if about else f"`{section.head}`:"
@@ -126,7 +143,7 @@ def markdown(found: Reference) -> Iterator[str]:
         yield f"|{len(HEADS) * '---|'}"
         for key in section.keys:
             row = (f"`{key.name}`", key.unit, may_be(key), _cell_of_default(key), key.meaning)
-            yield f"| {' | '.join(one.replace('|', '&#124;') for one in row)} |"
+            yield f"| {' | '.join(cell.replace('|', '&#124;') for cell in row)} |"
         yield ""
 
 
@@ -140,8 +157,8 @@ def filled(text: str, where: str) -> str:
     """Fill in the tables of a text, each between ``describe SUBJECT`` and ``described``."""
 
     def tables(place: re.Match[str]) -> str:
-        found, _ = chosen(place[2].split())
-        return place[1] + "\n" + "\n".join(markdown(found)) + place[3]
+        reference, _ = chosen(place[2].split())
+        return place[1] + "\n" + "\n".join(markdown(reference)) + place[3]
 
     if not PLACE.search(text):
         raise SceneError(

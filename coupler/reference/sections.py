@@ -7,10 +7,11 @@ from quintet.coupler.coupling.links import known_links, maker
 from quintet.coupler.scene.kinds import named_kind
 from quintet.coupler.scene.scene import SceneFile
 from quintet.coupler.scene.tables import SceneTables
+from quintet.interfaces.component import Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import Key, about, keys
-from quintet.interfaces.manifest import known_kinds
-from quintet.interfaces.params import unknown
+from quintet.interfaces.manifest import Ports, known_kinds
+from quintet.interfaces.params import read, unknown
 
 SCENE_TITLE = "the keys of a scene file"
 
@@ -40,7 +41,7 @@ class Reference:
     sections: tuple[Section, ...]
 
 
-def reference(subject: str, kind: str = "") -> Reference:
+def reference_of(subject: str, kind: str = "") -> Reference:
     """Return what there is to know of ``scene``, of ``link`` and its kind, or of a component."""
     if subject == "scene":
         return Reference("scene", SCENE_TITLE, scene_sections())
@@ -51,23 +52,39 @@ def reference(subject: str, kind: str = "") -> Reference:
     return Reference(subject, manifest.title, tuple(sections(manifest.params)))
 
 
+def ports_of_cases(kind: str) -> Ports:
+    """Ports that a kind has with the parameters of any of its cases for ``quintet conform``."""
+    manifest = named_kind(kind, "describe")
+    takes: dict[str, Port] = {}
+    gives: dict[str, Port] = {}
+    for case in manifest.conform_cases() if manifest.conform else ():
+        if isinstance(case.params, dict):  # others make files
+            params, _ = read(manifest.params, case.params, manifest.kind)
+            for known, ports in zip((takes, gives), manifest.ports(params), strict=True):
+                for port in ports:
+                    fields = {field.name: field for field in known.get(port.name, port).fields}
+                    fields |= {field.name: field for field in port.fields}
+                    known[port.name] = replace(port, fields=tuple(fields.values()))
+    return tuple(takes.values()), tuple(gives.values())
+
+
 def link_keys(kind: str) -> type:
     """Return the parameter class of a kind of link."""
     if kind not in known_links():
         raise SceneError(unknown(f"describe link {kind}", kind, known_links()))
-    found: type | None = getattr(maker(kind), "keys", None)
-    if found is None:
+    params: type | None = getattr(maker(kind), "keys", None)
+    if params is None:
         raise SceneError(
             f"describe link {kind}: it does not publish its keys. Make it with with_keys of "
             "quintet.coupler.coupling.links.keys."
         )
-    return found
+    return params
 
 
 def scene_sections() -> tuple[Section, ...]:
     """Return the tables of a scene; those of kinds are told with the kinds."""
     file, *inner = sections(SceneFile)
-    seen = {one: head for one, head in heads(SceneFile)}
+    seen = dict(heads(SceneFile))
     tables, *outer = sections(SceneTables, seen=seen)
     top = Section((), False, "", file.keys + tables.keys)
     return (top, *inner, *outer)
@@ -117,7 +134,7 @@ def subjects() -> Iterator[tuple[str, str]]:
 
 def _title(*subject: str) -> str:
     try:
-        return reference(*subject).title
+        return reference_of(*subject).title
     except SceneError as error:
         return str(error)
 

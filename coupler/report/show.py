@@ -26,17 +26,17 @@ def results(folder: Path) -> dict[str, Any]:
     """Read the results of a run; `folder` is the run's, or the file itself."""
     path = Path(folder) / NAME if Path(folder).is_dir() else Path(folder)
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        run = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise SceneError(f"run {folder}: it has no {NAME}. Run a scene into it first.") from error
     except (OSError, ValueError) as error:
         raise SceneError(f"run {folder}: {path.name} must be JSON; {error}. Run again.") from error
-    if not isinstance(found, dict):
+    if not isinstance(run, dict):
         raise SceneError(
-            f"run {folder}: {path.name} must be one table; found a {type(found).__name__}."
+            f"run {folder}: {path.name} must be one table; found a {type(run).__name__}."
         )
-    require_sealed(found, path)
-    return found
+    require_sealed(run, path)
+    return run
 
 
 def show(folder: Path, as_json: bool = False) -> None:
@@ -49,33 +49,33 @@ def show(folder: Path, as_json: bool = False) -> None:
     as_json : bool
         Print the results as they are, for a program.
     """
-    found = results(folder)
+    run = results(folder)
     if as_json:
-        print(json.dumps(found, indent=2))
+        print(json.dumps(run, indent=2))
         return
-    print_results(found, console(), box.SIMPLE_HEAD if sys.stdout.isatty() else None)
+    print_results(run, console(), box.SIMPLE_HEAD if sys.stdout.isatty() else None)
 
 
-def print_results(found: Mapping[str, Any], screen: Console, frame: box.Box | None = None) -> None:
+def print_results(run: Mapping[str, Any], screen: Console, frame: box.Box | None = None) -> None:
     """Print results on a console, their tables in a frame or plain."""
-    screen.print(_headline(found))
-    for warning in found.get("warnings") or []:
+    screen.print(_headline(run))
+    for warning in run.get("warnings") or []:
         said = f"Warning of {warning.get('source', '?')}: {warning.get('text', warning)}"
         screen.print(Text(said, style="red"))
-    for table in (_expectations(found), _ledger(found), _timing(found)):
+    for table in (_expectations(run), _ledger(run), _timing(run)):
         if table is not None:
             table.box = frame
             screen.print(table)
-    for one in found.get("expect") or []:
-        if one.get("reason"):
-            screen.print(Text(f"{one.get('name', '?')}: not met: {one['reason']}"))
-    for line in (_balance(found), _masses(found), _shares(found)):
+    for outcome in run.get("expect") or []:
+        if outcome.get("reason"):
+            screen.print(Text(f"{outcome.get('name', '?')}: not met: {outcome['reason']}"))
+    for line in (_balance(run), _masses(run), _shares(run)):
         if line:
             screen.print(line)
-    for name, notes in (found.get("notes") or {}).items():
+    for name, notes in (run.get("notes") or {}).items():
         for note in notes:
             screen.print(Text(f"note of {name}: {note}"))
-    if fault := found.get("fault"):
+    if fault := run.get("fault"):
         screen.print(_fault(fault))
 
 
@@ -85,14 +85,14 @@ def console() -> Console:
     return Console(width=width, highlight=False, markup=False)
 
 
-def _headline(found: Mapping[str, Any]) -> Text:
-    status = str(found.get("status", "unknown"))
-    text = Text(f"{found.get('scene', '?')}", style="bold")
-    if found.get("preset"):
-        text.append(f" ({found['preset']})", style="")
+def _headline(run: Mapping[str, Any]) -> Text:
+    status = str(run.get("status", "unknown"))
+    text = Text(f"{run.get('scene', '?')}", style="bold")
+    if run.get("preset"):
+        text.append(f" ({run['preset']})", style="")
     text.append(f": {status}", style="green" if status == "done" else "red")
-    text.append(f", {found.get('windows', 0)} windows to t = {_number(found.get('time'))} s")
-    text.append(f" over {found['transport']}" if found.get("transport") else "")
+    text.append(f", {run.get('windows', 0)} windows to t = {_number(run.get('time'))} s")
+    text.append(f" over {run['transport']}" if run.get("transport") else "")
     return text
 
 
@@ -108,17 +108,15 @@ def _table(title: str, names: list[str], left: int, rows: list[Row]) -> Table | 
     return table
 
 
-def _expectations(found: Mapping[str, Any]) -> Table | None:
+def _expectations(run: Mapping[str, Any]) -> Table | None:
     rows = [
         [
-            _met(one.get("met"), one.get("required", True), one.get("not_reached")),
-            one.get("name", "?"),
-            one.get("unit", ""),
-            _number(one.get("value")),
-            _number(one.get("reference")),
-            _number(one.get("within")),
+            _met(outcome.get("met"), outcome.get("required", True), outcome.get("not_reached")),
+            outcome.get("name", "?"),
+            outcome.get("unit", ""),
+            *(_number(outcome.get(key)) for key in ("value", "reference", "within")),
         ]
-        for one in found.get("expect") or []
+        for outcome in run.get("expect") or []
     ]
     names = ["", "expectation", "unit", "value", "reference", "within"]
     return _table("Expectations", names, 3, rows)
@@ -133,26 +131,41 @@ def _met(met: Any, required: Any, not_reached: Any = None) -> Text:
     return Text(text, style="green" if met else "red")
 
 
-def _is_more(value: Any) -> bool:
-    """Whether a number, or any of a list, is not 0."""
-    return any(value) if isinstance(value, list) else bool(value)
+# What of a link shows that it carries what these are of, also where they are 0.
+CARRIED_AS = {
+    "momentum_residual": "impulse",
+    "heat_residual": "heat",
+    "work_given": "turnover",
+    "work_taken": "turnover",
+    "energy_residual": "turnover",
+}
 
 
-ALWAYS = ("momentum_residual", "work_given", "work_taken", "energy_residual")  # even if all 0
+def _carries(link: Mapping[str, Any], key: str) -> bool:
+    """Whether a sum of a link is not 0, or is 0 although the link carries what it is of."""
+    values = (link.get(key), link.get(CARRIED_AS.get(key, key)))
+    return any(any(value) if isinstance(value, list) else bool(value) for value in values)
 
 
-def _ledger(found: Mapping[str, Any]) -> Table | None:
-    """One row for each link; a column for what any of them has."""
-    links = (found.get("ledger") or {}).get("links") or []
-    keys = list(dict.fromkeys(key for link in links for key in link if key != "link"))
-    keys = [key for key in keys if key in ALWAYS or any(_is_more(one.get(key)) for one in links)]
-    rows = [[link.get("link", "?"), *(_number(link.get(key)) for key in keys)] for link in links]
-    return _table("Ledger", ["link", *(key.replace("_", " ") for key in keys)], 1, rows)
+def _sum_of(link: Mapping[str, Any], key: str) -> str:
+    return _number(link.get(key)) if _carries(link, key) else "-"
 
 
-def _balance(found: Mapping[str, Any]) -> str:
+def _ledger(run: Mapping[str, Any]) -> Table | None:
+    """One column for each link; a row for what any of them carries."""
+    links = (run.get("ledger") or {}).get("links") or []
+    keys = dict.fromkeys(key for link in links for key in link if key != "link")
+    rows = [
+        [key.replace("_", " "), *(_sum_of(link, key) for link in links)]
+        for key in keys
+        if any(_carries(link, key) for link in links)
+    ]
+    return _table("Ledger", ["", *(link.get("link", "?") for link in links)], 1, rows)
+
+
+def _balance(run: Mapping[str, Any]) -> str:
     """How the energy of the run changed; nothing where no component tells its energies."""
-    change = (found.get("ledger") or {}).get("energy_change")
+    change = (run.get("ledger") or {}).get("energy_change")
     if not change:
         return ""
     gained, lost, turned = (change[key] for key in ("gained", "lost", "turned_over"))
@@ -164,9 +177,9 @@ def _balance(found: Mapping[str, Any]) -> str:
     )
 
 
-def _masses(found: Mapping[str, Any]) -> str:
+def _masses(run: Mapping[str, Any]) -> str:
     """Which components' masses changed, by more than what is negligible."""
-    drifts = (found.get("ledger") or {}).get("mass_drift") or {}
+    drifts = (run.get("ledger") or {}).get("mass_drift") or {}
     said = []
     for name, drift in drifts.items():
         share = drift["relative"]
@@ -182,46 +195,45 @@ def _per_cent(share: float) -> str:
     return f"{float(f'{100.0 * share:.2g}'):g}" if share > ROUNDING else "0"
 
 
-def _timing(found: Mapping[str, Any]) -> Table | None:
-    components = (found.get("timing") or {}).get("components") or {}
+def _timing(run: Mapping[str, Any]) -> Table | None:
+    components = (run.get("timing") or {}).get("components") or {}
     rows = [
         [
             name,
-            _number(one.get("compute")),
-            _number(one.get("cpu")),
-            _number(one.get("wait")),
-            one.get("steps", "-"),
-            one.get("items", "-"),
-            _number(_rate(one)),
+            *(_number(times.get(key)) for key in ("build", "compute", "cpu", "wait")),
+            times.get("steps", "-"),
+            times.get("items", "-"),
+            _number(_rate(times)),
         ]
-        for name, one in components.items()
+        for name, times in components.items()
     ]
     names = [
         "component",
+        "build [s]",
         "compute [s]",
         "CPU [s]",
         "wait [s]",
         "steps",
         "items",
-        "particle-steps/s",
+        "item-steps/s",
     ]
     return _table("Timing", names, 1, rows)
 
 
-def _rate(one: Mapping[str, Any]) -> float | None:
+def _rate(times: Mapping[str, Any]) -> float | None:
     """Items stepped per second of computing time."""
-    compute = one.get("compute")
-    return one.get("steps", 0) * one.get("items", 0) / compute if compute else None
+    compute = times.get("compute")
+    return times.get("steps", 0) * times.get("items", 0) / compute if compute else None
 
 
-def _shares(found: Mapping[str, Any]) -> str:
-    timing = found.get("timing") or {}
+def _shares(run: Mapping[str, Any]) -> str:
+    timing = run.get("timing") or {}
     times = {k: v for k, v in timing.items() if k not in ("components", "memory")}
     text = "Time: " + ", ".join(f"{k} {_number(v)} s" for k, v in times.items()) if times else ""
     text += f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else ""
-    again = found.get("repetitions")
+    again = run.get("repetitions")
     text += f"; windows repeated {again} times" if again else ""
-    lacking = found.get("unconverged")
+    lacking = run.get("unconverged")
     return text + (f"; {lacking} windows did not converge" if lacking else "")
 
 
@@ -240,5 +252,5 @@ def _number(value: Any) -> str:
     if value is None:
         return "-"
     if isinstance(value, list):
-        return " ".join(f"{one:.3g}" for one in value)
+        return " ".join(f"{number:.3g}" for number in value)
     return f"{value:.4g}" if isinstance(value, (int, float)) else str(value)

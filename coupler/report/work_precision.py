@@ -12,24 +12,29 @@ Row = dict[str, Any]
 
 
 def table(rows: Sequence[Row]) -> Table:
-    """One line for each refinement, one column for each expectation's error."""
-    made = Table(box=None, pad_edge=False)
-    units = {name: unit for row in rows for name, unit in row["units"].items()}
-    heads = ["CPU [s]", "wall [s]", "coupling", "memory [MB]", "items", "size"]
-    for head in ("", "refinement"):
-        made.add_column(head)
-    for head in [*(f"{name} [{unit}]" for name, unit in units.items()), *heads]:
-        made.add_column(head, justify="right", overflow="fold")
+    """One column for each refinement, one row for each expectation's error and each cost."""
+    summary = Table(box=None, pad_edge=False)
+    summary.add_column("", overflow="fold")
     for row in rows:
-        state = row["status"] if row["status"] != "done" else "met" if row["met"] else "not met"
-        errors = [three_digits(row["errors"].get(name)) for name in units]
-        memory = row["memory"] / 1e6 if row["memory"] else None
-        share = "-" if row["overhead"] is None else f"{100.0 * row['overhead']:.1f} %"
-        numbers = [three_digits(row["cpu"]), three_digits(row["wall"]), share, three_digits(memory)]
-        made.add_row(
-            state, row["label"], *errors, *numbers, str(row["items"]), three_digits(row["size"])
-        )
-    return made
+        summary.add_column(row["label"], justify="right", overflow="fold")
+    units = {name: unit for row in rows for name, unit in row["units"].items()}
+    states = [row["status"] if row["status"] != "done" else _met(row) for row in rows]
+    summary.add_row("", *states)
+    for name, unit in units.items():
+        errors = [three_digits(row["errors"].get(name)) for row in rows]
+        summary.add_row(f"error of {name} [{unit}]", *errors)
+    for name, key in (("CPU [s]", "cpu"), ("wall [s]", "wall"), ("size", "size")):
+        summary.add_row(name, *(three_digits(row[key]) for row in rows))
+    shares = ["-" if row["overhead"] is None else f"{100.0 * row['overhead']:.1f}" for row in rows]
+    summary.add_row("coupling [%]", *shares)
+    memories = [three_digits(row["memory"] / 1e6 if row["memory"] else None) for row in rows]
+    summary.add_row("memory [MB]", *memories)
+    summary.add_row("items", *(str(row["items"]) for row in rows))
+    return summary
+
+
+def _met(row: Row) -> str:
+    return "met" if row["met"] else "not met"
 
 
 def three_digits(value: float | None) -> str:

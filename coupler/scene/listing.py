@@ -17,7 +17,7 @@ from quintet.coupler.measures.expectation import ROUNDING, Expectation
 from quintet.coupler.scene.foreign_code import unread_note
 from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene
-from quintet.interfaces.component import Port
+from quintet.interfaces.component import Port, port_text
 
 UNWRAPPED = 10_000  # characters, more than any line has
 
@@ -33,14 +33,29 @@ def list_all(as_json: bool) -> None:
     rows = [_row(name, parse(path)) for name, path in library().items()]
     if as_json:
         print(json.dumps(rows, indent=2))
-        return
-    table = Table(box=None, pad_edge=False)
-    for head in ("scene", "title", "components", "presets (minutes)"):
-        table.add_column(head)
+    else:
+        print_list(rows, console())
+
+
+def print_list(rows: list[dict[str, Any]], screen: Console) -> None:
+    """Print scenes in groups of the kinds that they couple, single kinds first."""
+    groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
     for row in rows:
-        presets = ", ".join(f"{k} ({v:g})" if v else k for k, v in row["presets"].items())
-        table.add_row(row["scene"], row["title"], ", ".join(row["components"]), presets)
-    console().print(table)
+        names = {component.partition(": ")[2] for component in row["components"]}
+        groups.setdefault(tuple(sorted(names)), []).append(row)
+    widest = max(len(row["scene"]) for row in rows)
+    for kinds in sorted(groups, key=lambda kinds: (len(kinds), kinds)):
+        screen.print("\n" + " and ".join(kinds), style="bold")
+        table = Table(box=None, show_header=False, pad_edge=False)
+        table.add_column(no_wrap=True, min_width=widest)
+        table.add_column(overflow="fold", ratio=1)
+        for row in groups[kinds]:
+            (_, minutes), *presets = row["presets"].items()
+            title = f"{row['title']} ({minutes:g} min)" if minutes else row["title"]
+            others = [f"{name} ({time:g})" if time else name for name, time in presets]
+            more = f"; presets {', '.join(others)}" if others else ""
+            table.add_row(row["scene"], title + more)
+        screen.print(table)
 
 
 def _row(name: str, table: dict[str, Any]) -> dict[str, Any]:
@@ -48,7 +63,8 @@ def _row(name: str, table: dict[str, Any]) -> dict[str, Any]:
     for preset, settings in table.get("presets", {}).items():
         presets[preset] = settings.get("minutes", 0.0)
     presets = {name or "(none)": minutes for name, minutes in presets.items()}
-    kinds = [f"{one}: {given['kind']}" for one, given in table.get("components", {}).items()]
+    components = table.get("components", {}).items()
+    kinds = [f"{component}: {keys['kind']}" for component, keys in components]
     return {"scene": name, "title": table.get("title", ""), "components": kinds, "presets": presets}
 
 
@@ -159,10 +175,4 @@ def _needs(one: ComponentPlan, end: float) -> tuple[str, str, str, str]:
 
 
 def _names(ports: tuple[Port, ...]) -> str:
-    texts = []
-    for port in ports:
-        fields = [
-            f"{f.name} [{f.unit}{', impulse' * (f.centring == 'impulse')}]" for f in port.fields
-        ]
-        texts.append(f"{port.name} ({', '.join(fields)})")
-    return "; ".join(texts) or "nothing"
+    return "; ".join(map(port_text, ports)) or "nothing"

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
 from rich.table import Table
 
 from quintet.coupler.files.disk import write_whole
@@ -30,6 +31,7 @@ from quintet.interfaces.errors import SceneError
 NAME = "stability.json"
 SLOWEST = 20.0  # times the first run of a limit, and MARGIN: a run that takes longer has stalled
 MARGIN = 60.0  # s
+NUMBERS = ("predicted", "found", "ratio", "degraded")  # of a limit, in the table
 Found = dict[str, Any]
 
 
@@ -102,7 +104,7 @@ def _find_all(
     found = {"scene": scene, "limits": limits, "machine": results.machine()}
     write_whole(folder / NAME, json.dumps(found, indent=2))
     wanted.write(found)
-    console().print(table(limits))
+    print_limits(limits, console())
     if interrupted:
         return results.INTERRUPTED
     return results.DONE if all(one["found"] is not None for one in limits) else results.UNMET
@@ -161,23 +163,33 @@ def _known_boundary(search: Search, *accepted: str) -> tuple[float, float] | Non
     return bisect(known, lambda v: search.verdicts[v].state in accepted, one.log, float("inf"))
 
 
-def table(limits: list[Found]) -> Table:
-    """One line for each limit."""
-    made = Table(box=None, pad_edge=False)
-    for head in ("limit", "against", "predicted", "found", "ratio", "degraded", "then", "how"):
-        right = head in ("predicted", "found", "ratio", "degraded")
-        made.add_column(head, justify="right" if right else "left", overflow="fold")
-    for one in limits:
-        against = ", ".join(f"{k} = {three_digits(v)}" for k, v in (one["against"] or {}).items())
-        numbers = [three_digits(one[key]) for key in ("predicted", "found", "ratio", "degraded")]
-        made.add_row(one["name"], against, *numbers, one["state"] or "-", _how(one))
-    return made
+def print_limits(limits: list[Found], screen: Console) -> None:
+    """Print a line of numbers for each limit, then how each was found."""
+    columns = ["limit", "against", "predicted", "found", "ratio", "degraded", "then"]
+    if all(limit["degraded"] is None for limit in limits):
+        columns.remove("degraded")
+    table = Table(box=None, pad_edge=False)
+    for head in columns:
+        right = head in NUMBERS
+        table.add_column(head, justify="right" if right else "left", overflow="fold")
+    for limit in limits:
+        cells = {key: three_digits(limit[key]) for key in columns if key in NUMBERS}
+        cells |= {"limit": limit["name"], "against": _against(limit), "then": limit["state"] or "-"}
+        table.add_row(*(cells[head] for head in columns))
+    screen.print(table)
+    for limit in limits:
+        place = f" at {against}" if (against := _against(limit)) else ""
+        screen.print(f"{limit['name']}{place}: {_how(limit)}")
 
 
-def _how(one: Found) -> str:
-    if one["found"] is not None:
-        return f"{one['broke']}: {one['how']}"
-    first, last = one["range"]
-    if one["broke"]:
-        return f"at {first:g} already: {one['broke']}: {one['how']}"
+def _against(limit: Found) -> str:
+    return ", ".join(f"{k} = {three_digits(v)}" for k, v in (limit["against"] or {}).items())
+
+
+def _how(limit: Found) -> str:
+    if limit["found"] is not None:
+        return f"{limit['broke']}: {limit['how']}"
+    first, last = limit["range"]
+    if limit["broke"]:
+        return f"at {first:g} already: {limit['broke']}: {limit['how']}"
     return f"holds from {first:g} to {last:g}"

@@ -1,13 +1,16 @@
 """Every command does what its help says, and ends with the status that is stated."""
 
+import io
 import json
 
 import pytest
+from rich.console import Console
 from started import Started, write_scene
 
 import quintet
-from quintet.coupler.cli import main
+from quintet.coupler.cli import main, parser
 from quintet.coupler.launch.connect import free_port
+from quintet.coupler.scene.listing import print_list
 from quintet.coupler.scene.read import library, load
 
 EXPECT = """
@@ -56,8 +59,32 @@ def test_no_line_is_wrapped_into_a_pipe(capsys, monkeypatch, command):
     monkeypatch.setenv("COLUMNS", "40")
     assert status(*command) == 0
     lines = capsys.readouterr().out.splitlines()
-    rows = len(library()) + 1 if command == ["list"] else len(load(command[1]).expect) + 10
+    rows = len(library()) if command == ["list"] else len(load(command[1]).expect) + 10
+    lines = [line for line in lines if command != ["list"] or (line.split()[:1] and "(" in line)]
     assert len(lines) == rows and max(map(len, lines)) > 80
+
+
+def test_list_groups_scenes_by_kinds_and_keeps_their_names_in_a_narrow_terminal():
+    rows = [
+        {"scene": "a_long_name_of_a_scene", "title": "Water " * 20, "components": ["w: fluid"],
+         "presets": {"(none)": 2.0, "quick": 0.5}},
+        {"scene": "gate", "title": "A gate", "components": ["g: plate", "w: fluid"],
+         "presets": {"(none)": 0.0}},
+    ]  # fmt: skip
+    screen = Console(width=60, file=io.StringIO())
+    print_list(rows, screen)
+    lines = screen.file.getvalue().splitlines()
+    assert max(map(len, lines)) <= 60 and lines.count("fluid") == 1
+    assert any(line.startswith("a_long_name_of_a_scene ") for line in lines)
+    assert lines[-2:][0].strip() == "fluid and plate" and lines[-1].split()[0] == "gate"
+    assert "(2 min); presets quick (0.5)" in " ".join(" ".join(lines).split())
+
+
+def test_every_option_has_a_help_text():
+    (commands,) = (action for action in parser()._actions if action.choices)
+    for name, command in commands.choices.items():
+        options = [action for action in command._actions if action.option_strings]
+        assert [action.dest for action in options if not action.help] == [], name
 
 
 def test_the_version_is_that_of_the_package(capsys):

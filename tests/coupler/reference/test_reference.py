@@ -10,7 +10,7 @@ import pytest
 from quintet.coupler.cli import main
 from quintet.coupler.coupling.links import known_links
 from quintet.coupler.reference.describe import PLACE, filled
-from quintet.coupler.reference.sections import link_keys, reference, sections, subjects
+from quintet.coupler.reference.sections import link_keys, reference_of, sections, subjects
 from quintet.coupler.scene.scene import SceneFile
 from quintet.coupler.scene.tables import SceneTables
 from quintet.interfaces.component import Component
@@ -94,12 +94,12 @@ def said(capsys, *arguments):
 def test_describe_prints_every_key(capsys, subject):
     status, out, _ = said(capsys, *subject.split())
     assert status == 0
-    rows = [(key, line) for one in reference(*subject.split()).sections for key in one.keys
+    rows = [(key, line) for one in reference_of(*subject.split()).sections for key in one.keys
             for line in out.splitlines() if line.split(" ")[0] == key.name]  # fmt: skip
     assert {key.name for key, _ in rows} == {
-        key.name for one in reference(*subject.split()).sections for key in one.keys
+        key.name for one in reference_of(*subject.split()).sections for key in one.keys
     }
-    for one in reference(*subject.split()).sections:
+    for one in reference_of(*subject.split()).sections:
         assert all(f"    {key.meaning}" in out.splitlines() for key in one.keys)
 
 
@@ -164,8 +164,14 @@ def test_what_cannot_be_described_is_told(capsys, tmp_path, words, sentence):
 
 
 def test_the_same_class_is_told_once():
-    found = [one.head for one in reference("scene").sections]
+    found = [one.head for one in reference_of("scene").sections]
     assert len(found) == len(set(found)) and "[groups.NAME.iteration]" not in found
-    group = next(one for one in reference("scene").sections if one.head == "[groups.NAME]")
+    group = next(one for one in reference_of("scene").sections if one.head == "[groups.NAME]")
     assert group.keys[-1].meaning.endswith("Keys as in `[iteration]`.")
     assert len(list(sections(SceneFile))) == 3
+
+
+def test_a_kind_is_described_with_its_ports(capsys):
+    _, out, _ = said(capsys, "sph_solid")
+    assert "gives glued_load (force [N, impulse])\n" in out, "of the glued ones of its cases"
+    assert "takes glued (velocity [m/s, impulse])\n" in out

@@ -28,7 +28,8 @@ RESULTS = {
     "timing": {
         "wall": 100.0, "compile": 20.0, "exchange": 0.4, "mapping": 0.3,
         "components": {
-            "water": {"compute": 80.0, "cpu": 150.0, "wait": 5.0, "steps": 9000, "items": 61000},
+            "water": {"build": 3.0, "compute": 80.0, "cpu": 150.0, "wait": 5.0, "steps": 9000,
+                      "items": 61000},
         },
     },
     "machine": {"cpu": "x", "cores": 2, "versions": {}},
@@ -50,9 +51,23 @@ def test_show_tells_expectations_ledger_and_timing(tmp_path, capsys):
     assert "dam_break (quick): done, 1234 windows to t = 1.8 s over zenoh" in text
     assert _line(text, "top.x") == ["met", "top.x", "[rms]", "m", "0.0437", "0", "0.05"]
     assert _line(text, "late") == ["not", "met", "late", "s", "-", "1.5", "0.1"]
-    assert _line(text, "water-cubes") == ["water-cubes", "1e-15", "2e-14"]
-    assert _line(text, "9000") == ["water", "80", "150", "5", "9000", "61000", "6.862e+06"]
+    assert "water-cubes" in text
+    assert _line(text, "momentum residual")[-1] == "1e-15"
+    assert _line(text, "energy residual")[-1] == "2e-14"
+    assert _line(text, "9000") == ["water", "3", "80", "150", "5", "9000", "61000", "6.862e+06"]
     assert "exchange 0.4 s" in text
+
+
+def test_show_leaves_out_what_no_link_carries_and_stays_narrow(tmp_path, capsys):
+    zeros = {"momentum_residual": 0.0, "work_given": 0.0, "work_taken": 0.0, "turnover": 0.0,
+             "energy_residual": 0.0, "impulse": [0.0, 0.0, 0.0]}  # fmt: skip
+    heat = {"link": "points-bar", **zeros, "heat_residual": 0.0, "heat": -1.5}
+    force = {"link": "water-cubes", **zeros, "impulse": [-1.234e-5, 2.345e-6, -3.456e-7]}
+    text = _shown(tmp_path, RESULTS | {"ledger": {"links": [heat, force]}}, capsys)
+    assert "work" not in text and "energy residual" not in text
+    assert _line(text, "momentum residual")[2:] == ["-", "0"], "exactly 0, and carried by one"
+    assert _line(text, "heat residual")[2:] == ["0", "-"]
+    assert max(map(len, text.splitlines())) <= 100
 
 
 def test_show_tells_what_energy_the_run_gained_and_lost(tmp_path, capsys):
