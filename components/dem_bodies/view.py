@@ -1,6 +1,7 @@
 """What a picture shows of bodies: corners and faces, centres and radii of spheres; planes."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from quintet.components.dem_bodies.build import Solid
 from quintet.components.dem_bodies.params import Plane
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
-from quintet.components.dem_bodies.state import State
+from quintet.components.dem_bodies.state import State, Whole
 from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.faces import CORNERS, FACES, polygons, stacked
@@ -18,7 +19,7 @@ ON = 1e-9  # of that size: what lies on a plane is not beyond it
 
 
 def view(bodies: Sequence[RigidBody], solids: Sequence[Solid], state: State) -> Fields:
-    """Corners and faces of boxes and polygons, centres and radii of spheres, and velocities."""
+    """Corners and faces of boxes, polygons and meshes, centres and radii of spheres; velocities."""
     points: list[Array] = []
     radii: list[Array] = []
     owners: list[int] = []
@@ -32,6 +33,10 @@ def view(bodies: Sequence[RigidBody], solids: Sequence[Solid], state: State) -> 
             corners = in_space(planar.corners(body))
             radius = np.zeros(len(corners))
             faces.append(np.arange(len(corners))[None] + len(owners))
+        elif body.file is not None:
+            corners, cells = mesh(body.file, body.scale or 1.0)
+            radius = np.zeros(len(corners))
+            faces.append(cells + len(owners))
         axes = state.axes[a].reshape(3, 3)
         points.append(state.position[a] + corners @ axes.T)
         radii.append(radius)
@@ -42,6 +47,17 @@ def view(bodies: Sequence[RigidBody], solids: Sequence[Solid], state: State) -> 
     velocity = state.velocity[row] + turning
     shown = {"points": where, "velocity": velocity, "radius": np.concatenate(radii), "body": owner}
     return shown | ({"cells": stacked(faces)} if faces else {})
+
+
+@lru_cache(maxsize=16)
+def mesh(file: str, scale: float) -> tuple[Array, Whole]:
+    """Vertices (n, 3) m about the centre of mass, and triangles (t, 3), of a body from a file."""
+    # Left out of scenes without meshes.
+    from quintet.components.shared.geometry.mesh_files import read
+
+    shape = read(file, scale)
+    corners, cells = np.unique(shape.triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    return corners - shape.centre, cells.reshape(-1, 3)
 
 
 def planes_view(planes: Sequence[Plane], state: State) -> Fields:

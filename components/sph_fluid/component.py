@@ -90,7 +90,7 @@ class SphFluid(Component):
         features.refuse_misplaced(self.params, self.samples.body, fields["surface.position"])
         if self.params.remove_inside_bodies:
             self._notes += features.remove_inside_bodies(
-                self.state, self.samples, fields, self.params
+                self.state, self.samples, fields["surface.position"], self.params
             )
 
     def stable_dt(self) -> float:

@@ -17,7 +17,6 @@ from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precis
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import closed_faces
 from quintet.components.sph_fluid.state import Array, State
-from quintet.interfaces.component import Fields
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
@@ -96,13 +95,13 @@ def refuse_misplaced(params: SphFluidParams, body: Array, position: Array) -> No
 
 
 def remove_inside_bodies(
-    state: State, samples: Samples, fields: Fields, params: SphFluidParams
+    state: State, samples: Samples, position: Array, params: SphFluidParams
 ) -> list[str]:
-    """Remove fluid inside bodies, where their samples are at the start; say how much."""
+    """Remove fluid inside bodies with samples at places (n, 3) m; say how much."""
     # Left out of scenes whose fluid has room for the bodies.
     from quintet.components.sph_fluid.boundary.removal import remove
 
-    return remove(state, samples, fields, params)
+    return remove(state, samples, position, params)
 
 
 def make_films(params: SphFluidParams, samples: Samples) -> "LubricationFilms":

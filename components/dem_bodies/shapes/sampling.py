@@ -34,8 +34,7 @@ def _sampler(body: RigidBody) -> surfaces.Sampler:
     if body.corners is not None:
         return partial(surfaces.polygon, planar.corners(body))
     if body.file is not None:
-        assert body.scale is not None
-        solid = read(body.file, body.scale)
+        solid = read(body.file, body.scale or 1.0)
         return partial(surfaces.mesh, solid.triangles - solid.centre, solid.volume)
     if body.radius is None:
         assert body.centres is not None and body.radii is not None

@@ -1,10 +1,9 @@
-"""Removing the fluid that bodies stand in; numpy alone, imported only by a scene that asks.
+"""Removing the fluid in which bodies stand; numpy alone, imported only by a scene that asks.
 
-Bodies that are sampled are convex: a point is inside if it lies behind the surface at each of the
-outermost samples, whose mirror images say where the surface is and how it is turned.
+A body displaces its volume of fluid: as many particles are removed as the samples' cells in the
+fluid hold, those in the midst of the samples first. So the fluid keeps its volume, and pushes the
+body up by its own weight, whatever its shape and wherever the lattice of particles lies.
 """
-
-import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,47 +13,65 @@ from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import slab_thickness
 from quintet.components.sph_fluid.state import Array, State
-from quintet.interfaces.component import Fields
-
-OUTERMOST = 2.2  # spacings, between a sample of the first layer and its mirror image, at most
-AT_ONCE = 4_000_000  # pairs of particles and samples
 
 
-def remove(state: State, samples: Samples, fields: Fields, params: SphFluidParams) -> list[str]:
-    """Remove fluid inside bodies, where their samples are; say how much."""
-    position, mirror = fields["surface.position"], fields["surface.mirror"]
-    points = state.position_density[: state.fluid, :3].copy()
-    if params.dimensions == 2:
-        points[:, 1] = position[:, 1].mean()
-    found, told = np.zeros(len(points), bool), []
+def remove(state: State, samples: Samples, position: Array, params: SphFluidParams) -> list[str]:
+    """Remove the fluid that bodies with samples (k, 3) m displace; say how much."""
+    axes = [0, 2] if params.dimensions == 2 else [0, 1, 2]
+    points, position = state.position_density[: state.fluid, axes], position[:, axes]
+    removed, notes = np.zeros(len(points), bool), []
     mass = constants(params).mass * slab_thickness(params)
     for number in np.unique(samples.body):
-        own = samples.body == number
-        inside = inside_body(points, position[own], mirror[own], params.spacing) & ~found
-        if count := int(inside.sum()):
-            told.append(
-                f"body {number:g} stood in the fluid: {count} particles inside it, "
-                f"{count * mass:.4g} kg, were removed"
+        of_body = samples.body == number
+        left = np.flatnonzero(~removed)
+        rows = left[
+            displaced(points[left], position[of_body], samples.volume[of_body], params.spacing)
+        ]
+        if len(rows):
+            notes.append(
+                f"body {number:g} stood in the fluid: {len(rows)} particles inside it, "
+                f"{len(rows) * mass:.4g} kg, were removed"
             )
-        found |= inside
-    state.keep(np.flatnonzero(~found), np.arange(len(state.sample)))
+        removed[rows] = True
+    state.keep(np.flatnonzero(~removed), np.arange(len(state.sample)))
     samples.find_rows(state)
-    return told
+    return notes
 
 
-def inside_body(points: Array, position: Array, mirror: Array, spacing: float) -> NDArray[np.bool_]:
-    """Whether points (n, 3) m are inside a convex body with these samples and images (k, 3) m."""
-    across = mirror - position
-    size = np.linalg.norm(across, axis=1)
-    outermost = (size > 0.0) & (size < OUTERMOST * spacing)
-    normal = across[outermost] / size[outermost, np.newaxis]
-    found = np.zeros(len(points), bool)
-    if not len(normal):
-        return found
-    level = (0.5 * (position + mirror)[outermost] * normal).sum(axis=1)  # m, along the normals
-    low, high = position.min(axis=0) - spacing, position.max(axis=0) + spacing
-    rows = np.flatnonzero(((points > low) & (points < high)).all(axis=1))
-    parts = max(1, math.ceil(len(rows) * len(normal) / AT_ONCE))
-    for some in np.array_split(rows, parts):
-        found[some] = (points[some] @ normal.T < level).all(axis=1)
-    return found
+def displaced(points: Array, position: Array, volume: Array, spacing: float) -> NDArray[np.int64]:
+    """Numbers of the particles that a body displaces.
+
+    Parameters
+    ----------
+    points : (n, d) float array, m
+        Of fluid, on a lattice.
+    position : (k, d) float array, m
+        Of samples that fill the body.
+    volume : (k,) float array, m3, or m2 of a plane
+        That they stand for.
+    spacing : float, m
+        Of the lattice.
+    """
+    count = round(float(filled(points, position, volume, spacing).sum()))
+    # In a wider cube corners of a body count more than what lies beside its faces.
+    order = np.argsort(-filled(points, position, volume, 2.0 * spacing), kind="stable")
+    return np.asarray(order[:count], np.int64)
+
+
+def filled(points: Array, position: Array, volume: Array, width: float) -> Array:
+    """Share (n,) of a cube of a width [m] around each point that cells of samples fill."""
+    # Left out of scenes whose fluid has room for the bodies.
+    from scipy.spatial import cKDTree
+
+    dimensions = points.shape[1]
+    edge = volume ** (1.0 / dimensions)  # (k,) m
+    reach = 0.5 * (width + float(edge.max()))
+    pairs = cKDTree(points).sparse_distance_matrix(
+        cKDTree(position), reach, p=np.inf, output_type="ndarray"
+    )
+    i, j = pairs["i"], pairs["j"]
+    apart = np.abs(points[i] - position[j])
+    common = 0.5 * (width + edge[j])[:, np.newaxis] - apart  # m, of two intervals side by side
+    common = np.clip(common, 0.0, np.minimum(width, edge[j])[:, np.newaxis])
+    shares = common.prod(axis=1) / width**dimensions
+    return np.bincount(i, shares, len(points)).astype(np.float64)

@@ -10,7 +10,7 @@ from fluid_params import fluid_params, nested
 from sampled_bodies import BOX, SPHERE, fill, mirrors
 
 from quintet.components.sph_fluid import MANIFEST, SphFluidParams
-from quintet.components.sph_fluid.boundary.removal import inside_body
+from quintet.components.sph_fluid.boundary.removal import displaced
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.setup.expressions import values_at
 from quintet.interfaces.params import read
@@ -249,18 +249,34 @@ def at_rest(shape, size, centre):
     return centre + arm, centre + image, volume
 
 
+def lattice(spacing, dimensions):
+    axis = spacing * (np.arange(round(0.4 / spacing)) + 0.5)
+    return np.stack(np.meshgrid(*[axis] * dimensions, indexing="ij"), axis=-1).reshape(
+        -1, dimensions
+    )
+
+
 @pytest.mark.parametrize("shape", [SPHERE, BOX])
-def test_what_is_inside_a_body_is_found_by_its_samples(shape):
-    size, centre = np.full(3, 0.17), np.array([0.2, 0.21, 0.19])
-    place, image, _ = at_rest(shape, size, centre)
-    some = np.random.default_rng(3).uniform(0.0, 0.4, (20000, 3))
-    if shape == SPHERE:
-        depth = 0.085 - np.linalg.norm(some - centre, axis=1)
-    else:
-        depth = 0.085 - np.abs(some - centre).max(axis=1)
-    found = inside_body(some, place, image, SPACING)
-    assert found[depth > 0.0].all()
-    assert not found[depth < -0.15 * SPACING].any()
+@pytest.mark.parametrize("shift", [0.0, 0.3, 0.5])
+def test_a_body_displaces_its_volume_wherever_the_lattice_lies(shape, shift):
+    size, centre = np.full(3, 0.17), 0.2 + shift * SPACING * np.array([1.0, 0.7, 0.4])
+    arm, _, volume = fill(shape, size, SPACING, math.inf)
+    water = lattice(SPACING, 3)
+    rows = displaced(water, centre + arm, volume, SPACING)
+    whole = math.pi / 6.0 if shape == SPHERE else 1.0
+    assert len(rows) == round(whole * 0.17**3 / SPACING**3)
+    away = water - centre
+    depth = 0.085 - (np.linalg.norm(away, axis=1) if shape == SPHERE else np.abs(away).max(axis=1))
+    assert depth[rows].min() > -0.5 * SPACING
+    assert np.delete(depth, rows).max() < 0.5 * SPACING
+
+
+def test_a_floating_body_displaces_what_is_below_the_surface():
+    arm, _, volume = fill(BOX, np.full(3, 0.16), SPACING, math.inf)
+    water = lattice(SPACING, 3)
+    water = water[water[:, 2] < 0.2]
+    rows = displaced(water, np.array([0.2, 0.2, 0.237]) + arm, volume, SPACING)
+    assert len(rows) == pytest.approx(0.16**2 * (0.2 - 0.157) / SPACING**3, abs=0.5)
 
 
 def test_fluid_inside_bodies_is_removed_and_its_mass_told():
