@@ -288,8 +288,8 @@ def make(cls: type[Component], params: Any, resources: Resources) -> Component:
     """Make a component, with its resources if its constructor takes them."""
     makes: Any = cls
     takes = inspect.signature(cls).parameters
-    made: Component = makes(params, resources) if len(takes) > 1 else makes(params)
-    return made
+    component: Component = makes(params, resources) if len(takes) > 1 else makes(params)
+    return component
 
 
 def outputs_of(component: Component) -> Fields:

@@ -25,10 +25,13 @@ WALL, CLAMPED, SYMMETRY = 0, 1, 2
 
 def stacked(cells: Iterable[Array]) -> Array:
     """Polygons (m, k) of several arrays (m_i, k_i) in one, -1 after the last corner of each."""
-    every = [np.asarray(one, np.int64) for one in cells]
-    width = max(one.shape[1] for one in every)
+    every = [np.asarray(block, np.int64) for block in cells]
+    width = max(block.shape[1] for block in every)
     return np.concatenate(
-        [np.pad(one, ((0, 0), (0, width - one.shape[1])), constant_values=-1) for one in every]
+        [
+            np.pad(block, ((0, 0), (0, width - block.shape[1])), constant_values=-1)
+            for block in every
+        ]
     )
 
 

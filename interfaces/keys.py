@@ -54,9 +54,11 @@ def keys(params: type) -> list[Key]:
 
 def fields_of(params: type) -> dict[str, FieldInfo]:
     """Return the fields of a parameter class, or of a plain dataclass."""
-    made = params if hasattr(params, "__pydantic_fields__") else dataclasses.dataclass(params)
-    found: dict[str, FieldInfo] = made.__pydantic_fields__
-    return found
+    pydantic_class = (
+        params if hasattr(params, "__pydantic_fields__") else dataclasses.dataclass(params)
+    )
+    fields: dict[str, FieldInfo] = pydantic_class.__pydantic_fields__
+    return fields
 
 
 def about(params: type) -> str:
@@ -72,23 +74,23 @@ def documented(params: type) -> dict[str, tuple[str, str]]:
 
     What a class derives from says that of its own.
     """
-    found: dict[str, tuple[str, str]] = {}
-    for one in reversed(params.__mro__[:-1]):
-        found |= _documented(one)
-    return found
+    keys: dict[str, tuple[str, str]] = {}
+    for base in reversed(params.__mro__[:-1]):
+        keys |= _documented(base)
+    return keys
 
 
 def _documented(params: type) -> dict[str, tuple[str, str]]:
     text = inspect.cleandoc(params.__dict__.get("__doc__") or "")
     parts = SECTION.split(text)
     body = dict(zip(parts[1::2], parts[2::2], strict=True)).get("Parameters", "")
-    found = {}
+    keys = {}
     for entry in re.split(r"\n(?=\S)", body.strip("\n")) if body else ():
         head, _, meaning = entry.partition("\n")
         names, _, unit = head.partition(" : ")
         for name in names.split(","):
-            found[name.strip()] = unit.strip(), " ".join(meaning.split()).replace("``", "`")
-    return found
+            keys[name.strip()] = unit.strip(), " ".join(meaning.split()).replace("``", "`")
+    return keys
 
 
 def _key(name: str, info: FieldInfo, unit: str, meaning: str) -> Key:
@@ -117,7 +119,7 @@ def _parts(annotation: Any) -> tuple[Any, tuple[Any, ...], list[Any]]:
         annotation, *metadata = get_args(annotation)
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin in (Union, types.UnionType):
-        left = tuple(one for one in arguments if one is not types.NoneType)
+        left = tuple(part for part in arguments if part is not types.NoneType)
         if len(left) == 1:
             origin, arguments, more = _parts(left[0])
             return origin, arguments, metadata + more
@@ -131,9 +133,9 @@ def _words(annotation: Any, many: bool = False) -> str:
     if is_dataclass(origin):
         return "tables" if many else "table"
     if origin is Literal:
-        return _either([json.dumps(one) for one in arguments])
+        return _either([json.dumps(part) for part in arguments])
     if origin is Union:
-        return _either(list(dict.fromkeys(_words(one, many) for one in arguments)))
+        return _either(list(dict.fromkeys(_words(part, many) for part in arguments)))
     if origin is tuple and arguments[-1] is Ellipsis:
         return f"list{'s' * many} of {_words(arguments[0], True)}"
     if origin is tuple:
@@ -154,30 +156,30 @@ def _either(words: list[str]) -> str:
 
 def _row(arguments: tuple[Any, ...]) -> str:
     """Name a list of fixed length: "3 numbers", "2 × 3 numbers"."""
-    held = list(dict.fromkeys(_words(one, True) for one in arguments))
+    held = list(dict.fromkeys(_words(part, True) for part in arguments))
     if len(held) == 1:
         return f"{len(arguments)} {'× ' if held[0][0].isdigit() else ''}{held[0]}"
-    return ", ".join(_words(one) for one in arguments)
+    return ", ".join(_words(part) for part in arguments)
 
 
 def _bounds(annotation: Any) -> list[str]:
     """Tell the bounds of what is in an annotation: "> 0", "0 to 1", "not empty"."""
     origin, arguments, metadata = _parts(annotation)
-    given: dict[str, Any] = {}
-    for one in metadata:
-        for part in one.metadata if isinstance(one, FieldInfo) else [one]:
+    limits: dict[str, Any] = {}
+    for entry in metadata:
+        for part in entry.metadata if isinstance(entry, FieldInfo) else [entry]:
             for name in ("gt", "ge", "lt", "le", "min_length"):
                 if (bound := getattr(part, name, None)) is not None:
-                    given[name] = bound
-    found = ["not empty"] if given.pop("min_length", None) else []
-    if given.keys() == {"ge", "le"}:
-        found.append(f"{given['ge']:g} to {given['le']:g}")
+                    limits[name] = bound
+    bounds = ["not empty"] if limits.pop("min_length", None) else []
+    if limits.keys() == {"ge", "le"}:
+        bounds.append(f"{limits['ge']:g} to {limits['le']:g}")
     else:
         signs = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
-        found += [f"{sign} {given[name]:g}" for name, sign in signs.items() if name in given]
+        bounds += [f"{sign} {limits[name]:g}" for name, sign in signs.items() if name in limits]
     if origin is not Literal and not is_dataclass(origin):
-        found += [one for part in arguments if part is not Ellipsis for one in _bounds(part)]
-    return list(dict.fromkeys(found))
+        bounds += [bound for part in arguments if part is not Ellipsis for bound in _bounds(part)]
+    return list(dict.fromkeys(bounds))
 
 
 def _numeric(annotation: Any) -> bool:
@@ -193,8 +195,8 @@ def _inner(annotation: Any) -> type | None:
     origin, arguments, _ = _parts(annotation)
     if isinstance(origin, type) and is_dataclass(origin):
         return origin
-    found = [one for part in arguments if origin is not Literal and (one := _inner(part))]
-    return found[0] if found else None
+    classes = [inner for part in arguments if origin is not Literal and (inner := _inner(part))]
+    return classes[0] if classes else None
 
 
 def _place(annotation: Any) -> Literal["table", "list", "names"]:

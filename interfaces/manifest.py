@@ -119,10 +119,10 @@ class Manifest:
 
     def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
-        found = resolve(self.component)
-        if not (isinstance(found, type) and issubclass(found, Component)):
+        cls = resolve(self.component)
+        if not (isinstance(cls, type) and issubclass(cls, Component)):
             raise SceneError(f"kind {self.kind}: {self.component} is not a Component.")
-        return found
+        return cls
 
     def cases(self) -> tuple[BenchCase, ...]:
         """Benchmarks of this kind, none if it declares none."""
@@ -132,8 +132,8 @@ class Manifest:
         """What the laws of the contract are tried on: none if neither it nor its class says."""
         if self.conform:
             return tuple(resolve(self.conform)())
-        own = getattr(self.load(), "conform_cases", None)
-        return tuple(own()) if own else ()
+        cases = getattr(self.load(), "conform_cases", None)
+        return tuple(cases()) if cases else ()
 
 
 _looked_in: list[str] = []  # folders that `look_in` has put on the import path
@@ -144,10 +144,10 @@ def look_in(folders: Iterable[str]) -> None:
 
     A file there must never stand for a module of Python or of a package that has its name.
     """
-    own = [path for path in sys.path if path not in _looked_in]
-    new = [folder for folder in dict.fromkeys(folders) if folder not in own]
+    path_before = [path for path in sys.path if path not in _looked_in]
+    new = [folder for folder in dict.fromkeys(folders) if folder not in path_before]
     _looked_in[:] = [*new, *(folder for folder in _looked_in if folder not in new)]
-    sys.path[:] = [*own, *_looked_in]
+    sys.path[:] = [*path_before, *_looked_in]
 
 
 def resolve(path: str) -> Any:
@@ -174,8 +174,8 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
     of_kind: Manifest | None = cls.manifest  # of the one that it derives from
     plan = getattr(cls, "plan_of", of_kind.plan if of_kind else None)
     initial = getattr(cls, "initial_of", of_kind.initial if of_kind else None)
-    made = Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
-    return replace(made, patience=getattr(cls, "patience", PATIENCE))
+    manifest = Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
+    return replace(manifest, patience=getattr(cls, "patience", PATIENCE))
 
 
 def known_kinds() -> dict[str, str]:
@@ -200,5 +200,5 @@ def find(kind: str) -> Manifest:
     path = kind if ":" in kind else known_kinds().get(kind, "")
     if not path:
         raise KeyError(kind)
-    found = resolve(path)
-    return found if isinstance(found, Manifest) else manifest_of(found, path, kind)
+    target = resolve(path)
+    return target if isinstance(target, Manifest) else manifest_of(target, path, kind)

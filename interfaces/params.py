@@ -78,7 +78,7 @@ def parameters(cls: type) -> Any:
 
 
 def read(
-    params: type, given: dict[str, Any], where: str, folder: Path | None = None
+    params: type, table: dict[str, Any], where: str, folder: Path | None = None
 ) -> tuple[Any, list[str]]:
     """Check settings against a parameter class; return it filled, or None and every mistake.
 
@@ -93,20 +93,20 @@ def read(
     folder : Path, by default the working folder
         Where their data files lie.
     """
-    if extreme := list(extremes(given, where)):
+    if extreme := list(extremes(table, where)):
         return None, extreme
     try:
         # Strict checking of JSON takes lists for tuples, but no text for numbers.
-        text = json.dumps(given)
+        text = json.dumps(table)
         context = {"folder": folder or Path()}
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             return _adapter(params).validate_json(text, strict=True, context=context), []
     except ValidationError as error:
-        wrong = _drop_renamed(params, _by_place(error.errors(), given))
+        wrong = _drop_renamed(params, _by_place(error.errors(), table))
         more = [f"{where}: {len(wrong) - MOST_SAID} more mistakes."] if wrong[MOST_SAID:] else []
-        return None, [*(_sentence(params, where, one) for one in wrong[:MOST_SAID]), *more]
+        return None, [*(_sentence(params, where, mistake) for mistake in wrong[:MOST_SAID]), *more]
     except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return None, [beyond_computing(where, given, error)]
+        return None, [beyond_computing(where, table, error)]
     except (TypeError, ValueError) as error:
         return None, [f"{where}: {error}. Use numbers, text, lists and tables only."]
 
@@ -123,8 +123,8 @@ def extremes(value: Any, where: str, depth: int = 0) -> Iterator[str]:
         yield f"{where} must be at most {DEEPEST} lists and tables deep; it is deeper. Flatten it."
     elif isinstance(value, (Mapping, list, tuple)):
         pairs = value.items() if isinstance(value, Mapping) else enumerate(value)
-        for key, one in pairs:
-            yield from extremes(one, f"{where}.{key}" if where else str(key), depth + 1)
+        for key, part in pairs:
+            yield from extremes(part, f"{where}.{key}" if where else str(key), depth + 1)
     elif isinstance(value, (int, float)) and LARGEST <= abs(value) < math.inf:
         yield (
             f"{where} must be below {LARGEST:.0e} in size, in SI units; found {shown(value)}. "
@@ -132,20 +132,20 @@ def extremes(value: Any, where: str, depth: int = 0) -> Iterator[str]:
         )
 
 
-def beyond_computing(where: str, given: Any, error: Exception) -> str:
+def beyond_computing(where: str, table: Any, error: Exception) -> str:
     """Sentence about numbers that leave what can be computed, though each by itself is sound."""
-    sizes = [size for size in _sizes(given) if size > 0.0]
-    found = f"from {min(sizes):.3g} to {max(sizes):.3g}" if sizes else "none"
+    sizes = [size for size in _sizes(table) if size > 0.0]
+    span = f"from {min(sizes):.3g} to {max(sizes):.3g}" if sizes else "none"
     return (
         f"{where}: its numbers must be such that what follows from them can be computed; found "
-        f"sizes {found} ({error}). Correct them; all are in SI units."
+        f"sizes {span} ({error}). Correct them; all are in SI units."
     )
 
 
 def _sizes(value: Any) -> Iterator[float]:
     if isinstance(value, (Mapping, list, tuple)):
-        for one in value.values() if isinstance(value, Mapping) else value:
-            yield from _sizes(one)
+        for part in value.values() if isinstance(value, Mapping) else value:
+            yield from _sizes(part)
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
         yield abs(float(value))
 
@@ -158,11 +158,11 @@ def shown(value: Any) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
-def _by_place(mistakes: Iterable[Any], given: Any) -> list[dict[str, Any]]:
+def _by_place(mistakes: Iterable[Any], table: Any) -> list[dict[str, Any]]:
     """One mistake for each place; where a value may be of several kinds, their rules joined."""
     joined: dict[tuple[Any, ...], dict[str, Any]] = {}
     for mistake in mistakes:
-        place = _without_kinds(mistake["loc"], given)
+        place = _without_kinds(mistake["loc"], table)
         around = joined.get(place[:-1])
         if around and around["input"] == mistake["input"]:  # the same value, as another kind
             place = place[:-1]
@@ -172,12 +172,12 @@ def _by_place(mistakes: Iterable[Any], given: Any) -> list[dict[str, Any]]:
             joined[place] = {**mistake, "loc": place}
     # Of a table that may stand in the place of a text, only what is wrong in it is said.
     outer = {place[:n] for place in joined for n in range(len(place))}
-    return [one for place, one in joined.items() if place not in outer]
+    return [mistake for place, mistake in joined.items() if place not in outer]
 
 
-def _without_kinds(place: tuple[Any, ...], given: Any) -> tuple[Any, ...]:
+def _without_kinds(place: tuple[Any, ...], table: Any) -> tuple[Any, ...]:
     """Place of a mistake without the names of kinds that a value may be of."""
-    names, value = [], given
+    names, value = [], table
     for number, part in enumerate(place):
         is_last = number + 1 == len(place)
         is_key = isinstance(value, Mapping) and part in value
@@ -193,12 +193,16 @@ def _without_kinds(place: tuple[Any, ...], given: Any) -> tuple[Any, ...]:
 def _drop_renamed(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """All but keys said to be missing that are there under their old names."""
     there = {
-        (*one["loc"][:-1], *new.split("."))
-        for one in mistakes
-        if (new := _renamed(params, [str(part) for part in one["loc"]]))
+        (*mistake["loc"][:-1], *new.split("."))
+        for mistake in mistakes
+        if (new := _renamed(params, [str(part) for part in mistake["loc"]]))
     }
     gone = ("missing", "missing_argument")
-    return [one for one in mistakes if one["loc"] not in there or one["type"] not in gone]
+    return [
+        mistake
+        for mistake in mistakes
+        if mistake["loc"] not in there or mistake["type"] not in gone
+    ]
 
 
 def _renamed(params: type, names: list[str]) -> str:
@@ -236,13 +240,13 @@ def unknown(place: str, name: str, known: Iterable[str]) -> str:
 
 def _class_at(params: Any, path: list[str]) -> Any:
     """Return a nested parameter class; lists and tables are stepped through."""
-    found = params
+    place = params
     for part in path:
-        fields = {f.name: f.type for f in dataclasses.fields(found)}
-        found = _inner(fields[part]) if part in fields else found
-        if not dataclasses.is_dataclass(found):
-            return found
-    return found
+        fields = {f.name: f.type for f in dataclasses.fields(place)}
+        place = _inner(fields[part]) if part in fields else place
+        if not dataclasses.is_dataclass(place):
+            return place
+    return place
 
 
 def _names(params: Any) -> list[str]:

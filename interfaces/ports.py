@@ -122,12 +122,12 @@ WALL_HEAT = Port(  # what leaves through the wall
 
 def only_fields(ports: Iterable[Port], keys: Container[str]) -> tuple[Port, ...]:
     """Ports with those of their fields whose key ``"port.field"`` is among `keys`."""
-    kept = []
+    ports_left = []
     for port in ports:
-        fields = tuple(one for one in port.fields if f"{port.name}.{one.name}" in keys)
+        fields = tuple(field for field in port.fields if f"{port.name}.{field.name}" in keys)
         if fields:
-            kept.append(replace(port, fields=fields))
-    return tuple(kept)
+            ports_left.append(replace(port, fields=fields))
+    return tuple(ports_left)
 
 
 # Attributes of a port that a recording holds.
@@ -149,7 +149,7 @@ def from_json(text: str) -> tuple[Port, ...]:
 def _fields(value: Any) -> Any:
     if not isinstance(value, list):
         return value
-    for one in value:
-        if one["unit"] not in UNITS:  # of a kind that is not installed here
-            add_unit(one["unit"], f"{one['unit']} s" if one["centring"] == "impulse" else "")
-    return tuple(Field(**{**one, "shape": tuple(one["shape"])}) for one in value)
+    for entry in value:
+        if entry["unit"] not in UNITS:  # of a kind that is not installed here
+            add_unit(entry["unit"], f"{entry['unit']} s" if entry["centring"] == "impulse" else "")
+    return tuple(Field(**{**entry, "shape": tuple(entry["shape"])}) for entry in value)

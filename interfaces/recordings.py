@@ -42,13 +42,13 @@ _told: set[str] = set()  # recordings without checksums, of which this process h
 
 def checksum(label: str, *parts: Any) -> int:
     """CRC-32 of a label and arrays or bytes after it."""
-    found = zlib.crc32(label.encode())
+    crc = zlib.crc32(label.encode())
     for part in parts:
         if isinstance(part, bytes):
-            found = zlib.crc32(part, found)
+            crc = zlib.crc32(part, crc)
         elif np.size(part):  # of no items there is no buffer
-            found = zlib.crc32(np.ascontiguousarray(part).data.cast("B"), found)
-    return found
+            crc = zlib.crc32(np.ascontiguousarray(part).data.cast("B"), crc)
+    return crc
 
 
 def marks_check(name: str, row: int, marks: Iterable[float]) -> int:
@@ -72,10 +72,10 @@ def file_check(file: Any) -> int:
 def component_check(group: Any) -> int:
     """Checksum of what is written once of a component: ports, static fields, layout of fields."""
     static = group.get("static", {})
-    texts = [f"static {k} {one.dtype} {one.shape}" for k, one in static.items()]
-    texts += [f"field {k} {one.dtype} {one.shape[1:]}" for k, one in group["fields"].items()]
+    texts = [f"static {k} {array.dtype} {array.shape}" for k, array in static.items()]
+    texts += [f"field {k} {array.dtype} {array.shape[1:]}" for k, array in group["fields"].items()]
     label = "\n".join([group.name, str(group.attrs["ports"]), *texts])
-    return checksum(label, *(one[()] for one in static.values()))
+    return checksum(label, *(array[()] for array in static.values()))
 
 
 def seal(group: Any) -> None:
@@ -96,7 +96,7 @@ def _checks(group: Any, name: str, rows: int) -> Iterator[tuple[int, int, int]]:
     """Row, column and checksum of the first rows of a component as they are read."""
     marks = [group[key][:rows] for key in MARKS]
     for row in range(rows):
-        yield row, 0, marks_check(name, row, [one[row] for one in marks])
+        yield row, 0, marks_check(name, row, [mark[row] for mark in marks])
     for column, (key, data) in enumerate(group["fields"].items(), 1):
         size = data.chunks[0] if data.chunks else max(rows, 1)  # each chunk is unpacked once
         for first in range(0, rows, size):
@@ -139,8 +139,8 @@ class CheckedFile:
     def __init__(self, file: Any, path: object) -> None:
         self.file, self.path = file, path
         groups = dict(file["components"].items())
-        sealed = [CHECK in file.attrs, *(CHECK in one.attrs for one in groups.values())]
-        sealed += [ROW_CHECKS in one for one in groups.values()]
+        sealed = [CHECK in file.attrs, *(CHECK in group.attrs for group in groups.values())]
+        sealed += [ROW_CHECKS in group for group in groups.values()]
         self.has_checks = any(sealed)
         if self.has_checks and (not all(sealed[: 1 + len(groups)])):
             raise damaged(path, "one of its checksums")
@@ -169,8 +169,8 @@ class CheckedFile:
             parts.append(group[ROW_CHECKS])
             if parts[-1].shape[1:] != (1 + len(group["fields"]),):
                 raise damaged(self.path, f"the table of checksums of {name}")
-        if any(len(one) != rows for one in parts):
-            least = min(len(one) for one in parts)
+        if any(len(part) != rows for part in parts):
+            least = min(len(part) for part in parts)
             raise damaged(self.path, f"the number of windows of {name} (at least {least})")
 
     def marks(self, name: str) -> dict[str, Rows]:
@@ -181,7 +181,7 @@ class CheckedFile:
         marks = {key: np.asarray(group[key]) for key in MARKS}
         if self.has_checks and len(marks["times"]):
             for row, wanted in enumerate(group[ROW_CHECKS][:, 0]):
-                if marks_check(name, row, [one[row] for one in marks.values()]) != wanted:
+                if marks_check(name, row, [mark[row] for mark in marks.values()]) != wanted:
                     raise damaged(self.path, f"window {row} of the time of {name}")
         self._marks[name] = marks
         return marks
@@ -190,15 +190,15 @@ class CheckedFile:
         """Rows (rows, n, *shape) of a field."""
         group = self.component(name)
         data = group["fields"][key]
-        found = np.asarray(data[rows])
-        if self.has_checks and len(found):
+        rows_read = np.asarray(data[rows])
+        if self.has_checks and len(rows_read):
             column = 1 + list(group["fields"]).index(key)
             numbers = range(*rows.indices(len(data)))
             wanted = group[ROW_CHECKS][rows, column]
-            for row, array, check in zip(numbers, found, wanted, strict=True):
+            for row, array, check in zip(numbers, rows_read, wanted, strict=True):
                 if field_check(name, key, row, array) != check:
                     raise damaged(self.path, f"window {row} of {name}.{key}")
-        return found
+        return rows_read
 
     def check_rows(self, rows: int) -> None:
         """Check the first rows of all components, which a run goes on after."""

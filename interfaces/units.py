@@ -36,10 +36,10 @@ def add_unit(unit: str, integral: str = "") -> None:
     integral : str
         Unit of its integral over time, if it may be that of an impulse field.
     """
-    for one in (unit, integral or unit):
-        if not SPELLING.fullmatch(one):
+    for name in (unit, integral or unit):
+        if not SPELLING.fullmatch(name):
             raise PortError(
-                f"unit {one!r}: a unit must be at most 24 letters, digits, spaces, / and "
+                f"unit {name!r}: a unit must be at most 24 letters, digits, spaces, / and "
                 "parentheses. Spell it as kg/(m s)."
             )
     if integral:
@@ -67,22 +67,22 @@ def check_unit(unit: str, where: str, centring: str) -> None:
 
 def dimensions(unit: str) -> dict[str, int]:
     """Powers of the base units in a unit: ``{"kg": 1, "s": -3}`` of ``W/m2``."""
-    found: Counter[str] = Counter()
+    powers: Counter[str] = Counter()
     bracket, sign = 1, 1
     for part in PART.finditer(unit):
         symbol, power = part[1], int(part[2] or 1)
         if symbol:
             for base, times in DERIVED.get(symbol, {symbol: 1}).items():
-                found[base] += bracket * sign * power * times
+                powers[base] += bracket * sign * power * times
         if part[0] == "/":
             sign = -1
         else:  # a stroke divides by what follows next, a symbol or a bracket
             bracket = sign if part[0] == "(" else 1 if part[0] == ")" else bracket
             sign = 1
-    return {base: power for base, power in found.items() if power}
+    return {base: power for base, power in powers.items() if power}
 
 
-def same(one: str, other: str) -> bool:
+def same(first: str, other: str) -> bool:
     """Whether two units are one, however they are spelled: ``J/kg`` and ``m2/s2``."""
-    spelled = all(SPELLING.fullmatch(unit) for unit in (one, other))
-    return one == other or (spelled and dimensions(one) == dimensions(other))
+    spelled = all(SPELLING.fullmatch(unit) for unit in (first, other))
+    return first == other or (spelled and dimensions(first) == dimensions(other))

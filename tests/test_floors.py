@@ -51,8 +51,6 @@ VAGUE_LOCALS = {
     "components/shared",
     "components/sph_fluid",
     "components/stand_ins",
-    "coupler",
-    "interfaces",
     "scenarios",
 }
 

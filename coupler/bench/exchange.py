@@ -41,18 +41,18 @@ items = {items}
 """
 
 
-def run_bench(given: argparse.Namespace) -> int:
+def run_bench(options: argparse.Namespace) -> int:
     """Measure the exchange; print the cases, and write them as JSON where asked."""
-    if given.inside_mpi:
+    if options.inside_mpi:
         return inside_mpi(Path(os.environ[FOLDER]))
-    found, wanted = [], JsonFile(given.json, ("name", "case", "rate"))
-    for transport in [given.transport] if given.transport else TRANSPORTS:
+    rates, wanted = [], JsonFile(options.json, ("name", "case", "rate"))
+    for transport in [options.transport] if options.transport else TRANSPORTS:
         for items, windows in SIZES.items():
             with tempfile.TemporaryDirectory() as folder:
-                found.append(measure(transport, items, windows, Path(folder)))
-            found[-1]["library_ms"] = 1e3 * round_trip(transport, 24 * items, windows)
-            print(sentence(found[-1]), flush=True)
-            wanted.write(found)  # after each, so that a later one that fails costs none of it
+                rates.append(measure(transport, items, windows, Path(folder)))
+            rates[-1]["library_ms"] = 1e3 * round_trip(transport, 24 * items, windows)
+            print(sentence(rates[-1]), flush=True)
+            wanted.write(rates)  # after each, so that a later one that fails costs none of it
     return 0
 
 
@@ -92,7 +92,7 @@ def exchange(scene: Scene, folder: Path, windows: int) -> None:
     part.call("prime", {"passed.value": value})
     took, spent = windows_of(part, value, windows)
     connection.close(True)
-    found = {
+    result = {
         "name": "exchange",
         "case": f"{scene.transport}, {value.nbytes / 1e3:g} kB each way",
         "items": len(value),
@@ -105,7 +105,7 @@ def exchange(scene: Scene, folder: Path, windows: int) -> None:
         "wall_seconds": sum(took),
         "options": {"transport": scene.transport, "windows": windows},
     }
-    (folder / "found.json").write_text(json.dumps(found))
+    (folder / "found.json").write_text(json.dumps(result))
 
 
 def windows_of(part: Participant, value: np.ndarray, windows: int) -> tuple[list[float], float]:
@@ -125,9 +125,9 @@ def windows_of(part: Participant, value: np.ndarray, windows: int) -> tuple[list
     return took[WARM:], time.process_time() - spent
 
 
-def sentence(found: dict[str, Any]) -> str:
+def sentence(rate: dict[str, Any]) -> str:
     """Describe one case in a line."""
     return (
-        f"{found['case']}: median {found['median_ms']:.3f} ms, p99 {found['p99_ms']:.3f} ms, "
-        f"{found['rate']:.0f} {found['unit']}; the library alone {found['library_ms']:.3f} ms"
+        f"{rate['case']}: median {rate['median_ms']:.3f} ms, p99 {rate['p99_ms']:.3f} ms, "
+        f"{rate['rate']:.0f} {rate['unit']}; the library alone {rate['library_ms']:.3f} ms"
     )

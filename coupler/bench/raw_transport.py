@@ -61,7 +61,9 @@ def _result(processes: "list[subprocess.Popen[bytes]]") -> float:
         status = [process.poll() for process in processes]
         outputs = [_end(process) for process in processes]
     if status[0] != 0:
-        lines = "\n".join(f"    {line}" for one in outputs for line in one.splitlines()[-LINES:])
+        lines = "\n".join(
+            f"    {line}" for output in outputs for line in output.splitlines()[-LINES:]
+        )
         raise QuintetError(
             f"bench exchange: the library alone must end with status 0 within {PATIENCE:.0f} s; "
             f"found {status}:\n{lines}"

@@ -24,20 +24,20 @@ from quintet.interfaces.params import unknown
 Found = dict[str, Any]
 
 
-def run_kind(given: argparse.Namespace) -> int:
+def run_kind(options: argparse.Namespace) -> int:
     """Measure the cases of a kind; print them, and write them as JSON where asked."""
-    cases = select_cases(given.name, given.case)
-    threads = given.threads or usual_threads()
+    cases = select_cases(options.name, options.case)
+    threads = options.threads or usual_threads()
     if wrong := [count for count in threads if count < 1]:
         raise SceneError(f"--threads must be a whole number from 1; found {wrong[0]}.")
-    found, wanted = [], JsonFile(given.json, ("name", "case", "rate"))
+    rates, wanted = [], JsonFile(options.json, ("name", "case", "rate"))
     for number, case in cases:
         for count in threads:
             print(f"{case.name}, threads: {count} ... ", end="", flush=True)
-            found.append(run_case(given.name, number, count))
-            print(f"{found[-1]['rate']:.3g} {found[-1]['unit']} a thread", flush=True)
-    console().print(table(found))
-    wanted.write(found)
+            rates.append(run_case(options.name, number, count))
+            print(f"{rates[-1]['rate']:.3g} {rates[-1]['unit']} a thread", flush=True)
+    console().print(table(rates))
+    wanted.write(rates)
     return 0
 
 
@@ -74,28 +74,28 @@ def run_case(kind: str, number: int, threads: int) -> Found:
         finally:
             process.kill()
         if status:
-            lines = "\n".join(f"    {one}" for one in tail(log))
+            lines = "\n".join(f"    {text}" for text in tail(log))
             raise QuintetError(f"bench {kind}: it ended with status {status}:\n{lines}")
         return dict(json.loads(file.read_text()))
 
 
-def table(found: Sequence[Found]) -> Table:
+def table(rates: Sequence[Found]) -> Table:
     """One row for each case and number of threads."""
-    made = Table(box=None, pad_edge=False)
+    screen_table = Table(box=None, pad_edge=False)
     heads = ("case", "items", "threads", "per CPU-s", "per s", "speed-up", "unit", "bytes/item")
     for head in heads:
-        made.add_column(head, justify="left" if head in ("case", "unit") else "right")
-    alone = {one["case"]: one["wall_rate"] for one in found if one["threads"] == 1}
-    for one in found:
-        ratio = one["wall_rate"] / alone[one["case"]] if one["case"] in alone else 0.0
-        made.add_row(
-            one["case"],
-            str(one["items"]),
-            str(one["threads"]),
-            f"{one['rate']:.3g}",
-            f"{one['wall_rate']:.3g}",
+        screen_table.add_column(head, justify="left" if head in ("case", "unit") else "right")
+    alone = {row["case"]: row["wall_rate"] for row in rates if row["threads"] == 1}
+    for row in rates:
+        ratio = row["wall_rate"] / alone[row["case"]] if row["case"] in alone else 0.0
+        screen_table.add_row(
+            row["case"],
+            str(row["items"]),
+            str(row["threads"]),
+            f"{row['rate']:.3g}",
+            f"{row['wall_rate']:.3g}",
             f"{ratio:.2f}" if ratio else "",
-            one["unit"],
-            f"{one['bytes_per_item']:.0f}",
+            row["unit"],
+            f"{row['bytes_per_item']:.0f}",
         )
-    return made
+    return screen_table

@@ -79,5 +79,5 @@ if __name__ == "__main__":
     kind, number, threads, file = sys.argv[1:]
     look_in([str(Path.cwd())] if ":" in kind else [])
     known = find(kind)
-    found = measure(known, known.cases()[int(number)], int(threads))
-    Path(file).write_text(json.dumps(found))
+    result = measure(known, known.cases()[int(number)], int(threads))
+    Path(file).write_text(json.dumps(result))

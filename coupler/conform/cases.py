@@ -30,12 +30,12 @@ def trials(
 ) -> Iterator[list[Trial]]:
     """Make the cases ready, each with a folder of its own unless one is given."""
     with TemporaryDirectory(prefix="quintet-conform-") as temporary:
-        made = []
+        all_trials = []
         for number, case in enumerate(cases):
-            own = folder or Path(temporary) / str(number)
-            own.mkdir(exist_ok=True)
-            made.append(Trial(manifest, case, own))
-        yield made
+            place = folder or Path(temporary) / str(number)
+            place.mkdir(exist_ok=True)
+            all_trials.append(Trial(manifest, case, place))
+        yield all_trials
 
 
 def of_kind(manifest: Manifest, name: str = "") -> tuple[ConformCase, ...]:
@@ -67,30 +67,30 @@ def of_file(path: Path) -> ConformCase:
         raise SceneError(f"{path}: parameters must be valid TOML: {error}.") from error
     table.pop("kind", None)  # as in a scene
     said = table.pop(OWN_TABLE, {})
-    fields = {one.name: one for one in dataclasses.fields(ConformCase)}
+    fields = {field.name: field for field in dataclasses.fields(ConformCase)}
     known = fields.keys() - {"name", "params"}
     if not isinstance(said, dict):
         raise SceneError(f"{path}: {OWN_TABLE} must be a table; found {said!r}.")
     wrong = [unknown(f"{path}: {OWN_TABLE}.{key}", key, known) for key in said.keys() - known]
     if wrong:
         raise SceneError(wrong)
-    made = {key: _read(f"{path}: {OWN_TABLE}.{key}", key, value) for key, value in said.items()}
-    return ConformCase(path.name, table, **made)
+    values = {key: _read(f"{path}: {OWN_TABLE}.{key}", key, value) for key, value in said.items()}
+    return ConformCase(path.name, table, **values)
 
 
 def _read(where: str, key: str, value: Any) -> Any:
     """One key of the table, in the type that `ConformCase` has for it."""
     default = getattr(ConformCase("", {}), key)
     kinds = {dict: "a table", tuple: "a list", bool: "true or false", float: "a number"}
-    given = {list: tuple, int: float}.get(type(value), type(value))
-    if given is not type(default):
+    kind = {list: tuple, int: float}.get(type(value), type(value))
+    if kind is not type(default):
         raise SceneError(f"{where} must be {kinds[type(default)]}; found {value!r}. Correct it.")
     try:
         if key in ("static", "rest"):
             return {name: np.asarray(array, dtype=np.float64) for name, array in value.items()}
         if key == "activity":
             return {name: tuple(ports) for name, ports in value.items()}
-        return tuple(value) if given is tuple else given(value)
+        return tuple(value) if kind is tuple else kind(value)
     except (TypeError, ValueError) as error:
         raise SceneError(f"{where}: {error}. Correct it.") from error
 
@@ -107,23 +107,23 @@ def of_scene(
     if component not in scene.components:
         where = f"conform: component {component} of scene {scene.file.name}"
         raise SceneError(unknown(where, component, scene.components))
-    one = scene.components[component]
-    made = {other: _make(plan, scene) for other, plan in scene.components.items()}
+    plan = scene.components[component]
+    participants = {other: _make(plan, scene) for other, plan in scene.components.items()}
     exchange = scene.exchange()
-    described = {key: dict(each.describe()) for key, each in made.items()}
-    static = exchange.bind(described, lambda name, request: made[name].sample(request))
-    for key, each in made.items():
+    described = {key: dict(each.describe()) for key, each in participants.items()}
+    static = exchange.bind(described, lambda name, request: participants[name].sample(request))
+    for key, each in participants.items():
         each.bind(static[key], frozenset(exchange.joined(key)))
-    rest = _at_the_start(exchange, component, made)
+    rest = _at_the_start(exchange, component, participants)
     case = ConformCase(
         f"{component} of {scene.file.name}",
-        one.params,
+        plan.params,
         static=static[component],
         rest=rest,
-        dt=_some_step(made[component]),
+        dt=_some_step(participants[component]),
         still=False,
     )
-    return one.manifest, case, scene.folder
+    return plan.manifest, case, scene.folder
 
 
 def _make(plan: ComponentPlan, scene: Scene) -> Component:
@@ -134,14 +134,15 @@ def _make(plan: ComponentPlan, scene: Scene) -> Component:
 
 
 def _at_the_start(
-    exchange: Exchange, component: str, made: dict[str, Component]
+    exchange: Exchange, component: str, participants: dict[str, Component]
 ) -> dict[str, Array]:
     """Instants that a component gets as a run begins; impulses are zero then."""
     outputs: dict[str, Fields] = {
-        name: dict(one.give(frozenset(fields_of(one.gives)))) for name, one in made.items()
+        name: dict(participant.give(frozenset(fields_of(participant.gives))))
+        for name, participant in participants.items()
     }
     exchange.count_rows(outputs)
-    numbers = [n for n, one in enumerate(exchange.transfers) if one.taker == component]
+    numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == component]
     merged = exchange.merge(
         component, [(exchange.deliver(n, outputs, outputs), False) for n in numbers]
     )

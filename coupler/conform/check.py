@@ -46,22 +46,22 @@ def try_law(law: Law, trial: Trial) -> Finding:
 def _place(error: Exception) -> str:
     """An error with the line that raised it, in the component if it was there."""
     frames = traceback.extract_tb(error.__traceback__)
-    own = [one for one in frames if Path(__file__).parent not in Path(one.filename).parents]
-    last = (own or frames)[-1]
+    calls = [frame for frame in frames if Path(__file__).parent not in Path(frame.filename).parents]
+    last = (calls or frames)[-1]
     return f"{raised(error)} ({last.filename}:{last.lineno}, in {last.name})"
 
 
 def try_all(trial: Trial) -> Iterator[tuple[Law, Finding | None]]:
     """Try all laws: each is named when it begins, with None, and when it has ended."""
-    made, trial.read_only = True, False
+    is_built, trial.read_only = True, False
     for law in LAWS:
         yield law, None
-        if not made:
+        if not is_built:
             yield law, Finding(name_of(law), "does not apply", "it could not be made")
             continue
-        found = try_law(law, trial)
+        finding = try_law(law, trial)
         if law is FIRST:
-            made = found.status == "passed"
+            is_built = finding.status == "passed"
         if law is READ_ONLY:  # else writing to them would break all others, and hide what else is
-            trial.read_only = found.status != "failed"
-        yield law, found
+            trial.read_only = finding.status != "failed"
+        yield law, finding

@@ -17,22 +17,24 @@ from quintet.interfaces.manifest import ConformCase, Manifest
 SLOW = 1.0  # s; what takes longer says so
 
 
-def run_conform(given: argparse.Namespace) -> int:
+def run_conform(options: argparse.Namespace) -> int:
     """Try the laws on a kind; 0 if all that apply are kept, else 1."""
-    wanted = JsonFile(given.json, ("kind", "conforms"))
-    manifest, cases, folder = choose(given)
-    found: dict[str, list[Finding]] = {}
+    wanted = JsonFile(options.json, ("kind", "conforms"))
+    manifest, cases, folder = choose(options)
+    reports: dict[str, list[Finding]] = {}
     with trials(manifest, cases, folder) as ready:
         for trial in ready:
             print(f"{manifest.kind}, {trial.case.name}", flush=True)
-            found[trial.case.name] = report(trial)
-    all_found = [one for findings in found.values() for one in findings]
-    counts = {status: sum(one.status == status for one in all_found) for status in STATUSES}
+            reports[trial.case.name] = report(trial)
+    all_found = [finding for findings in reports.values() for finding in findings]
+    counts = {status: sum(finding.status == status for finding in all_found) for status in STATUSES}
     print(f"{manifest.kind} {summary(counts)}")
     if counts["failed"] > 1:
         print("Begin with the first that failed: others may follow from it.")
-    if given.json:
-        entries = [{"case": k, "laws": [_entry(one) for one in v]} for k, v in found.items()]
+    if options.json:
+        entries = [
+            {"case": k, "laws": [_entry(finding) for finding in v]} for k, v in reports.items()
+        ]
         result = {"kind": manifest.kind, "conforms": not counts["failed"], "cases": entries}
         wanted.write(result)
     return 1 if counts["failed"] else 0
@@ -41,37 +43,39 @@ def run_conform(given: argparse.Namespace) -> int:
 STATUSES = ("passed", "failed", "does not apply")
 
 
-def choose(given: argparse.Namespace) -> tuple[Manifest, tuple[ConformCase, ...], Path | None]:
+def choose(options: argparse.Namespace) -> tuple[Manifest, tuple[ConformCase, ...], Path | None]:
     """What is tried: a kind's own cases, parameters of a file, or a component of a scene."""
-    if bool(given.scene) != bool(given.component) or (given.scene and given.params):
+    if bool(options.scene) != bool(options.component) or (options.scene and options.params):
         raise SceneError("conform needs --scene with --component, or --params, or neither.")
-    if not given.scene:
-        if (given.preset or given.settings) or not given.kind:
+    if not options.scene:
+        if (options.preset or options.settings) or not options.kind:
             raise SceneError("conform needs a KIND; --preset and --set belong to --scene.")
-        manifest = named_kind(given.kind, "conform")
-        if given.params:
-            return manifest, (of_file(given.params),), given.params.resolve().parent
-        return manifest, of_kind(manifest, given.case), None
-    manifest, case, folder = of_scene(given.scene, given.component, given.preset, given.settings)
-    if given.kind and given.kind != manifest.kind:
+        manifest = named_kind(options.kind, "conform")
+        if options.params:
+            return manifest, (of_file(options.params),), options.params.resolve().parent
+        return manifest, of_kind(manifest, options.case), None
+    manifest, case, folder = of_scene(
+        options.scene, options.component, options.preset, options.settings
+    )
+    if options.kind and options.kind != manifest.kind:
         raise SceneError(
-            f"conform: {given.component} of {given.scene} is of kind {manifest.kind}; found "
-            f"{given.kind}. Leave the kind out."
+            f"conform: {options.component} of {options.scene} is of kind {manifest.kind}; found "
+            f"{options.kind}. Leave the kind out."
         )
     return manifest, (case,), folder
 
 
 def report(trial: Trial) -> list[Finding]:
     """Try all laws and print a line for each; in a terminal, the one that is being tried too."""
-    found, live = [], sys.stdout.isatty()
+    findings, live = [], sys.stdout.isatty()
     for law, finding in try_all(trial):
         if finding is None:
             if live:
                 print(f"  {'...':<16}{name_of(law)}", end="\r", flush=True)
             continue
         print(line(finding), flush=True)
-        found.append(finding)
-    return found
+        findings.append(finding)
+    return findings
 
 
 def line(finding: Finding) -> str:

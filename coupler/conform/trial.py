@@ -56,9 +56,11 @@ class Trial:
     def _check(self, where: str) -> None:
         """Refuse a case whose inputs are not those of the ports."""
         case = self.case
-        static = {f"{port.name}.{one.name}": one for port in self.takes for one in port.static}
+        static = {
+            f"{port.name}.{field.name}": field for port in self.takes for field in port.static
+        }
         known = self.inputs_known | static
-        given = {**case.rest, **case.static}
+        arrays = {**case.rest, **case.static}
         wrong = ({*case.rest, *case.scale} - self.inputs_known.keys()) | (
             case.static.keys() - static
         )
@@ -68,7 +70,7 @@ class Trial:
                 f"({', '.join(known) or 'none'}); found {', '.join(sorted(wrong))}. Correct the "
                 "case."
             )
-        for key, array in given.items():
+        for key, array in arrays.items():
             if np.shape(array)[1:] != known[key].shape or not np.ndim(array):
                 shape = ", ".join(["n", *map(str, known[key].shape)])
                 raise SceneError(
@@ -85,7 +87,7 @@ class Trial:
     @property
     def impulses(self) -> frozenset[str]:
         """Outputs that are means over the last step."""
-        return frozenset(k for k, one in self.outputs.items() if one.centring == "impulse")
+        return frozenset(k for k, field in self.outputs.items() if field.centring == "impulse")
 
     @property
     def joined(self) -> frozenset[str]:
@@ -148,12 +150,12 @@ class Trial:
     ) -> list[Fields]:
         """Take inputs and step, again and again; copies of the outputs after each step."""
         asked = self.outputs.keys() if wanted is None else wanted
-        found: list[Fields] = []
+        outputs: list[Fields] = []
         for number in range(first, first + steps):
             component.take(self.inputs(number, without))
             component.step(self.case.dt)
-            found.append(copies(component.give(frozenset(asked))) if asked else {})
-        return found
+            outputs.append(copies(component.give(frozenset(asked))) if asked else {})
+        return outputs
 
     def give(self, component: Component) -> Fields:
         """Copies of all outputs as they are now."""

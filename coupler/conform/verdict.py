@@ -20,25 +20,25 @@ class DoesNotApply(Exception):
     """A law says nothing of this component; carries why."""
 
 
-def require(kept: bool, sentence: str) -> None:
+def require(holds: bool, sentence: str) -> None:
     """Break the law unless it is kept."""
-    if not kept:
+    if not holds:
         raise LawBroken(sentence)
 
 
-def require_same_bits(found: Fields, expected: Fields, rule: str, remedy: str) -> None:
+def require_same_bits(arrays: Fields, expected: Fields, rule: str, remedy: str) -> None:
     """Break the law at the first array that differs in a bit, in name, type or shape."""
-    if found.keys() != expected.keys():
-        raise LawBroken(f"{rule}; found {_names(found)} where it was {_names(expected)}. {remedy}")
-    for key in found:
-        one, other = np.asarray(found[key]), np.asarray(expected[key])
-        if one.dtype != other.dtype or one.shape != other.shape:
+    if arrays.keys() != expected.keys():
+        raise LawBroken(f"{rule}; found {_names(arrays)} where it was {_names(expected)}. {remedy}")
+    for key in arrays:
+        array, other = np.asarray(arrays[key]), np.asarray(expected[key])
+        if array.dtype != other.dtype or array.shape != other.shape:
             raise LawBroken(
-                f"{rule}; {key} is {one.dtype} {one.shape} where it was {other.dtype} "
+                f"{rule}; {key} is {array.dtype} {array.shape} where it was {other.dtype} "
                 f"{other.shape}. {remedy}"
             )
-        if one.tobytes() != other.tobytes():
-            raise LawBroken(f"{rule}; {key}{_first_difference(one, other)}. {remedy}")
+        if array.tobytes() != other.tobytes():
+            raise LawBroken(f"{rule}; {key}{_first_difference(array, other)}. {remedy}")
 
 
 def raised(error: Exception) -> str:
@@ -50,13 +50,13 @@ def _names(fields: Fields) -> str:
     return ", ".join(sorted(fields)) or "nothing"
 
 
-def _first_difference(one: Array, other: Array) -> str:
+def _first_difference(array: Array, other: Array) -> str:
     """First entry that differs, as text."""
-    bits = [np.ascontiguousarray(a).reshape(-1).view(np.uint8) for a in (one, other)]
-    differs = (bits[0] != bits[1]).reshape(one.size, -1).any(axis=1)
-    index = np.unravel_index(int(np.argmax(differs)), one.shape)
-    place = f" at {list(map(int, index))}" if one.ndim else ""
-    return f"{place} is {one[index].item()!r} where it was {other[index].item()!r}"
+    bits = [np.ascontiguousarray(a).reshape(-1).view(np.uint8) for a in (array, other)]
+    differs = (bits[0] != bits[1]).reshape(array.size, -1).any(axis=1)
+    index = np.unravel_index(int(np.argmax(differs)), array.shape)
+    place = f" at {list(map(int, index))}" if array.ndim else ""
+    return f"{place} is {array[index].item()!r} where it was {other[index].item()!r}"
 
 
 def compare_gaps(
@@ -80,10 +80,10 @@ def compare_gaps(
     if all(_shrinks(gaps, key, SQUARE) for key in gaps[0]):
         return
     gaps = [gap(dt / 4.0), gap(dt / 8.0)]
-    for key, (found, half) in {key: (gaps[0][key], gaps[1][key]) for key in gaps[0]}.items():
+    for key, (whole, half) in {key: (gaps[0][key], gaps[1][key]) for key in gaps[0]}.items():
         if not _shrinks(gaps, key, LESS):
             raise LawBroken(
-                f"{rule} apart by the square of the step; {key} is by {found:.3g} at a step of "
+                f"{rule} apart by the square of the step; {key} is by {whole:.3g} at a step of "
                 f"{dt / 4.0:g} s, and still by {half:.3g} at half of it. {remedy}"
             )
 

@@ -31,10 +31,10 @@ class Acceleration(Protocol):
     def begin_window(self, length: float) -> None:
         """Begin a window of a length [s]."""
 
-    def next(self, guess: Guess, found: Guess, allowed: Allowed) -> dict[Key, Array]:
+    def next(self, guess: Guess, result: Guess, allowed: Allowed) -> dict[Key, Array]:
         """Return the next guess, after one that has not converged."""
 
-    def end_window(self, guess: Guess, found: Guess) -> None:
+    def end_window(self, guess: Guess, result: Guess) -> None:
         """End a window with its last guess, which needed no next."""
 
     def save(self) -> dict[str, Array]:
@@ -63,11 +63,11 @@ class Constant:
     def begin_window(self, length: float) -> None:
         """Nothing changes."""
 
-    def next(self, guess: Guess, found: Guess, allowed: Allowed) -> dict[Key, Array]:
+    def next(self, guess: Guess, result: Guess, allowed: Allowed) -> dict[Key, Array]:
         """Return the next guess."""
-        return _relaxed(guess, found, self.factor)
+        return _relaxed(guess, result, self.factor)
 
-    def end_window(self, guess: Guess, found: Guess) -> None:
+    def end_window(self, guess: Guess, result: Guess) -> None:
         """Nothing is kept."""
 
     def save(self) -> dict[str, Array]:
@@ -93,9 +93,9 @@ class Aitken:
         self.factor = math.copysign(min(abs(self.factor), self.most), self.factor)
         self._last = None
 
-    def next(self, guess: Guess, found: Guess, allowed: Allowed) -> dict[Key, Array]:
+    def next(self, guess: Guess, result: Guess, allowed: Allowed) -> dict[Key, Array]:
         """Return the next guess."""
-        residual = self.scaling.vector(found) - self.scaling.vector(guess)
+        residual = self.scaling.vector(result) - self.scaling.vector(guess)
         weights = self.scaling.weights(residual, guess, allowed)
         if self._last is not None:
             change = weights * (residual - self._last)
@@ -103,9 +103,9 @@ class Aitken:
             if square > 0.0:
                 self.factor *= -dot(weights * self._last, change) / square
         self._last = residual
-        return _relaxed(guess, found, self.factor)
+        return _relaxed(guess, result, self.factor)
 
-    def end_window(self, guess: Guess, found: Guess) -> None:
+    def end_window(self, guess: Guess, result: Guess) -> None:
         """The factor stays for the next window."""
 
     def save(self) -> dict[str, Array]:
@@ -144,23 +144,23 @@ class IqnIls:
         self.scaling.begin_window(length)
         self._last, self._first = None, 0.0
 
-    def next(self, guess: Guess, found: Guess, allowed: Allowed) -> dict[Key, Array]:
+    def next(self, guess: Guess, result: Guess, allowed: Allowed) -> dict[Key, Array]:
         """Return the next guess."""
-        residual = self._observe(guess, found)
+        residual = self._observe(guess, result)
         weights = self.scaling.weights(residual, guess, allowed)
         self._distrust(norm(weights * residual))
         if not self.ages:
-            return _relaxed(guess, found, self.relaxation)
+            return _relaxed(guess, result, self.relaxation)
         scaled = np.array([weights * column for column in self.residual_changes])
-        factors, kept = filtered_least_squares(scaled, -weights * residual, self.limit)
+        factors, is_used = filtered_least_squares(scaled, -weights * residual, self.limit)
         change = residual + combination(factors, self.found_changes)
-        self._keep(kept.tolist())
+        self._keep(is_used.tolist())
         moved = self.scaling.fields(change, guess)
         return {key: guess[key] + moved[key] for key in guess}
 
-    def end_window(self, guess: Guess, found: Guess) -> None:
+    def end_window(self, guess: Guess, result: Guess) -> None:
         """Take the last column, and drop those of windows too long ago."""
-        self._observe(guess, found)
+        self._observe(guess, result)
         self._last = None
         if 0 in self.ages:  # windows that needed no repetition do not count
             self.ages = [age + 1 for age in self.ages]
@@ -173,9 +173,9 @@ class IqnIls:
         elif size > GROWTH * self._first:
             self._keep([age == 0 for age in self.ages])
 
-    def _observe(self, guess: Guess, found: Guess) -> Array:
+    def _observe(self, guess: Guess, result: Guess) -> Array:
         """Return the residual; make a column of what changed since the last."""
-        values = self.scaling.vector(found)
+        values = self.scaling.vector(result)
         residual = values - self.scaling.vector(guess)
         if self._last is not None:
             self.residual_changes.insert(0, residual - self._last[0])
@@ -184,8 +184,8 @@ class IqnIls:
         self._last = residual, values
         return residual
 
-    def _keep(self, kept: list[bool]) -> None:
-        chosen = [number for number, one in enumerate(kept) if one]
+    def _keep(self, is_used: list[bool]) -> None:
+        chosen = [number for number, used in enumerate(is_used) if used]
         self.residual_changes = [self.residual_changes[number] for number in chosen]
         self.found_changes = [self.found_changes[number] for number in chosen]
         self.ages = [self.ages[number] for number in chosen]
@@ -208,5 +208,5 @@ class IqnIls:
         self._last = None
 
 
-def _relaxed(guess: Guess, found: Guess, factor: float) -> dict[Key, Array]:
-    return {key: guess[key] + factor * (found[key] - guess[key]) for key in guess}
+def _relaxed(guess: Guess, result: Guess, factor: float) -> dict[Key, Array]:
+    return {key: guess[key] + factor * (result[key] - guess[key]) for key in guess}

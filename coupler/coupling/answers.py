@@ -105,8 +105,8 @@ def check_answer(order: str, answer: Message) -> None:
     for key, (is_right, words) in ANSWERS.get(order, NONE).items():
         value = header.get(key)
         if not is_right(value):
-            found = reprlib.repr(value)
-            raise MessageError(f"the answer to {order}: {key} must be {words}; found {found}.")
+            text = reprlib.repr(value)
+            raise MessageError(f"the answer to {order}: {key} must be {words}; found {text}.")
 
 
 def check_outputs(fields: Fields, wanted: Iterable[str], gives: Mapping[str, Field]) -> None:
@@ -148,12 +148,12 @@ class AnswerSums:
     def _check(
         self, place: str, sums: Mapping[str, list[float]], known: Mapping[str, Field]
     ) -> None:
-        for key, found in sums.items():
+        for key, numbers in sums.items():
             name, _, of = key.partition("/")
             whole = math.prod(known[name].shape) if name in known else -1
             right = {"": whole, "size": 1, "moment": 3, "work": self.links.get(name, -1)}
-            if name not in known or len(found) != right.get(of, -1):
+            if name not in known or len(numbers) != right.get(of, -1):
                 raise MessageError(
-                    f"the answer to advance: {reprlib.repr(key)} of {len(found)} numbers is no sum "
-                    f"of what was {place}."
+                    f"the answer to advance: {reprlib.repr(key)} of {len(numbers)} numbers is no "
+                    f"sum of what was {place}."
                 )

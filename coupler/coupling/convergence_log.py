@@ -37,7 +37,7 @@ class ConvergenceLog:
             names = [".".join(key) for key in row.residuals]
             self._table.write(["window", "repetitions", *names])
             self._begun = True
-        relative = [one.relative for one in row.residuals.values()]
+        relative = [residual.relative for residual in row.residuals.values()]
         self._table.write([row.window, row.repetitions, *relative])
 
     def size(self) -> int:

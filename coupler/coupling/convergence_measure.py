@@ -52,19 +52,19 @@ class ConvergenceMeasure:
         self.tolerance, self.absolute, self.is_impulse = tolerance, absolute, is_impulse
         self.largest: dict[Key, float] = {}  # norms so far
 
-    def compare(self, guess: Guess, found: Guess, length: float) -> dict[Key, Residual]:
+    def compare(self, guess: Guess, result: Guess, length: float) -> dict[Key, Residual]:
         """Residual of each field, after one repetition of a window of a length [s]."""
-        spans = {key: length if self.is_impulse(*key) else 1.0 for key in found}
-        norms = {key: norm(array) / spans[key] for key, array in found.items()}
+        spans = {key: length if self.is_impulse(*key) else 1.0 for key in result}
+        norms = {key: norm(array) / spans[key] for key, array in result.items()}
         for key, size in norms.items():
             self.largest[key] = max(self.largest.get(key, 0.0), size)
         rounding = ROUNDING * max(norms.values(), default=0.0)
         residuals = {}
-        for key in found:
+        for key in result:
             least = max(norms[key], FLOOR * self.largest[key])
-            lack = norm(found[key] - guess[key]) / spans[key]
+            lack = norm(result[key] - guess[key]) / spans[key]
             mean = self.absolute.get(".".join(key), 0.0)
-            wide = mean * math.sqrt(found[key].size)
+            wide = mean * math.sqrt(result[key].size)
             allowed = max(self.tolerance * least, wide, rounding)
             share = lack / least if least else math.inf
             residuals[key] = Residual(lack, allowed, share if lack else 0.0)
@@ -84,9 +84,9 @@ class ConvergenceMeasure:
 
 def converged(residuals: Mapping[Key, Residual]) -> bool:
     """Whether every field agrees."""
-    return all(one.converged for one in residuals.values())
+    return all(residual.converged for residual in residuals.values())
 
 
 def allowed(residuals: Mapping[Key, Residual]) -> dict[Key, float]:
     """What convergence allows each field, for the scales of an acceleration."""
-    return {key: one.allowed for key, one in residuals.items()}
+    return {key: residual.allowed for key, residual in residuals.items()}

@@ -24,14 +24,14 @@ class EnergyBalance:
         """Take down the energies [J] and masses [kg] of all components at one time."""
         total = 0.0
         self._times += 1
-        for name, one in totals.items():
+        for name, sums in totals.items():
             for kind in KINDS:
-                energy = float(one[kind])
+                energy = float(sums[kind])
                 total += energy
                 least, most = self._range.get(f"{name}.{kind}", (energy, energy))
                 self._range[f"{name}.{kind}"] = [min(least, energy), max(most, energy)]
-            total -= float(one["work"])
-            mass = float(one["mass"])
+            total -= float(sums["work"])
+            mass = float(sums["mass"])
             self._masses[name] = [self._masses.get(name, [mass])[0], mass]
         start, largest, _ = self._sums or (total, total, total)
         self._sums = [start, max(largest, total), total]
@@ -40,7 +40,7 @@ class EnergyBalance:
         """Largest energy [J] of one of some kinds that any component had, by magnitude."""
         ranges = ((key.rpartition(".")[2], pair) for key, pair in self._range.items())
         return max(
-            (abs(one) for kind, pair in ranges if kind in kinds for one in pair), default=0.0
+            (abs(value) for kind, pair in ranges if kind in kinds for value in pair), default=0.0
         )
 
     def change(self) -> dict[str, float] | None:

@@ -192,8 +192,8 @@ class Exchange:
         self._ports = {
             name: {port.name: port for port in takes} for name, (takes, _) in ports.items()
         }
-        pairs = [(n, one) for n, link in enumerate(self.links) for one in link.transfers]
-        self.transfers = [one for _, one in pairs]
+        pairs = [(n, transfer) for n, link in enumerate(self.links) for transfer in link.transfers]
+        self.transfers = [transfer for _, transfer in pairs]
         self.link_of = [number for number, _ in pairs]  # of each transfer
         self._bindings: list[Binding] = []
         self.samples: list[tuple[str, Fields, Fields]] = []  # component, request, its answer
@@ -216,9 +216,11 @@ class Exchange:
                 told[name] = {**described[name], **answer}
                 self.samples.append((name, request, answer))
             self._bindings.append(link.bind(told))
-        self._maps = [maps for one in self._bindings for maps in one.maps]
+        self._maps = [maps for binding in self._bindings for maps in binding.maps]
         self._moment = [
-            moment for one in self._bindings for moment in one.moment or (None,) * len(one.maps)
+            moment
+            for binding in self._bindings
+            for moment in binding.moment or (None,) * len(binding.maps)
         ]
         merged: dict[str, Mapped] = {name: {} for name in self.ports}
         for binding in self._bindings:
@@ -246,7 +248,7 @@ class Exchange:
         if self._port(name, key).items == "own":
             return np.asarray(known + array)
         field_name = key.partition(".")[2]
-        static = next(one for one in self._port(name, key).static if one.name == field_name)
+        static = next(field for field in self._port(name, key).static if field.name == field_name)
         counted = known.max(initial=-1.0) + 1.0 if static.labels else 0.0
         return np.concatenate([known, array + counted])
 
@@ -271,7 +273,7 @@ class Exchange:
     def shares(self, name: str) -> dict[str, list[tuple[int, int]]]:
         """Rows of each link in the ports of a component that several links share."""
         return {
-            port: [(one.start, one.stop) for one in rows.values()]
+            port: [(span.start, span.stop) for span in rows.values()]
             for (taker, port), rows in self._rows.items()
             if taker == name and len(rows) > 1
         }
@@ -310,19 +312,23 @@ class Exchange:
 
     def joined(self, name: str) -> list[str]:
         """Names of a component's ports that have a partner."""
-        keys = {key for one in self.transfers if one.taker == name for key in one.fills}
-        keys |= {key for one in self.transfers if one.giver == name for key in one.reads}
+        keys = {
+            key for transfer in self.transfers if transfer.taker == name for key in transfer.fills
+        }
+        keys |= {
+            key for transfer in self.transfers if transfer.giver == name for key in transfer.reads
+        }
         return sorted({key.partition(".")[0] for key in keys})
 
     def wanted(self, name: str, asked: Iterable[str] = ()) -> list[str]:
         """Outputs of a component that a link reads, or that somebody asked for."""
         keys = set(asked)
-        for one in self.transfers:
-            if one.giver == name:
-                keys |= set(one.reads)
-            if one.taker == name:
-                keys |= set(one.needs)
-                keys |= {key for _, *both in one.works_on for key in both}
+        for transfer in self.transfers:
+            if transfer.giver == name:
+                keys |= set(transfer.reads)
+            if transfer.taker == name:
+                keys |= set(transfer.needs)
+                keys |= {key for _, *both in transfer.works_on for key in both}
         return [key for key in self.gives[name] if key in keys]
 
     def deliver(self, number: int, start: Ends, end: Ends) -> Delivery:
@@ -334,16 +340,16 @@ class Exchange:
         turned = moment(start, end, after) if moment else None
         return Delivery(number, transfer, end[transfer.giver], after, turned)
 
-    def rows(self, number: int, given: Fields) -> Fields:
+    def rows(self, number: int, outputs: Fields) -> Fields:
         """Outputs of a transfer's giver; of a port that several links share, the link's rows."""
         giver, link = self.transfers[number].giver, self.link_of[number]
         taken = self.links[link].partner.get(giver, "")
         shared = self._rows.get((giver, taken), {})
         if len(shared) < 2:
-            return given
+            return outputs
         partners = {port.name for port in self.ports[giver][1] if port.items == "partner"}
         rows = shared[link]
-        return {k: v[rows] if k.partition(".")[0] in partners else v for k, v in given.items()}
+        return {k: v[rows] if k.partition(".")[0] in partners else v for k, v in outputs.items()}
 
     def _own_rows(self, number: int, outputs: Ends) -> Ends:
         giver = self.transfers[number].giver
@@ -351,13 +357,13 @@ class Exchange:
 
     def merge(self, taker: str, deliveries: Sequence[tuple[Delivery, bool]]) -> WindowInputs:
         """Bring together what several transfers brought; each says whether it holds at the end."""
-        inputs = WindowInputs(deliveries=[one for one, _ in deliveries])
+        inputs = WindowInputs(deliveries=[delivery for delivery, _ in deliveries])
         gathered: dict[str, list[tuple[Delivery, bool]]] = {}
         for delivery, is_end in deliveries:
             for key in delivery.after:
                 gathered.setdefault(key, []).append((delivery, is_end))
         for key, parts in gathered.items():
-            inputs.fields[key] = self._merge(taker, key, [one for one, _ in parts])
+            inputs.fields[key] = self._merge(taker, key, [delivery for delivery, _ in parts])
             ahead = [is_end for _, is_end in parts]
             if all(ahead):
                 inputs.ends.append(key)
@@ -368,13 +374,13 @@ class Exchange:
     def _merge(self, taker: str, key: str, parts: list[Delivery]) -> Array:
         if self._port(taker, key).items == "partner":
             rows = self._rows.get((taker, key.partition(".")[0]), {})
-            arrays = {self.link_of[one.number]: one.after[key] for one in parts}
+            arrays = {self.link_of[delivery.number]: delivery.after[key] for delivery in parts}
             if len(arrays) == 1 and len(rows) <= 1:
                 return parts[0].after[key]
             if len(rows) <= len(arrays):
                 return np.concatenate([arrays[link] for link in sorted(arrays)])
             whole = np.zeros(
-                (max(one.stop for one in rows.values()), *parts[0].after[key].shape[1:])
+                (max(span.stop for span in rows.values()), *parts[0].after[key].shape[1:])
             )
             for link, array in arrays.items():
                 whole[rows[link]] = array
@@ -386,4 +392,4 @@ class Exchange:
                 f"{taker}.{key}: only forces of several links can be added up; this is a value. "
                 f"Join {taker}.{key.partition('.')[0]} once."
             )
-        return np.asarray(np.sum([one.after[key] for one in parts], axis=0))
+        return np.asarray(np.sum([delivery.after[key] for delivery in parts], axis=0))

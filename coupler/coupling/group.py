@@ -53,8 +53,8 @@ class Group:
     def start(self, coupling: Coupling, window: Window, inputs: dict[str, WindowInputs]) -> None:
         """See `Member.start`."""
         self._dt, self._taken = window.dt, set(inputs)
-        for name, one in inputs.items():
-            self.inputs[name].arrive(one.fields, one.ends, window.dt)
+        for name, arrived in inputs.items():
+            self.inputs[name].arrive(arrived.fields, arrived.ends, window.dt)
         self._begin(coupling.windows, window)
 
     def _begin(self, outer: Windows, window: Window) -> None:
@@ -75,15 +75,15 @@ class Group:
             return None
         mine, inputs = self.coupling.windows, self.inputs[name]
         begin, end = mine.time, mine.time_after
-        found = WindowInputs()
+        outside = WindowInputs()
         for key, rate in inputs.rate.items():
-            found.fields[key] = rate * (end - begin)
+            outside.fields[key] = rate * (end - begin)
         for key in inputs.start:
             known = key in inputs.end
-            found.fields[key] = inputs.value(key, end if known else begin, self._dt)
+            outside.fields[key] = inputs.value(key, end if known else begin, self._dt)
             if known:
-                found.ends.append(key)
-        return found
+                outside.ends.append(key)
+        return outside
 
     def finish(self, coupling: Coupling, window: Window) -> Given:
         """See `Member.finish`: step through the group's windows."""
@@ -110,8 +110,8 @@ class Group:
         """See `Member.keep`."""
         books = {"ledger": self.coupling.ledger.save(), "log": self._log_sizes()}
         self._kept[depth] = {**self.save(), **books}
-        for one in self.components.values():
-            one.order_keep(depth)
+        for component in self.components.values():
+            component.order_keep(depth)
 
     def rewind(self, depth: int) -> None:
         """See `Member.rewind`: the books of its own windows come back too."""
@@ -119,29 +119,29 @@ class Group:
         self.coupling.ledger.load(self._kept[depth]["ledger"])
         for log, size in self._kept[depth]["log"]:
             log.cut(size)
-        for one in self.components.values():
-            one.order_rewind(depth)
+        for component in self.components.values():
+            component.order_rewind(depth)
 
     def _log_sizes(self) -> list[tuple[ConvergenceLog, int]]:
         """Logs of the group and of those in it, and their lengths [bytes]."""
         log = self.coupling.log
         sizes = [(log, log.size())] if log else []
-        for one in self.coupling.members.values():
-            sizes += one._log_sizes() if isinstance(one, Group) else []
+        for component in self.coupling.members.values():
+            sizes += component._log_sizes() if isinstance(component, Group) else []
         return sizes
 
     def confirm(self) -> None:
         """See `Member.confirm`."""
-        for one in self.components.values():
-            one.receive()
+        for component in self.components.values():
+            component.receive()
 
     def save(self) -> dict[str, Any]:
         """What outlives a window, for a snapshot and for windows that are repeated."""
-        inner = [one for one in self.coupling.members.values() if isinstance(one, Group)]
+        inner = [group for group in self.coupling.members.values() if isinstance(group, Group)]
         return {
             "coupling": self.coupling.save(),
-            "inputs": {name: one.save() for name, one in self.inputs.items()},
-            "groups": [one.save() for one in inner],
+            "inputs": {name: line.save() for name, line in self.inputs.items()},
+            "groups": [group.save() for group in inner],
         }
 
     def load(self, state: Mapping[str, Any]) -> None:
@@ -149,9 +149,9 @@ class Group:
         self.coupling.load(state["coupling"])
         for name, inputs in self.inputs.items():
             inputs.load(state["inputs"][name])
-        inner = [one for one in self.coupling.members.values() if isinstance(one, Group)]
-        for one, saved in zip(inner, state["groups"], strict=True):
-            one.load(saved)
+        inner = [group for group in self.coupling.members.values() if isinstance(group, Group)]
+        for group, saved in zip(inner, state["groups"], strict=True):
+            group.load(saved)
 
 
 def assemble(
@@ -170,8 +170,8 @@ def assemble(
         if inner is None:
             members[name] = Single(participants[name])
         else:
-            made = assemble(inner, participants, exchange, ledger, logs, costs, depth + 1)
-            members[name] = Group(made)
+            coupling = assemble(inner, participants, exchange, ledger, logs, costs, depth + 1)
+            members[name] = Group(coupling)
     return Coupling(plan, members, exchange, ledger, depth, costs, logs.get(plan.name))
 
 
@@ -190,30 +190,33 @@ def join_ports(
     exchange, participants = coupling.exchange, coupling.components
     static = exchange.bind(described, lambda name, request: participants[name].sample(request))
     wanted = {name: exchange.wanted(name, asked.get(name, ())) for name in participants}
-    for name, one in participants.items():
+    for name, participant in participants.items():
         works, joined = exchange.works(name), exchange.joined(name)
         header = {"works": works, "joined": joined, "wanted": wanted[name]}
-        one.bind(static[name], **header)
+        participant.bind(static[name], **header)
     # Motion is known at once; forces, which follow from it, are zero before the first window.
     outputs = {
-        name: one.give(wanted[name], exchange.gives[name]) for name, one in participants.items()
+        name: participant.give(wanted[name], exchange.gives[name])
+        for name, participant in participants.items()
     }
-    initial = {name: {**described[name], **given} for name, given in outputs.items()}
+    initial = {name: {**described[name], **fields} for name, fields in outputs.items()}
     if refused := refused_starts(exchange.links, initial):
         raise SceneError(refused)
     exchange.count_rows(outputs)
-    for name, one in participants.items():
-        one.sums = AnswerSums(exchange.takes[name], exchange.gives[name], exchange.sharing(name))
+    for name, participant in participants.items():
+        participant.sums = AnswerSums(
+            exchange.takes[name], exchange.gives[name], exchange.sharing(name)
+        )
     _begin(coupling, outputs)
-    for name, one in participants.items():
+    for name, participant in participants.items():
         numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == name]
         instants = _instants(exchange, name, numbers, outputs)
-        one.prime(instants, shares=exchange.shares(name))
+        participant.prime(instants, shares=exchange.shares(name))
         coupling.ledger.primed(name, instants)
-    for one in participants.values():
-        one.order_prepare()  # all at the same time, for some compile
-    for one in participants.values():
-        one.prepared()
+    for participant in participants.values():
+        participant.order_prepare()  # all at the same time, for some compile
+    for participant in participants.values():
+        participant.prepared()
 
 
 def _instants(
@@ -230,19 +233,21 @@ def _begin(coupling: Coupling, outputs: Mapping[str, Fields]) -> None:
         coupling.outputs[name] = coupling.previous[name] = outputs[name]
         coupling.sent[name] = {}
     exchange = coupling.exchange
-    for member, one in coupling.members.items():
-        if not isinstance(one, Group):
+    for member, stepper in coupling.members.items():
+        if not isinstance(stepper, Group):
             continue
-        _begin(one.coupling, outputs)
-        for name in one.components:
+        _begin(stepper.coupling, outputs)
+        for name in stepper.components:
             numbers = [
                 number
                 for number, (_, taker) in coupling.transfers.items()
                 if taker == member and exchange.transfers[number].taker == name
             ]
-            one.inputs[name].arrive(_instants(exchange, name, numbers, outputs), (), 1.0)
+            stepper.inputs[name].arrive(_instants(exchange, name, numbers, outputs), (), 1.0)
 
 
 def _add_sums(total: dict[str, Any], sums: Sums) -> None:
-    for key, one in sums.items():
-        total[key] = [a + b for a, b in zip(total[key], one, strict=True)] if key in total else one
+    for key, sums_row in sums.items():
+        total[key] = (
+            [a + b for a, b in zip(total[key], sums_row, strict=True)] if key in total else sums_row
+        )

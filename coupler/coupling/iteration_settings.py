@@ -68,10 +68,10 @@ def unknown_fields(
     Of keys that begin with one of `unread` nothing is known.
     """
     known = [
-        f"{name}.{port.name}.{one.name}"
+        f"{name}.{port.name}.{field.name}"
         for name, ports in takes.items()
         for port in ports
-        for one in port.fields
+        for field in port.fields
     ]
     wrong = [key for key in settings.absolute if key not in known and not key.startswith(unread)]
     return [unknown(f"{where}.absolute: field {key}", key, known) for key in wrong]

@@ -40,14 +40,14 @@ def filtered_least_squares(columns: Array, target: Array, limit: float) -> tuple
     count, length = columns.shape
     rest = np.concatenate([columns, target[None]])  # (k + 1, n): all that is left, target last
     triangle = np.zeros((count, count + 1))  # R, and in its last column Qᵀ target
-    kept = np.zeros(count, dtype=bool)
+    is_used = np.zeros(count, dtype=bool)
     block = max(1, BLOCK // max(1, length))
     spare = np.empty((min(block, count), length))
     for j in range(count):
         left = norm(rest[j])
         if not left > limit * norm(columns[j]):
             continue
-        kept[j], triangle[j, j] = True, left
+        is_used[j], triangle[j, j] = True, left
         direction = rest[j] / left
         for first in range(j + 1, count + 1, block):
             some = rest[first : first + block]
@@ -55,16 +55,16 @@ def filtered_least_squares(columns: Array, target: Array, limit: float) -> tuple
             along = np.add.reduce(np.multiply(some, direction, out=part), axis=1)
             triangle[j, first : first + block] = along
             some -= np.multiply(along[:, None], direction, out=part)
-    return _substitute_back(triangle, kept), kept
+    return _substitute_back(triangle, is_used), is_used
 
 
-def _substitute_back(triangle: Array, kept: Array) -> Array:
+def _substitute_back(triangle: Array, is_used: Array) -> Array:
     """Solve R c = Qᵀ target over the columns that were kept."""
-    found = np.zeros(len(kept))
-    for j in np.flatnonzero(kept)[::-1]:
-        known = dot(triangle[j, j + 1 : -1], found[j + 1 :])
-        found[j] = (triangle[j, -1] - known) / triangle[j, j]
-    return found
+    solution = np.zeros(len(is_used))
+    for j in np.flatnonzero(is_used)[::-1]:
+        known = dot(triangle[j, j + 1 : -1], solution[j + 1 :])
+        solution[j] = (triangle[j, -1] - known) / triangle[j, j]
+    return solution
 
 
 def combination(coefficients: Array, columns: Sequence[Array]) -> Array:

@@ -95,7 +95,7 @@ class Ledger:
         """Book the motion that a component was told before the first window."""
         self._motion.arrive(name, fields, (), 0.0)
 
-    def given(self, name: str, header: Mapping[str, Any], fields: Fields) -> None:
+    def book_given(self, name: str, header: Mapping[str, Any], fields: Fields) -> None:
         """Book what a component gave: its own sums against those of what arrived."""
         sent = header["sent"]
         for number, transfer in enumerate(self.exchange.transfers):
@@ -109,12 +109,13 @@ class Ledger:
                 share = self.exchange.share_of(number, name, velocity.partition(".")[0])
                 work = sent[f"{key}/work"][share] if f"{key}/work" in sent else 0.0
                 account.work_given += work
-                if any(one.works_on for one in link.transfers):  # else the other side counts none
+                # Else the other side counts none.
+                if any(transfer.works_on for transfer in link.transfers):
                     account.turnover += abs(work)
 
     def given_for(self, number: int, outputs: Fields) -> None:
         """Book what a component gave for one transfer in a window of its coupling."""
-        self._balance.given(number, outputs)
+        self._balance.book_given(number, outputs)
 
     def mapped(self, delivery: Delivery, sent: Mapping[str, Mapping[str, list[float]]]) -> None:
         """Book a mapping: sums of forces and of moments before against after.
@@ -150,13 +151,15 @@ class Ledger:
 
     def _feeding(self, name: str) -> Iterable[Account]:
         """Accounts of the links that bring something to a component."""
-        numbers = [n for n, one in enumerate(self.exchange.transfers) if one.taker == name]
-        return {id(one): one for one in map(self._account, numbers)}.values()
+        numbers = [
+            n for n, transfer in enumerate(self.exchange.transfers) if transfer.taker == name
+        ]
+        return {id(account): account for account in map(self._account, numbers)}.values()
 
-    def moved(self, name: str, inputs: WindowInputs, given: Mapping[str, Any], dt: float) -> None:
+    def moved(self, name: str, inputs: WindowInputs, answer: Mapping[str, Any], dt: float) -> None:
         """Book the motion that a component was given in its steps against what it was sent."""
         self._motion.arrive(name, inputs.fields, inputs.ends, dt)
-        worst = self._motion.residual(name, given)
+        worst = self._motion.residual(name, answer)
         for account in self._feeding(name):
             account.note("m/s", worst, 1.0)
 
@@ -178,8 +181,8 @@ class Ledger:
         takes = self.exchange.transfers
         for key, rate, place in delivery.transfer.works_on:
             # What an iteration guessed is what was applied; of shared items each link has its own.
-            others = [one for one in takes if one.taker == delivery.transfer.taker]
-            alone = sum(key in one.fills for one in others) == 1
+            others = [transfer for transfer in takes if transfer.taker == delivery.transfer.taker]
+            alone = sum(key in transfer.fills for transfer in others) == 1
             pushed = fields[key] if alone else delivery.after[key]
             self._account(delivery.number).work_taken += product(
                 pushed, self._mean_rate(delivery.transfer.taker, before, after, (rate, place), dt)
@@ -201,8 +204,8 @@ class Ledger:
 
     def _alone(self, delivery: Delivery) -> bool:
         """Whether a transfer brings all that its giver gave; shared ports are split by rows."""
-        others = [one for one in self.exchange.transfers if one.sums]
-        return sum(one.giver == delivery.transfer.giver for one in others) == 1
+        others = [transfer for transfer in self.exchange.transfers if transfer.sums]
+        return sum(transfer.giver == delivery.transfer.giver for transfer in others) == 1
 
     def _account(self, number: int) -> Account:
         return self.accounts[self.exchange.links[self.exchange.link_of[number]].name]
@@ -215,8 +218,8 @@ class Ledger:
             residuals = [account.momentum_residual, account.angular_residual]
             work = [account.work_given, account.work_taken, account.heat]
             self._table.write([time, account.link, *residuals, *account.impulse, *work])
-        for name, one in totals.items():
-            totals_row = [one["mass"], *one["momentum"], *(one[kind] for kind in (*KINDS, WORK))]
+        for name, sums in totals.items():
+            totals_row = [sums["mass"], *sums["momentum"], *(sums[kind] for kind in (*KINDS, WORK))]
             self._table.write([time, name, *[""] * 8, *totals_row])
         self._table.flush()
 
@@ -245,8 +248,8 @@ class Ledger:
     def summary(self) -> dict[str, Any]:
         """What ``results.json`` says of it."""
         links = [
-            {**_as_row(one), "energy_residual": one.energy_residual}
-            for one in self.accounts.values()
+            {**_as_row(account), "energy_residual": account.energy_residual}
+            for account in self.accounts.values()
         ]
         return {
             "links": links,

@@ -131,9 +131,9 @@ class OffsetMap:
         normal, over = _unit(np.cross(t, s))
         turn = force - (force * normal).sum(axis=1)[:, None] * normal
         turn *= -(self.depth * over)[:, None]
-        found = self.surface.map_conservative(force)
-        found += self.along.map_conservative(np.cross(s, turn))
-        return np.asarray(found + self.across.map_conservative(np.cross(turn, t)))
+        on_nodes = self.surface.map_conservative(force)
+        on_nodes += self.along.map_conservative(np.cross(s, turn))
+        return np.asarray(on_nodes + self.across.map_conservative(np.cross(turn, t)))
 
 
 def _unit(vector: Array) -> tuple[Array, Array]:

@@ -53,15 +53,15 @@ class MotionAudit:
     def __init__(self, exchange: Exchange) -> None:
         self._fields: dict[str, dict[str, str]] = {  # component -> instant -> its rate or ""
             name: {
-                f"{port.name}.{one.name}": one.rate and f"{port.name}.{one.rate}"
+                f"{port.name}.{field.name}": field.rate and f"{port.name}.{field.rate}"
                 for port in takes
-                for one in port.fields
-                if one.centring == "instant"
+                for field in port.fields
+                if field.centring == "instant"
             }
             for name, (takes, _) in exchange.ports.items()
         }
         self._kinds = {  # component -> instant -> what it is beyond numbers
-            name: {key: one.kind for key, one in fields.items()}
+            name: {key: field.kind for key, field in fields.items()}
             for name, fields in exchange.takes.items()
         }
         turning = {name: self._turning(name) for name in exchange.ports}
@@ -79,8 +79,8 @@ class MotionAudit:
         """Take note of what a component is sent for a window [s]."""
         sums = self._sums[name]
         self._window[name] = window
-        for one in sums.values():
-            one.pass_on()
+        for integral in sums.values():
+            integral.pass_on()
         for turn in self._turns[name].values():
             turn.pass_on()
         for key in self._turning_keys[name] & fields.keys():
@@ -102,17 +102,17 @@ class MotionAudit:
         sums = {
             name: {
                 key: [
-                    one.start.tolist(),
-                    one.size,
-                    None if one.end is None else one.end.tolist(),
-                    one.end_size,
+                    integral.start.tolist(),
+                    integral.size,
+                    None if integral.end is None else integral.end.tolist(),
+                    integral.end_size,
                 ]
-                for key, one in fields.items()
+                for key, integral in fields.items()
             }
             for name, fields in self._sums.items()
         }
         turns = {
-            name: {key: [one.start, one.end] for key, one in fields.items()}
+            name: {key: [ends.start, ends.end] for key, ends in fields.items()}
             for name, fields in self._turns.items()
         }
         return {"sums": sums, "window": dict(self._window), "turns": turns}
@@ -130,21 +130,21 @@ class MotionAudit:
                 for key, (start, amount, end, end_amount) in fields.items()
             }
 
-    def residual(self, name: str, given: Mapping[str, Any]) -> float:
+    def residual(self, name: str, answer: Mapping[str, Any]) -> float:
         """Worst difference between what was given out and what should have been, relative."""
-        window, span = self._window[name], float(given["span"])
-        if unknown := {*given["first"], *given["moved"]} - self._sums[name].keys():
+        window, span = self._window[name], float(answer["span"])
+        if unknown := {*answer["first"], *answer["moved"]} - self._sums[name].keys():
             raise MessageError(
                 f"{name} tells how it was moved by {min(unknown)}, which it never got."
             )
         rates = set(self._fields[name].values())
         gaps = [0.0]
-        for key, first in given["first"].items():
+        for key, first in answer["first"].items():
             if key not in rates:
                 gaps.append(
                     self._gap(name, key, np.subtract(first, self._at(name, key, 0.5 * span)))
                 )
-        for key, moved in given["moved"].items():
+        for key, moved in answer["moved"].items():
             whole = self._at(name, key, window) - self._at(name, key, 0.0)
             gaps.append(self._gap(name, key, np.subtract(moved, whole)))
         return max(gaps)
@@ -159,21 +159,21 @@ class MotionAudit:
 
     def _at(self, name: str, key: str, time: float) -> Array:
         """Sum over the items of a field at a time [s] of the window."""
-        one, window = self._sums[name][key], self._window[name]
+        ends, window = self._sums[name][key], self._window[name]
         if self._kinds[name][key] == "rotation":
             return np.asarray(column_sums(self._rotated(name, key, time)))
         if self._kinds[name][key] == "flag" and time < window:
-            return one.start
+            return ends.start
         rate = self._sums[name].get(self._fields[name][key])
-        if one.end is None:
-            return one.start + time * rate.start if rate else one.start
+        if ends.end is None:
+            return ends.start + time * rate.start if rate else ends.start
         s = time / window
         if rate is None or rate.end is None:
-            return (1.0 - s) * one.start + s * one.end
+            return (1.0 - s) * ends.start + s * ends.end
         return (
-            (1.0 + 2.0 * s) * (1.0 - s) ** 2 * one.start
+            (1.0 + 2.0 * s) * (1.0 - s) ** 2 * ends.start
             + s * (1.0 - s) ** 2 * window * rate.start
-            + s * s * (3.0 - 2.0 * s) * one.end
+            + s * s * (3.0 - 2.0 * s) * ends.end
             - s * s * (1.0 - s) * window * rate.end
         )
 

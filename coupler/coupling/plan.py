@@ -51,46 +51,46 @@ class CouplingPlan:
 
     def transfers(self, exchange: Exchange) -> dict[int, tuple[str, str]]:
         """Transfers between components of different members, and these: giver, taker."""
-        found = {}
-        for number, one in enumerate(exchange.transfers):
-            giver, taker = self.member_of(one.giver), self.member_of(one.taker)
+        pairs = {}
+        for number, transfer in enumerate(exchange.transfers):
+            giver, taker = self.member_of(transfer.giver), self.member_of(transfer.taker)
             if giver is not None and taker is not None and giver != taker:
-                found[number] = giver, taker
-        return found
+                pairs[number] = giver, taker
+        return pairs
 
     def equal(self, exchange: Exchange) -> set[str]:
         """Components that must step once in every window of this coupling."""
-        found = set()
+        components = set()
         for number in self.transfers(exchange):
             if exchange.links[exchange.link_of[number]].demands().equal_steps:
-                one = exchange.transfers[number]
-                found |= {one.giver, one.taker}
-        return found
+                transfer = exchange.transfers[number]
+                components |= {transfer.giver, transfer.taker}
+        return components
 
     def inner(self) -> list["CouplingPlan"]:
         """Plans of its groups."""
-        return [one for one in self.members.values() if one is not None]
+        return [plan for plan in self.members.values() if plan is not None]
 
     def iterated(self) -> Iterator[str]:
         """Names of the couplings that repeat windows: this one, and groups in it."""
         if self.scheme == "iterated":
             yield self.name
-        for one in self.inner():
-            yield from one.iterated()
+        for plan in self.inner():
+            yield from plan.iterated()
 
     def follows(self, exchange: Exchange) -> bool:
         """Whether its windows, or those of a group in it, follow the state."""
-        own = self.window == "auto" or bool(self.equal(exchange))
-        return own or any(one.follows(exchange) for one in self.inner())
+        is_equal = self.window == "auto" or bool(self.equal(exchange))
+        return is_equal or any(plan.follows(exchange) for plan in self.inner())
 
 
 def mistakes(plan: CouplingPlan, exchange: Exchange) -> list[str]:
     """Say what the links of a coupling, or of its groups, do not allow."""
     where = f"groups.{plan.name}" if plan.name else "scene"
-    found = [*_refused_schemes(plan, exchange, where), *_mixed_inputs(plan, exchange, where)]
+    wrong = [*_refused_schemes(plan, exchange, where), *_mixed_inputs(plan, exchange, where)]
     for inner in plan.inner():
-        found += mistakes(inner, exchange)
-    return list(dict.fromkeys(found))
+        wrong += mistakes(inner, exchange)
+    return list(dict.fromkeys(wrong))
 
 
 def _refused_schemes(plan: CouplingPlan, exchange: Exchange, where: str) -> Iterator[str]:
@@ -122,8 +122,8 @@ def _mixed_inputs(plan: CouplingPlan, exchange: Exchange, where: str) -> Iterato
             if not exchange.is_impulse(transfer.taker, key):
                 before = order.index(giver) < order.index(taker)
                 sides.setdefault((transfer.taker, key), set()).add(before)
-    for (component, key), found in sides.items():
-        if len(found) > 1:
+    for (component, key), kinds in sides.items():
+        if len(kinds) > 1:
             yield (
                 f"{where}: what {component} takes in {key.partition('.')[0]} must all come from "
                 "components that step before it, or all from ones after it; it comes from both. "

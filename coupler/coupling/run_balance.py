@@ -45,11 +45,11 @@ class RunBalance:
                 place = transfer.taker, after
                 self._given.setdefault(place, []).append((number, before, Running()))
 
-    def given(self, number: int, outputs: Fields) -> None:
+    def book_given(self, number: int, outputs: Fields) -> None:
         """Add what the giver of a transfer gave in a window, as it arrived."""
         for entries in self._given.values():
-            for one, before, running in entries:
-                if one == number:
+            for transfer, before, running in entries:
+                if transfer == number:
                     running.add(self.exchange.rows(number, outputs)[before])
 
     def applied(self, name: str, sums: Mapping[str, list[float]]) -> None:
@@ -61,14 +61,14 @@ class RunBalance:
 
     def save(self) -> dict[str, Any]:
         """All sums, for a snapshot."""
-        entries = [one for entries in self._given.values() for one in entries]
-        given = [[run.total.tolist(), run.last.tolist(), run.scale] for *_, run in entries]
+        entries = [entry for entries in self._given.values() for entry in entries]
+        sums = [[run.total.tolist(), run.last.tolist(), run.scale] for *_, run in entries]
         applied = [[*place, np.asarray(sums).tolist()] for place, sums in self._applied.items()]
-        return {"given": given, "applied": applied}
+        return {"given": sums, "applied": applied}
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to saved sums."""
-        entries = [one for entries in self._given.values() for one in entries]
+        entries = [entry for entries in self._given.values() for entry in entries]
         for (*_, run), (total, last, scale) in zip(entries, state["given"], strict=True):
             run.total, run.last, run.scale = np.array(total), np.array(last), scale
         self._applied = {(name, key): np.array(sums) for name, key, sums in state["applied"]}

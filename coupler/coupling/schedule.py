@@ -138,17 +138,17 @@ class Coupling:
     @property
     def components(self) -> dict[str, Participant]:
         """Every component, also those in groups."""
-        return {k: v for one in self.members.values() for k, v in one.components.items()}
+        return {k: v for member in self.members.values() for k, v in member.components.items()}
 
     def carries(self, link: str) -> "Coupling | None":
         """Find the coupling, this or that of a group, whose windows a link's transfers cross."""
         if any(self.exchange.links[self.exchange.link_of[n]].name == link for n in self.transfers):
             return self
-        return next((one for inner in self._inner() if (one := inner.carries(link))), None)
+        return next((carrier for inner in self._inner() if (carrier := inner.carries(link))), None)
 
     def allowed(self) -> float:
         """How long the next window may be where it follows the state [s]."""
-        stable = {name: one.stable() for name, one in self.members.items()}
+        stable = {name: member.stable() for name, member in self.members.items()}
         joined = {name for ends in self.transfers.values() for name in ends}
         steps = [step for name, step in stable.items() if name in joined or not joined]
         equal = [stable[name] for name in stable if name in self.equal]
@@ -160,14 +160,14 @@ class Coupling:
     ) -> dict[str, WindowInputs]:
         """Bring to a member's components what the others gave; `stepped` have done this window."""
         with self.timed():
-            found: dict[str, list[tuple[Delivery, bool]]] = {}
+            deliveries_of: dict[str, list[tuple[Delivery, bool]]] = {}
             for number, (giver, member) in self.transfers.items():
                 if member == name:
                     is_end, taker = giver in stepped, self.exchange.transfers[number].taker
-                    one = self._deliver(number, is_end and name not in stepped, window)
-                    found.setdefault(taker, []).append((one, is_end))
+                    delivery = self._deliver(number, is_end and name not in stepped, window)
+                    deliveries_of.setdefault(taker, []).append((delivery, is_end))
             gathered = {}
-            for taker, deliveries in found.items():
+            for taker, deliveries in deliveries_of.items():
                 inputs = self.exchange.merge(taker, deliveries)
                 inputs.outputs, inputs.sent = self.outputs[taker], dict(self.sent)
                 gathered[taker] = inputs
@@ -194,12 +194,12 @@ class Coupling:
     def _ahead(self, name: str, keys: Iterable[str], dt: float) -> Fields:
         """Outputs of a component as far ahead as their rates lead."""
         known = self.outputs[name]
-        found = {}
+        values = {}
         for key in keys:
-            one = self.exchange.output(name, key)
-            rate = known.get(f"{key.partition('.')[0]}.{one.rate}") if one.rate else None
-            found[key] = value_at(one.kind, KnownEnds(known[key], rate), dt, dt)
-        return found
+            field = self.exchange.output(name, key)
+            rate = known.get(f"{key.partition('.')[0]}.{field.rate}") if field.rate else None
+            values[key] = value_at(field.kind, KnownEnds(known[key], rate), dt, dt)
+        return values
 
     def _relax(self, delivery: Delivery, window: Window) -> None:
         """Hand on only a share of the change of instants, where the link says so."""
@@ -223,43 +223,43 @@ class Coupling:
         """Wait for the end of one member's window."""
         return self.members[name].finish(self, window)
 
-    def advance_outputs(self, given: Given) -> None:
+    def advance_outputs(self, answers: Given) -> None:
         """Make what a member gave the latest of its components."""
-        for component, fields in given.outputs.items():
+        for component, fields in answers.outputs.items():
             self.previous[component] = self.outputs[component]
             self.outputs[component] = fields
-            self.sent[component] = given.sent[component]
+            self.sent[component] = answers.sent[component]
 
-    def book(self, given: Given, inputs: dict[str, WindowInputs], window: Window) -> None:
+    def book(self, answers: Given, inputs: dict[str, WindowInputs], window: Window) -> None:
         """Book the transfers that brought a member's inputs, and those that it gave for."""
         with self.timed():
-            for taker, one in inputs.items():
-                for delivery in one.deliveries:
-                    self.ledger.mapped(delivery, one.sent)
-                    ends = one.outputs, given.outputs[taker]
-                    self.ledger.worked(delivery, one.fields, *ends, window.dt)
+            for taker, arrived in inputs.items():
+                for delivery in arrived.deliveries:
+                    self.ledger.mapped(delivery, arrived.sent)
+                    ends = arrived.outputs, answers.outputs[taker]
+                    self.ledger.worked(delivery, arrived.fields, *ends, window.dt)
             for number in self.transfers:
                 giver = self.exchange.transfers[number].giver
-                if giver in given.outputs:
-                    self.ledger.given_for(number, given.outputs[giver])
+                if giver in answers.outputs:
+                    self.ledger.given_for(number, answers.outputs[giver])
 
     def all_late(self) -> set[int]:
         """Transfers of this coupling and of its groups whose last impulses wait."""
-        found = set(self.late)
+        numbers = set(self.late)
         for inner in self._inner():
-            found |= inner.all_late()
-        return found
+            numbers |= inner.all_late()
+        return numbers
 
     def all_in_transit(self) -> Guess:
         """Impulses of this coupling and of its groups that are not yet applied."""
-        found = dict(self.in_transit)
+        arrays = dict(self.in_transit)
         for inner in self._inner():
             for key, array in inner.all_in_transit().items():
-                found[key] = found[key] + array if key in found else array
-        return found
+                arrays[key] = arrays[key] + array if key in arrays else array
+        return arrays
 
     def _inner(self) -> Iterator["Coupling"]:
-        return (one.inner for one in self.members.values() if one.inner is not None)
+        return (member.inner for member in self.members.values() if member.inner is not None)
 
     @contextlib.contextmanager
     def timed(self) -> Iterator[None]:
@@ -333,7 +333,7 @@ class Single:
         answer, ledger = self._answer, coupling.ledger
         assert answer is not None
         with coupling.timed():
-            ledger.given(self.name, answer.header, answer.fields)
+            ledger.book_given(self.name, answer.header, answer.fields)
             ledger.applied(self.name, self._inputs.fields, answer.header)
             ledger.moved(self.name, self._inputs, answer.header["inputs"], window.dt)
         if answer.header.get("totals"):

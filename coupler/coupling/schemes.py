@@ -46,16 +46,18 @@ def parallel(coupling: Coupling, window: Window) -> None:
     inputs = {name: coupling.collect_inputs(name, (), window) for name in coupling.members}
     for name in coupling.members:
         coupling.start(name, window, inputs[name])
-    given = {name: coupling.finish(name, window) for name in coupling.members}
-    for name, one in given.items():
-        _conclude(coupling, name, one, inputs[name], window)
+    answers = {name: coupling.finish(name, window) for name in coupling.members}
+    for name, answer in answers.items():
+        _conclude(coupling, name, answer, inputs[name], window)
     coupling.late = set(coupling.transfers)
 
 
-def _conclude(coupling: Coupling, name: str, given: Given, inputs: Inputs, window: Window) -> None:
+def _conclude(
+    coupling: Coupling, name: str, answers: Given, inputs: Inputs, window: Window
+) -> None:
     coupling.members[name].book(coupling, window)
-    coupling.book(given, inputs, window)
-    coupling.advance_outputs(given)
+    coupling.book(answers, inputs, window)
+    coupling.advance_outputs(answers)
 
 
 def iterated(coupling: Coupling, window: Window) -> None:
@@ -70,46 +72,50 @@ def iterated(coupling: Coupling, window: Window) -> None:
     guess = _first_guess(coupling, window)
     acceleration.begin_window(window.dt)
     guessing = [  # members whose inputs are guessed
-        name for name, one in coupling.members.items() if any(k in one.components for k, _ in guess)
+        name
+        for name, member in coupling.members.items()
+        if any(k in member.components for k, _ in guess)
     ]
     _all(coupling, "keep")
     repetition = 0
     while True:
-        inputs, given = _sweep(coupling, window, guess)
+        inputs, answers = _sweep(coupling, window, guess)
         everyone = list(coupling.members)
         taken = {name: coupling.collect_inputs(name, everyone, window) for name in guessing}
-        found = {(one, key): _inputs_of(taken, one).fields[key] for one, key in guess}
-        residuals = measure.compare(guess, found, window.dt)
+        result = {
+            (component, key): _inputs_of(taken, component).fields[key] for component, key in guess
+        }
+        residuals = measure.compare(guess, result, window.dt)
         if converged(residuals):
             break
         if repetition + 1 >= coupling.plan.iteration.limit:
             _at_limit(coupling, window, repetition)
             break
-        guess = acceleration.next(guess, found, allowed(residuals))
+        guess = acceleration.next(guess, result, allowed(residuals))
         repetition += 1
         coupling.iterate = dict(coupling.outputs)
         _all(coupling, "rewind")
         coupling.outputs, coupling.previous = dict(before), dict(earlier)
         coupling.sent = dict(sent)
-    acceleration.end_window(guess, found)
+    acceleration.end_window(guess, result)
     coupling.iterate = {}
     coupling.costs.repetitions += repetition
     if coupling.log:
         coupling.log.write(ConvergenceRow(window.number, repetition, residuals))
     guessed = {component for component, _ in guess}
     coupling.outputs = dict(before)
-    for name, one in given.items():
+    for name, answer in answers.items():
         for component, mine in inputs[name].items():
             mine.outputs = before[component]
             if component in guessed:  # the mapping that counts is that of the agreed outputs
                 agreed = taken[name][component]
                 mine.deliveries, mine.sent = agreed.deliveries, agreed.sent
         coupling.members[name].book(coupling, window)
-        coupling.book(one, inputs[name], window)
-    for one in given.values():
-        coupling.outputs |= one.outputs
+        coupling.book(answer, inputs[name], window)
+    for answer in answers.values():
+        coupling.outputs |= answer.outputs
     coupling.in_transit = {
-        key: found[key] - guess[key] for key in guess if coupling.exchange.is_impulse(*key)
+        key: result[key] - guess[key] for key in guess if coupling.exchange.is_impulse(*key)
     }
     coupling.late = set()
 
@@ -161,21 +167,21 @@ def _first_guess(coupling: Coupling, window: Window) -> Guess:
     """
     names = list(coupling.members)
     stretch = window.dt / coupling.last_dt if coupling.last_dt else 1.0
-    found: Guess = {}
+    guess: Guess = {}
     for number, name in enumerate(names):
         for component, inputs in coupling.collect_inputs(name, names[:number], window).items():
             for key, array in inputs.fields.items():
                 if key not in inputs.ends:
                     impulse = coupling.exchange.is_impulse(component, key)
-                    found[component, key] = array * stretch if impulse else array
-    return found
+                    guess[component, key] = array * stretch if impulse else array
+    return guess
 
 
 def _all(coupling: Coupling, order: str) -> None:
-    for one in coupling.members.values():
-        one.keep(coupling.depth) if order == "keep" else one.rewind(coupling.depth)
-    for one in coupling.members.values():
-        one.confirm()
+    for member in coupling.members.values():
+        member.keep(coupling.depth) if order == "keep" else member.rewind(coupling.depth)
+    for member in coupling.members.values():
+        member.confirm()
 
 
 SCHEMES: dict[str, Scheme] = {"serial": serial, "parallel": parallel, "iterated": iterated}

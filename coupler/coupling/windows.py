@@ -141,7 +141,7 @@ class Windows:
 
     def load(self, saved: Sequence[int]) -> None:
         """Come back to what was saved."""
-        self.now, self.done, self.current, self.calm = (int(one) for one in saved)
+        self.now, self.done, self.current, self.calm = (int(number) for number in saved)
 
 
 def rounded(seconds: float, tick: float) -> int:
@@ -177,7 +177,7 @@ def auto_length(stable: Iterable[float], equal: Iterable[float]) -> tuple[float,
     """
     if demanded := list(equal):
         return min(demanded), "the smallest step of what must step equally"
-    steps = [one for one in stable if math.isfinite(one)]
+    steps = [step for step in stable if math.isfinite(step)]
     if not steps:
         return math.inf, f"a {BLIND}th of the run, as no component says how far it may step"
     if max(steps) > SUBCYCLES * min(steps):

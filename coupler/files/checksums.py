@@ -20,12 +20,12 @@ BLOCK = 1 << 20  # bytes read at once
 
 def of_file(path: Path, size: int | None = None) -> list[int]:
     """Length [bytes] and checksum of a file, or of its beginning."""
-    found, left = 0, path.stat().st_size if size is None else size
+    crc, left = 0, path.stat().st_size if size is None else size
     done = 0
     with open(path, "rb") as file:
         while block := file.read(min(BLOCK, left - done)):
-            found, done = zlib.crc32(block, found), done + len(block)
-    return [done, found]
+            crc, done = zlib.crc32(block, crc), done + len(block)
+    return [done, crc]
 
 
 def of_files(folder: Path, names: Iterable[str]) -> dict[str, list[int]]:
@@ -59,7 +59,7 @@ def require_sealed(table: dict[str, Any], path: Path) -> None:
     if KEY not in table:
         return
     sums = table[KEY] if isinstance(table[KEY], dict) else {}
-    rest = {**table, KEY: {name: one for name, one in sums.items() if name != OWN}}
+    rest = {**table, KEY: {name: sum_of_file for name, sum_of_file in sums.items() if name != OWN}}
     if sums.get(OWN) != _own(rest):
         raise SceneError(
             f"{path}: it must be as the run wrote it; it was changed. Copy it again from where it "

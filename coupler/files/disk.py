@@ -156,21 +156,21 @@ def is_sound(path: Path) -> bool:
 
 def _digest(path: Path, size: int) -> tuple[bytes, bytes]:
     """Checksum of the first bytes of a file, and the bytes after them."""
-    found = hashlib.blake2b(digest_size=DIGEST)
+    digest = hashlib.blake2b(digest_size=DIGEST)
     with open(path, "rb") as file:
         while size:
             block = file.read(min(BLOCK, size))
             if not block:
                 break
-            found.update(block)
+            digest.update(block)
             size -= len(block)
-        return found.digest(), file.read()
+        return digest.digest(), file.read()
 
 
 def check_length(path: Path, size: int) -> None:
     """Refuse to go on with a file that is shorter than it was."""
-    found = path.stat().st_size if path.is_file() else 0
-    if found < size:
+    length = path.stat().st_size if path.is_file() else 0
+    if length < size:
         raise SceneError(
-            f"{path}: it must have {size} bytes to go on; found {found}. Run the scene again."
+            f"{path}: it must have {size} bytes to go on; found {length}. Run the scene again."
         )

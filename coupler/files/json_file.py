@@ -50,8 +50,8 @@ def _is_of(path: Path, keys: Collection[str]) -> bool:
     """Whether a file is empty, or JSON of tables with these keys."""
     try:
         text = path.read_bytes().decode()
-        found = json.loads(text) if text else []
+        content = json.loads(text) if text else []
     except (OSError, ValueError, RecursionError):
         return False
-    tables = found if isinstance(found, list) else [found]
-    return all(isinstance(one, dict) and one.keys() >= set(keys) for one in tables)
+    tables = content if isinstance(content, list) else [content]
+    return all(isinstance(entry, dict) and entry.keys() >= set(keys) for entry in tables)

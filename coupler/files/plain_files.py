@@ -60,16 +60,16 @@ def _require(folder: Path, path: Path, wrong: str) -> None:
 def _wrong_file(path: Path) -> str:
     """What stands in the place of a file, if it must not be written to; else nothing."""
     try:
-        found = path.lstat()
+        status = path.lstat()
     except (FileNotFoundError, NotADirectoryError):
         return ""
-    if stat.S_ISLNK(found.st_mode):
+    if stat.S_ISLNK(status.st_mode):
         return _link(path)
-    if stat.S_ISDIR(found.st_mode):
+    if stat.S_ISDIR(status.st_mode):
         return "a folder in the place of a file"
-    if not stat.S_ISREG(found.st_mode):
-        return SPECIAL.get(stat.S_IFMT(found.st_mode), "no plain file")
-    return f"one of {found.st_nlink} hard links to a file" if found.st_nlink > 1 else ""
+    if not stat.S_ISREG(status.st_mode):
+        return SPECIAL.get(stat.S_IFMT(status.st_mode), "no plain file")
+    return f"one of {status.st_nlink} hard links to a file" if status.st_nlink > 1 else ""
 
 
 def _wrong_folder(path: Path) -> str:

@@ -79,20 +79,20 @@ class Recorder(_Closed):
     @classmethod
     def resume(cls, path: Path, rows: int) -> "Recorder":
         """Go on with a recording after its first rows; later ones are forgotten."""
-        made = cls.__new__(cls)
-        made._tracks = {}
+        recorder = cls.__new__(cls)
+        recorder._tracks = {}
         with readable(path):
             with h5py.File(path, "r", locking=False) as file:
                 CheckedFile(file, path).check_rows(rows)
-            made._file = h5py.File(path, "r+", locking=False, rdcc_nbytes=CACHE_BYTES)
-            for name, group in made._file["components"].items():
+            recorder._file = h5py.File(path, "r+", locking=False, rdcc_nbytes=CACHE_BYTES)
+            for name, group in recorder._file["components"].items():
                 ports = from_json(str(group.attrs["ports"]))
-                made._tracks[name] = _Track(group, name, ports)
-        tracks = made._tracks.values()
-        with room(made._file, sum(track.largest() for track in tracks)):
+                recorder._tracks[name] = _Track(group, name, ports)
+        tracks = recorder._tracks.values()
+        with room(recorder._file, sum(track.largest() for track in tracks)):
             for track in tracks:
                 track.go_on(rows)
-        return made
+        return recorder
 
     def component(self, name: str, ports: tuple[Port, ...], static: Fields) -> None:
         """Announce a component: the ports it gives, and what it described once."""

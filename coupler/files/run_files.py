@@ -54,13 +54,13 @@ def write_marker(folder: Path, marker: Marker) -> None:
 def read_marker(folder: Path) -> Marker | None:
     """Read the marker of a folder; None where it has none."""
     try:
-        found = json.loads((folder / MARKER).read_text(encoding="utf-8"))
-        if found["format"] != FORMAT:
+        table = json.loads((folder / MARKER).read_text(encoding="utf-8"))
+        if table["format"] != FORMAT:
             raise SceneError(
-                f"{folder}: {MARKER} must be of format {FORMAT}; found {found['format']!r}. Name "
+                f"{folder}: {MARKER} must be of format {FORMAT}; found {table['format']!r}. Name "
                 "another folder, or use the version of quintet that ran there."
             )
-        return Marker(**{**found, "files": tuple(map(str, found["files"]))})
+        return Marker(**{**table, "files": tuple(map(str, table["files"]))})
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -78,8 +78,8 @@ def may_write(folder: Path, files: Iterable[str]) -> list[Path]:
 def _within(folder: Path, names: Iterable[str]) -> list[Path]:
     """Files of a folder by their names, and what they are called while they are written."""
     plain = [Path(name) for name in names]
-    within = [folder / one for one in plain if not one.is_absolute() and ".." not in one.parts]
-    return [*within, *(one.with_name(one.name + PART) for one in within)]
+    within = [folder / path for path in plain if not path.is_absolute() and ".." not in path.parts]
+    return [*within, *(path.with_name(path.name + PART) for path in within)]
 
 
 def _snapshots(folder: Path) -> list[Path]:
@@ -88,6 +88,6 @@ def _snapshots(folder: Path) -> list[Path]:
 
 def left(folder: Path, marker: Marker) -> list[Path]:
     """Files of a run that are there, but for what its study logs; the marker's last."""
-    found = _within(folder, (name for name in marker.files if name != RUN_LOG))
-    found += _snapshots(folder) if marker.kind == "run" else []
-    return [path for path in [*found, folder / MARKER] if path.is_file() or path.is_symlink()]
+    paths = _within(folder, (name for name in marker.files if name != RUN_LOG))
+    paths += _snapshots(folder) if marker.kind == "run" else []
+    return [path for path in [*paths, folder / MARKER] if path.is_file() or path.is_symlink()]

@@ -82,13 +82,13 @@ class VtkHdf:
         with room(self._file, _largest(arrays) + 2 * cells.nbytes):
             if not self._data:
                 self._begin(arrays, view.get("cells"))
-            _require_points({k: one for k, one in arrays.items() if k not in self._cell_data})
+            _require_points({k: array for k, array in arrays.items() if k not in self._cell_data})
             self._require_same(arrays)
             self._append(time, arrays)
 
     def _append(self, time: float, arrays: dict[str, Array]) -> None:
         count = len(arrays["points"])
-        parts = (one for key in sorted(arrays) for one in (key.encode(), arrays[key]))
+        parts = (part for key in sorted(arrays) for part in (key.encode(), arrays[key]))
         self.check = checksum(f"{self.check} {time!r}", *parts)
         for key, dataset in self._data.items():
             dataset.resize(self._rows + count, axis=0)
@@ -113,7 +113,7 @@ class VtkHdf:
     def _begin(self, arrays: dict[str, Array], cells: Array | None) -> None:
         count, polygons = len(arrays.get("points", ())), 0 if cells is None else len(cells)
         over_cells = {k for k, v in arrays.items() if v.ndim and len(v) == polygons != count}
-        _require_points({k: one for k, one in arrays.items() if k not in over_cells})
+        _require_points({k: array for k, array in arrays.items() if k not in over_cells})
         fields = self._root.create_group("PointData")
         for key, array in arrays.items():
             if key not in over_cells:
@@ -142,10 +142,10 @@ class VtkHdf:
 
     def _field(self, group: h5py.Group, name: str, array: Array, unit: str) -> h5py.Dataset:
         item = array.shape[1:] if array.ndim < 3 else (int(np.prod(array.shape[1:])),)
-        made = _table(group, name, item, "f4", min(max(len(array), 256), CHUNK))
+        dataset = _table(group, name, item, "f4", min(max(len(array), 256), CHUNK))
         if unit:
-            made.attrs["units"] = unit
-        return made
+            dataset.attrs["units"] = unit
+        return dataset
 
     def _tell(self, name: str, text: str) -> None:
         """Write a text that holds at all steps: one value at the same place of each."""
@@ -248,19 +248,19 @@ def resume(path: Path, time: float, check: int | None = None) -> VtkHdf:
     """
     part = path.with_name(path.name + PART)
     with removed_on_failure(part):
-        made = VtkHdf(part, units(path), scene(path))
+        file = VtkHdf(part, units(path), scene(path))
         for k, when in enumerate(times(path)):
             if when <= time:
-                made.append(*read_step(path, k))
-        if check is not None and made.check != check:
-            made.close()
+                file.append(*read_step(path, k))
+        if check is not None and file.check != check:
+            file.close()
             raise SceneError(
                 f"view file {path}: its steps up to {time:g} s must be as the run wrote them; they "
                 "were changed or cut. Copy the file again from where it was made, or run the scene "
                 "again."
             )
         part.replace(path)
-    return made
+    return file
 
 
 def _largest(arrays: dict[str, Array]) -> int:
@@ -274,8 +274,8 @@ def _largest(arrays: dict[str, Array]) -> int:
 def _require_points(arrays: dict[str, Array]) -> None:
     points = arrays.get("points")
     if points is None or points.ndim != 2 or points.shape[1] != 3:
-        found = "nothing" if points is None else f"shape {points.shape}"
-        raise PortError(f"a view must have points of shape (n, 3); found {found}. Correct view().")
+        shape = "nothing" if points is None else f"shape {points.shape}"
+        raise PortError(f"a view must have points of shape (n, 3); found {shape}. Correct view().")
     for key, array in arrays.items():
         if not array.ndim or len(array) != len(points):
             raise PortError(

@@ -77,10 +77,10 @@ def units(path: Path | str) -> dict[str, str]:
     """Return the units of all fields of a file, in the order of its view; "" where unknown."""
     with _open(path) as file:
         root: Any = file["VTKHDF"]
-        listed = [one.partition(" ") for one in _text(root, UNITS).split("; ") if one]
-        found = {name: unit for name, _, unit in listed if name != "points"}
+        listed = [entry.partition(" ") for entry in _text(root, UNITS).split("; ") if entry]
+        by_name = {name: unit for name, _, unit in listed if name != "points"}
         known = [*root["PointData"], *root.get("CellData", ())]
-        return found | {name: "" for name in known if name not in found}
+        return by_name | {name: "" for name in known if name not in by_name}
 
 
 def scene(path: Path | str) -> str:

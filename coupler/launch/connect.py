@@ -55,10 +55,10 @@ def connect(scene: Scene, folder: Path, watchdog: Watchdog) -> Connection:
 
 def settings(scene: Scene, name: str) -> dict[str, Any]:
     """What a component is told before it is built."""
-    one = scene.components[name]
+    plan = scene.components[name]
     return {
-        "params": one.params,
-        "threads": one.threads,
+        "params": plan.params,
+        "threads": plan.threads,
         "folder": str(scene.folder.resolve()),
     }
 
@@ -74,14 +74,14 @@ class InMemory:
         self.watchdog = watchdog
         run = secrets.token_hex(4)
         try:
-            for name, one in scene.components.items():
+            for name, plan in scene.components.items():
                 line = MemoryLine(run, name)
                 participant = self.participants[name] = Participant(name, line)
                 probe = ProcessProbe(name, os.getpid(), where=stack.of_main_thread)
                 self.watchdog.add(participant, probe, scene.patience(name))
                 began = time.perf_counter()
                 with participant.keeping_others_waiting:
-                    component = _built(one, settings(scene, name))
+                    component = _built(plan, settings(scene, name))
                 server = Server(component, name, time.perf_counter() - began)
                 line.handle = partial(answer, server, line.far)
         except BaseException:
@@ -97,14 +97,14 @@ class InMemory:
         return []
 
 
-def _built(one: ComponentPlan, header: dict[str, Any]) -> Component:
+def _built(plan: ComponentPlan, header: dict[str, Any]) -> Component:
     try:
-        return build(one.manifest, header)
+        return build(plan.manifest, header)
     except SceneError as error:
-        raise SceneError(f"components.{one.name}: {error}") from error
+        raise SceneError(f"components.{plan.name}: {error}") from error
     except (Exception, SystemExit) as error:
         told = failure(error)
-        raise ComponentFailed(one.name, 0, told["text"], told["traceback"]) from error
+        raise ComponentFailed(plan.name, 0, told["text"], told["traceback"]) from error
 
 
 class OverZenoh:
@@ -125,7 +125,7 @@ class OverZenoh:
         except LineError as error:
             raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
         self.foreign = ForeignMessages(self.session.zenoh)
-        kinds = {name: one.manifest.kind for name, one in scene.components.items()}
+        kinds = {name: plan.manifest.kind for name, plan in scene.components.items()}
         awaited = {name: kind for name, kind in kinds.items() if name in scene.elsewhere}
         self.admission = Admission(
             self.session.zenoh, self.secret, awaited, kinds.keys() - awaited.keys(), self.foreign
@@ -153,11 +153,11 @@ class OverZenoh:
             raise
 
     def _start(self, scene: Scene, name: str, endpoint: str, folder: Path) -> None:
-        one = scene.components[name]
+        plan = scene.components[name]
         arguments = [
             "-m",
             "quintet.interfaces.serving.process",
-            one.kind,
+            plan.kind,
             "--name",
             name,
             "--at",
@@ -167,7 +167,7 @@ class OverZenoh:
             arguments += ["--tls", *scene.tls]
         for place in scene.import_folders:
             arguments += ["--look-in", place]
-        process = start(arguments, log_of(folder, name), one.threads, self.run, self.secret)
+        process = start(arguments, log_of(folder, name), plan.threads, self.run, self.secret)
         self.probes[name].pid, self.probes[name].process = process.pid, process
 
     def close(self, well: bool) -> None:
@@ -189,9 +189,9 @@ def require_reachable(endpoint: str, security: Security) -> None:
     # Only runs over zenoh with certificates look at them.
     from quintet.interfaces.lines.reach import obstacle
 
-    found = obstacle(endpoint, security)
-    if found.text and found.certain:
-        raise SceneError(f"scene.endpoint {endpoint}: {found.text}")
+    hindrance = obstacle(endpoint, security)
+    if hindrance.text and hindrance.certain:
+        raise SceneError(f"scene.endpoint {endpoint}: {hindrance.text}")
 
 
 def join_command(scene: Scene, name: str, endpoint: str) -> str:
@@ -217,12 +217,12 @@ class OverMpi:
         write_processes(folder, None, shared_files())
         try:
             for rank, name in enumerate(scene.components, start=1):
-                one = Participant(name, mpi.MpiLine(run, "coupler", name, rank))
+                participant = Participant(name, mpi.MpiLine(run, "coupler", name, rank))
                 probe = self.probes[name] = ProcessProbe(name, exit_file=exit_file(folder, name))
-                self.watchdog.add(one, probe, scene.patience(name))
-                hello = one.await_hello(LONGEST_WAIT, lambda seconds: None)
-                self.participants[name] = one
-                accept(scene, one, hello, probe, folder)
+                self.watchdog.add(participant, probe, scene.patience(name))
+                hello = participant.await_hello(LONGEST_WAIT, lambda seconds: None)
+                self.participants[name] = participant
+                accept(scene, participant, hello, probe, folder)
         except BaseException:
             self.close(False)
             raise
@@ -247,14 +247,16 @@ class OverMpi:
 
 
 def accept(
-    scene: Scene, one: Participant, hello: Message, probe: ProcessProbe, folder: Path
+    scene: Scene, participant: Participant, hello: Message, probe: ProcessProbe, folder: Path
 ) -> None:
     """Accept a component: check its kind, find its process, send its parameters."""
-    expected = scene.components[one.name].manifest.kind
+    expected = scene.components[participant.name].manifest.kind
     header = hello.header
     if hello.order != "hello" or header.get("kind") != expected:
         raise ComponentFailed(
-            one.name, 0, f"{expected} must say hello; found {header.get('kind')!r}. Start that."
+            participant.name,
+            0,
+            f"{expected} must say hello; found {header.get('kind')!r}. Start that.",
         )
     probe.awaited = False
     if header.get("host") == socket.gethostname():
@@ -262,9 +264,9 @@ def accept(
         told = map(Path, map(str, header.get("shared", [])))
         probe.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
         probe.where = partial(
-            stack.of_process, probe.pid, int(header["stack"]), log_of(folder, one.name)
+            stack.of_process, probe.pid, int(header["stack"]), log_of(folder, participant.name)
         )
-    one.send_order("go", **settings(scene, one.name))
+    participant.send_order("go", **settings(scene, participant.name))
 
 
 def log_of(folder: Path, name: str) -> Path:
@@ -274,10 +276,10 @@ def log_of(folder: Path, name: str) -> Path:
 
 def finish(participants: dict[str, Participant]) -> None:
     """Order every component to finish, and await its answer."""
-    for one in participants.values():
-        one.send_order("finish")
-    for one in participants.values():
-        one.timing.memory = int(one.receive().header["memory"])
+    for participant in participants.values():
+        participant.send_order("finish")
+    for participant in participants.values():
+        participant.timing.memory = int(participant.receive().header["memory"])
 
 
 def end_all(
@@ -290,9 +292,9 @@ def end_all(
         for probe in probes:
             probe.kill()
     else:
-        for one in participants.values():
+        for participant in participants.values():
             with contextlib.suppress(QuintetError):
-                one.line.send({"order": "abort"}, {})
+                participant.line.send({"order": "abort"}, {})
     limit = time.monotonic() + (GRACE if well and not dog.stop() else ABORTING)
     for probe in probes:
         probe.end(max(0.0, limit - time.monotonic()))

@@ -52,10 +52,10 @@ def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
     new_session.append(str(folder / "log" / JOB_FILE))
     line = [*find_launcher(), "-n", "1", *new_session, *python]
     line += ["-m", "quintet.coupler.cli", *arguments, "--inside-mpi"]
-    for name, one in scene.components.items():
+    for name, plan in scene.components.items():
         log = str(folder / "log" / f"{name}.log")
         line += [":", "-n", "1", "sh", "-c", RANK, str(exit_file(folder, name))]
-        line += [*python, "-m", "quintet.interfaces.serving.process", one.kind]
+        line += [*python, "-m", "quintet.interfaces.serving.process", plan.kind]
         line += ["--name", name, "--mpi", "--log", log]
         line += [word for place in scene.import_folders for word in ("--look-in", place)]
     return line
@@ -116,7 +116,7 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
     exits = [exit_file(folder, name) for name in scene.components]
     for path in exits:
         path.unlink(missing_ok=True)
-    threads = max(one.threads for one in scene.components.values())
+    threads = max(plan.threads for plan in scene.components.values())
     line = command(arguments, scene, folder)
     env = {**environment(threads), STARTER: str(os.getpid())}
     log = job_file.with_name(LAUNCHER_LOG)
@@ -137,14 +137,14 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
         companion = Companion(once_gone(partial(_see_to_end, job_file, output, starter)))
         stack.callback(companion.close)
         reason = _await(process, job_file, output, signals)
-        found = _read(job_file)
-        end_ranks(found, starter)
+        job = _read(job_file)
+        end_ranks(job, starter)
         process.wait()
         _forward_output(output)
         for path in exits:
             path.unlink(missing_ok=True)
-    if "status" in found:
-        return JobEnd(int(str(found["status"])))
+    if "status" in job:
+        return JobEnd(int(str(job["status"])))
     if signals:
         return JobEnd(130, "interrupted before all components had joined")
     if number := int(str(_read(job_file).get("killed", 0))):
@@ -164,9 +164,9 @@ def _await(
     reason, limit, seen, looked_at = "", float("inf"), set[str](), 0.0
     while time.monotonic() < limit:
         _forward_output(output)
-        ended, found = process.poll() is not None, _read(job_file)
-        coupler = int(str(found.get("coupler", 0)))  # 0 until it has begun
-        joined, over = found.get("pids") is not None, "status" in found
+        ended, job = process.poll() is not None, _read(job_file)
+        coupler = int(str(job.get("coupler", 0)))  # 0 until it has begun
+        joined, over = job.get("pids") is not None, "status" in job
         if ended and (over or not running(coupler)):
             return reason or "the coupler ended"
         if not reason:
@@ -180,7 +180,7 @@ def _await(
                 reason = ", ".join(f"{name} ended before MPI began" for name in seen - ranks)
                 seen |= ranks
             if reason:
-                limit = time.monotonic() + (ENDING if found.get("status") in (0, 1) else AT_ONCE)
+                limit = time.monotonic() + (ENDING if job.get("status") in (0, 1) else AT_ONCE)
         time.sleep(0.02)
     return reason
 
@@ -235,12 +235,12 @@ def write_processes(folder: Path, pids: list[int] | None, shared: list[str]) -> 
 
 def end_rank(folder: Path, status: int) -> None:
     """End the coupler's rank: in order when all is well, else with an abort of the job."""
-    found = _read(folder / "log" / JOB_FILE)
-    _unlink(found.get("shared", []))  # type: ignore[arg-type]  # all ranks have it open by now; the process that started the job may have ended
-    _write(folder, {**found, "status": status})
+    job = _read(folder / "log" / JOB_FILE)
+    _unlink(job.get("shared", []))  # type: ignore[arg-type]  # all ranks have it open by now; the process that started the job may have ended
+    _write(folder, {**job, "status": status})
     sys.stdout.flush()
     sys.stderr.flush()
-    pids: list[int] = found.get("pids") or []  # type: ignore[assignment]
+    pids: list[int] = job.get("pids") or []  # type: ignore[assignment]
     # Where a rank is dead, the others would wait for it as they leave.
     if status not in (0, 1, 130) or not all(running(pid) for pid in pids):
         # Only a rank has MPI: who starts the launcher must not load it.
@@ -259,25 +259,25 @@ def _write(folder: Path, content: dict[str, object]) -> None:
 def _see_to_end(job_file: Path, output: Sequence[IO[bytes]], starter: Starter) -> None:
     """Show the end of a job whose starter is gone: its coupler ends in order; then clean up."""
     limit = time.monotonic() + ORPHANED
-    while "status" not in (found := _read(job_file)) and time.monotonic() < limit:
+    while "status" not in (job := _read(job_file)) and time.monotonic() < limit:
         _forward_output(output)
-        if not running(int(str(found.get("coupler", 0)))):
+        if not running(int(str(job.get("coupler", 0)))):
             break
         time.sleep(0.02)
     _forward_output(output)
-    end_ranks(found, starter)
+    end_ranks(job, starter)
 
 
-def end_ranks(found: dict[str, object], starter: Starter) -> None:
+def end_ranks(job: dict[str, object], starter: Starter) -> None:
     """End processes of a job that still run, and remove what they leave in shared memory.
 
     A rank that is killed as MPI begins has told nobody of the files that it maps.
     """
     pids = list(marked(STARTER, str(starter.pid)))
     used = {path for pid in pids for path in (*shared_files(pid), *_launcher_files(pid))}
-    own = {path for path in used if starter.precedes(path)}
+    files = {path for path in used if starter.precedes(path)}
     end_marked(STARTER, str(starter.pid))
-    _unlink({*found.get("shared", []), *own})  # type: ignore[misc]
+    _unlink({*job.get("shared", []), *files})  # type: ignore[misc]
 
 
 def _launcher_files(pid: int) -> Iterator[str]:

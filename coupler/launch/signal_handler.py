@@ -29,13 +29,13 @@ def handled_by(
             silence(there)
         handler(number, frame)
 
-    handled = [one for one in numbers if not (ignored and one == signal.SIGHUP)]
-    old = {one: signal.signal(one, handle) for one in handled}
+    handled = [number for number in numbers if not (ignored and number == signal.SIGHUP)]
+    old = {number: signal.signal(number, handle) for number in handled}
     try:
         yield
     finally:
-        for one, before in old.items():
-            signal.signal(one, before)
+        for number, before in old.items():
+            signal.signal(number, before)
 
 
 def terminals() -> list[int]:

@@ -38,7 +38,9 @@ def of_main_thread() -> str:
     """Return the stack of this process's main thread, in the same form."""
     frame = sys._current_frames().get(threading.main_thread().ident or 0)
     calls = reversed(traceback.extract_stack(frame))
-    return "\n".join(f'  File "{one.filename}", line {one.lineno} in {one.name}' for one in calls)
+    return "\n".join(
+        f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in calls
+    )
 
 
 def compiles(stack: str) -> bool:
@@ -49,6 +51,6 @@ def compiles(stack: str) -> bool:
 def innermost(stack: str) -> list[str]:
     """The innermost calls that an author has written, up to that of the component."""
     calls = stack.splitlines()
-    calls = [call for call in calls if not any(one in call for one in BELOW)] or calls
-    own = next((n for n, call in enumerate(calls) if OURS in call), len(calls))
-    return calls[: min(max(own, 1), SHOWN)] if calls else []
+    calls = [call for call in calls if not any(place in call for place in BELOW)] or calls
+    first_of_ours = next((n for n, call in enumerate(calls) if OURS in call), len(calls))
+    return calls[: min(max(first_of_ours, 1), SHOWN)] if calls else []

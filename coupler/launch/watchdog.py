@@ -104,14 +104,14 @@ class Watchdog:
     ----------
     stop : Request
         Asks for the end of the run.
-    own : bool
+    in_main_thread : bool
         Whether components run in the main thread of this process.
     acts : function
         Whether it is this watchdog's turn to tell and to end.
     """
 
     stop: Request
-    own: bool = False
+    in_main_thread: bool = False
     acts: Callable[[], bool] = lambda: True
     substitute: Substitute | None = None
     mark: str = field(default_factory=lambda: secrets.token_hex(8))  # of all processes of the run
@@ -213,7 +213,7 @@ class Watchdog:
         if not since:
             return
         component.waited += passed
-        if not self.own and probe.stopped():
+        if not self.in_main_thread and probe.stopped():
             probe.activity = "stopped"
             self.fail(component, f"stopped responding: {probe.described()}")
             return
@@ -268,7 +268,7 @@ class Watchdog:
             return
         self._judged_at = now
         self._poke()
-        if not self.own:
+        if not self.in_main_thread:
             for component in self._all.values():
                 component.probe.kill()
         elif self.stop.at_once() or isinstance(self.verdict, ComponentFailed):
@@ -277,7 +277,7 @@ class Watchdog:
 
     def _poke(self) -> None:
         ident = threading.main_thread().ident
-        if self.own and ident and signal.getsignal(POKE) is not signal.SIG_DFL:
+        if self.in_main_thread and ident and signal.getsignal(POKE) is not signal.SIG_DFL:
             signal.pthread_kill(ident, POKE)
 
 

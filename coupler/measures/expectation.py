@@ -223,12 +223,17 @@ def lacking_items(
 
     `outputs` has those of each component that are known, by its name.
     """
-    for one in expectations:
-        array = outputs.get(one.component, {}).get(one.field)
-        if array is not None and isinstance(one.item, int) and one.item >= len(array):
+    for expectation in expectations:
+        array = outputs.get(expectation.component, {}).get(expectation.field)
+        if (
+            array is not None
+            and isinstance(expectation.item, int)
+            and expectation.item >= len(array)
+        ):
             yield (
-                f"expectation {one.name}: item must be below {len(array)}, as many as "
-                f"{one.component} has of {one.field}; found {one.item}. Correct it."
+                f"expectation {expectation.name}: item must be below {len(array)}, as many as "
+                f"{expectation.component} has of {expectation.field}; found {expectation.item}. "
+                "Correct it."
             )
 
 
@@ -270,10 +275,10 @@ def curve(expectation: Expectation, recording: "Recording") -> Curve:
     elif values.ndim > 2:
         values = np.linalg.norm(values.reshape(*values.shape[:2], -1), axis=2)
     values = values[:, 0] if isinstance(item, int) else getattr(values, item)(axis=1)
-    found = Curve(times, expectation.scale * (values + expectation.offset))
+    whole = Curve(times, expectation.scale * (values + expectation.offset))
     if expectation.moving_mean and len(times) > 1:
-        found = time_series.moving_mean(found, expectation.moving_mean)
-    return _since_level(found, expectation.from_level)
+        whole = time_series.moving_mean(whole, expectation.moving_mean)
+    return _since_level(whole, expectation.from_level)
 
 
 def _since_level(curve: Curve, level: float | None) -> Curve:
@@ -288,11 +293,11 @@ def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
     if expectation.csv is None:
         return None
     where = f"expectation {expectation.name}: reference {expectation.csv}"
-    found = time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
-    found = _since_level(found, expectation.from_level)
-    if math.isnan(found.times[0]):
+    whole = time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
+    whole = _since_level(whole, expectation.from_level)
+    if math.isnan(whole.times[0]):
         raise SceneError(f"{where} must pass from_level {expectation.from_level}; it does not.")
-    return found
+    return whole
 
 
 def _measured(expectation: Expectation, curve: Curve, end: float) -> float:

@@ -50,7 +50,7 @@ def fit(curve: Curve) -> Harmonic:
     some = _thinned(times), _thinned(values)
     cycles = np.arange(GRID, GRID * (len(some[0]) // FEWEST) + 1) / GRID
     omegas = 2.0 * math.pi * cycles / span
-    omega = float(min(omegas, key=lambda one: _misfit(*some, one, 0.0)))
+    omega = float(min(omegas, key=lambda trial: _misfit(*some, trial, 0.0)))
     decay = 0.0
     for _ in range(ITERATIONS):
         change = _newton(times, values, omega, decay)

@@ -49,15 +49,15 @@ def _columns(where: str, rows: list[tuple[int, list[str]]]) -> Curve:
         raise SceneError(f"{where} must have two lines of numbers or more; found {len(rows)}.")
     numbers: list[tuple[float, float]] = []
     for line, texts in rows:
-        found = _numbers(texts)
-        if found is None:
+        row = _numbers(texts)
+        if row is None:
             raise SceneError(
                 f"{where}: line {line} must be two finite numbers; found {','.join(texts)!r}. "
                 "Correct it."
             )
-        if numbers and found[0] <= numbers[-1][0]:
-            raise SceneError(f"{where}: times must increase; line {line} has {found[0]:g}.")
-        numbers.append(found)
+        if numbers and row[0] <= numbers[-1][0]:
+            raise SceneError(f"{where}: times must increase; line {line} has {row[0]:g}.")
+        numbers.append(row)
     times, values = np.array(numbers).T
     return Curve(times, values)
 

@@ -94,8 +94,8 @@ def run(
     # Components import this package, and none needs the coupler: it is loaded on use.
     from quintet.coupler.run.run_scene import run_scene
 
-    made = _scene(scene, preset, settings, swap, transport)
-    return _finished(*run_scene(made, Path(out) if out else None, force))
+    checked = _scene(scene, preset, settings, swap, transport)
+    return _finished(*run_scene(checked, Path(out) if out else None, force))
 
 
 def resume(folder: str | PathLike[str], *, transport: str = "") -> "Run":
@@ -161,9 +161,9 @@ def check(
     from quintet.coupler.scene.listing import Plan
     from quintet.coupler.scene.needs import require_memory
 
-    made = _scene(scene, preset, settings, swap, transport, imports)
-    require_memory(made)
-    return Plan(made)
+    checked = _scene(scene, preset, settings, swap, transport, imports)
+    require_memory(checked)
+    return Plan(checked)
 
 
 def load(folder: str | PathLike[str]) -> "Run":
@@ -202,8 +202,8 @@ def _scene(
     from quintet.coupler.scene.read import load as read
 
     swaps = [f"{name}={kind}" for name, kind in (swap or {}).items()]
-    given = (assignments(settings or {}), swaps, transport)
-    return read(str(scene), preset, *given, imports=imports)
+    options = (assignments(settings or {}), swaps, transport)
+    return read(str(scene), preset, *options, imports=imports)
 
 
 def _finished(folder: Path, status: int) -> "Run":

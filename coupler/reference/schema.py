@@ -32,16 +32,16 @@ class Described(GenerateJsonSchema):
 
     def dataclass_schema(self, schema: Any) -> JsonSchemaValue:
         """Add what the class says of itself and of its keys."""
-        made = super().dataclass_schema(schema)
+        table = super().dataclass_schema(schema)
         params = schema["cls"]
-        made["description"] = about(params)
+        table["description"] = about(params)
         for key in keys(params):
-            one = made["properties"][key.name]
+            entry = table["properties"][key.name]
             unit = f" Unit: {key.unit}." if key.unit else ""
-            one["description"] = (key.meaning + unit).strip()
+            entry["description"] = (key.meaning + unit).strip()
             if key.unit:
-                one["unit"] = key.unit
-        return made
+                entry["unit"] = key.unit
+        return table
 
 
 def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
@@ -53,13 +53,13 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
     wanted |= {("common", "components"): ComponentKeys, ("common", "links"): LinkKeys}
     wanted |= {("component", kind): params for kind, params in kinds.items() if params}
     wanted |= {("link", kind): params for kind, params in links.items() if params}
-    found, inner = TypeAdapter.json_schemas(
+    schemas, inner = TypeAdapter.json_schemas(
         [(name, "validation", TypeAdapter(params)) for name, params in wanted.items()],
         ref_template=REFERENCE,
         schema_generator=Described,
     )
     definitions: Schema = inner.get("$defs", {})
-    table = {name: _inside(found[name, "validation"], definitions) for name in wanted}
+    table = {name: _inside(schemas[name, "validation"], definitions) for name in wanted}
     file, tables = table["scene", "file"], table["scene", "tables"]
     properties = {**file["properties"], **tables["properties"]}
     of_components = _of_kinds("component", kinds, table, table["common", "components"])
@@ -70,11 +70,11 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
     properties["stand_ins"] |= {
         "additionalProperties": {
             "type": "object",
-            "properties": {k: _to(f"keys.component.{k}") for k, one in kinds.items() if one},
+            "properties": {k: _to(f"keys.component.{k}") for k, schema in kinds.items() if schema},
             "additionalProperties": {"type": "object"},
         }
     }
-    made = {
+    whole = {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": SCENE_TITLE,
         "type": "object",
@@ -83,7 +83,7 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
         "additionalProperties": False,
         "definitions": definitions,
     }
-    return dict(_plain(_used(made)))
+    return dict(_plain(_used(whole)))
 
 
 def _params(kind: str) -> type | None:
@@ -120,17 +120,17 @@ def _of_kinds(
     what: str, kinds: Iterable[str], table: Mapping[tuple[str, str], Schema], common: Schema
 ) -> Schema:
     """Define what a table of any kind may say: by its kind, those of all kinds and its own keys."""
-    made, known = {}, [kind for kind in kinds if (what, kind) in table]
+    definitions, known = {}, [kind for kind in kinds if (what, kind) in table]
     for kind in known:
-        own = table[what, kind]
-        properties = {**common["properties"], **own.get("properties", {})}
-        made[_in_address(f"keys.{what}.{kind}")] = own
-        made[_in_address(f"{what}.{kind}")] = {**own, "properties": properties}
+        of_kind = table[what, kind]
+        properties = {**common["properties"], **of_kind.get("properties", {})}
+        definitions[_in_address(f"keys.{what}.{kind}")] = of_kind
+        definitions[_in_address(f"{what}.{kind}")] = {**of_kind, "properties": properties}
     free = [] if what == "link" else [OWN_CLASS]
     names = {"anyOf": [{"enum": list(kinds)}, *free]}
     kind_key = {**common["properties"]["kind"], **names}
     kind_key.pop("type", None)
-    made[what] = {
+    definitions[what] = {
         "type": "object",
         "description": common["description"],
         "properties": {**common["properties"], "kind": kind_key},
@@ -145,36 +145,36 @@ def _of_kinds(
         # Always met: for editors that look for keys here, and not below "then".
         "anyOf": [*(_to(f"{what}.{kind}") for kind in known), {}],
     }
-    return made
+    return definitions
 
 
 def _used(schema: Schema) -> Schema:
     """Leave out definitions that nothing refers to."""
     definitions = schema["definitions"]
     queue: list[Schema] = [{**schema, "definitions": {}}]
-    kept: set[str] = set()
+    reached: set[str] = set()
     while queue:
         text = json.dumps(queue.pop())
-        for name in definitions.keys() - kept:
+        for name in definitions.keys() - reached:
             if json.dumps(REFERENCE.format(model=name)) in text:
-                kept.add(name)
+                reached.add(name)
                 queue.append(definitions[name])
-    used = {name: one for name, one in definitions.items() if name in kept}
+    used = {name: definition for name, definition in definitions.items() if name in reached}
     return {**schema, "definitions": used}
 
 
 def _plain(schema: Any) -> Any:
     """Write what draft 7 lacks as it has it: tuples, and what stands beside a reference."""
     if isinstance(schema, list):
-        return [_plain(one) for one in schema]
+        return [_plain(part) for part in schema]
     if not isinstance(schema, dict):
         return schema
-    made = {key: _plain(one) for key, one in schema.items()}
-    if made.get("title") != SCENE_TITLE and isinstance(made.get("title"), str):
-        del made["title"]  # a class's or key's name once more
-    if "prefixItems" in made:
-        items = made.pop("prefixItems")
-        made["items"] = items[0] if all(one == items[0] for one in items) else items
-    if "$ref" in made and len(made) > 1:
-        made["allOf"] = [{"$ref": made.pop("$ref")}]
-    return made
+    plain = {key: _plain(part) for key, part in schema.items()}
+    if plain.get("title") != SCENE_TITLE and isinstance(plain.get("title"), str):
+        del plain["title"]  # a class's or key's name once more
+    if "prefixItems" in plain:
+        items = plain.pop("prefixItems")
+        plain["items"] = items[0] if all(part == items[0] for part in items) else items
+    if "$ref" in plain and len(plain) > 1:
+        plain["allOf"] = [{"$ref": plain.pop("$ref")}]
+    return plain

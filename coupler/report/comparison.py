@@ -66,10 +66,12 @@ def comparison(
         `out`, or None where there is nothing to be drawn.
     """
     curves: dict[tuple[Any, ...], list[Expectation]] = {}
-    for one in expectations:
-        if one.csv is not None or values:
-            curves.setdefault(_curve_of(one), []).append(one)
-    wanted = sorted(curves.values(), key=lambda ones: all(one.csv is None for one in ones))
+    for expectation in expectations:
+        if expectation.csv is not None or values:
+            curves.setdefault(_curve_of(expectation), []).append(expectation)
+    wanted = sorted(
+        curves.values(), key=lambda ones: all(expectation.csv is None for expectation in ones)
+    )
     if not wanted:
         return None
     if len(wanted) > PANELS:
@@ -82,12 +84,12 @@ def comparison(
     return save(figure, out)
 
 
-def _curve_of(one: Expectation) -> tuple[Any, ...]:
+def _curve_of(expectation: Expectation) -> tuple[Any, ...]:
     """What makes a computed curve: expectations that agree in it share a panel."""
     return (
-        one.component, one.field, one.item, one.axis, one.offset, one.scale, one.moving_mean,
-        one.from_level,
-    )  # fmt: skip
+        *(expectation.component, expectation.field, expectation.item, expectation.axis),
+        *(expectation.offset, expectation.scale, expectation.moving_mean, expectation.from_level),
+    )
 
 
 def _draw(
@@ -97,22 +99,25 @@ def _draw(
     panel.plot(*computed, color=COMPUTED, linewidth=1.5, label="computed")
     _draw_oscillation(panel, ones, computed)
     drawn: list[str] = []
-    last = max(_end(one, computed, folder) for one in ones)
-    for one in ones:
-        reference = reference_curve(one, folder)
+    last = max(_end(expectation, computed, folder) for expectation in ones)
+    for expectation in ones:
+        reference = reference_curve(expectation, folder)
         mark, colour = MARKS[len(drawn) % len(MARKS)]
         if reference is None:
-            _draw_value(panel, one, computed)
-        elif one.csv not in drawn:
-            drawn.append(str(one.csv))
+            _draw_value(panel, expectation, computed)
+        elif expectation.csv not in drawn:
+            drawn.append(str(expectation.csv))
             seen = reference.times <= last
             panel.plot(
                 reference.times[seen], reference.values[seen], mark, color=colour, markersize=3.5,
-                fillstyle="none", label=shortened(one.source),
+                fillstyle="none", label=shortened(expectation.source),
             )  # fmt: skip
-        if one.level is not None:
-            panel.axhline(one.level, color="grey", linewidth=0.8, linestyle="--")
-    panel.set_title("\n".join(_verdict(one, results.get(one.name)) for one in ones), fontsize=9)
+        if expectation.level is not None:
+            panel.axhline(expectation.level, color="grey", linewidth=0.8, linestyle="--")
+    panel.set_title(
+        "\n".join(_verdict(expectation, results.get(expectation.name)) for expectation in ones),
+        fontsize=9,
+    )
     panel.set_xlabel(_time(ones[0]))
     panel.set_ylabel(textwrap.fill(_label(ones, recording), LINE), fontsize=9)
     panel.grid(alpha=0.3)
@@ -120,12 +125,12 @@ def _draw(
     panel.legend(fontsize=8, frameon=False, **below)
 
 
-def _end(one: Expectation, computed: Curve, folder: Path) -> float:
+def _end(expectation: Expectation, computed: Curve, folder: Path) -> float:
     """Time [s] beyond which there is nothing to be compared, with a little more."""
-    known = [float(one.begin), *computed.times[-1:].tolist()]
-    reference = reference_curve(one, folder)
-    if one.end is not None:
-        known.append(one.end)
+    known = [float(expectation.begin), *computed.times[-1:].tolist()]
+    reference = reference_curve(expectation, folder)
+    if expectation.end is not None:
+        known.append(expectation.end)
     elif reference is not None:
         known.append(float(reference.times[-1]))
     return 1.05 * max(known)
@@ -133,41 +138,51 @@ def _end(one: Expectation, computed: Curve, folder: Path) -> float:
 
 def _draw_oscillation(panel: Any, ones: list[Expectation], computed: Curve) -> None:
     """Draw the oscillation with the expected period and decay, of computed amplitude and phase."""
-    expected = {one.measure: one for one in ones if one.measure in ("period", "decay")}
+    expected = {
+        expectation.measure: expectation
+        for expectation in ones
+        if expectation.measure in ("period", "decay")
+    }
     if not expected:
         return
-    one = next(iter(expected.values()))
-    part = between(computed, one.begin, math.inf if one.end is None else one.end)
-    found = fit(part)
+    first = next(iter(expected.values()))
+    part = between(computed, first.begin, math.inf if first.end is None else first.end)
+    wave = fit(part)
     known = {key: value for key, value in ((k, e.value) for k, e in expected.items()) if value}
-    if not math.isfinite(found.period) or not known:
+    if not math.isfinite(wave.period) or not known:
         return
     times = np.linspace(part.times[0], part.times[-1], FINE)
     label = f"as fitted to it, but with the expected {' and '.join(known)}"
-    values = found._replace(**known).values(times)
+    values = wave._replace(**known).values(times)
     panel.plot(times, values, color=BAND, linewidth=1.2, linestyle="--", label=label)
 
 
-def _draw_value(panel: Any, one: Expectation, computed: Curve) -> None:
+def _draw_value(panel: Any, expectation: Expectation, computed: Curve) -> None:
     """Draw a single value as a mark or line with its tolerance, where the curve can show it."""
-    assert one.value is not None
-    what = "expected" if one.measure in ("at", "crossing") else f"expected {one.measure}"
-    label, value = shortened(f"{what}: {one.source}"), one.value
+    assert expectation.value is not None
+    what = (
+        "expected"
+        if expectation.measure in ("at", "crossing")
+        else f"expected {expectation.measure}"
+    )
+    label, value = shortened(f"{what}: {expectation.source}"), expectation.value
     style = {"color": BAND, "label": label, "markersize": 5, "capsize": 3, "zorder": 3}
-    if one.measure == "at":
-        panel.errorbar(one.begin, value, yerr=one.within, fmt="o", **style)
-    elif one.measure == "crossing":
-        panel.errorbar(value, one.level, xerr=one.within, fmt="o", **style)
-    elif one.measure in IN_UNIT:
-        last = float(computed.times[-1]) if len(computed.times) else one.begin
-        span = (one.begin, last if one.end is None else one.end)
+    if expectation.measure == "at":
+        panel.errorbar(expectation.begin, value, yerr=expectation.within, fmt="o", **style)
+    elif expectation.measure == "crossing":
+        panel.errorbar(value, expectation.level, xerr=expectation.within, fmt="o", **style)
+    elif expectation.measure in IN_UNIT:
+        last = float(computed.times[-1]) if len(computed.times) else expectation.begin
+        span = (expectation.begin, last if expectation.end is None else expectation.end)
         if span[0] >= last:  # the run did not come so far
             return
-        if one.measure == "mean":  # about which the curve may swing far beyond what is allowed
+        if (
+            expectation.measure == "mean"
+        ):  # about which the curve may swing far beyond what is allowed
             middle = mean(between(computed, *span))
             panel.plot(span, (middle, middle), color=COMPUTED, linewidth=0.8, label="its mean")
         panel.plot(span, (value, value), "--", color=BAND, linewidth=1.2, label=label)
-        low, high = value - one.within, value + one.within
+        low, high = value - expectation.within, value + expectation.within
         panel.fill_between(span, low, high, color=BAND, alpha=0.25, linewidth=0)
 
 
@@ -176,38 +191,45 @@ def shortened(text: str) -> str:
     return "\n".join(textwrap.wrap(text, LINE, max_lines=LINES, placeholder=" …"))
 
 
-def _time(one: Expectation) -> str:
+def _time(expectation: Expectation) -> str:
     """Name of the times, and what they count from."""
-    return "t [s]" if one.from_level is None else f"t since {_number(one.from_level)} is passed [s]"
+    return (
+        "t [s]"
+        if expectation.from_level is None
+        else f"t since {_number(expectation.from_level)} is passed [s]"
+    )
 
 
 def _label(ones: list[Expectation], recording: Recording) -> str:
     """Name and unit of the curve that some expectations measure."""
-    one = ones[0]
-    field, units = _field(one, recording), {one.unit for one in ones if one.measure in IN_UNIT}
+    expectation = ones[0]
+    field, units = (
+        _field(expectation, recording),
+        {expectation.unit for expectation in ones if expectation.measure in IN_UNIT},
+    )
     if told := next((other.quantity for other in ones if other.quantity), ""):
         return f"{told} [{units.pop() if len(units) == 1 else field.unit}]"
-    port, _, what = one.field.replace("_", " ").partition(".")
-    name = f"{one.component}: {what if port == 'motion' else f'{port} {what}'}"
-    if one.axis is not None:
-        name += f" {AXES[one.axis]}" if field.shape == (3,) else f" {one.axis}"
+    port, _, what = expectation.field.replace("_", " ").partition(".")
+    name = f"{expectation.component}: {what if port == 'motion' else f'{port} {what}'}"
+    if expectation.axis is not None:
+        name += f" {AXES[expectation.axis]}" if field.shape == (3,) else f" {expectation.axis}"
     elif field.shape:
         name = f"|{name}|"
-    items = recording.items(one.component, one.field)[0]
-    if one.item in ("mean", "max", "min"):
-        name += f", {one.item} of {items} items"
+    items = recording.items(expectation.component, expectation.field)[0]
+    if expectation.item in ("mean", "max", "min"):
+        name += f", {expectation.item} of {items} items"
     elif items > 1:
-        name += f" of item {one.item}"
-    if one.moving_mean:
-        name += f", mean over {one.moving_mean:g} s"
-    if one.offset:
-        change = "plus" if one.offset > 0.0 else "less"
-        name = f"{name}, {change} {abs(one.offset):g} {field.unit}"
-    if abs(one.scale) == 1.0:
-        return f"{'−' if one.scale < 0.0 else ''}{name} [{field.unit}]"
+        name += f" of item {expectation.item}"
+    if expectation.moving_mean:
+        name += f", mean over {expectation.moving_mean:g} s"
+    if expectation.offset:
+        change = "plus" if expectation.offset > 0.0 else "less"
+        name = f"{name}, {change} {abs(expectation.offset):g} {field.unit}"
+    if abs(expectation.scale) == 1.0:
+        return f"{'−' if expectation.scale < 0.0 else ''}{name} [{field.unit}]"
     if len(units) == 1:
-        return f"{_number(one.scale)} × ({name}) [{units.pop()}]"
-    return f"{_number(one.scale)} × ({name} [{field.unit}])"
+        return f"{_number(expectation.scale)} × ({name}) [{units.pop()}]"
+    return f"{_number(expectation.scale)} × ({name} [{field.unit}])"
 
 
 def _number(value: float) -> str:
@@ -215,30 +237,32 @@ def _number(value: float) -> str:
     return f"{value:.4g}".replace("-", "−")
 
 
-def _field(one: Expectation, recording: Recording) -> Field:
-    return fields_of(recording.ports(one.component))[one.field]
+def _field(expectation: Expectation, recording: Recording) -> Field:
+    return fields_of(recording.ports(expectation.component))[expectation.field]
 
 
-def _verdict(one: Expectation, outcome: Outcome | None) -> str:
+def _verdict(expectation: Expectation, outcome: Outcome | None) -> str:
     """Say what was measured, what was expected, and whether it was met."""
-    what = one.measure.replace("relative_rms", "relative RMS distance")
+    what = expectation.measure.replace("relative_rms", "relative RMS distance")
     what = what.replace("rms", "RMS distance")
-    if one.measure == "at":
-        what = f"at {one.begin:g} s"
-    elif one.level is not None:
-        what = f"passes {one.level:g} at"
-    what = "" if what == one.name else f": {what}"
+    if expectation.measure == "at":
+        what = f"at {expectation.begin:g} s"
+    elif expectation.level is not None:
+        what = f"passes {expectation.level:g} at"
+    what = "" if what == expectation.name else f": {what}"
     if outcome is not None and outcome.not_reached is not None:
-        return f"{one.name}{what}: not reached (t = {outcome.not_reached:.4g} s)"
+        return f"{expectation.name}{what}: not reached (t = {outcome.not_reached:.4g} s)"
     if outcome is None or outcome.value is None:
-        return f"{one.name}{what}: no value: NOT met"
+        return f"{expectation.name}{what}: no value: NOT met"
     expected = f"at most {outcome.within:.3g}"
-    if one.measure not in DISTANCES:
+    if expectation.measure not in DISTANCES:
         expected = f"expected {outcome.reference:.4g} ± {outcome.within:.2g}"
-    unit = "" if one.unit == "1" else f" {one.unit}"
-    verdict = "met" if outcome.met else "NOT met" if one.required else "not met, not required"
+    unit = "" if expectation.unit == "1" else f" {expectation.unit}"
+    verdict = (
+        "met" if outcome.met else "NOT met" if expectation.required else "not met, not required"
+    )
     share = ""
     if outcome.within:
         used = abs(outcome.value - outcome.reference) / outcome.within
         share = f", {used:.0%} of the tolerance used up"
-    return f"{one.name}{what} {outcome.value:.4g}, {expected}{unit}: {verdict}{share}"
+    return f"{expectation.name}{what} {outcome.value:.4g}, {expected}{unit}: {verdict}{share}"

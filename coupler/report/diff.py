@@ -46,18 +46,18 @@ def compare(a: Path, b: Path) -> Difference | None:
         The earliest one, or None when all is the same. What is laid out differently comes
         before what has different values; different lengths come last.
     """
-    with Recording(a) as one, Recording(b) as other:
-        return next(_differences(one, other), None)
+    with Recording(a) as first, Recording(b) as other:
+        return next(_differences(first, other), None)
 
 
-def _differences(one: Recording, other: Recording) -> Iterator[Difference]:
-    yield from _names("", "components", one.names, other.names)
-    for name in one.names:
-        yield from _names(name, "fields", one.fields(name), other.fields(name))
-        yield from _layouts(one, other, name)
-    yield from _values(one, other)
-    for name in one.names:
-        lengths = [len(recording.times(name)) for recording in (one, other)]
+def _differences(first: Recording, other: Recording) -> Iterator[Difference]:
+    yield from _names("", "components", first.names, other.names)
+    for name in first.names:
+        yield from _names(name, "fields", first.fields(name), other.fields(name))
+        yield from _layouts(first, other, name)
+    yield from _values(first, other)
+    for name in first.names:
+        lengths = [len(recording.times(name)) for recording in (first, other)]
         if lengths[0] != lengths[1]:
             yield _plain("windows", name, "", f"{lengths[0]} rows", f"{lengths[1]} rows")
 
@@ -73,30 +73,30 @@ def _plain(
 
 
 def _names(
-    component: str, what: str, one: tuple[str, ...], other: tuple[str, ...]
+    component: str, what: str, first: tuple[str, ...], other: tuple[str, ...]
 ) -> Iterator[Difference]:
-    if set(one) != set(other):
-        lists = [", ".join(sorted(names)) or "nothing" for names in (one, other)]
+    if set(first) != set(other):
+        lists = [", ".join(sorted(names)) or "nothing" for names in (first, other)]
         yield _plain("names", component, "", f"{what} {lists[0]}", f"{what} {lists[1]}")
 
 
-def _layouts(one: Recording, other: Recording, name: str) -> Iterator[Difference]:
-    for port, its in zip(one.ports(name), other.ports(name), strict=False):
+def _layouts(first: Recording, other: Recording, name: str) -> Iterator[Difference]:
+    for port, its in zip(first.ports(name), other.ports(name), strict=False):
         if port != its:
             yield _plain("ports", name, port.name, repr(port), repr(its))
-    if len(one.ports(name)) != len(other.ports(name)):
-        counts = [f"{len(recording.ports(name))} ports" for recording in (one, other)]
+    if len(first.ports(name)) != len(other.ports(name)):
+        counts = [f"{len(recording.ports(name))} ports" for recording in (first, other)]
         yield _plain("ports", name, "", *counts)
-    yield from _statics(name, one.static(name), other.static(name))
-    for field in one.fields(name):
-        shapes = [recording.items(name, field) for recording in (one, other)]
+    yield from _statics(name, first.static(name), other.static(name))
+    for field in first.fields(name):
+        shapes = [recording.items(name, field) for recording in (first, other)]
         if shapes[0] != shapes[1]:
             yield _plain("items", name, field, f"shape {shapes[0]}", f"shape {shapes[1]}")
 
 
-def _statics(name: str, one: Fields, other: Fields) -> Iterator[Difference]:
-    for key in sorted(one.keys() | other.keys()):
-        arrays = [static.get(key, np.zeros(0)) for static in (one, other)]
+def _statics(name: str, statics: Fields, other: Fields) -> Iterator[Difference]:
+    for key in sorted(statics.keys() | other.keys()):
+        arrays = [static.get(key, np.zeros(0)) for static in (statics, other)]
         shapes = [f"{array.dtype} of shape {array.shape}" for array in arrays]
         if shapes[0] != shapes[1]:
             yield _plain("static", name, key, *shapes)
@@ -106,31 +106,31 @@ def _statics(name: str, one: Fields, other: Fields) -> Iterator[Difference]:
             yield Difference("static", name, key, 0, 0.0, item, index, a, b)
 
 
-def _values(one: Recording, other: Recording) -> Iterator[Difference]:
+def _values(first: Recording, other: Recording) -> Iterator[Difference]:
     """Yield the first different value, comparing blocks of rows of all components."""
-    rows = {name: min(len(one.times(name)), len(other.times(name))) for name in one.names}
+    rows = {name: min(len(first.times(name)), len(other.times(name))) for name in first.names}
     for start in range(0, max(rows.values(), default=0), BATCH):
-        found = []
-        for name in one.names:
+        differences = []
+        for name in first.names:
             part = slice(start, min(start + BATCH, rows[name]))
-            found += [*_times(one, other, name, part), *_fields(one, other, name, part)]
-        if found:  # the first of the earliest window, in the order of the recording
-            yield min(found, key=lambda difference: difference.window)
+            differences += [*_times(first, other, name, part), *_fields(first, other, name, part)]
+        if differences:  # the first of the earliest window, in the order of the recording
+            yield min(differences, key=lambda difference: difference.window)
 
 
-def _times(one: Recording, other: Recording, name: str, part: slice) -> Iterator[Difference]:
-    arrays = [recording.ticks(name)[part] * recording.tick for recording in (one, other)]
+def _times(first: Recording, other: Recording, name: str, part: slice) -> Iterator[Difference]:
+    arrays = [recording.ticks(name)[part] * recording.tick for recording in (first, other)]
     if (place := _first(*arrays)) is not None:
         a, b = (float(array[place]) for array in arrays)
         yield Difference("time", name, "", part.start + place[0], a, 0, (), a, b)
 
 
-def _fields(one: Recording, other: Recording, name: str, part: slice) -> Iterator[Difference]:
-    for field in one.fields(name):
-        arrays = [recording.field(name, field, part) for recording in (one, other)]
+def _fields(first: Recording, other: Recording, name: str, part: slice) -> Iterator[Difference]:
+    for field in first.fields(name):
+        arrays = [recording.field(name, field, part) for recording in (first, other)]
         if (place := _first(*arrays)) is not None:
             window = part.start + place[0]
-            time = float(one.times(name)[window])
+            time = float(first.times(name)[window])
             a, b = (float(array[place]) for array in arrays)
             yield Difference("value", name, field, window, time, place[1], place[2:], a, b)
 

@@ -132,13 +132,13 @@ class Run:
     def ok(self) -> bool:
         """Whether the run is done and meets all expectations that are required."""
         return self.status == "done" and all(
-            one["met"] or not one["required"] for one in self.expectations.values()
+            outcome["met"] or not outcome["required"] for outcome in self.expectations.values()
         )
 
     @property
     def expectations(self) -> dict[str, dict[str, Any]]:
         """Expectations by name: value, reference, within, unit, met, source."""
-        return {one["name"]: one for one in self.results.get("expect") or []}
+        return {outcome["name"]: outcome for outcome in self.results.get("expect") or []}
 
     @property
     def scene(self) -> dict[str, Any]:
@@ -190,16 +190,16 @@ class Run:
 
 def _columns(rows: list[dict[str, str]], name: str) -> dict[str, Series]:
     """Columns of the ledger that have values for a link or component."""
-    own = [row for row in rows if row["name"] == name]
-    keys = [key for key in own[0] if key not in ("time", "name")]
-    found = {}
+    of_name = [row for row in rows if row["name"] == name]
+    keys = [key for key in of_name[0] if key not in ("time", "name")]
+    series = {}
     for key in keys:
-        known = [(float(row["time"]), float(row[key])) for row in own if row[key]]
+        known = [(float(row["time"]), float(row[key])) for row in of_name if row[key]]
         if known:
             times, values = np.array(known).T
             unit = "1" if "residual" in key else LEDGER_UNITS.get(key.partition("_")[0], "")
-            found[key] = Series(values, times, unit)
-    return found
+            series[key] = Series(values, times, unit)
+    return series
 
 
 def finished(folder: Path, status: int) -> Run:

@@ -70,11 +70,11 @@ def side_views(
     files = view_files(run)
     if not files or not len(times):
         raise SceneError(f"run {run}: a picture needs a .vtkhdf file with steps, and a time.")
-    fields = dict(one.split(".", 1) for one in colours)
-    found = moments(files, times)
+    fields = dict(name.split(".", 1) for name in colours)
+    instants = moments(files, times)
     views = [
         [_within(read(path, time, fields, displacement_scale), region) for path in files]
-        for time in found
+        for time in instants
     ]
     still = walls(run)
     low, high = _limits(views, still, region)
@@ -84,7 +84,7 @@ def side_views(
     figure, panels = place_panels(len(views), stretch * tall / wide, text)
     scales = colour_scales(views)
     sizes = diameters(views[0])
-    for panel, time, view in zip(panels, found, views, strict=True):
+    for panel, time, view in zip(panels, instants, views, strict=True):
         panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=stretch)
         panel.set(xlabel="x [m]", ylabel="z [m]")
         panel.set_title(f"t = {time:.4g} s", fontsize=10)
@@ -100,10 +100,10 @@ def _add_colour_bars(
     figure: Any, panels: Sequence[Any], scales: Mapping[Any, Any], views: Sequence[Sequence[Shown]]
 ) -> None:
     """Say beside the panels what colours stand for."""
-    for one, scale in scales.items():
+    for quantity, scale in scales.items():
         bar = figure.colorbar(
-            scale, ax=panels, label=bar_label(scale, views, one),
-            extend=clipped_ends(scale, views, one), shrink=0.8, aspect=30, pad=0.02,
+            scale, ax=panels, label=bar_label(scale, views, quantity),
+            extend=clipped_ends(scale, views, quantity), shrink=0.8, aspect=30, pad=0.02,
         )  # fmt: skip
         bar.formatter.set_powerlimits((-3, 4))
 
@@ -160,15 +160,15 @@ def _limits(
     """Lowest and highest corner (2,) m, x and z, of all panels: what moves, and walls around it."""
     if region is not None:
         return np.array(region[0])[[0, 2]], np.array(region[1])[[0, 2]]
-    every = np.concatenate([_reach(one) for view in views for one in view])
+    every = np.concatenate([_reach(shown) for view in views for shown in view])
     if not len(every):
         raise SceneError("a picture needs at least one point; no step has any.")
     low, high = every.min(axis=0), every.max(axis=0)
     size = max(float((high - low).max()), 1e-6)
-    if any(is_mark(one) for one in views[0]):
+    if any(is_mark(shown) for shown in views[0]):
         low, high = low - 0.5 * MARK * size, high + 0.5 * MARK * size
     if still:
-        corners = np.concatenate([one.corners for one in still])[:, [0, 2]]
+        corners = np.concatenate([wall.corners for wall in still])[:, [0, 2]]
         low = np.minimum(low, np.maximum(corners.min(axis=0), low - BEYOND * size))
         high = np.maximum(high, np.minimum(corners.max(axis=0), high + BEYOND * size))
     margin = np.minimum(MARGIN * size, WITHIN * (high - low))
@@ -182,5 +182,5 @@ def _reach(shown: Shown) -> Array:
     """Points (n, 2) m, x and z, between which all of a component lies."""
     centre, radius = shown.points[:, [0, 2]], shown.radius[:, None]
     corners = [face[:, [0, 2]] for face in shown.faces]
-    found = np.concatenate([np.zeros((0, 2)), centre - radius, centre + radius, *corners])
-    return np.asarray(found[np.isfinite(found).all(axis=1)])
+    ends = np.concatenate([np.zeros((0, 2)), centre - radius, centre + radius, *corners])
+    return np.asarray(ends[np.isfinite(ends).all(axis=1)])

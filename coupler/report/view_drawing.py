@@ -51,9 +51,9 @@ def colour_scales(views: Sequence[Sequence[Shown]]) -> dict[Quantity, Any]:
     from matplotlib.colors import Normalize
 
     scales: dict[Quantity, Any] = {}
-    for one in dict.fromkeys(shown.quantity for view in views for shown in view):
-        values = _values(views, one)
-        if one is None or not len(values):
+    for quantity in dict.fromkeys(shown.quantity for view in views for shown in view):
+        values = _values(views, quantity)
+        if quantity is None or not len(values):
             continue
         clipped = CLIPPED if len(values) > ENOUGH else 0.0
         low, high = np.percentile(values, [clipped, 100.0 - clipped])
@@ -61,31 +61,35 @@ def colour_scales(views: Sequence[Sequence[Shown]]) -> dict[Quantity, Any]:
         if not high > low:
             low, high = (0.0, 1.0) if not high else (high - abs(high), high + abs(high))
         norm = Normalize(float(low), float(high))
-        colours = "gray" if one.name in PHOTOGRAPHS else MAPS[len(scales) % len(MAPS)]
-        scales[one] = ScalarMappable(norm, colours)
+        colours = "gray" if quantity.name in PHOTOGRAPHS else MAPS[len(scales) % len(MAPS)]
+        scales[quantity] = ScalarMappable(norm, colours)
     return scales
 
 
-def _values(views: Sequence[Sequence[Shown]], one: Quantity | None) -> Array:
+def _values(views: Sequence[Sequence[Shown]], quantity: Quantity | None) -> Array:
     """All finite values of a quantity."""
-    same = [shown for view in views for shown in view if shown.quantity == one]
+    same = [shown for view in views for shown in view if shown.quantity == quantity]
     parts = [part for shown in same for part in (shown.values, shown.face_values)]
     values = np.concatenate([np.zeros(0), *(part for part in parts if part is not None)])
     return np.asarray(values[np.isfinite(values)])
 
 
-def clipped_ends(scale: Any, views: Sequence[Sequence[Shown]], one: Quantity) -> str:
+def clipped_ends(scale: Any, views: Sequence[Sequence[Shown]], quantity: Quantity) -> str:
     """Ends of a colour bar beyond which there are values: they have the colour of that end."""
-    values = _values(views, one)
+    values = _values(views, quantity)
     ends = bool(values.min() < scale.norm.vmin), bool(values.max() > scale.norm.vmax)
     return {(True, True): "both", (True, False): "min", (False, True): "max"}.get(ends, "neither")
 
 
-def bar_label(scale: Any, views: Sequence[Sequence[Shown]], one: Quantity) -> str:
+def bar_label(scale: Any, views: Sequence[Sequence[Shown]], quantity: Quantity) -> str:
     """Name and unit of a quantity, and how many of its values are beyond the colours."""
-    values = _values(views, one)
+    values = _values(views, quantity)
     beyond = np.mean((values < scale.norm.vmin) | (values > scale.norm.vmax))
-    return f"{one.label}; {100.0 * beyond:.2g} % of values are beyond" if beyond else one.label
+    return (
+        f"{quantity.label}; {100.0 * beyond:.2g} % of values are beyond"
+        if beyond
+        else quantity.label
+    )
 
 
 def draw_walls(panel: Any, still: Sequence[Still]) -> None:
@@ -108,10 +112,10 @@ def draw_walls(panel: Any, still: Sequence[Still]) -> None:
         if support == CLAMPED:
             strokes += _strokes(lines[support][-1], _outwards(face), stroke)
     panel.add_collection(PolyCollection(shaded, facecolors=BACK, alpha=BEHIND, zorder=0), False)
-    for support, one in lines.items():
-        if not one and support != WALL_FACE:
+    for support, segments in lines.items():
+        if not segments and support != WALL_FACE:
             continue
-        drawn = LineCollection(one, colors=WALL, zorder=4, **LINES[support])
+        drawn = LineCollection(segments, colors=WALL, zorder=4, **LINES[support])
         panel.add_collection(drawn, False)
     if strokes:
         panel.add_collection(LineCollection(strokes, colors=WALL, linewidths=0.8, zorder=4), False)
@@ -149,7 +153,7 @@ def _ends(face: Array) -> Array:
 
 def diameters(view: Sequence[Shown]) -> dict[str, float]:
     """Diameters [m] of particles, by component; 0 of what are no particles."""
-    return {one.name: OVERLAP * spacing(one.points) for one in view}
+    return {shown.name: OVERLAP * spacing(shown.points) for shown in view}
 
 
 def draw_view(
@@ -254,9 +258,9 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Still]) -> No
                 Line2D([], [], marker="o", linestyle="", markerfacecolor=colour,
                        markeredgecolor="black", label=text + by)
             )  # fmt: skip
-    known = {one.support for one in still}
+    known = {wall.support for wall in still}
     if WALL_FACE in known:
-        shaded = any(not _is_flat(one.corners[:, [0, 2]]) for one in still)
+        shaded = any(not _is_flat(wall.corners[:, [0, 2]]) for wall in still)
         if shaded:
             back = (*to_rgb(BACK), BEHIND)
             handles.append(Patch(facecolor=back, edgecolor=WALL, linewidth=2.0, label="walls"))
@@ -264,8 +268,8 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Still]) -> No
             handles.append(Line2D([], [], color=WALL, linewidth=2.0, label="walls"))
     if CLAMPED in known:
         handles.append(Patch(facecolor="none", edgecolor=WALL, hatch="////", label="clamped"))
-    edge_on = [one for one in still if _is_flat(one.corners[:, [0, 2]])]
-    if any(one.support == SYMMETRY for one in edge_on):
+    edge_on = [wall for wall in still if _is_flat(wall.corners[:, [0, 2]])]
+    if any(wall.support == SYMMETRY for wall in edge_on):
         label = "held across it (symmetry)"
         handles.append(Line2D([], [], color=WALL, linewidth=1.5, linestyle="dashdot", label=label))
     if not handles:

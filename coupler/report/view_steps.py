@@ -60,14 +60,14 @@ class Still(NamedTuple):
 
 def walls(run: Path) -> list[Still]:
     """All faces that stand still in a run."""
-    found = []
+    stills = []
     for path in sorted(Path(run).glob(f"*{WALLS}")):
         if len(vtkhdf_reader.times(path)):
             view = vtkhdf_reader.read_step(path, 0)[1]
             faces = corners_of(view)
             kinds = view.get("support", np.full(len(faces), WALL)).astype(int).tolist()
-            found += [Still(*one) for one in zip(faces, kinds, strict=True)]
-    return found
+            stills += [Still(*wall) for wall in zip(faces, kinds, strict=True)]
+    return stills
 
 
 def moments(files: Sequence[Path], wanted: Sequence[float]) -> list[float]:
@@ -147,8 +147,8 @@ def spacing(points: Array) -> float:
     if len(points) < SAMPLE:
         return 0.0
     nearest = []
-    for one in points[np.linspace(0, len(points) - 1, SAMPLE).astype(int)]:
-        distance = np.sum((points - one) ** 2, axis=1)
+    for point in points[np.linspace(0, len(points) - 1, SAMPLE).astype(int)]:
+        distance = np.sum((points - point) ** 2, axis=1)
         nearest.append(np.min(distance[distance > 0.0], initial=np.inf))
-    found = float(np.sqrt(np.median(nearest)))
-    return found if np.isfinite(found) else 0.0
+    distance_between = float(np.sqrt(np.median(nearest)))
+    return distance_between if np.isfinite(distance_between) else 0.0

@@ -43,7 +43,7 @@ def files_of(scene: Scene) -> list[str]:
     """Names of all files that a run of a scene may write, but for its snapshots."""
     logs = [f"{name}.{end}" for name in scene.components for end in ("log", "exit")]
     logs += [*COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG, reached.NAME]
-    views = [one(name) for name in scene.components for one in (view_file, walls_file)]
+    views = [file_of(name) for name in scene.components for file_of in (view_file, walls_file)]
     convergence = [log_file(group) for group in scene.coupling.iterated()]
     return [*RUN_FILES, *views, *convergence, *(f"log/{name}" for name in logs)]
 
@@ -96,13 +96,13 @@ def begin(
     """
     with contextlib.ExitStack() as stack:
         try:
-            made = _take(stack, kind, name, files, out, force)
+            run_folder = _take(stack, kind, name, files, out, force)
         except OSError as error:
             where = error.filename or out or "runs"
             raise SceneError(
                 f"--out {where}: it cannot be written ({error.strerror}). Name another folder."
             ) from error
-        yield made
+        yield run_folder
 
 
 def _take(
@@ -121,17 +121,17 @@ def _take(
     stack.enter_context(_locked(folder))
     former = _former(folder, kind, force)  # since then another may have begun
     _require_own(folder, files, former)
-    kept = [RUN_LOG] if former and RUN_LOG in former.files else []
+    still_there = [RUN_LOG] if former and RUN_LOG in former.files else []
     if former:
         _set_aside(folder, former)
-    marker = new_marker(kind, name.removesuffix(f"-{kind}"), [*files, *kept])
-    made = RunFolder(folder, marker, bool(former))
+    marker = new_marker(kind, name.removesuffix(f"-{kind}"), [*files, *still_there])
+    run_folder = RunFolder(folder, marker, bool(former))
     try:
-        write_marker(folder, made.marker)
+        write_marker(folder, run_folder.marker)
     except DiskError:
-        made.undo()
+        run_folder.undo()
         raise
-    return made
+    return run_folder
 
 
 def begin_series(
@@ -164,12 +164,12 @@ def _require_own(folder: Path, files: Iterable[str], former: Marker | None) -> N
 
 def check_ours(folder: Path, kind: str) -> Marker:
     """Read the marker of a folder that must be a run's, its files plain ones."""
-    found = read_marker(folder)
-    if found is None or found.kind != kind:
-        what = f"that of a {found.kind}" if found else "not that of a run"
+    marker = read_marker(folder)
+    if marker is None or marker.kind != kind:
+        what = f"that of a {marker.kind}" if marker else "not that of a run"
         raise SceneError(f"{folder}: it must be the folder of a {kind}; it is {what}.")
-    _require_own(folder, (), found)
-    return found
+    _require_own(folder, (), marker)
+    return marker
 
 
 def discard_former(folder: Path) -> None:
@@ -204,11 +204,11 @@ def _former(folder: Path, kind: str, force: bool) -> Marker | None:
         raise SceneError(f"--out {folder}: it must be a folder; it is a file. Name another.")
     marker = read_marker(folder)
     if marker is None:
-        found = sorted(path.name for path in folder.iterdir() if path.name not in BEGUN)
-        if found:
-            names = ", ".join(found[:SHOWN]) + (", ..." if len(found) > SHOWN else "")
+        names = sorted(path.name for path in folder.iterdir() if path.name not in BEGUN)
+        if names:
+            shown = ", ".join(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
             raise SceneError(
-                f"--out {folder}: it holds files that no run left ({names}). Name a new or an "
+                f"--out {folder}: it holds files that no run left ({shown}). Name a new or an "
                 "empty folder."
             )
         return None

@@ -70,13 +70,13 @@ class OutputWriter:
         """See `Observer.plan`."""
         output, tick = self.scene.file.output, windows.tick
         self._views, self._totals, self._snapshots = (
-            in_ticks(one, tick) if one else 0
-            for one in (output.interval, output.totals, output.snapshots)
+            in_ticks(time, tick) if time else 0
+            for time in (output.interval, output.totals, output.snapshots)
         )
         # Rows of the ledger come at the windows' ends: to watch a run must not change its steps.
-        windows.stops = [one for one in (self._views, self._snapshots) if one]
+        windows.stops = [time for time in (self._views, self._snapshots) if time]
         # A picture of a time beyond the run's end shows its last state.
-        marks = (min(in_ticks(one, tick), windows.end) for one in output.pictures if one)
+        marks = (min(in_ticks(time, tick), windows.end) for time in output.pictures if time)
         windows.marks = tuple(dict.fromkeys(marks))
         self._windows = windows
 
@@ -102,12 +102,12 @@ class OutputWriter:
     def _recording(self, coupling: Coupling, described: Mapping[str, Fields]) -> Recorder:
         path = self.folder / NAME
         text = (self.folder / "scene.toml").read_text(encoding="utf-8")
-        made = Recorder(path, self.folder.name, text, self._windows.tick)
-        for name, one in self.scene.components.items():
-            ports = only_fields(one.gives, coupling.outputs[name])
+        recorder = Recorder(path, self.folder.name, text, self._windows.tick)
+        for name, component in self.scene.components.items():
+            ports = only_fields(component.gives, coupling.outputs[name])
             samples = coupling.exchange.samples_of(name)
-            made.component(name, ports, {**described[name], **samples})
-        return made
+            recorder.component(name, ports, {**described[name], **samples})
+        return recorder
 
     def _go_on(self) -> None:
         """Open the files of an earlier run, and refuse any that was changed since."""
@@ -149,7 +149,9 @@ class OutputWriter:
         self._now = now
 
     def _reading(self, coupling: Coupling) -> Reading:
-        compute = {name: one.timing.compute for name, one in coupling.components.items()}
+        compute = {
+            name: component.timing.compute for name, component in coupling.components.items()
+        }
         repeated = any(True for _ in coupling.plan.iterated())
         repetitions = coupling.costs.repetitions if repeated else None
         residual = coupling.ledger.worst if coupling.ledger.accounts else None
@@ -165,7 +167,7 @@ class OutputWriter:
 
     def _interval(self, coupling: Coupling) -> float:
         """Wall time until the next snapshot [s]."""
-        usual = sum(one.timing.usual for one in coupling.components.values())
+        usual = sum(component.timing.usual for component in coupling.components.values())
         return SNAPSHOT_INTERVAL if usual < 0.5 * ENDING else max(OFTEN, COST * self._cost)
 
     def _keep(self, coupling: Coupling) -> None:
@@ -173,7 +175,7 @@ class OutputWriter:
         began = time.monotonic()
         if self._recorder:
             self._recorder.sync()
-        checks = {name: one.check for name, one in self._files.items()}
+        checks = {name: file.check for name, file in self._files.items()}
         save(coupling, self.scene, self.folder, self.logs, self._judgement, checks)
         self._kept = time.monotonic()
         self._cost = self._kept - began
@@ -184,16 +186,16 @@ class OutputWriter:
 
     def _record(self, coupling: Coupling) -> None:
         if self._recorder:
-            for name, one in coupling.components.items():
-                instant = Instant(self._windows.time, self._windows.now, one.stable)
+            for name, component in coupling.components.items():
+                instant = Instant(self._windows.time, self._windows.now, component.stable)
                 self._recorder.add(name, instant, coupling.outputs[name])
 
     def _note(self, coupling: Coupling) -> None:
         """Ask every component for its totals, and for what there is to see of it."""
         totals = {}
-        for name, one in coupling.components.items():
+        for name, component in coupling.components.items():
             first = self._shows and name not in self._asked
-            answer = one.call("view", shown=self._shows, walls=first)
+            answer = component.call("view", shown=self._shows, walls=first)
             totals[name] = answer.header["totals"]
             if first:
                 self._asked.add(name)
@@ -205,11 +207,11 @@ class OutputWriter:
         coupling.ledger.note(self._windows.time, totals)
 
     def _file(self, name: str, units: Mapping[str, str]) -> VtkHdf:
-        found = self._files.get(name)
-        if found is None:
-            found = VtkHdf(self.folder / view_file(name), units, self.scene.headline)
-            self._files[name] = found
-        return found
+        file = self._files.get(name)
+        if file is None:
+            file = VtkHdf(self.folder / view_file(name), units, self.scene.headline)
+            self._files[name] = file
+        return file
 
     def _write_walls(self, name: str, fields: Fields) -> None:
         """Write what stands still around a component into a file of its own, with one step."""
@@ -222,6 +224,6 @@ class OutputWriter:
     def close(self) -> None:
         """Close all files, however the run ended."""
         with contextlib.ExitStack() as stack:  # all, even if one cannot be written
-            for one in (*self._files.values(), self._recorder, self._progress):
-                if one:
-                    stack.callback(one.close)
+            for closed in (*self._files.values(), self._recorder, self._progress):
+                if closed:
+                    stack.callback(closed.close)

@@ -41,12 +41,12 @@ class Pace:
 
     def add(self, reading: Reading, now: float) -> None:
         """Add a reading at a wall time [s]."""
-        kept = self._kept
-        if len(kept) > 1 and kept[-1][0] - kept[-2][0] < SPACING:
-            kept.pop()
-        kept.append((now, reading))
-        while len(kept) > 2 and kept[1][0] < now - PACE:
-            kept.popleft()
+        readings = self._kept
+        if len(readings) > 1 and readings[-1][0] - readings[-2][0] < SPACING:
+            readings.pop()
+        readings.append((now, reading))
+        while len(readings) > 2 and readings[1][0] < now - PACE:
+            readings.popleft()
 
     @property
     def seconds(self) -> float:

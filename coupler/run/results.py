@@ -48,25 +48,32 @@ def outcomes(scene: Scene, folder: Path) -> list[Outcome]:
         return []
     try:
         with Recording(path) as recording:
-            return [_outcome(one, recording, scene.folder) for one in scene.expect]
+            return [_outcome(expectation, recording, scene.folder) for expectation in scene.expect]
     except SceneError as error:
         print(f"quintet: {error}", file=sys.stderr)
-        return [_unknown(one) for one in scene.expect]
+        return [_unknown(expectation) for expectation in scene.expect]
 
 
-def _outcome(one: Expectation, recording: Recording, folder: Path) -> Outcome:
+def _outcome(expectation: Expectation, recording: Recording, folder: Path) -> Outcome:
     """Evaluate one expectation; it is not met where the run lacks its item or time."""
     try:
-        return evaluate(one, recording, folder)
+        return evaluate(expectation, recording, folder)
     except SceneError as error:
-        print(f"quintet: expectation {one.name}: {error}", file=sys.stderr)
-        return _unknown(one)
+        print(f"quintet: expectation {expectation.name}: {error}", file=sys.stderr)
+        return _unknown(expectation)
 
 
-def _unknown(one: Expectation) -> Outcome:
+def _unknown(expectation: Expectation) -> Outcome:
     """Outcome of an expectation of which nothing is known."""
     return Outcome(
-        one.name, None, one.value or 0.0, one.within, one.unit, False, one.source, one.required
+        expectation.name,
+        None,
+        expectation.value or 0.0,
+        expectation.within,
+        expectation.unit,
+        False,
+        expectation.source,
+        expectation.required,
     )
 
 
@@ -84,22 +91,22 @@ def draw_until(scene: Scene, folder: Path, reached: float) -> None:
         print(f"quintet: pictures before the fault left out: {error}", file=sys.stderr, flush=True)
 
 
-def draw(scene: Scene, folder: Path, found: list[Outcome]) -> None:
+def draw(scene: Scene, folder: Path, outcomes: list[Outcome]) -> None:
     """Draw the pictures of a scene, and its time series against references."""
     output, title = scene.file.output, scene.headline
     if output.pictures and view_files(folder):
         out, scale = folder / PICTURES[0], output.displacement_scale
         end = scene.file.end
-        if late := [f"{one:g}" for one in output.pictures if one > end * (1.0 + ROUNDING)]:
+        if late := [f"{time:g}" for time in output.pictures if time > end * (1.0 + ROUNDING)]:
             beyond = f"pictures at t = {', '.join(late)} s lie beyond the run's end"
             instead = f"its last state, at {end:g} s, is drawn in their place"
             print(f"quintet: {beyond}: {instead}", file=sys.stderr, flush=True)
         with told(out):
             side_views(folder, out, output.pictures, title, output.colours, output.region, scale)
-    if found:
+    if outcomes:
         out, values = folder / PICTURES[1], bool(output.pictures)
         with Recording(folder / "recording.h5") as recording, told(out):
-            comparison(scene.folder, scene.expect, found, recording, out, title, values)
+            comparison(scene.folder, scene.expect, outcomes, recording, out, title, values)
 
 
 def timing(participants: dict[str, Participant], wall: float, costs: Costs) -> dict[str, Any]:
@@ -181,9 +188,9 @@ def write(folder: Path, content: dict[str, Any]) -> None:
     write_at_last(folder / RESULTS, sealed(content, sums))
 
 
-def expectations(found: list[Outcome]) -> list[dict[str, Any]]:
+def expectations(outcomes: list[Outcome]) -> list[dict[str, Any]]:
     """Outcomes as they stand in ``results.json``."""
-    return [asdict(one) for one in found]
+    return [asdict(outcome) for outcome in outcomes]
 
 
 class Clock:

@@ -57,8 +57,9 @@ def headline(scene: Scene, folder: Path) -> str:
     """What is about to run: scene, transport, components, folder."""
     name = scene.file.name + (f" ({scene.preset})" if scene.preset else "")
     parts = [
-        f"{one.name} ({one.kind}" + (f", {one.threads} threads)" if one.threads > 1 else ")")
-        for one in scene.components.values()
+        f"{component.name} ({component.kind}"
+        + (f", {component.threads} threads)" if component.threads > 1 else ")")
+        for component in scene.components.values()
     ]
     where = os.path.relpath(folder)
     return f"{name}: {', '.join(parts)} over {scene.transport}, into {where}"

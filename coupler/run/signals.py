@@ -54,10 +54,10 @@ class StopRequest:
 
     def unread(self) -> int:
         """Signals in the pipe that nobody has read."""
-        found = array.array("i", [0])
+        count = array.array("i", [0])
         if self._pipe >= 0:
-            fcntl.ioctl(self._pipe, termios.FIONREAD, found)
-        return found[0]
+            fcntl.ioctl(self._pipe, termios.FIONREAD, count)
+        return count[0]
 
     def _count(self) -> None:
         if self._pipe < 0:

@@ -60,20 +60,20 @@ def simulate(
     Where the process is our own, it is left from a thread if its main thread does not come back.
     """
     stop = StopRequest()
-    watchdog = Watchdog(stop, own=scene.transport == "memory")
-    made = Running(scene, folder, snapshot, stop, watchdog)
+    watchdog = Watchdog(stop, in_main_thread=scene.transport == "memory")
+    run = Running(scene, folder, snapshot, stop, watchdog)
     if own_process:
-        stop.leave = made.leave
+        stop.leave = run.leave
     try:
         with stop.listening(lambda: watchdog.verdict is not None):
-            made.run()
+            run.run()
     except KeyboardInterrupt as error:
-        status = made.end(watchdog.verdict or error)
+        status = run.end(watchdog.verdict or error)
     except Exception as error:  # any failure is reported in the results
-        status = made.end(error)
+        status = run.end(error)
     else:
-        status = made.end(None)
-    if own_process and watchdog.own:
+        status = run.end(None)
+    if own_process and watchdog.in_main_thread:
         leave_in_time(status, max(map(scene.patience, scene.components)))
     return status
 
@@ -124,10 +124,11 @@ class Running:
         """Join the components and couple them to the end, or until a signal ends it."""
         scene = self.scene
         main = threading.current_thread() is threading.main_thread()
-        if self.stop.leave and self.watchdog.own:
+        if self.stop.leave and self.watchdog.in_main_thread:
             self._started = OwnProcesses(self.watchdog.mark)
         if self.stop.leave and main:
-            self._begin_watchdog_process() if self.watchdog.own else self._begin_companion()
+            in_main_thread = self.watchdog.in_main_thread
+            self._begin_watchdog_process() if in_main_thread else self._begin_companion()
         self._start.show()
         self._warn_of_limits()
         self._connection = connection = connect(scene, self.folder, self.watchdog)
@@ -139,8 +140,8 @@ class Running:
         restore = partial(snapshots.restore, judgement=self.judgement, path=path) if path else None
         asked = scene.asked_outputs()
         end = run(coupling, scene.file.end, self.writer, asked, self.judgement, restore)
-        for one in self.files:
-            one.close()
+        for file in self.files:
+            file.close()
         connection.close(True)
         self._connection = None
         self.outcome |= outcome_of(end)
@@ -206,9 +207,9 @@ class Running:
                 self._suspect_coupling()
             if self._connection:
                 self._connection.close(False)
-            for one in self.files:
+            for file in self.files:
                 with contextlib.suppress(DiskError):  # told already: it ended the run
-                    one.close()
+                    file.close()
             if self.stop.asked and self.outcome["status"] != "done" and not lost:
                 self.outcome["status"] = "interrupted"
             self.outcome["warnings"] = self.ledger.warnings.summary()
@@ -249,10 +250,10 @@ def make_folder(scene: Scene, folder: Path) -> None:
     reserve(folder, RESULTS)
 
 
-def notes(made: Running) -> dict[str, list[str]]:
+def notes(run: Running) -> dict[str, list[str]]:
     """What the user should know of each component, and of the lines to them."""
-    all_notes = {name: one.notes for name, one in made.participants.items()}
-    all_notes["coupler"] = made.notes_of_lines()
+    all_notes = {name: participant.notes for name, participant in run.participants.items()}
+    all_notes["coupler"] = run.notes_of_lines()
     return {name: texts for name, texts in all_notes.items() if texts}
 
 
@@ -284,21 +285,21 @@ def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -
         trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
         error = ComponentFailed("coupler", writer.done, str(error), trace)
     lines = tail(folder / "log" / f"{error.component}.log")
-    found = results.fault(error, folder, lines)
+    fault = results.fault(error, folder, lines)
     print(f"\nquintet: {error}", file=sys.stderr)
     if error.trace:
         print(error.trace, file=sys.stderr)
     if lines:
-        print(f"  last lines of {found['log']}:", file=sys.stderr)
+        print(f"  last lines of {fault['log']}:", file=sys.stderr)
         print("\n".join(f"    {line}" for line in lines), file=sys.stderr, flush=True)
-    return {"status": "failed", "fault": found, "windows": writer.done, "time": writer.time}
+    return {"status": "failed", "fault": fault, "windows": writer.done, "time": writer.time}
 
 
 def how_to_resume(folder: Path, outcome: dict[str, Any]) -> dict[str, str]:
     """Tell how a run that was not done can go on, if it can."""
-    if kept := snapshots.snapshots(folder):
+    if saved := snapshots.snapshots(folder):
         resume = shlex.join(["quintet", "run", "--resume", os.path.relpath(folder)])
-        behind = outcome["windows"] - snapshots.window_of(kept[-1])
+        behind = outcome["windows"] - snapshots.window_of(saved[-1])
         again = f" ({behind} windows are computed again)" if behind else ""
         print(f"to go on: {resume}{again}", file=sys.stderr)
         return {"resume": resume}
@@ -319,20 +320,20 @@ def conclude_for_coupler(scene: Scene, folder: Path, status: int, cause: str) ->
     results.write(folder, content | how_to_resume(folder, outcome))
 
 
-def conclude(made: Running) -> int:
+def conclude(run: Running) -> int:
     """Evaluate the expectations, write the results, draw; return the exit status."""
-    scene, folder, outcome = made.scene, made.folder, made.outcome
+    scene, folder, outcome = run.scene, run.folder, run.outcome
     ended = outcome["status"] in ("done", "interrupted")
-    found = results.outcomes(scene, folder) if ended else []
+    outcomes = results.outcomes(scene, folder) if ended else []
     content = {
         **results.headline(scene, outcome),
-        "expect": results.expectations(found),
-        "ledger": made.ledger.summary(),
-        "repetitions": made.costs.repetitions,
-        "unconverged": made.costs.unconverged,
-        "time_errors": made.judgement.time.errors.summary(),
-        "notes": notes(made),
-        "timing": results.timing(made.participants, made.clock(), made.costs),
+        "expect": results.expectations(outcomes),
+        "ledger": run.ledger.summary(),
+        "repetitions": run.costs.repetitions,
+        "unconverged": run.costs.unconverged,
+        "time_errors": run.judgement.time.errors.summary(),
+        "notes": notes(run),
+        "timing": results.timing(run.participants, run.clock(), run.costs),
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))
@@ -342,13 +343,13 @@ def conclude(made: Running) -> int:
     if outcome["status"] == "refused":
         return results.BAD
     if outcome["status"] == "failed":
-        if made.draws:
+        if run.draws:
             results.draw_until(scene, folder, outcome["time"])
         return results.FAILED
     if outcome["status"] == "interrupted":
         return results.INTERRUPTED
     try:
-        results.draw(scene, folder, found)
+        results.draw(scene, folder, outcomes)
     except (DiskError, SceneError) as error:
         print(f"quintet: {error}", file=sys.stderr, flush=True)
     except KeyboardInterrupt:  # the run is over, and its results are written
@@ -356,5 +357,5 @@ def conclude(made: Running) -> int:
             "\nquintet: interrupted after the run: pictures left out", file=sys.stderr, flush=True
         )
         return results.INTERRUPTED
-    met = all(one.met or not one.required for one in found)
-    return results.DONE if met and not made.ledger.warnings else results.UNMET
+    met = all(expected.met or not expected.required for expected in outcomes)
+    return results.DONE if met and not run.ledger.warnings else results.UNMET

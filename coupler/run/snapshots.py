@@ -69,7 +69,7 @@ def save(
     for log in logs.values():
         log.sync()
     rest = {
-        "windows": {name: one.window for name, one in participants.items()},
+        "windows": {name: participant.window for name, participant in participants.items()},
         "coupling": states(coupling),
         "ledger": coupling.ledger.save(),
         "judgement": judgement.save(),
@@ -82,8 +82,8 @@ def save(
     }
     with removed_on_failure(part), told(path):
         with create(part) as file:
-            for name, one in participants.items():
-                _write(file, f"components/{name}", one.save())
+            for name, participant in participants.items():
+                _write(file, f"components/{name}", participant.save())
             for name, value in rest.items():
                 _write(file, name, value)
         seal(part)
@@ -101,7 +101,7 @@ def _largest(value: Any) -> int:
     """Bytes that a value may need on the disk."""
     if isinstance(value, dict):
         return OF_DATASET + sum(map(_largest, value.values()))
-    if isinstance(value, (list, tuple)) and any(isinstance(one, np.ndarray) for one in value):
+    if isinstance(value, (list, tuple)) and any(isinstance(item, np.ndarray) for item in value):
         return OF_DATASET + sum(map(_largest, value))
     size = value.nbytes if isinstance(value, np.ndarray) else len(json.dumps(value))
     return OF_DATASET + int(size)
@@ -109,7 +109,7 @@ def _largest(value: Any) -> int:
 
 def states(coupling: Coupling) -> dict[str, Any]:
     """What a coupling and its groups carry over from window to window."""
-    groups = {k: one.save() for k, one in coupling.members.items() if isinstance(one, Group)}
+    groups = {k: group.save() for k, group in coupling.members.items() if isinstance(group, Group)}
     return {"own": coupling.save(), "groups": groups}
 
 
@@ -123,8 +123,8 @@ def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
                 f"{coupling.windows.tick!r} s. Resume with the same window and end."
             )
         windows = _get(file, "windows")
-        for name, one in coupling.components.items():
-            one.load(_get(file, f"components/{name}"), windows[name])
+        for name, participant in coupling.components.items():
+            participant.load(_get(file, f"components/{name}"), windows[name])
         state = _get(file, "coupling")
         coupling.load(state["own"])
         for name, saved in state["groups"].items():
@@ -136,7 +136,7 @@ def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
         for name, cost in _get(file, "costs").items():
             setattr(coupling.costs, name, cost)
     # Later ones were cut or changed, or are of windows that are now done again.
-    remove(one for one in snapshots(path.parent) if window_of(one) > window_of(path))
+    remove(snapshot for snapshot in snapshots(path.parent) if window_of(snapshot) > window_of(path))
 
 
 def latest(folder: Path, quietly: bool = False) -> Path:
@@ -202,15 +202,15 @@ def _put(group: Any, name: str, value: Any) -> None:
     if value is None:
         return
     if isinstance(value, dict):
-        made = group.create_group(name, track_order=True)
-        for number, one in enumerate(value.values()):
-            _put(made, str(number), one)
-        made.attrs["keys"] = json.dumps(list(value))
-    elif isinstance(value, (list, tuple)) and any(isinstance(one, np.ndarray) for one in value):
-        made = group.create_group(name)
-        for number, one in enumerate(value):
-            _put(made, str(number), one)
-        made.attrs["count"] = len(value)
+        part = group.create_group(name, track_order=True)
+        for number, item in enumerate(value.values()):
+            _put(part, str(number), item)
+        part.attrs["keys"] = json.dumps(list(value))
+    elif isinstance(value, (list, tuple)) and any(isinstance(item, np.ndarray) for item in value):
+        part = group.create_group(name)
+        for number, item in enumerate(value):
+            _put(part, str(number), item)
+        part.attrs["count"] = len(value)
     elif isinstance(value, np.ndarray):
         group[name] = value
     else:
@@ -221,15 +221,15 @@ def _put(group: Any, name: str, value: Any) -> None:
 def _get(group: Any, name: str) -> Any:
     if name not in group:
         return None
-    found = group[name]
-    if isinstance(found, h5py.Dataset):
-        if "json" in found.attrs:
-            return json.loads(found.asstr()[()])
-        return np.asarray(found[()])
-    if "keys" in found.attrs:
-        keys = [_key(one) for one in json.loads(found.attrs["keys"])]
-        return {key: _get(found, str(number)) for number, key in enumerate(keys)}
-    return tuple(_get(found, str(number)) for number in range(found.attrs["count"]))
+    stored = group[name]
+    if isinstance(stored, h5py.Dataset):
+        if "json" in stored.attrs:
+            return json.loads(stored.asstr()[()])
+        return np.asarray(stored[()])
+    if "keys" in stored.attrs:
+        keys = [_key(key) for key in json.loads(stored.attrs["keys"])]
+        return {key: _get(stored, str(number)) for number, key in enumerate(keys)}
+    return tuple(_get(stored, str(number)) for number in range(stored.attrs["count"]))
 
 
 def _key(key: Any) -> Any:

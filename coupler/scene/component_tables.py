@@ -17,12 +17,12 @@ Table = dict[str, Any]
 
 def require_components(path: Path, table: Table, mistakes: list[str]) -> Table:
     """Tables of the components; without any, nothing else can be said of a scene."""
-    given = table.get("components", {})
-    if isinstance(given, dict) and given:
-        return given
+    tables = table.get("components", {})
+    if isinstance(tables, dict) and tables:
+        return tables
     said = "components: a scene needs at least one. Add [components.NAME]."
-    if given:
-        said = f"components must be tables; found {shown(given)}. Write [components.NAME]."
+    if tables:
+        said = f"components must be tables; found {shown(tables)}. Write [components.NAME]."
     raise SceneError([f"{path.name}: {mistake}" for mistake in (*mistakes, said)])
 
 
@@ -33,45 +33,45 @@ def read_components(
 
     `imports` is whether code of the scene's own may be imported to read them.
     """
-    found = {}
-    for name, given in table.items():
+    plans = {}
+    for name, keys in table.items():
         if not NAME.fullmatch(name) or name == "coupler":
             mistakes.append(
                 f"components: a name must be letters, digits, _ or -, and not coupler; found "
                 f"{name!r}. Rename it."
             )
-        elif not isinstance(given, dict):
+        elif not isinstance(keys, dict):
             mistakes.append(
-                f"components.{name} must be a table; found {shown(given)}. Give it a kind."
+                f"components.{name} must be a table; found {shown(keys)}. Give it a kind."
             )
-        elif one := _component(name, dict(given), folder, mistakes, imports):
-            found[name] = one
-    return found
+        elif plan := _component(name, dict(keys), folder, mistakes, imports):
+            plans[name] = plan
+    return plans
 
 
 def _component(
-    name: str, given: Table, folder: Path, mistakes: list[str], imports: bool
+    name: str, keys: Table, folder: Path, mistakes: list[str], imports: bool
 ) -> ComponentPlan | None:
     where = f"components.{name}"
-    if not isinstance(kind := given.get("kind"), str):
+    if not isinstance(kind := keys.get("kind"), str):
         known = ", ".join(sorted(known_kinds()))
         mistakes.append(f"{where}.kind must be a name; found {shown(kind)}. Known here: {known}.")
         return None
-    of_all = {one.name for one in fields(ComponentKeys)} & given.keys()
-    common, wrong = read(ComponentKeys, {key: given.pop(key) for key in of_all}, where)
+    of_all = {field.name for field in fields(ComponentKeys)} & keys.keys()
+    common, wrong = read(ComponentKeys, {key: keys.pop(key) for key in of_all}, where)
     mistakes += wrong
     if common is None:
         return None
     if not (imports or is_trusted(kind, folder)):
         unread = unread_manifest(kind)
         return ComponentPlan(
-            name, kind, unread, given, None, (), (), threads=common.threads, unread=True
+            name, kind, unread, keys, None, (), (), threads=common.threads, unread=True
         )
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
         return None
     try:
-        params, wrong = read(manifest.params, given, where, folder)
+        params, wrong = read(manifest.params, keys, where, folder)
         if wrong:
             mistakes += wrong
             return None
@@ -82,13 +82,13 @@ def _component(
         mistakes.append(f"{where}: {error}")
         return None
     except (ArithmeticError, np.linalg.LinAlgError) as error:
-        mistakes.append(beyond_computing(where, given, error))
+        mistakes.append(beyond_computing(where, keys, error))
         return None
     except Exception as error:  # of any kind: what it does here is its author's
         said = f"{type(error).__name__}: {error}"
         mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
         return None
-    return ComponentPlan(name, kind, manifest, given, params, takes, gives, common.threads, plan)
+    return ComponentPlan(name, kind, manifest, keys, params, takes, gives, common.threads, plan)
 
 
 def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:

@@ -50,9 +50,9 @@ def trusted_tables(tables: Any, folder: Path) -> dict[str, Any]:
     if not isinstance(tables, Mapping):
         return {}
     return {
-        name: one
-        for name, one in tables.items()
-        if isinstance(one, Mapping) and is_trusted(str(one.get("kind", "")), folder)
+        name: keys
+        for name, keys in tables.items()
+        if isinstance(keys, Mapping) and is_trusted(str(keys.get("kind", "")), folder)
     }
 
 

@@ -17,20 +17,20 @@ class Edge:
 
     link: str
     giver: str
-    given: str
+    giving_port: str
     taker: str
-    taken: str
+    taking_port: str
 
 
 def edges(scene: Scene) -> Iterator[Edge]:
     """Yield what fills what; ports are paired where a transfer has as many on both sides."""
     for link in scene.links:
-        for one in link.transfers:
-            given, taken = _ports(one.reads), _ports(one.fills)
-            paired = zip(given, taken, strict=False)
-            pairs = paired if len(given) == len(taken) else product(given, taken)
+        for transfer in link.transfers:
+            giving, taken = _ports(transfer.reads), _ports(transfer.fills)
+            paired = zip(giving, taken, strict=False)
+            pairs = paired if len(giving) == len(taken) else product(giving, taken)
             for a, b in pairs:
-                yield Edge(link.name, one.giver, a, one.taker, b)
+                yield Edge(link.name, transfer.giver, a, transfer.taker, b)
 
 
 def _ports(keys: tuple[str, ...]) -> list[str]:
@@ -41,20 +41,23 @@ def drawing(scene: Scene) -> str:
     """Draw a box for each component, its ports in it, and a line from port to port."""
     rows: list[str] = []
     place: dict[tuple[str, str, str], int] = {}  # component, "takes" or "gives", port -> row
-    for name, one in scene.components.items():
-        ports = [("takes", port.name) for port in one.takes]
-        ports += [("gives", port.name) for port in one.gives]
+    for name, plan in scene.components.items():
+        ports = [("takes", port.name) for port in plan.takes]
+        ports += [("gives", port.name) for port in plan.gives]
         lines = [f"{way} {port}" for way, port in ports] or ["no ports"]
-        width = max(len(f"{name}: {one.kind}") + 1, *map(len, lines)) + 1
-        rows.append(f"┌ {name}: {one.kind} ".ljust(width + 2, "─") + "┐")
+        width = max(len(f"{name}: {plan.kind}") + 1, *map(len, lines)) + 1
+        rows.append(f"┌ {name}: {plan.kind} ".ljust(width + 2, "─") + "┐")
         for number, line in enumerate(lines):
             if ports:
                 place[name, *ports[number]] = len(rows)
             rows.append(f"│ {line:<{width}}│")
         rows.append(f"└{'─' * (width + 1)}┘")
-    found = list(edges(scene))
-    ends = [(place[e.giver, "gives", e.given], place[e.taker, "takes", e.taken]) for e in found]
-    told = [f"{e.link}: {e.giver}.{e.given} → {e.taker}.{e.taken}" for e in found]
+    all_edges = list(edges(scene))
+    ends = [
+        (place[e.giver, "gives", e.giving_port], place[e.taker, "takes", e.taking_port])
+        for e in all_edges
+    ]
+    told = [f"{e.link}: {e.giver}.{e.giving_port} → {e.taker}.{e.taking_port}" for e in all_edges]
     return "\n".join([*_joined(rows, ends), *told])
 
 
@@ -67,7 +70,7 @@ def _joined(rows: list[str], ends: list[tuple[int, int]]) -> list[str]:
     for number, (text, strokes) in enumerate(zip(rows, _strokes(len(rows), ends), strict=True)):
         if number in from_boxes:
             text += ("◄" if number in heads else "─") + "─" * (left - len(text) - 1)
-        tail = "".join(STROKES.get(one, " ") for one in strokes)
+        tail = "".join(STROKES.get(stroke, " ") for stroke in strokes)
         drawn.append((f"{text:<{left}}" + tail).rstrip())
     return drawn
 
@@ -105,12 +108,12 @@ def mermaid(scene: Scene) -> str:
     """Write the same as a Mermaid flowchart; groups are boxes around their members."""
     number = {name: f"c{n}" for n, name in enumerate(scene.components)}
     lines = ["flowchart LR"]
-    for name, one in scene.components.items():
-        lines.append(f'    {number[name]}["{name}<br/>{one.kind}"]')
+    for name, plan in scene.components.items():
+        lines.append(f'    {number[name]}["{name}<br/>{plan.kind}"]')
     for inner in scene.coupling.inner():
         lines += _subgraph(inner, number)
     for edge in edges(scene):
-        said = f"{edge.link}: {edge.given} → {edge.taken}"
+        said = f"{edge.link}: {edge.giving_port} → {edge.taking_port}"
         lines.append(f'    {number[edge.giver]} -- "{said}" --> {number[edge.taker]}')
     return "\n".join(lines)
 

@@ -19,63 +19,63 @@ def lay_out(
 ) -> CouplingPlan | None:
     """Lay out who steps with whom: the run, and the groups in it."""
     settings = _groups(groups, components, mistakes)
-    members = [name for one in settings.values() for name in one.members]
+    members = [name for group in settings.values() for name in group.members]
     for name, count in Counter(members).items():
         if count > 1:
             mistakes.append(f"groups: {name} is in {count} of them. Leave it in one.")
-    for name, one in settings.items():
+    for name, group in settings.items():
         known = [*components, *(other for other in settings if other != name)]
-        for member in one.members:
+        for member in group.members:
             if member not in known:
                 place = f"groups.{name}.members: {member}"
                 mistakes.append(unknown(place, member, known))
     if mistakes:
         return None
-    first = {member: name for name, one in settings.items() for member in one.members}
-    own: dict[str, None] = {}  # components and groups that step with the run, in order
+    first = {member: name for name, group in settings.items() for member in group.members}
+    steppers: dict[str, None] = {}  # components and groups that step with the run, in order
     for name in components:
         top = name
         while top in first:
             top = first[top]
-        own[top] = None
-    order = list(file.order) or list(own)
-    if sorted(order) != sorted(own):
+        steppers[top] = None
+    order = list(file.order) or list(steppers)
+    if sorted(order) != sorted(steppers):
         mistakes.append(
-            f"scene.order must name every component and group once ({', '.join(own)}); found "
+            f"scene.order must name every component and group once ({', '.join(steppers)}); found "
             f"{', '.join(order)}."
         )
         return None
 
-    def made(name: str) -> CouplingPlan | None:
+    def plan_of(name: str) -> CouplingPlan | None:
         if name not in settings:
             return None
-        one = settings[name]
-        inside = {member: made(member) for member in one.members}
-        return CouplingPlan(name, inside, one.scheme, one.window, one.iteration)
+        group = settings[name]
+        inside = {member: plan_of(member) for member in group.members}
+        return CouplingPlan(name, inside, group.scheme, group.window, group.iteration)
 
-    inside = {name: made(name) for name in order}
+    inside = {name: plan_of(name) for name in order}
     return CouplingPlan("", inside, file.scheme, file.window, file.iteration)
 
 
 def _groups(
     table: Any, components: dict[str, ComponentPlan], mistakes: list[str]
 ) -> dict[str, GroupSettings]:
-    if not isinstance(table, dict) or not all(isinstance(one, dict) for one in table.values()):
+    if not isinstance(table, dict) or not all(isinstance(part, dict) for part in table.values()):
         mistakes.append(f"groups must be tables; found {shown(table)}. Write [groups.NAME].")
         return {}
-    found = {}
-    for name, given in table.items():
-        one, wrong = read(GroupSettings, given, f"groups.{name}")
+    groups = {}
+    for name, keys in table.items():
+        group, wrong = read(GroupSettings, keys, f"groups.{name}")
         mistakes += wrong
         if not NAME.fullmatch(name) or name in components:
             mistakes.append(
                 f"groups: a name must be letters, digits, _ or -, and no component's; found "
                 f"{name!r}. Rename it."
             )
-        if one is not None:
-            found[name] = one
-    _refuse_circles(found, mistakes)
-    return found
+        if group is not None:
+            groups[name] = group
+    _refuse_circles(groups, mistakes)
+    return groups
 
 
 def _refuse_circles(groups: dict[str, GroupSettings], mistakes: list[str]) -> None:
@@ -96,19 +96,19 @@ def refused(
     coupling: CouplingPlan, components: dict[str, ComponentPlan], links: list[Link]
 ) -> list[str]:
     """What the links do not allow of schemes, orders and groups; fields that nobody takes."""
-    ports = {name: (one.takes, one.gives) for name, one in components.items()}
+    ports = {name: (component.takes, component.gives) for name, component in components.items()}
     wrong = plan.mistakes(coupling, Exchange(links, ports))
-    takes = {name: one.takes for name, one in components.items()}
-    unread = [f"{name}." for name, one in components.items() if one.unread]
+    takes = {name: component.takes for name, component in components.items()}
+    unread = [f"{name}." for name, component in components.items() if component.unread]
 
-    def below(one: CouplingPlan) -> Iterator[CouplingPlan]:
-        yield one
-        for inner in one.inner():
+    def below(group: CouplingPlan) -> Iterator[CouplingPlan]:
+        yield group
+        for inner in group.inner():
             yield from below(inner)
 
-    for one in below(coupling):
-        where = f"groups.{one.name}.iteration" if one.name else "iteration"
-        wrong += unknown_fields(one.iteration, takes, where, tuple(unread))
+    for group in below(coupling):
+        where = f"groups.{group.name}.iteration" if group.name else "iteration"
+        wrong += unknown_fields(group.iteration, takes, where, tuple(unread))
     return wrong
 
 
@@ -116,9 +116,9 @@ def begins_wrong(
     components: dict[str, ComponentPlan], links: list[Link], expect: list[Expectation]
 ) -> list[str]:
     """What links and expectations refuse of how components begin, where their kinds can tell."""
-    linked = [name for link in links for one in link.transfers for name in one.ends]
+    linked = [name for link in links for transfer in link.transfers for name in transfer.ends]
     initial: dict[str, Fields] = {}
-    for name in dict.fromkeys([*linked, *(one.component for one in expect)]):
+    for name in dict.fromkeys([*linked, *(expectation.component for expectation in expect)]):
         try:
             initial[name] = components[name].initial()
         except Exception as error:  # of any kind: what it does here is its author's
@@ -130,13 +130,17 @@ def begins_wrong(
 def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> list[str]:
     """Refuse outputs to be recorded that no component gives, or to be drawn that none shows."""
     known = [
-        f"{name}.{port.name}.{one.name}"
+        f"{name}.{port.name}.{field.name}"
         for name, component in components.items()
         for port in component.gives
-        for one in port.fields
+        for field in port.fields
     ]
-    unread = tuple(f"{name}." for name, one in components.items() if one.unread)
-    shown = [f"{name}.{one.name}" for name, part in components.items() for one in part.shows]
+    unread = tuple(f"{name}." for name, component in components.items() if component.unread)
+    shown = [
+        f"{name}.{field.name}"
+        for name, component in components.items()
+        for field in component.shows
+    ]
     asked = (("fields", file.output.fields, known), ("colours", file.output.colours, shown))
 
     def remedy(path: str) -> str:

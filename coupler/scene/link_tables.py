@@ -21,12 +21,12 @@ def read_links(
 
     `wrong` are components with mistakes: of links to them nothing is said.
     """
-    ports = {name: (one.takes, one.gives) for name, one in components.items()}
-    found: list[Link] = []
+    ports = {name: (plan.takes, plan.gives) for name, plan in components.items()}
+    links: list[Link] = []
     known = known_links()
-    for number, given in enumerate(table):
-        kind = str(given.get("kind", ""))
-        lists = [given.get("between", []), given.get("pairs", [])]
+    for number, keys in enumerate(table):
+        kind = str(keys.get("kind", ""))
+        lists = [keys.get("between", []), keys.get("pairs", [])]
         if kind not in known:
             mistakes.append(unknown(f"links.{number}.kind {kind}", kind, known))
         elif not all(map(_is_names, lists)):
@@ -35,7 +35,7 @@ def read_links(
             )
         elif not wrong & set(_named(lists)):
             try:
-                found.append(maker(kind)(number, given, ports))
+                links.append(maker(kind)(number, keys, ports))
             except SceneError as error:
                 mistakes += error.mistakes
             except Exception as error:  # of any kind: what a link does here is its author's
@@ -43,10 +43,10 @@ def read_links(
                 mistakes.append(
                     f"links.{number}: kind {kind} cannot be made from this table ({said})."
                 )
-    for name, count in Counter(link.name for link in found).items():
+    for name, count in Counter(link.name for link in links).items():
         if count > 1:
             mistakes.append(f"links: {count} have the name {name}. Give each its own.")
-    return found
+    return links
 
 
 def _is_names(value: Any) -> bool:
@@ -57,7 +57,7 @@ def _is_names(value: Any) -> bool:
 def _named(value: Any) -> Iterator[str]:
     """Components that stand in a link's lists, whatever else is wrong with them."""
     if isinstance(value, list):
-        for one in value:
-            yield from _named(one)
+        for entry in value:
+            yield from _named(entry)
     elif isinstance(value, str):
         yield value.split(".")[0]

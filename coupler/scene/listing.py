@@ -93,15 +93,15 @@ def print_plan(scene: Scene, console: Console) -> None:
     table = Table(box=None, pad_edge=False)
     for head in ("component", "kind", "threads", "items", "step", "memory", "time"):
         table.add_column(head)
-    for one in scene.components.values():
-        table.add_row(one.name, one.kind, str(one.threads), *_needs(one, file.end))
+    for plan in scene.components.values():
+        table.add_row(plan.name, plan.kind, str(plan.threads), *_needs(plan, file.end))
     console.print(table)
     for note in unread_notes(scene):
         console.print(note)
-    for one in (one for one in scene.components.values() if not one.unread):
-        console.print(f"{one.name} takes {_names(one.takes)}; gives {_names(one.gives)}")
-        for note in one.planned.notes if one.planned else ():
-            console.print(f"note of {one.name}: {note}")
+    for plan in (plan for plan in scene.components.values() if not plan.unread):
+        console.print(f"{plan.name} takes {_names(plan.takes)}; gives {_names(plan.gives)}")
+        for note in plan.planned.notes if plan.planned else ():
+            console.print(f"note of {plan.name}: {note}")
     for link in scene.links:
         for one_way in link.transfers:
             console.print(f"link {link.name}: {one_way.giver} -> {one_way.taker}")
@@ -121,9 +121,9 @@ def beyond(expected: Expectation, end: float) -> str:
 def unread_notes(scene: Scene) -> list[str]:
     """What was not checked of a scene, as it is code that was not imported."""
     names: dict[str, list[str]] = {}
-    for one in scene.components.values():
-        if one.unread:
-            names.setdefault(one.kind, []).append(one.name)
+    for plan in scene.components.values():
+        if plan.unread:
+            names.setdefault(plan.kind, []).append(plan.name)
     return [unread_note(of_kind, kind) for kind, of_kind in names.items()]
 
 
@@ -138,8 +138,12 @@ def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:
     exchange = scene.exchange()
     where = f"group {plan.name}" if plan.name else "run"
     members = ", ".join(plan.members)
-    plans = {name: one.planned for name, one in scene.components.items()}
-    steps = {n: one.dt for n, one in plans.items() if one is not None and math.isfinite(one.dt)}
+    plans = {name: component.planned for name, component in scene.components.items()}
+    steps = {
+        n: planned.dt
+        for n, planned in plans.items()
+        if planned is not None and math.isfinite(planned.dt)
+    }
     joined = {name for ends in plan.transfers(exchange).values() for name in ends}
     equal = plan.equal(exchange)
     known = [steps[name] for name in joined or set(plan.members) if name in steps]
@@ -163,14 +167,14 @@ def _processes(scene: Scene) -> str:
     return f"{count} process" + ("es, the coupler one of them" if count > 1 else "")
 
 
-def _needs(one: ComponentPlan, end: float) -> tuple[str, str, str, str]:
-    plan = one.planned
+def _needs(component: ComponentPlan, end: float) -> tuple[str, str, str, str]:
+    plan = component.planned
     if plan is None:
         return "", "", "", ""
     memory = f"{plan.items * plan.bytes_per_item / 1e6:.0f} MB" if plan.bytes_per_item else ""
     if math.isinf(plan.dt):
         return f"{plan.items}", "any", memory, ""
-    seconds = float(plan.items) * math.ceil(end / plan.dt) / (plan.rate * one.threads)
+    seconds = float(plan.items) * math.ceil(end / plan.dt) / (plan.rate * component.threads)
     return f"{plan.items}", f"{plan.dt:.2g} s", memory, f"{seconds:.0f} s"
 
 

@@ -28,13 +28,17 @@ def refused_times(
     """Sentences about windows and steps without number, and times that a recording lacks."""
     if wrong := list(_countless(file, components)):
         return wrong
-    ports = {name: (one.takes, one.gives) for name, one in components.items()}
+    ports = {name: (component.takes, component.gives) for name, component in components.items()}
     equal = coupling.equal(Exchange(links, ports))
     for name in coupling.members:
-        one = components.get(name)
-        if one is not None and one.planned is not None and one.planned.times is not None:
+        component = components.get(name)
+        if (
+            component is not None
+            and component.planned is not None
+            and component.planned.times is not None
+        ):
             window = "auto" if equal else file.window
-            wrong += _missing(one, one.planned.times, file.end, window)
+            wrong += _missing(component, component.planned.times, file.end, window)
     return wrong
 
 
@@ -44,8 +48,8 @@ def _countless(file: SceneFile, components: Mapping[str, ComponentPlan]) -> Iter
             f"scene.end must be at most {MOST:.0e} windows; found {file.end:g} s, of windows of "
             f"{file.window:g} s. End earlier, or lengthen scene.window."
         )
-    for name, one in components.items():
-        plan = one.planned
+    for name, component in components.items():
+        plan = component.planned
         if plan is None:
             continue
         if not plan.dt > 0.0 or file.end / plan.dt > MOST:
@@ -56,9 +60,11 @@ def _countless(file: SceneFile, components: Mapping[str, ComponentPlan]) -> Iter
             )
 
 
-def _missing(one: ComponentPlan, times: Array, end: float, window: float | str) -> Iterator[str]:
+def _missing(
+    component: ComponentPlan, times: Array, end: float, window: float | str
+) -> Iterator[str]:
     """Ends of windows at which a component cannot give."""
-    where = f"components.{one.name}: a replay can give at the times of its recording only"
+    where = f"components.{component.name}: a replay can give at the times of its recording only"
     last = float(times[-1]) if len(times) else 0.0
     if end > last * (1.0 + ROUNDING):
         yield (
@@ -75,24 +81,24 @@ def _missing(one: ComponentPlan, times: Array, end: float, window: float | str) 
             lacking = np.abs(times[place] - ends) > ROUNDING * np.maximum(windows.tick, ends)
             if not lacking.any():
                 return
-            found = f"none at {ends[lacking][0]:g} s"
+            count = f"none at {ends[lacking][0]:g} s"
         else:
-            found = f"{max(0, len(times) - 1)} windows"
+            count = f"{max(0, len(times) - 1)} windows"
         usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
         yield (
             f"{where}; this run has {windows.end} windows of {windows.tick:g} s, the recording "
-            f"{found} (of {usual:g} s). Set scene.window to that of the recorded run, or replay "
+            f"{count} (of {usual:g} s). Set scene.window to that of the recorded run, or replay "
             "one of this scene."
         )
 
 
 def require_memory(scene: Scene, elsewhere: Iterable[str] = ()) -> None:
     """Refuse a scene whose components, those that start here, need more memory than there is."""
-    plans = {name: one.planned for name, one in scene.components.items() if name not in elsewhere}
+    plans = {name: plan.planned for name, plan in scene.components.items() if name not in elsewhere}
     needs = {
-        name: (float(one.items), float(one.items) * one.bytes_per_item)
-        for name, one in plans.items()
-        if one is not None
+        name: (float(plan.items), float(plan.items) * plan.bytes_per_item)
+        for name, plan in plans.items()
+        if plan is not None
     }
     whole, there = sum(need for _, need in needs.values()), machine_memory()
     if whole <= there:
@@ -109,10 +115,10 @@ def require_memory(scene: Scene, elsewhere: Iterable[str] = ()) -> None:
 
 def machine_memory() -> float:
     """Memory of this machine, or the part of it that this process may use [bytes]."""
-    found = [float(psutil.virtual_memory().total)]
+    sizes = [float(psutil.virtual_memory().total)]
     for limit in LIMITS:
         try:
-            found.append(float(Path(limit).read_text()))
+            sizes.append(float(Path(limit).read_text()))
         except (OSError, ValueError):  # none of this version of control groups, or "max"
             continue
-    return min(found)
+    return min(sizes)

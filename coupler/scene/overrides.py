@@ -78,7 +78,7 @@ def _may_be_made(heads: list[str]) -> bool:
 def tell_repeated(settings: Iterable[str], swaps: Iterable[str]) -> None:
     """Print which paths, and components to be swapped, are given more than once."""
     for option, values in (("--set", settings), ("--swap", swaps)):
-        for path, count in Counter(one.partition("=")[0] for one in values).items():
+        for path, count in Counter(setting.partition("=")[0] for setting in values).items():
             if count > 1:
                 said = f"{option} {shown(path)} is given {count} times: the last one counts"
                 print(f"quintet: {said}", file=sys.stderr)
@@ -106,9 +106,9 @@ def plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, Mapping):
-        return {str(key): plain(one) for key, one in value.items()}
+        return {str(key): plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [plain(one) for one in value]
+        return [plain(entry) for entry in value]
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 

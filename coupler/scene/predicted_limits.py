@@ -14,30 +14,30 @@ DECISIVE = ("components", "links", "groups", "window", "scheme", "iteration")
 
 def beyond_limits(scene: Scene) -> dict[str, str]:
     """Say by name which limits of a scene it runs beyond: those whose settings are the scene's."""
-    found = {}
+    beyond = {}
     plain = parse(scene.path)
     tables = plain.get("stability")
     for table in tables if isinstance(tables, list) else ():
-        one, _ = read(LimitTable, table, "stability") if isinstance(table, dict) else (None, [])
+        limit, _ = read(LimitTable, table, "stability") if isinstance(table, dict) else (None, [])
         if (
-            one is None
-            or not isinstance(one.parameter, str)
-            or not _same(scene.resolved, plain, one)
+            limit is None
+            or not isinstance(limit.parameter, str)
+            or not _same(scene.resolved, plain, limit)
         ):
             continue
-        value, wrong = value_at(scene.resolved, one.parameter)
-        predicted = _predicted(scene.resolved, one)
+        value, wrong = value_at(scene.resolved, limit.parameter)
+        predicted = _predicted(scene.resolved, limit)
         if wrong or predicted is None or not isinstance(value, (int, float)):
             continue
-        margin = one.accuracy * abs(predicted)
-        past = value - predicted if one.to > one.from_ else predicted - value
+        margin = limit.accuracy * abs(predicted)
+        past = value - predicted if limit.to > limit.from_ else predicted - value
         if past > margin:
-            side = "at most" if one.to > one.from_ else "at least"
-            found[one.name or one.parameter] = (
-                f"{one.parameter} must be {side} {predicted:.4g} for a stable run ({one.source}); "
-                f"found {shown(value)}. Set it there."
+            side = "at most" if limit.to > limit.from_ else "at least"
+            beyond[limit.name or limit.parameter] = (
+                f"{limit.parameter} must be {side} {predicted:.4g} for a stable run "
+                f"({limit.source}); found {shown(value)}. Set it there."
             )
-    return found
+    return beyond
 
 
 def _same(resolved: dict[str, Any], plain: dict[str, Any], limit: LimitTable) -> bool:
@@ -46,10 +46,10 @@ def _same(resolved: dict[str, Any], plain: dict[str, Any], limit: LimitTable) ->
     That is the scene as its file has it, with the limit's settings.
     """
     varied = {limit.parameter, *([limit.against.parameter] if limit.against else [])}
-    expected, found = leaves(plain) | limit.settings, leaves(resolved)
+    expected, actual = leaves(plain) | limit.settings, leaves(resolved)
     return all(
-        found.get(path) == expected.get(path)
-        for path in found.keys() | expected.keys()
+        actual.get(path) == expected.get(path)
+        for path in actual.keys() | expected.keys()
         if path.partition(".")[0] in DECISIVE and path not in varied
     )
 

@@ -241,14 +241,14 @@ class Scene:
     def exchange(self) -> Exchange:
         """The links of the scene, ready to be joined in a run."""
         return Exchange(
-            self.links, {n: (one.takes, one.gives) for n, one in self.components.items()}
+            self.links, {n: (plan.takes, plan.gives) for n, plan in self.components.items()}
         )
 
     def asked_outputs(self) -> dict[str, set[str]]:
         """Outputs of each component that are wanted although no link reads them."""
         asked: dict[str, set[str]] = {name: set() for name in self.components}
-        for one in self.expect:
-            asked[one.component].add(one.field)
+        for expectation in self.expect:
+            asked[expectation.component].add(expectation.field)
         for path in self.file.output.fields:
             name, _, key = path.partition(".")
             asked[name].add(key)
@@ -264,7 +264,7 @@ def import_folders(path: Path, components: Any) -> list[str]:
 def kinds_of(components: Any) -> list[str]:
     """Kinds in the tables of the components of a scene, as they stand there."""
     tables = components.values() if isinstance(components, dict) else ()
-    return [str(one.get("kind", "")) for one in tables if isinstance(one, dict)]
+    return [str(keys.get("kind", "")) for keys in tables if isinstance(keys, dict)]
 
 
 def wrong_name(name: str) -> list[str]:

@@ -47,8 +47,8 @@ def put_swap(table: Table, swap: str) -> list[str]:
     return []
 
 
-def _kind_of(given: Any) -> str:
-    return shown(given.get("kind")) if isinstance(given, dict) else "its own"
+def _kind_of(keys: Any) -> str:
+    return shown(keys.get("kind")) if isinstance(keys, dict) else "its own"
 
 
 def _recorded(table: Table, name: str, source: str) -> Table:
@@ -69,12 +69,12 @@ def latest_run(scene: str) -> Path:
     Without any it is the folder that the first run would have.
     """
     first = Path("runs") / scene
-    found = {1: first} if (first / RECORDING).is_file() else {}
+    runs = {1: first} if (first / RECORDING).is_file() else {}
     for path in Path("runs").glob("*") if Path("runs").is_dir() else ():
         number = re.fullmatch(rf"{re.escape(scene)}-([1-9][0-9]{{0,8}})", path.name)
         if number and (path / RECORDING).is_file() and _is_of(path, scene):
-            found[int(number[1])] = path
-    return found[max(found)] if found else first
+            runs[int(number[1])] = path
+    return runs[max(runs)] if runs else first
 
 
 def _is_of(folder: Path, scene: str) -> bool:

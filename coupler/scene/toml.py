@@ -41,17 +41,17 @@ def read_file(path: Path) -> dict[str, Any]:
 
 def parsed(text: str) -> dict[str, Any]:
     """Parse TOML whose keys are neither too deep nor too long to be read in good time."""
-    if found := DEEP.search(text) or LONG.search(text):
+    if match := DEEP.search(text) or LONG.search(text):
         raise ValueError(
             f"keys must have at most {DEEPEST} parts of {LONGEST_KEY} characters; found "
-            f"{shown(found[0])}"
+            f"{shown(match[0])}"
         )
     return tomllib.loads(text)
 
 
 def too_many(table: dict[str, Any]) -> list[str]:
     """Sentences about tables of a scene that are more than any run could have."""
-    counts = {key: len(one) for key, one in table.items() if isinstance(one, (dict, list))}
+    counts = {key: len(entry) for key, entry in table.items() if isinstance(entry, (dict, list))}
     return [
         f"{key} must be at most {MOST_TABLES}; found {count}. Leave some out."
         for key, count in counts.items()

@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable, Iterable
 
 
-def middle(one: float, other: float, log: bool) -> float:
+def middle(first: float, other: float, log: bool) -> float:
     """Arithmetic or geometric mean."""
-    return math.sqrt(one * other) if log else 0.5 * (one + other)
+    return math.sqrt(first * other) if log else 0.5 * (first + other)
 
 
 def bisect(

@@ -43,11 +43,11 @@ class ChildRun:
     force: bool = False  # replace former runs
 
     @classmethod
-    def of(cls, given: argparse.Namespace, stop: StopRequest, transport: str = "") -> "ChildRun":
+    def of(cls, options: argparse.Namespace, stop: StopRequest, transport: str = "") -> "ChildRun":
         """Take scene and overrides from the command line; its transport takes precedence."""
-        asked = (given.scene, given.preset, given.settings, given.swap)
-        again = given.force or getattr(given, "keep", False)
-        return cls(*asked, given.transport or transport, stop, again)
+        asked = (options.scene, options.preset, options.settings, options.swap)
+        again = options.force or getattr(options, "keep", False)
+        return cls(*asked, options.transport or transport, stop, again)
 
     def run(self, settings: dict[str, Any], folder: Path, seconds: float = FOREVER) -> Any:
         """Run with these settings; return the results, of status stalled if it timed out."""
@@ -77,15 +77,15 @@ class ChildRun:
         """
         if not (folder / NAME).is_file():
             return None
-        found = results(folder)
+        run = results(folder)
         asked = (self.scene, self.preset, self._overrides(settings), self.swaps, self.transport)
         try:
             scene = load(*asked)
         except SceneError:  # the scene has changed, and refuses now what it took before
             return None
         same = parse(folder / SCENE) == scene.resolved
-        done = same and found.get("status") == "done" and found.get("machine") == machine()
-        return found if done else None
+        done = same and run.get("status") == "done" and run.get("machine") == machine()
+        return run if done else None
 
     def _overrides(self, settings: dict[str, Any]) -> list[str]:
         return [*self.settings, *assignments(settings)]
@@ -115,12 +115,12 @@ class ChildRun:
 def _results(folder: Path, status: int, stalled: bool) -> Any:
     """Read the results of a run; without any it failed."""
     if (folder / NAME).is_file():
-        found = results(folder)
+        run = results(folder)
     else:
         lines = tail(folder / LOG)
         state = "refused" if status == BAD else "failed"
         cause = " ".join(lines[-3:])
         if status != BAD:
             cause = f"the run ended with status {status} and left no results: {cause}"
-        found = {"status": state, "windows": 0, "time": 0.0, "fault": {"cause": cause}}
-    return found | {"status": "stalled"} if stalled else found
+        run = {"status": state, "windows": 0, "time": 0.0, "fault": {"cause": cause}}
+    return run | {"status": "stalled"} if stalled else run

@@ -28,32 +28,37 @@ class Verdict:
     time: float | None = None  # s
 
 
-def judge(limit: LimitTable, found: dict[str, Any], folder: Path) -> Verdict:
+def judge(limit: LimitTable, run: dict[str, Any], folder: Path) -> Verdict:
     """Judge a run by its results, its ledger and its recording."""
-    breaches = list(_breaches(limit, found, folder))
+    breaches = list(_breaches(limit, run, folder))
     if breaches:
         # A failure is known at the end of a window; a violated invariant within it came first.
-        time, broke, how = min(breaches, key=lambda one: (one[0], one[1] == "failed"))
+        time, broke, how = min(breaches, key=lambda breach: (breach[0], breach[1] == "failed"))
         return Verdict("unstable", broke, how, time)
-    for one in found.get("expect", []):
-        if one["name"] in limit.expectation and not one["met"]:
-            value = "no value" if one["value"] is None else f"{one['value']:.4g} {one['unit']}"
-            how = f"{one['name']} is {value}, not {one['reference']:.4g} within {one['within']:.4g}"
-            return Verdict("degraded", "expectation", how, found["time"])
+    for outcome in run.get("expect", []):
+        if outcome["name"] in limit.expectation and not outcome["met"]:
+            value = (
+                "no value"
+                if outcome["value"] is None
+                else f"{outcome['value']:.4g} {outcome['unit']}"
+            )
+            how = f"{outcome['name']} is {value}, not {outcome['reference']:.4g} within "
+            how += f"{outcome['within']:.4g}"
+            return Verdict("degraded", "expectation", how, run["time"])
     return Verdict("stable")
 
 
-def _breaches(limit: LimitTable, found: dict[str, Any], folder: Path) -> Iterator[Breach]:
-    if found["status"] == "stalled":
-        yield found.get("time", 0.0), "failed", "it takes too long: its steps became too small"
-    elif found["status"] != "done":
-        yield found.get("time", 0.0), "failed", found.get("fault", {}).get("cause", "no results")
+def _breaches(limit: LimitTable, run: dict[str, Any], folder: Path) -> Iterator[Breach]:
+    if run["status"] == "stalled":
+        yield run.get("time", 0.0), "failed", "it takes too long: its steps became too small"
+    elif run["status"] != "done":
+        yield run.get("time", 0.0), "failed", run.get("fault", {}).get("cause", "no results")
     ledger = folder / "ledger.csv"
     if ledger.is_file():
         with open(ledger, newline="") as file:
             rows = [row for row in csv.DictReader(file) if None not in row.values()]
         if limit.energy:
-            if found["status"] == "done" and not any(energies(rows).values()):
+            if run["status"] == "done" and not any(energies(rows).values()):
                 raise SceneError(
                     "stability: energy must be given by the totals of a component; all are 0 J at "
                     "all times. Give it totals(), or use bounds instead."
@@ -67,7 +72,7 @@ def _breaches(limit: LimitTable, found: dict[str, Any], folder: Path) -> Iterato
                 for bounds in limit.bounds:
                     yield from _bounds(bounds, recording)
         except SceneError as error:  # a process that died left it half written
-            yield found.get("time", 0.0), "failed", str(error)
+            yield run.get("time", 0.0), "failed", str(error)
 
 
 def energies(rows: list[dict[str, str]]) -> dict[float, float]:

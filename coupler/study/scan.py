@@ -70,22 +70,22 @@ class Runs:
         return row
 
 
-def run_scan(given: argparse.Namespace) -> int:
+def run_scan(options: argparse.Namespace) -> int:
     """Run the scans of a scene, or of all scenes; return the exit status: 1 if a row is silent."""
-    if given.all == (given.scene is not None):
+    if options.all == (options.scene is not None):
         raise SceneError("scan needs either a scene or --all. Give one of them.")
-    if not given.all and given.quick:
+    if not options.all and options.quick:
         raise SceneError("--quick belongs to --all. Give --preset quick in its place.")
-    wanted = JsonFile(given.json, ("scene", "scans"))
-    if not given.all:
-        content, status = _scan_scene(given)
+    wanted = JsonFile(options.json, ("scene", "scans"))
+    if not options.all:
+        content, status = _scan_scene(options)
         wanted.write(content)
         return status
-    _refuse_single(given)
+    _refuse_single(options)
     contents, statuses = [], []
-    for name, preset in _scenes_with_scans(given.quick):
+    for name, preset in _scenes_with_scans(options.quick):
         print(f"{name}{f' ({preset})' if preset else ''}", flush=True)
-        asked = argparse.Namespace(**{**vars(given), "scene": name, "preset": preset})
+        asked = argparse.Namespace(**{**vars(options), "scene": name, "preset": preset})
         content, status = _scan_scene(asked)
         contents.append(content)
         statuses.append(status)
@@ -95,11 +95,11 @@ def run_scan(given: argparse.Namespace) -> int:
     return max(statuses, default=results.DONE)
 
 
-def _refuse_single(given: argparse.Namespace) -> None:
+def _refuse_single(options: argparse.Namespace) -> None:
     """Refuse what belongs to one scene where all are run."""
-    options = {"--preset": given.preset, "--set": given.settings, "--swap": given.swap}
-    options |= {"--name": given.name, "--out": given.out}
-    wrong = [option for option, value in options.items() if value]
+    refused = {"--preset": options.preset, "--set": options.settings, "--swap": options.swap}
+    refused |= {"--name": options.name, "--out": options.out}
+    wrong = [option for option, value in refused.items() if value]
     if wrong:
         raise SceneError(f"scan --all takes no {', '.join(wrong)}. Remove it, or name a scene.")
 
@@ -114,17 +114,17 @@ def _scenes_with_scans(quick: bool) -> list[tuple[str, str]]:
     ]
 
 
-def _scan_scene(given: argparse.Namespace) -> tuple[Row, int]:
+def _scan_scene(options: argparse.Namespace) -> tuple[Row, int]:
     """Run the scans of one scene in its folder; return what was found and the exit status."""
-    asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
+    asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
-    scans = _chosen(scene, variants.scan, given.name)
+    scans = _chosen(scene, variants.scan, options.name)
     name = scene.file.name
-    with begin_series("scan", name, (NAME,), given.out, given.force, given.keep) as place:
-        runs = [Path(one.folder) / one.run_folder(k) for one in scans for k in _numbers(one)]
+    with begin_series("scan", name, (NAME,), options.out, options.force, options.keep) as place:
+        runs = [Path(scan.folder) / scan.run_folder(k) for scan in scans for k in _numbers(scan)]
         place.check_runs(str(run) for run in runs)
         discard_former(place.path)
-        return _run_all(given, name, scans, place.path)
+        return _run_all(options, name, scans, place.path)
 
 
 def _numbers(scan: Scan) -> range:
@@ -144,26 +144,26 @@ def _chosen(scene: Scene, scans: list[Scan], name: str) -> list[Scan]:
 
 
 def _run_all(
-    given: argparse.Namespace, scene: str, scans: list[Scan], folder: Path
+    options: argparse.Namespace, scene: str, scans: list[Scan], folder: Path
 ) -> tuple[Row, int]:
     """Run scans in a folder; return what was found and the exit status."""
-    stop, found, interrupted = StopRequest(), [], False
-    child = ChildRun.of(given, stop, TRANSPORT)
+    stop, scan_rows, interrupted = StopRequest(), [], False
+    child = ChildRun.of(options, stop, TRANSPORT)
     with stop.listening():
         for scan in scans:
-            runs, rows = Runs(scan, child, folder / scan.folder, given.keep), []
+            runs, rows = Runs(scan, child, folder / scan.folder, options.keep), []
             for number in _numbers(scan):
                 row = None if interrupted else runs.row(number)
                 interrupted = row is None
                 rows += [row] if row else []
-            found.append(summary(scan, rows))
-    content = {"scene": scene, "scans": found, "machine": results.machine()}
+            scan_rows.append(summary(scan, rows))
+    content = {"scene": scene, "scans": scan_rows, "machine": results.machine()}
     write_whole(folder / NAME, json.dumps(content, indent=2))
-    for scan_summary in found:
+    for scan_summary in scan_rows:
         console().print(table(scan_summary))
     if interrupted:
         return content, results.INTERRUPTED
-    silent = any(row["verdict"] == SILENT for one in found for row in one["rows"])
+    silent = any(row["verdict"] == SILENT for scan_row in scan_rows for row in scan_row["rows"])
     return content, results.UNMET if silent else results.DONE
 
 
@@ -194,7 +194,7 @@ def row_of(scan: Scan, number: int, result: Row) -> Row:
         "why": why,
         "error": error,
         "errors": errors,
-        "values": {name: one["value"] for name, one in outcomes.items() if name in errors},
+        "values": {name: outcome["value"] for name, outcome in outcomes.items() if name in errors},
         "verdict": verdict(status, error),
         "wall": result.get("timing", {}).get("wall"),
     }
@@ -245,11 +245,11 @@ def _percent(error: float | None) -> str:
 def table(scan: Row) -> Table:
     """One line for each value, one column for each expectation's error."""
     names = scan["judged"]
-    made = Table(box=None, pad_edge=False, title=scan["name"], title_justify="left")
+    screen_table = Table(box=None, pad_edge=False, title=scan["name"], title_justify="left")
     for head in (scan["parameter"], "status", *names, "verdict", "why"):
-        made.add_column(head, justify="right" if head in names else "left", overflow="fold")
+        screen_table.add_column(head, justify="right" if head in names else "left", overflow="fold")
     for row in scan["rows"]:
         errors = [_percent(row["errors"][name]) for name in names]
         status = f"{row['status']} {row['state']}"
-        made.add_row(shown(row["value"]), status, *errors, row["verdict"], row["why"])
-    return made
+        screen_table.add_row(shown(row["value"]), status, *errors, row["verdict"], row["why"])
+    return screen_table

@@ -54,40 +54,40 @@ class Search:
         """Run with a value, once; return the verdict."""
         if value not in self.verdicts:
             folder = self.folder / f"{value:.6g}"
-            found = self.child.run(self.limit.settings(value, self.other), folder, self.time_limit)
-            if found["status"] == "interrupted" or self.child.stop():
+            run = self.child.run(self.limit.settings(value, self.other), folder, self.time_limit)
+            if run["status"] == "interrupted" or self.child.stop():
                 raise Interrupted
             if self.time_limit == FOREVER:
-                self.time_limit = MARGIN + SLOWEST * found.get("timing", {}).get("wall", 0.0)
-            verdict = self.verdicts[value] = judge(self.limit.table, found, folder)
+                self.time_limit = MARGIN + SLOWEST * run.get("timing", {}).get("wall", 0.0)
+            verdict = self.verdicts[value] = judge(self.limit.table, run, folder)
             reason = f" ({verdict.broke}: {verdict.how})" if verdict.broke else ""
             print(f"{self.limit.name} = {value:.6g}: {verdict.state}{reason}", flush=True)
         return self.verdicts[value]
 
     def boundary(self, *accepted: str) -> tuple[float, float] | None:
         """Bisect between the accepted states and the others."""
-        one = self.limit.table
-        known = sorted(self.verdicts, reverse=one.from_ > one.to)
-        return bisect(known, lambda v: self(v).state in accepted, one.log, one.accuracy)
+        limit = self.limit.table
+        known = sorted(self.verdicts, reverse=limit.from_ > limit.to)
+        return bisect(known, lambda v: self(v).state in accepted, limit.log, limit.accuracy)
 
 
-def run_stability(given: argparse.Namespace) -> int:
+def run_stability(options: argparse.Namespace) -> int:
     """Find every limit of the scene; print them, and write them as JSON."""
-    asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
+    asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
-    wanted = JsonFile(given.json, ("scene", "limits"))
+    wanted = JsonFile(options.json, ("scene", "limits"))
     if not variants.stability:
         raise SceneError(
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
         )
     name = scene.file.name
-    with begin_series("stability", name, (NAME,), given.out, given.force) as place:
+    with begin_series("stability", name, (NAME,), options.out, options.force) as place:
         discard_former(place.path)
-        return _find_all(given, name, variants.stability, place.path, wanted)
+        return _find_all(options, name, variants.stability, place.path, wanted)
 
 
 def _find_all(
-    given: argparse.Namespace, scene: str, searched: list[Limit], folder: Path, wanted: JsonFile
+    options: argparse.Namespace, scene: str, searched: list[Limit], folder: Path, wanted: JsonFile
 ) -> int:
     """Find every limit in a folder; return the exit status."""
     stop, limits, interrupted = StopRequest(), [], False
@@ -97,17 +97,17 @@ def _find_all(
                 if not interrupted:
                     place = folder / limit.folder
                     place = place if other is None else place / folder_name(f"{other:.6g}")
-                    child = ChildRun.of(given, stop, limit.table.transport)
+                    child = ChildRun.of(options, stop, limit.table.transport)
                     search = Search(limit, other, child, place)
                     interrupted = not find_limit(search)
                     limits.append(summary(search, limit.predicted(number)))
-    found = {"scene": scene, "limits": limits, "machine": results.machine()}
-    write_whole(folder / NAME, json.dumps(found, indent=2))
-    wanted.write(found)
+    content = {"scene": scene, "limits": limits, "machine": results.machine()}
+    write_whole(folder / NAME, json.dumps(content, indent=2))
+    wanted.write(content)
     print_limits(limits, console())
     if interrupted:
         return results.INTERRUPTED
-    return results.DONE if all(one["found"] is not None for one in limits) else results.UNMET
+    return results.DONE if all(limit["found"] is not None for limit in limits) else results.UNMET
 
 
 def find_limit(search: Search) -> bool:
@@ -125,42 +125,42 @@ def find_limit(search: Search) -> bool:
 
 def summary(search: Search, predicted: float | None) -> Found:
     """Summarize a limit from the runs that were made."""
-    limit, one = search.limit, search.limit.table
+    limit, keys = search.limit, search.limit.table
     edges = {
         "unstable": _known_boundary(search, "stable", "degraded"),
         "degraded": _known_boundary(search, "stable"),
     }
     state = next((state for state, edge in edges.items() if edge), None)
     edge = edges[state] if state else None
-    found = middle(*edge, one.log) if edge else None
-    verdict = search.verdicts.get(edge[1] if edge else one.from_, Verdict("stable"))
+    boundary = middle(*edge, keys.log) if edge else None
+    verdict = search.verdicts.get(edge[1] if edge else keys.from_, Verdict("stable"))
     degraded = edges["degraded"] if state == "unstable" else None
     was_degraded = degraded is not None and search.verdicts[degraded[1]].state == "degraded"
-    runs = [{"value": value, **asdict(one)} for value, one in sorted(search.verdicts.items())]
+    runs = [{"value": value, **asdict(each)} for value, each in sorted(search.verdicts.items())]
     return {
         "name": limit.name,
-        "parameter": one.parameter if isinstance(one.parameter, str) else list(one.parameter),
-        "against": {one.against.parameter: search.other} if one.against else None,
+        "parameter": keys.parameter if isinstance(keys.parameter, str) else list(keys.parameter),
+        "against": {keys.against.parameter: search.other} if keys.against else None,
         "predicted": predicted,
-        "found": found,
-        "ratio": found / predicted if found is not None and predicted else None,
+        "found": boundary,
+        "ratio": boundary / predicted if boundary is not None and predicted else None,
         "holds": edge[0] if edge else None,
         "breaks": edge[1] if edge else None,
         "state": state,
         "broke": verdict.broke or None,
         "how": verdict.how or None,
-        "degraded": middle(*degraded, one.log) if degraded and was_degraded else None,
-        "range": [one.from_, one.to],
-        "source": one.source,
+        "degraded": middle(*degraded, keys.log) if degraded and was_degraded else None,
+        "range": [keys.from_, keys.to],
+        "source": keys.source,
         "runs": runs,
     }
 
 
 def _known_boundary(search: Search, *accepted: str) -> tuple[float, float] | None:
     """Return the last accepted value and the first that is not, of those that were run."""
-    one = search.limit.table
-    known = sorted(search.verdicts, reverse=one.from_ > one.to)
-    return bisect(known, lambda v: search.verdicts[v].state in accepted, one.log, float("inf"))
+    limit = search.limit.table
+    known = sorted(search.verdicts, reverse=limit.from_ > limit.to)
+    return bisect(known, lambda v: search.verdicts[v].state in accepted, limit.log, float("inf"))
 
 
 def print_limits(limits: list[Found], screen: Console) -> None:

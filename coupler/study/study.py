@@ -26,22 +26,24 @@ NAME, PICTURE = "study.json", "study.png"
 Row = dict[str, Any]
 
 
-def run_study(given: argparse.Namespace) -> int:
+def run_study(options: argparse.Namespace) -> int:
     """Run all refinements, compare them, and recommend the cheapest that meets all expectations."""
-    asked = (given.scene, given.preset, given.settings, given.swap, given.transport)
+    asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
-    wanted = JsonFile(given.json, ("scene", "rows"))
+    wanted = JsonFile(options.json, ("scene", "rows"))
     if not variants.study:
         raise SceneError(f"{scene.path.name}: there is no [[study]]. Add one for every refinement.")
     files = (NAME, PICTURE)
-    with begin_series("study", scene.file.name, files, given.out, given.force, given.keep) as place:
+    with begin_series(
+        "study", scene.file.name, files, options.out, options.force, options.keep
+    ) as place:
         place.check_runs(refinement.folder for refinement in variants.study)
         discard_former(place.path)
-        return _run_all(given, scene.file.name, variants.study, place.path, wanted)
+        return _run_all(options, scene.file.name, variants.study, place.path, wanted)
 
 
 def _run_all(
-    given: argparse.Namespace,
+    options: argparse.Namespace,
     scene: str,
     refinements: list[Refinement],
     folder: Path,
@@ -49,51 +51,52 @@ def _run_all(
 ) -> int:
     """Run all refinements in a folder; return the exit status."""
     stop, rows = StopRequest(), []
-    child = ChildRun.of(given, stop)
+    child = ChildRun.of(options, stop)
     with stop.listening():
         for refinement in refinements:
             place = folder / refinement.folder
-            kept = child.earlier(refinement.settings, place) if given.keep else None
-            print(f"{refinement.label}: {'kept' if kept else 'running'} in {place}", flush=True)
-            rows.append(row_of(refinement, kept or child.run(refinement.settings, place)))
+            earlier = child.earlier(refinement.settings, place) if options.keep else None
+            print(f"{refinement.label}: {'kept' if earlier else 'running'} in {place}", flush=True)
+            rows.append(row_of(refinement, earlier or child.run(refinement.settings, place)))
             print(f"{refinement.label}: {rows[-1]['status']}, {rows[-1]['wall']:.1f} s", flush=True)
             if rows[-1]["status"] == "interrupted" or stop():
                 break
-    found = conclude(scene, rows)
-    write_whole(folder / NAME, json.dumps(found, indent=2))
-    wanted.write(found)
-    print_summary(found, folder / PICTURE)
-    return status_of(found, len(refinements))
+    summary = conclude(scene, rows)
+    write_whole(folder / NAME, json.dumps(summary, indent=2))
+    wanted.write(summary)
+    print_summary(summary, folder / PICTURE)
+    return status_of(summary, len(refinements))
 
 
-def row_of(refinement: Refinement, found: Row) -> Row:
+def row_of(refinement: Refinement, run: Row) -> Row:
     """Summarize the run of a refinement; times in s, memory in bytes."""
-    timing = found.get("timing", {})
+    timing = run.get("timing", {})
     components = timing.get("components", {})
     wall = timing.get("wall", 0.0)
-    expected = found.get("expect", [])
+    expected = run.get("expect", [])
     return {
         "label": refinement.label,
         "settings": refinement.settings,
         "size": refinement.size,
-        "status": found["status"],
-        "met": bool(expected) and all(one["met"] or not one["required"] for one in expected),
-        "errors": {one["name"]: error_of(one) for one in expected},
-        "values": {one["name"]: one["value"] for one in expected},
-        "within": {one["name"]: one["within"] for one in expected},
-        "units": {one["name"]: one["unit"] for one in expected},
+        "status": run["status"],
+        "met": bool(expected)
+        and all(outcome["met"] or not outcome["required"] for outcome in expected),
+        "errors": {outcome["name"]: error_of(outcome) for outcome in expected},
+        "values": {outcome["name"]: outcome["value"] for outcome in expected},
+        "within": {outcome["name"]: outcome["within"] for outcome in expected},
+        "units": {outcome["name"]: outcome["unit"] for outcome in expected},
         "wall": wall,
-        "cpu": sum(one["cpu"] for one in components.values()),
+        "cpu": sum(times["cpu"] for times in components.values()),
         "memory": timing.get("memory"),
         "overhead": (timing["exchange"] + timing["mapping"]) / wall if wall else None,
-        "items": sum(one["items"] for one in components.values()),
+        "items": sum(times["items"] for times in components.values()),
         "components": components,
     }
 
 
-def error_of(one: Row) -> float | None:
+def error_of(outcome: Row) -> float | None:
     """Distance of a value from its reference; None where the run has no value."""
-    return None if one["value"] is None else abs(one["value"] - one["reference"])
+    return None if outcome["value"] is None else abs(outcome["value"] - outcome["reference"])
 
 
 def conclude(scene: str, rows: list[Row]) -> Row:
@@ -120,31 +123,31 @@ def conclude(scene: str, rows: list[Row]) -> Row:
     }
 
 
-def print_summary(found: Row, picture: Path) -> None:
+def print_summary(summary: Row, picture: Path) -> None:
     """Print the table, the orders and the recommendation; draw the work-precision diagram."""
-    screen, rows = show.console(), found["rows"]
+    screen, rows = show.console(), summary["rows"]
     screen.print(table(rows))
-    for name, order in found["orders"].items():
+    for name, order in summary["orders"].items():
         orders = [f"{order:.2f} by least squares" if order is not None else "no order observed"]
-        if (also := found["richardson"][name]) is not None:
+        if (also := summary["richardson"][name]) is not None:
             orders.append(f"{also:.2f} from the three finest")
         screen.print(f"order of {name}: {', '.join(orders)}")
-    best = found["recommended"]
+    best = summary["recommended"]
     screen.print(
         f"recommended: {best['label']}, the cheapest that meets all expectations "
         f"({best['cpu']:.3g} s of processor time)"
         if best
         else "recommended: none; no refinement meets all expectations"
     )
-    if draw(rows, picture, found["scene"]):
+    if draw(rows, picture, summary["scene"]):
         screen.print(f"drawn in {picture}")
 
 
-def status_of(found: Row, refinements: int) -> int:
+def status_of(summary: Row, refinements: int) -> int:
     """Exit status of the worst run; 1 where no refinement meets all expectations."""
-    states = [row["status"] for row in found["rows"]]
+    states = [row["status"] for row in summary["rows"]]
     if "interrupted" in states or len(states) < refinements:
         return results.INTERRUPTED
     if any(state != "done" for state in states):
         return results.FAILED
-    return results.DONE if found["recommended"] else results.UNMET
+    return results.DONE if summary["recommended"] else results.UNMET

@@ -100,10 +100,10 @@ def _entry(entry: Any) -> tuple[str, str, Shape]:
     if len(key) > LONGEST:
         raise MessageError(f"a field's name has at most {LONGEST} characters; found {len(key)}.")
     if not isinstance(name, str) or name not in DTYPES:
-        found = reprlib.repr(name)
-        raise MessageError(f"field {key}: type {found} is not one of {', '.join(DTYPES)}.")
+        text = reprlib.repr(name)
+        raise MessageError(f"field {key}: type {text} is not one of {', '.join(DTYPES)}.")
     fits = isinstance(shape, list) and len(shape) <= DIMENSIONS
     if not fits or not all(type(n) is int and 0 <= n < 1 << 40 for n in shape):
-        found = reprlib.repr(shape)
-        raise MessageError(f"field {key}: {found} is not a shape of at most {DIMENSIONS} sizes.")
+        text = reprlib.repr(shape)
+        raise MessageError(f"field {key}: {text} is not a shape of at most {DIMENSIONS} sizes.")
     return key, name, tuple(shape)

@@ -146,13 +146,13 @@ def _refuse_size(layout: Layout, room: int) -> None:
     raise MessageError(f"{room} bytes of arrays must be used up; {layout.size} were.")
 
 
-def _compare(found: Shapes, expected: Shapes) -> None:
-    if found == expected:
+def _compare(shapes: Shapes, expected: Shapes) -> None:
+    if shapes == expected:
         return
-    for key in sorted(set(found) | set(expected)):
-        if found.get(key) != expected.get(key):
+    for key in sorted(set(shapes) | set(expected)):
+        if shapes.get(key) != expected.get(key):
             raise MessageError(
-                f"field {key}: expected {_shape(expected.get(key))}, {_shape(found.get(key))} "
+                f"field {key}: expected {_shape(expected.get(key))}, {_shape(shapes.get(key))} "
                 "arrived. The sender's item count must not change after it was joined."
             )
 

@@ -45,18 +45,18 @@ def wait(poll: Callable[[], T | None], seconds: float, broken: Callable[[], str]
     start = time.perf_counter()
     pause = SLEEP
     while True:
-        found = poll()
-        if found is not None:
-            return found
+        message = poll()
+        if message is not None:
+            return message
         waited = time.perf_counter() - start
         if waited < SPIN:
             os.sched_yield()
             continue
         reason = broken()
         if reason:
-            found = poll()  # what was sent before the break still counts
-            if found is not None:
-                return found
+            message = poll()  # what was sent before the break still counts
+            if message is not None:
+                return message
             raise LineError(reason)
         if waited > seconds:
             raise LineError(f"nothing arrived within {seconds:.1f} s")

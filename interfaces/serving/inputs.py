@@ -75,22 +75,22 @@ class Inputs:
     def over(self, begin: float, end: float, window: float) -> dict[str, Array]:
         """Inputs for the step from `begin` to `end`, both in s from the window's beginning."""
         middle = 0.5 * (begin + end)
-        given = dict(self.rate)
+        values = dict(self.rate)
         for key in self.start:
-            given[key] = self._at(key, middle, window)
+            values[key] = self._at(key, middle, window)
         for key, rate in self.rates.items():
             if key in self.start and rate in self.start:
-                given[rate] = self._mean_rate(key, rate, begin, end, window)
-        for array in given.values():
+                values[rate] = self._mean_rate(key, rate, begin, end, window)
+        for array in values.values():
             array.flags.writeable = False
-        return given
+        return values
 
     def at_start(self) -> dict[str, Array]:
         """Instants as they are at the window's beginning."""
-        given = {key: array.view() for key, array in self.start.items()}
-        for array in given.values():
+        values = {key: array.view() for key, array in self.start.items()}
+        for array in values.values():
             array.flags.writeable = False
-        return given
+        return values
 
     def _mean_rate(self, key: str, rate: str, begin: float, end: float, window: float) -> Array:
         if self.fields[key].kind != "rotation":
@@ -119,9 +119,9 @@ class Inputs:
 
     def save(self) -> dict[str, Array]:
         """What must come back with a component's state."""
-        kept = {f"start/{key}": array for key, array in self.start.items()}
-        kept |= {f"end/{key}": array for key, array in self.end.items()}
-        return kept | {f"rate/{key}": array for key, array in self.rate.items()}
+        arrays = {f"start/{key}": array for key, array in self.start.items()}
+        arrays |= {f"end/{key}": array for key, array in self.end.items()}
+        return arrays | {f"rate/{key}": array for key, array in self.rate.items()}
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""

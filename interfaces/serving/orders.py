@@ -32,7 +32,7 @@ def _is_steps(value: Any) -> bool:
 
 
 def _is_works(value: Any) -> bool:
-    return isinstance(value, list) and all(is_names(one) and len(one) == 3 for one in value)
+    return isinstance(value, list) and all(is_names(names) and len(names) == 3 for names in value)
 
 
 def _is_shares(value: Any) -> bool:
@@ -41,7 +41,7 @@ def _is_shares(value: Any) -> bool:
 
 def _is_rows(value: Any) -> bool:
     return isinstance(value, list) and all(
-        isinstance(one, list) and len(one) == 2 and all(map(is_count, one)) for one in value
+        isinstance(pair, list) and len(pair) == 2 and all(map(is_count, pair)) for pair in value
     )
 
 
@@ -86,5 +86,5 @@ def check_order(order: str, header: Mapping[str, Any]) -> None:
         if required or key in header:
             value = header.get(key)
             if not is_right(value):
-                found = reprlib.repr(value)
-                raise OrderError(f"order {order}: {key} must be {words}; found {found}.")
+                text = reprlib.repr(value)
+                raise OrderError(f"order {order}: {key} must be {words}; found {text}.")

@@ -46,26 +46,26 @@ class Outputs:
         unknown = self.wanted - self.fields.keys()
         if unknown:
             raise PortError(f"output {reprlib.repr(min(unknown))} is wanted; no port gives it.")
-        kept = [key for key in self.fields if key in self.wanted]
-        self.shapes = {key: self.fields[key].shape for key in kept}
-        self.impulses = [key for key in kept if self.fields[key].centring == "impulse"]
+        keys_wanted = [key for key in self.fields if key in self.wanted]
+        self.shapes = {key: self.fields[key].shape for key in keys_wanted}
+        self.impulses = [key for key in keys_wanted if self.fields[key].centring == "impulse"]
         self.through = frozenset(self.impulses)  # asked for after every step
 
     def begin(self) -> None:
         """Forget the last window."""
         self.total, self.work, self.moment = {}, {}, {}
 
-    def check(self, given: Fields) -> Fields:
+    def check(self, fields: Fields) -> Fields:
         """Return what give() returned, once every field is as its port and its first time say."""
-        if not isinstance(given, Mapping):
+        if not isinstance(fields, Mapping):
             raise PortError(
-                f"give() must return its fields by name; found {type(given).__name__}. Correct it."
+                f"give() must return its fields by name; found {type(fields).__name__}. Correct it."
             )
-        for key, array in given.items():
+        for key, array in fields.items():
             if not isinstance(array, np.ndarray) or array.dtype.kind not in NUMBERS:
-                found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
+                kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
                 raise PortError(
-                    f"output {key} must be an array of real numbers; found {found}. Correct give()."
+                    f"output {key} must be an array of real numbers; found {kind}. Correct give()."
                 )
             field = self.fields.get(key)
             if field is None or not array.ndim or array.shape[1:] != field.shape:
@@ -80,42 +80,42 @@ class Outputs:
                     f"{array.shape}. The number of items of a port must not change: let a field "
                     "`active` say which of them exist."
                 )
-        return given
+        return fields
 
-    def add(self, given: Fields, taken: Fields, dt: float) -> None:
+    def add(self, outputs: Fields, taken: Fields, dt: float) -> None:
         """Add one step."""
         for key in self.impulses:
-            if key not in given:
+            if key not in outputs:
                 raise PortError(f"give() must give {key} after every step; it is missing.")
-            part = given[key] if self.integrals else dt * given[key]
+            part = outputs[key] if self.integrals else dt * outputs[key]
             self.total[key] = self.total[key] + part if key in self.total else part
         for force, velocity, position in self.works:
             for key in filter(None, (velocity, position)):
-                if key not in taken or len(taken[key]) != len(given[force]):
+                if key not in taken or len(taken[key]) != len(outputs[force]):
                     raise PortError(
                         f"{key} must have come, for each item of {force}, whose work it tells."
                     )
-            pushed, moved = given[force], taken[velocity]
+            pushed, moved = outputs[force], taken[velocity]
             whole = ((0, len(pushed)),)
             shares = self.shares.get(velocity.partition(".")[0], whole)
             done = self.work.setdefault(force, [0.0] * len(shares))
             for link, (first, stop) in enumerate(shares):
                 done[link] += dt * product(pushed[first:stop], moved[first:stop])
             if position:
-                turned = dt * moment(taken[position], given[force])
+                turned = dt * moment(taken[position], outputs[force])
                 self.moment[force] = self.moment.get(force, np.zeros(3)) + turned
 
-    def collect(self, given: Fields) -> dict[str, Array]:
+    def collect(self, outputs: Fields) -> dict[str, Array]:
         """Return the fields to send: instants as they are now, impulses summed over the window."""
-        missing = [key for key in self.shapes if key not in given]
+        missing = [key for key in self.shapes if key not in outputs]
         if missing:
             raise PortError(
                 f"give() must give every field that is wanted; {missing[0]} is missing."
             )
         return {
-            key: self.total.get(key, np.zeros_like(given[key]))
+            key: self.total.get(key, np.zeros_like(outputs[key]))
             if key in self.through
-            else given[key]
+            else outputs[key]
             for key in self.shapes
         }
 

@@ -6,7 +6,7 @@ from quintet.interfaces.component import Component, Field, Fields, Port
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.ports import MESH, POSITION, RADIUS
 
-MESH_CORNER = next(one for one in MESH if one.name == "corner")
+MESH_CORNER = next(field for field in MESH if field.name == "corner")
 
 
 def look_at(component: Component) -> tuple[Fields, dict[str, str]]:
@@ -14,20 +14,24 @@ def look_at(component: Component) -> tuple[Fields, dict[str, str]]:
     shown, told = component.view(), component.shows
     if not shown and (port := shown_port(component.gives)):
         told = port_fields(component.gives)
-        keys = {f"{port.name}.{one.name}" for one in port.fields if one.centring == "instant"}
+        keys = {f"{port.name}.{field.name}" for field in port.fields if field.centring == "instant"}
         try:
             shown = port_view(port, component.give(frozenset(keys)), component.describe())
         except StepError:  # a recording between two of its rows: not shown at this time
             shown = {}
-    return shown, {one.name: one.unit for one in told if one.name in shown}
+    return shown, {field.name: field.unit for field in told if field.name in shown}
 
 
 def shown_port(gives: tuple[Port, ...]) -> Port | None:
     """First port whose own items have a position."""
     for port in gives:
-        for one in port.fields:
-            if (one.name, one.shape, one.unit) == (POSITION.name, POSITION.shape, POSITION.unit):
-                if port.items == "own" and one.centring == "instant":
+        for field in port.fields:
+            if (field.name, field.shape, field.unit) == (
+                POSITION.name,
+                POSITION.shape,
+                POSITION.unit,
+            ):
+                if port.items == "own" and field.centring == "instant":
                     return port
     return None
 
@@ -37,15 +41,17 @@ def port_fields(gives: tuple[Port, ...]) -> tuple[Field, ...]:
     port = shown_port(gives)
     if port is None:
         return ()
-    plain = (one for one in port.fields if one.kind == "value" and one.centring == "instant")
-    fields = tuple(one for one in plain if one.name != POSITION.name)
+    plain = (
+        field for field in port.fields if field.kind == "value" and field.centring == "instant"
+    )
+    fields = tuple(field for field in plain if field.name != POSITION.name)
     return (*fields, RADIUS) if RADIUS in port.static else fields
 
 
-def port_view(port: Port, given: Fields, static: Fields) -> Fields:
+def port_view(port: Port, outputs: Fields, static: Fields) -> Fields:
     """Faces or points of a port, from its fields and what its component described."""
-    now, told = _of_port(port, given), _of_port(port, static)
-    fields = [one.name for one in port_fields((port,)) if one.name in now]
+    now, told = _of_port(port, outputs), _of_port(port, static)
+    fields = [field.name for field in port_fields((port,)) if field.name in now]
     view = {"points": now["position"], **{name: now[name] for name in fields}}
     if RADIUS.name in told:
         view[RADIUS.name] = told[RADIUS.name]

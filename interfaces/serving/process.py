@@ -46,12 +46,12 @@ def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -
     parser.add_argument("--tls", nargs=3, metavar=("AUTHORITY", "CERTIFICATE", "KEY"))
     parser.add_argument("--log", help="file for all that it prints")
     parser.add_argument("--look-in", action="append", default=[], metavar="DIR", help=LOOK_IN)
-    given = parser.parse_args(arguments)
-    if given.log:
-        redirect(given.log)
+    options = parser.parse_args(arguments)
+    if options.log:
+        redirect(options.log)
     print_into_logs()
-    look_in(given.look_in)
-    sys.exit(run(manifest or find(given.kind), given))
+    look_in(options.look_in)
+    sys.exit(run(manifest or find(options.kind), options))
 
 
 def redirect(path: str) -> None:
@@ -62,7 +62,7 @@ def redirect(path: str) -> None:
     os.close(file)
 
 
-def run(manifest: Manifest, given: argparse.Namespace) -> int:
+def run(manifest: Manifest, options: argparse.Namespace) -> int:
     """Join, build, serve; return the exit status."""
     # Ctrl-C reaches the whole terminal; the coupler answers it and tells the components.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -71,14 +71,14 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     faulthandler.register(STACK_SIGNAL, all_threads=False)
     keep_freed_memory()
     listen(say)
-    say(f"{given.name}: {manifest.title}, process {os.getpid()}")
+    say(f"{options.name}: {manifest.title}, process {os.getpid()}")
     try:
         hello = {"order": "hello", "kind": manifest.kind, **about_me()}
-        line = over_mpi(given.name) if given.mpi else over_zenoh(given, hello)
+        line = over_mpi(options.name) if options.mpi else over_zenoh(options, hello)
         line.send(hello, {})
         order = line.receive(LONGEST_WAIT)  # others may join later, or be started by hand
     except QuintetError as error:
-        say(f"{given.name}: {error}")
+        say(f"{options.name}: {error}")
         return 3
     if order.order != "go":
         return 0
@@ -88,10 +88,10 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
         component = build(manifest, order.header)
         seconds = time.perf_counter() - start
         say(f"built in {seconds:.1f} s: {component.items()} items")
-        if serve(Server(component, given.name, seconds), line):
+        if serve(Server(component, options.name, seconds), line):
             status = 0
     except LineError as error:
-        say(f"{given.name}: the coupler: {error}")
+        say(f"{options.name}: the coupler: {error}")
         end_children()  # nobody else does
     except (Exception, SystemExit) as error:
         told = failure(error)
@@ -100,7 +100,7 @@ def run(manifest: Manifest, given: argparse.Namespace) -> int:
     if status:
         linger(line)
     line.close()
-    say(f"{given.name}: " + ("stopped" if status else "finished"))
+    say(f"{options.name}: " + ("stopped" if status else "finished"))
     return status
 
 
@@ -123,16 +123,18 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
     return make(solver, params, resources)
 
 
-def over_zenoh(given: argparse.Namespace, hello: dict[str, Any]) -> Line:
+def over_zenoh(options: argparse.Namespace, hello: dict[str, Any]) -> Line:
     """Connect over zenoh; only a process that does so imports it."""
     # What a run does not use is not loaded: zenoh starts threads.
     from quintet.interfaces.lines.zenoh import connect, join
 
-    security = Security(*given.tls) if given.tls else None
+    security = Security(*options.tls) if options.tls else None
     secret = os.environ.pop(SECRET, "")  # processes that the solver starts need not have it
     if secret:
-        return connect(given.at, given.name, security, secret)
-    return join(given.at, given.name, hello, security, lambda text: say(f"{given.name}: {text}"))
+        return connect(options.at, options.name, security, secret)
+    return join(
+        options.at, options.name, hello, security, lambda text: say(f"{options.name}: {text}")
+    )
 
 
 def over_mpi(name: str) -> Line:

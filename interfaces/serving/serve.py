@@ -143,8 +143,8 @@ class Server:
         require_finite(message.fields, f"window {header['window']}, received")
         self.inputs.arrive(message.fields, header["ends"], window)
         received = {k: column_sums(v) for k, v in message.fields.items() if self._integral(k)}
-        steps, applied, given = self.advance(window, int(header.get("steps", 0)))
-        fields = self.outputs.collect(given)
+        steps, applied, outputs = self.advance(window, int(header.get("steps", 0)))
+        fields = self.outputs.collect(outputs)
         answer = {
             "steps": steps,
             "stable": self.stable(),
@@ -166,9 +166,9 @@ class Server:
 
     def _notes(self) -> list[str]:
         """Notes of the component that were not yet told."""
-        found = [str(note) for note in self.component.notes()]
-        told, self._told = self._told, len(found)
-        return found[told:]
+        notes = [str(note) for note in self.component.notes()]
+        told, self._told = self._told, len(notes)
+        return notes[told:]
 
     def _integral(self, key: str) -> bool:
         return key in self.inputs.impulses
@@ -184,7 +184,7 @@ class Server:
         applied = {key: np.zeros(rate[0].size) for key, rate in inputs.rate.items() if len(rate)}
         sums = {key: np.asarray(column_sums(inputs.rate[key])) for key in applied}
         done, steps = 0.0, 0
-        given: Fields = {}
+        outputs_now: Fields = {}
         while done < window:
             pieces = divide(window - done, self.stable())
             if asked:
@@ -199,15 +199,15 @@ class Server:
             component.step(dt)
             self._stable = None
             if pieces == 1:
-                given = self._given(outputs.wanted)
+                outputs_now = self._given(outputs.wanted)
             elif outputs.through:
-                given = self._given(outputs.through)
+                outputs_now = self._given(outputs.through)
             if outputs.through:
-                outputs.add(given, taken or inputs.rate, dt)
+                outputs.add(outputs_now, taken or inputs.rate, dt)
             for key in applied:
                 applied[key] += dt * sums[key]
             done, steps = end, steps + 1
-        return steps, {key: total.tolist() for key, total in applied.items()}, given
+        return steps, {key: total.tolist() for key, total in applied.items()}, outputs_now
 
     def _given(self, wanted: frozenset[str]) -> Fields:
         """Fields that the component gives now, checked."""
@@ -236,8 +236,8 @@ class Server:
 
     def state(self) -> dict[str, Any]:
         """All that must come back: the component's own state and its inputs."""
-        own = {f"component/{key}": array for key, array in self.component.save().items()}
-        return own | {f"inputs/{key}": array for key, array in self.inputs.save().items()}
+        arrays = {f"component/{key}": array for key, array in self.component.save().items()}
+        return arrays | {f"inputs/{key}": array for key, array in self.inputs.save().items()}
 
     def restore(self, state: Fields) -> None:
         """Come back to a state."""
@@ -261,8 +261,8 @@ class Server:
         return {"stateless": not any(key.startswith("component/") for key in state)}, {}
 
     def _rewind(self, message: Message) -> Answer:
-        kept, at = self._kept, depth(message)
-        self.restore(kept.pop(at) if message.header.get("last") else kept[at])
+        states, at = self._kept, depth(message)
+        self.restore(states.pop(at) if message.header.get("last") else states[at])
         return {}, {}
 
     def _save(self, _: Message) -> Answer:
@@ -280,7 +280,7 @@ class Server:
             shown, header["units"] = look_at(self.component)
             fields |= shown
         if message.header.get("walls"):
-            fields |= {f"walls.{key}": one for key, one in self.component.walls().items()}
+            fields |= {f"walls.{key}": array for key, array in self.component.walls().items()}
         return header, fields
 
 
@@ -288,13 +288,13 @@ def _texts(warnings: Mapping[str, str]) -> dict[str, str]:
     return {str(subject): str(text) for subject, text in warnings.items()}
 
 
-def unlike(state: Fields, own: Fields) -> str:
+def unlike(state: Fields, others: Fields) -> str:
     """Say in what a state differs from one of a component's own; "" where nothing is seen."""
-    for key in sorted(state.keys() | own.keys()):
-        if key not in state or key not in own:
-            return f"{key} is {'missing' if key in own else 'not known'}"
-        if (found := np.shape(state[key])) != np.shape(own[key]):
-            return f"{key} has shape {found}, not {np.shape(own[key])}"
+    for key in sorted(state.keys() | others.keys()):
+        if key not in state or key not in others:
+            return f"{key} is {'missing' if key in others else 'not known'}"
+        if (shape := np.shape(state[key])) != np.shape(others[key]):
+            return f"{key} has shape {shape}, not {np.shape(others[key])}"
     return ""
 
 
@@ -319,7 +319,7 @@ def failure(error: BaseException) -> dict[str, Any]:
     if isinstance(error, MemoryError):
         # What the failed functions hold is released, or there is none left to tell of it.
         traceback.clear_frames(error.__traceback__)
-    own = isinstance(error, QuintetError)
+    is_ours = isinstance(error, QuintetError)
     said = str(error)
     if isinstance(error, SystemExit):
         said = f"asked Python to exit, with status {error.code!r}; raise an error instead"
@@ -327,7 +327,7 @@ def failure(error: BaseException) -> dict[str, Any]:
         "order": "failed",
         "error": type(error).__name__,
         "text": sendable(said),
-        "traceback": "" if own else sendable("".join(traceback.format_exception(error))),
+        "traceback": "" if is_ours else sendable("".join(traceback.format_exception(error))),
     }
 
 

@@ -65,6 +65,8 @@ def test_what_was_seen_outlives_a_snapshot(tmp_path):
 
 
 def test_no_link_is_judged_by_work_that_is_rounding_beside_the_energies_of_the_run():
-    made = LinkWork(given=0.0, taken=7e-17, turnover=1e-16, late=7e-17, late_turnover=1e-16)
+    made = LinkWork(
+        work_given=0.0, work_taken=7e-17, turnover=1e-16, late=7e-17, late_turnover=1e-16
+    )
     assert made.is_unstable(FEWEST, 0.0)
     assert not made.is_unstable(FEWEST, 1e-9 * 20.0)  # J

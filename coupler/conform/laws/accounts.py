@@ -26,15 +26,15 @@ def it_counts_what_it_advances_and_what_it_holds(trial: Trial) -> None:
         "momentum": totals.momentum,
         "angular_momentum": totals.angular_momentum,
     }
-    for name, found in numbers.items():
+    for name, value in numbers.items():
         require(
-            bool(np.isfinite(found).all()),
-            f"totals: all must be finite; {name} is {found}. Correct it.",
+            bool(np.isfinite(value).all()),
+            f"totals: all must be finite; {name} is {value}. Correct it.",
         )
         require(
-            np.shape(found) == ((3,) if "momentum" in name else ()),
+            np.shape(value) == ((3,) if "momentum" in name else ()),
             f"totals: {name} must be {'(3,)' if 'momentum' in name else 'one number'}; found shape "
-            f"{np.shape(found)}. Correct it.",
+            f"{np.shape(value)}. Correct it.",
         )
     for name in ("mass", "kinetic"):
         value = float(numbers[name])
@@ -55,9 +55,11 @@ def momentum_changes_by_the_impulses(trial: Trial) -> None:
         before, inputs = component.totals().momentum.copy(), trial.inputs(number)
         component.take(inputs)
         component.step(trial.case.dt)
-        own = [key for key in forces if key in trial.outputs]
-        given = component.give(frozenset(own))
-        parts = [inputs[key] for key in forces if key in inputs] + [-given[key] for key in own]
+        own_forces = [key for key in forces if key in trial.outputs]
+        outputs = component.give(frozenset(own_forces))
+        parts = [inputs[key] for key in forces if key in inputs] + [
+            -outputs[key] for key in own_forces
+        ]
         expected = trial.case.dt * sum((part.sum(axis=0) for part in parts), np.zeros(3))
         change = component.totals().momentum - before
         sizes = [trial.case.dt * float(np.abs(part).sum()) for part in parts]

@@ -13,7 +13,7 @@ STEPS = 5  # in which something may die
 
 def flags_are_zero_or_one(trial: Trial) -> None:
     """And what is inactive stays so."""
-    flags = [key for key, one in trial.outputs.items() if one.kind == "flag"]
+    flags = [key for key, field in trial.outputs.items() if field.kind == "flag"]
     if not flags:
         raise DoesNotApply("it gives no flag")
     component = trial.build()
@@ -35,35 +35,35 @@ def flags_are_zero_or_one(trial: Trial) -> None:
 
 def outputs_of_inactive_items_are_zero(trial: Trial) -> None:
     """No impulse comes from what is no longer there."""
-    found = False
+    any_dead = False
     for key in _activities(trial):
         component, active = _live(trial, key)
-        given, dead = trial.give(component), np.flatnonzero(active == 0.0)
+        outputs, dead = trial.give(component), np.flatnonzero(active == 0.0)
         for output in trial.impulses:
             if not _is_about(trial, key, output):
                 continue
-            found = found or bool(len(dead))
-            rows = np.abs(given[output][dead]).reshape(len(dead), -1).max(axis=1, initial=0.0)
+            any_dead = any_dead or bool(len(dead))
+            rows = np.abs(outputs[output][dead]).reshape(len(dead), -1).max(axis=1, initial=0.0)
             if rows.any():
                 raise LawBroken(
                     f"give: impulses of inactive items must be zero; {output} of item "
                     f"{dead[int(np.argmax(rows))]}, which is inactive by {key}, is "
                     f"{rows.max():.3g}. Set it to zero."
                 )
-    if not found:
+    if not any_dead:
         raise DoesNotApply("no item of it is inactive, or it gives no impulse on such items")
 
 
 def inputs_of_inactive_items_change_nothing(trial: Trial) -> None:
     """Whatever comes in for what is no longer there is not looked at."""
-    found = False
+    any_dead = False
     for key in _activities(trial):
         component, active = _live(trial, key)
         inputs = trial.inputs()
         about = [name for name in inputs if _is_about(trial, key, name)]
         if not about or active.all():
             continue
-        found = True
+        any_dead = True
         other, _ = _live(trial, key, about)
         require_same_bits(
             _without_signs_of_zero(trial.give(other)),
@@ -71,7 +71,7 @@ def inputs_of_inactive_items_change_nothing(trial: Trial) -> None:
             f"take: inputs of items that are inactive by {key} must change nothing",
             "Leave out items whose active is 0.",
         )
-    if not found:
+    if not any_dead:
         raise DoesNotApply("no item of it is inactive, or it takes nothing for such items")
 
 
@@ -84,7 +84,7 @@ def _activities(trial: Trial) -> list[str]:
     """Fields that say which items are active: those taken by the case, and those given."""
     known = {**{k: v for k, v in trial.inputs_known.items() if k in trial.case.rest}}
     known |= trial.outputs
-    return [k for k, one in known.items() if one.name == ACTIVE.name and one.kind == "flag"]
+    return [k for k, field in known.items() if field.name == ACTIVE.name and field.kind == "flag"]
 
 
 def _is_about(trial: Trial, key: str, name: str) -> bool:

@@ -22,14 +22,14 @@ def it_is_made_and_joined(trial: Trial) -> None:
 def its_ports_are_those_of_its_manifest(trial: Trial) -> None:
     """A scene is checked with the manifest's ports; the component must have just these."""
     component = trial.make()
-    for verb, own, announced in (
+    for verb, ports, announced in (
         ("takes", component.takes, trial.takes),
         ("gives", component.gives, trial.gives),
     ):
         require(
-            tuple(own) == tuple(announced),
+            tuple(ports) == tuple(announced),
             f"{verb}: a component must have the ports that its manifest tells of the same "
-            f"parameters; it has {names(own)}, the manifest {names(announced)}, or their fields "
+            f"parameters; it has {names(ports)}, the manifest {names(announced)}, or their fields "
             "differ. Make both with one function.",
         )
 
@@ -41,19 +41,19 @@ def names_are_told_apart(trial: Trial) -> None:
         for port in ports:
             where = f"{verb} {port.name}"
             _require_distinct(
-                where, [one.name for one in (*port.fields, *port.static, *port.requests)]
+                where, [field.name for field in (*port.fields, *port.static, *port.requests)]
             )
-            known = {one.name for one in port.fields}
-            for one in port.fields:
+            known = {field.name for field in port.fields}
+            for field in port.fields:
                 require(
-                    one.rate in known | {""},
-                    f"{where}.{one.name}: its rate must be a field of the same port "
-                    f"({', '.join(sorted(known))}); found {one.rate}. Correct it.",
+                    field.rate in known | {""},
+                    f"{where}.{field.name}: its rate must be a field of the same port "
+                    f"({', '.join(sorted(known))}); found {field.rate}. Correct it.",
                 )
 
 
-def _require_distinct(where: str, found: list[str]) -> None:
-    for name, count in Counter(found).items():
+def _require_distinct(where: str, names: list[str]) -> None:
+    for name, count in Counter(names).items():
         require(
             count == 1 and bool(name) and "." not in name,
             f"{where}: names must be there once and without a dot; found {name!r} {count} times. "
@@ -64,46 +64,46 @@ def _require_distinct(where: str, found: list[str]) -> None:
 def units_fit_each_other(trial: Trial) -> None:
     """A rate is its value per second; a force times the velocity it works with is a power."""
     for ports, others in ((trial.takes, trial.gives), (trial.gives, trial.takes)):
-        across = {one.name: one for port in others for one in port.fields}
+        across = {field.name: field for port in others for field in port.fields}
         for port in ports:
-            own = {one.name: one for one in port.fields}
-            for one in (*port.fields, *port.static, *port.requests):
-                check_unit(one.unit, f"{port.name}.{one.name}", one.centring)
-            for one in port.fields:
-                _check_rate(port, one, own.get(one.rate))
-                _check_work(port, one, across.get(one.works_with))
+            own_fields = {field.name: field for field in port.fields}
+            for field in (*port.fields, *port.static, *port.requests):
+                check_unit(field.unit, f"{port.name}.{field.name}", field.centring)
+            for field in port.fields:
+                _check_rate(port, field, own_fields.get(field.rate))
+                _check_work(port, field, across.get(field.works_with))
 
 
-def _check_rate(port: Port, one: Field, rate: Field | None) -> None:
-    where = f"{port.name}.{one.name}"
-    if one.centring == "impulse":
-        whole = INTEGRATED[one.unit]
+def _check_rate(port: Port, field: Field, rate: Field | None) -> None:
+    where = f"{port.name}.{field.name}"
+    if field.centring == "impulse":
+        whole = INTEGRATED[field.unit]
         require(
-            dimensions(whole) == _product(dimensions(one.unit), SECOND),
-            f"{where}: an impulse's unit times s must be that of its integral; found {one.unit} "
+            dimensions(whole) == _product(dimensions(field.unit), SECOND),
+            f"{where}: an impulse's unit times s must be that of its integral; found {field.unit} "
             f"and {whole}. Correct what add_unit was given.",
         )
     if rate is not None:
         require(
-            _product(dimensions(rate.unit), SECOND) == dimensions(one.unit),
-            f"{where} in {one.unit}: its rate must be in that per second; {rate.name} is in "
+            _product(dimensions(rate.unit), SECOND) == dimensions(field.unit),
+            f"{where} in {field.unit}: its rate must be in that per second; {rate.name} is in "
             f"{rate.unit}. Correct the units.",
         )
 
 
-def _check_work(port: Port, one: Field, velocity: Field | None) -> None:
+def _check_work(port: Port, field: Field, velocity: Field | None) -> None:
     if velocity is None:
         return
     require(
-        _product(dimensions(one.unit), dimensions(velocity.unit)) == WATT,
-        f"{port.name}.{one.name} in {one.unit}: times the velocity that it works with it must be "
-        f"a power, W; {velocity.name} is in {velocity.unit}. Correct the units, or leave out "
+        _product(dimensions(field.unit), dimensions(velocity.unit)) == WATT,
+        f"{port.name}.{field.name} in {field.unit}: times the velocity that it works with it must "
+        f"be a power, W; {velocity.name} is in {velocity.unit}. Correct the units, or leave out "
         "works_with.",
     )
 
 
-def _product(one: dict[str, int], other: dict[str, int]) -> dict[str, int]:
-    powers = Counter(one)
+def _product(first: dict[str, int], other: dict[str, int]) -> dict[str, int]:
+    powers = Counter(first)
     powers.update(other)
     return {base: power for base, power in powers.items() if power}
 
@@ -111,8 +111,10 @@ def _product(one: dict[str, int], other: dict[str, int]) -> dict[str, int]:
 def describe_tells_what_its_ports_announce(trial: Trial) -> None:
     """Static fields of the ports given, requests of those taken: all of them, in their shapes."""
     component = trial.make()
-    static = {f"{port.name}.{one.name}": one for port in trial.gives for one in port.static}
-    requests = {f"{port.name}.{one.name}": one for port in trial.takes for one in port.requests}
+    static = {f"{port.name}.{field.name}": field for port in trial.gives for field in port.static}
+    requests = {
+        f"{port.name}.{field.name}": field for port in trial.takes for field in port.requests
+    }
     announced, described = static | requests, component.describe()
     for key in sorted(announced.keys() - described.keys()):
         raise LawBroken(
@@ -148,11 +150,11 @@ def it_is_made_with_resources_or_without(trial: Trial) -> None:
     trial.move(trial.build(threads=2))
     if taken[1].default is inspect.Parameter.empty:
         return
-    given = trial.join(cls(trial.params, Resources(folder=trial.folder)))
+    outputs_alone = trial.join(cls(trial.params, Resources(folder=trial.folder)))
     without = trial.join(cls(trial.params))
     require_same_bits(
         trial.move(without)[-1],
-        trial.move(given)[-1],
+        trial.move(outputs_alone)[-1],
         "without resources it must do what it does with one thread",
         "Let the default be one thread.",
     )

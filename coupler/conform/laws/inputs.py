@@ -24,12 +24,12 @@ def received_arrays_are_neither_written_to_nor_kept(trial: Trial) -> None:
     remedy = "Keep copies: np.array(fields[key])."
     expected = _received(trial, False)
     try:
-        found = _received(trial, True)
+        outputs = _received(trial, True)
     except LawBroken:
         raise
     except Exception as error:
         raise LawBroken(f"{rule}; when it held {SPOILT:g}, {raised(error)}. {remedy}") from error
-    require_same_bits(found, expected, rule, remedy)
+    require_same_bits(outputs, expected, rule, remedy)
 
 
 def _received(trial: Trial, spoils: bool) -> Fields:
@@ -110,10 +110,10 @@ def alone_it_runs_and_gives_nothing(trial: Trial) -> None:
     for _ in range(2):
         component.take({})
         component.step(trial.case.dt)
-    found = component.give(frozenset())
+    outputs = component.give(frozenset())
     require(
-        not found,
-        f"give: where nothing is wanted, nothing is given; found {', '.join(found)}. Return "
+        not outputs,
+        f"give: where nothing is wanted, nothing is given; found {', '.join(outputs)}. Return "
         "{key: ... for key in wanted}.",
     )
 

@@ -55,8 +55,8 @@ def just_what_is_wanted_is_given(trial: Trial) -> None:
     component = trial.build()
     for _ in range(2):  # at the start, and after a step
         for wanted in _choices(trial):
-            found = component.give(wanted)
-            missing, more = wanted - found.keys(), found.keys() - wanted
+            outputs = component.give(wanted)
+            missing, more = wanted - outputs.keys(), outputs.keys() - wanted
             require(
                 not missing,
                 f"give: every output that is wanted must be given; {', '.join(sorted(missing))} is "
@@ -79,10 +79,12 @@ def what_else_is_wanted_changes_no_bit(trial: Trial) -> None:
     trial.move(silent, wanted=frozenset())
     everything = trial.give(component)
     for wanted in _choices(trial):
-        found = {key: array for key, array in component.give(wanted).items() if key in wanted}
+        outputs = {key: array for key, array in component.give(wanted).items() if key in wanted}
         expected = {key: everything[key] for key in wanted}
         rule = f"give: asked for {', '.join(sorted(wanted)) or 'nothing'} alone it must be the same"
-        require_same_bits(found, expected, rule, "Let no output depend on what else is asked for.")
+        require_same_bits(
+            outputs, expected, rule, "Let no output depend on what else is asked for."
+        )
     require_same_bits(
         trial.give(silent),
         everything,
@@ -116,13 +118,13 @@ def outputs_are_copies(trial: Trial) -> None:
     trial.move(component)
     trial.move(other)
     for name, told in _told(component, trial).items():
-        kept = copies(told)
+        unwritten = copies(told)
         for array in told.values():
             if array.flags.writeable:
                 array[...] = -7 if array.dtype.kind in "iu" else np.nan
         require_same_bits(
             _told(component, trial)[name],
-            kept,
+            unwritten,
             f"{name}: arrays that go out must be copies, so that writing to them changes nothing",
             "Return copies.",
         )
@@ -156,7 +158,7 @@ def _told(component: Component, trial: Trial) -> dict[str, Fields]:
 
 def rotations_are_unit_quaternions(trial: Trial) -> None:
     """To rounding, however far they turn."""
-    turning = [key for key, one in trial.outputs.items() if one.kind == "rotation"]
+    turning = [key for key, field in trial.outputs.items() if field.kind == "rotation"]
     if not turning:
         raise DoesNotApply("it gives no rotation")
     component = trial.build()
@@ -174,9 +176,9 @@ def rotations_are_unit_quaternions(trial: Trial) -> None:
 def values_follow_their_rates(trial: Trial) -> None:
     """In a step a value changes by its mean rate times the step; a rotation on the sphere."""
     rates = {
-        key: f"{port_of(key)}.{one.rate}"
-        for key, one in trial.outputs.items()
-        if one.rate and one.centring == "instant"
+        key: f"{port_of(key)}.{field.rate}"
+        for key, field in trial.outputs.items()
+        if field.rate and field.centring == "instant"
     }
     if not rates:
         raise DoesNotApply("it gives no value with its rate")
@@ -190,14 +192,14 @@ def values_follow_their_rates(trial: Trial) -> None:
         component.take(trial.inputs(7))
         component.step(dt)
         after = trial.give(component)
-        found = {}
+        gaps = {}
         for key, rate in rates.items():
             expected = 0.5 * dt * (before[rate] + after[rate])
             turns = trial.outputs[key].kind == "rotation"
             change = _turn(before[key], after[key], expected) if turns else after[key] - before[key]
             size = max(1.0, float(np.abs(after[key]).max(initial=0.0)))
-            found[key] = float(np.abs(change - expected).max(initial=0.0)) / size
-        return found
+            gaps[key] = float(np.abs(change - expected).max(initial=0.0)) / size
+        return gaps
 
     compare_gaps(
         gap,

@@ -11,10 +11,10 @@ SAVE_ALL = "Save all that changes, and bring all of it back."
 def the_same_inputs_give_the_same_bits(trial: Trial) -> None:
     """Two components made from the same parameters; randomness comes from a seed in these."""
     runs = [trial.move(trial.build()) for _ in range(2)]
-    for number, (one, other) in enumerate(zip(*runs, strict=True), 1):
+    for number, (first_outputs, other) in enumerate(zip(*runs, strict=True), 1):
         require_same_bits(
             other,
-            one,
+            first_outputs,
             f"made twice from the same parameters it must give the same bits, step {number}",
             "Take randomness from a seed in the parameters.",
         )
@@ -31,9 +31,9 @@ def load_then_repeat_gives_the_same_bits(trial: Trial) -> None:
         rule = f"load: {which} component must come back to what was saved"
         require_same_bits(other.save(), saved, rule, SAVE_ALL)
         again = trial.move(other, first=9)
-        for number, (one, two) in enumerate(zip(first, again, strict=True), 1):
+        for number, (before, two) in enumerate(zip(first, again, strict=True), 1):
             rule = f"load: then repeated, {which} component must give the same bits, step {number}"
-            require_same_bits(two, one, rule, SAVE_ALL)
+            require_same_bits(two, before, rule, SAVE_ALL)
 
 
 def save_changes_nothing(trial: Trial) -> None:
@@ -67,10 +67,10 @@ def what_is_saved_does_not_change_afterwards(trial: Trial) -> None:
     component = trial.build()
     trial.move(component)
     saved = component.save()
-    kept = copies(saved)
+    before = copies(saved)
     trial.move(component, first=9)
     rule = "save: what was saved must not change as the component goes on"
-    require_same_bits(saved, kept, rule, "Save copies.")
+    require_same_bits(saved, before, rule, "Save copies.")
 
 
 def what_is_loaded_is_neither_written_to_nor_kept(trial: Trial) -> None:
@@ -119,10 +119,10 @@ def final_warnings_change_nothing(trial: Trial) -> None:
     component, other = trial.build(), trial.build()
     trial.move(component)
     trial.move(other)
-    found = dict(component.final_warnings())
+    warnings = dict(component.final_warnings())
     require(
-        all(isinstance(text, str) for text in (*found, *found.values())),
-        f"final_warnings: must be texts by subject; found {found!r}. Return a dict of texts.",
+        all(isinstance(text, str) for text in (*warnings, *warnings.values())),
+        f"final_warnings: must be texts by subject; found {warnings!r}. Return a dict of texts.",
     )
     require_same_bits(
         component.save(),
@@ -144,9 +144,9 @@ def instances_share_no_state(trial: Trial) -> None:
     alone = trial.move(trial.build(), 4)
     component, other = trial.build(), trial.build()
     for number, expected in enumerate(alone, 1):
-        (found,) = trial.move(component, 1, first=number)
+        (outputs,) = trial.move(component, 1, first=number)
         rule = f"beside another of its kind it must do what it does alone, step {number}"
-        require_same_bits(found, expected, rule, "Keep state in the instance, not in the class.")
+        require_same_bits(outputs, expected, rule, "Keep state in the instance, not in the class.")
         _disturb(trial, other, number)
 
 

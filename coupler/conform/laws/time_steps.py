@@ -51,11 +51,11 @@ def the_stable_step_is_the_same_after_load(trial: Trial) -> None:
     trial.move(component, first=9)
     for which, other in (("the same", component), ("another", trial.build())):
         other.load(saved)
-        found = float(other.stable_dt())
+        step = float(other.stable_dt())
         require(
-            found == told,
+            step == told,
             f"stable_dt: after load it must be what it was when the state was saved, {told!r}; "
-            f"found {found!r} in {which} component. Save what it is computed from.",
+            f"found {step!r} in {which} component. Save what it is computed from.",
         )
 
 
@@ -109,11 +109,11 @@ def _gap(trial: Trial, dt: float) -> dict[str, float]:
         for piece in range(pieces):
             component.step(dt / pieces)
             if trial.case.any_time or piece + 1 == pieces:
-                given = trial.give(component)
+                outputs = trial.give(component)
             if trial.case.any_time:
-                parts = {key: dt / pieces * given[key] for key in trial.impulses}
+                parts = {key: dt / pieces * outputs[key] for key in trial.impulses}
                 total = {key: total.get(key, 0.0) + part for key, part in parts.items()}
-        ends.append(given)
+        ends.append(outputs)
         sums.append(total)
     gaps = {}
     for key in trial.outputs:

@@ -37,8 +37,8 @@ QUIET = 0.1  # of the mean work of a window so far: with less going through, no 
 class LinkWork:
     """Work that a link made, and what went through it [J]: in all, and of late."""
 
-    given: float = 0.0  # as the ledger had them last
-    taken: float = 0.0
+    work_given: float = 0.0  # as the ledger had them last
+    work_taken: float = 0.0
     turnover: float = 0.0
     late: float = 0.0  # made
     late_turnover: float = 0.0
@@ -47,18 +47,18 @@ class LinkWork:
 
     def add(self, account: Account) -> None:
         """Add a window."""
-        gain = (account.work_taken - self.taken) - (account.work_given - self.given)
+        gain = (account.work_taken - self.work_taken) - (account.work_given - self.work_given)
         fade = 1.0 - 1.0 / SPAN
         self.late = fade * self.late + gain
         self.late_turnover = fade * self.late_turnover + account.turnover - self.turnover
-        self.given, self.taken = account.work_given, account.work_taken
+        self.work_given, self.work_taken = account.work_given, account.work_taken
         self.turnover = account.turnover
-        self.low, self.high = min(self.low, self.given), max(self.high, self.given)
+        self.low, self.high = min(self.low, self.work_given), max(self.high, self.work_given)
 
     def drift(self) -> float:
         """Work made so far over the range of the work given: the error of the energy exchanged."""
         extent = self.high - self.low
-        return (self.taken - self.given) / extent if extent > 0.0 else 0.0
+        return (self.work_taken - self.work_given) / extent if extent > 0.0 else 0.0
 
     def is_unstable(self, windows: int, negligible: float) -> bool:
         """Whether too much of what went through was made of nothing, of late or in all.
@@ -70,7 +70,7 @@ class LinkWork:
         usual = self.turnover * min(1.0, SPAN / windows)
         loud = self.late_turnover > QUIET * usual
         return (loud and self.gains_of_late()) or (
-            self.taken - self.given > LIMIT * self.turnover > 0.0
+            self.work_taken - self.work_given > LIMIT * self.turnover > 0.0
         )
 
     def gains_of_late(self) -> bool:
@@ -108,7 +108,7 @@ class StabilityWatch:
                 self.needs_totals = self.needs_totals or not known
                 if not known:
                     continue
-                gain, turnover = work.taken - work.given, work.turnover
+                gain, turnover = work.work_taken - work.work_given, work.turnover
                 if work.gains_of_late():
                     gain, turnover = work.late, work.late_turnover
                 self.unstable.add(name)
@@ -130,9 +130,9 @@ class StabilityWatch:
                 continue
             verb = "more" if drift > 0.0 else "less"
             text = (
-                f"its sides took {abs(work.taken - work.given):.3g} J {verb} work than they gave, "
-                f"{100.0 * abs(drift):.0f} % of the {work.high - work.low:.3g} J that were "
-                f"exchanged; {advice(coupling, name)}"
+                f"its sides took {abs(work.work_taken - work.work_given):.3g} J {verb} work than "
+                f"they gave, {100.0 * abs(drift):.0f} % of the {work.high - work.low:.3g} J that "
+                f"were exchanged; {advice(coupling, name)}"
             )
             texts[name] = {"work": text}
         return texts

@@ -80,11 +80,11 @@ def _shorten_late_impulses(coupling: Coupling, dt: float) -> None:
 
 def _keep(coupling: Coupling) -> None:
     stateless = []
-    for one in coupling.components.values():
-        one.order_keep(DEPTH)
+    for participant in coupling.components.values():
+        participant.order_keep(DEPTH)
     try:
-        for name, one in coupling.components.items():
-            if one.receive().header.get("stateless"):
+        for name, participant in coupling.components.items():
+            if participant.receive().header.get("stateless"):
                 stateless.append(name)
     finally:
         _await_all(coupling)
@@ -95,39 +95,39 @@ def _keep(coupling: Coupling) -> None:
 def _rewind(coupling: Coupling) -> None:
     components = coupling.components.values()
     _await_all(coupling)
-    for one in components:
-        one.order_rewind(DEPTH, last=True)
-    for one in components:
-        one.receive()
+    for participant in components:
+        participant.order_rewind(DEPTH, last=True)
+    for participant in components:
+        participant.receive()
 
 
 def _await_all(coupling: Coupling) -> None:
     """Wait for the components that were under way when another failed."""
-    for one in coupling.components.values():
-        while not one.answered:
+    for participant in coupling.components.values():
+        while not participant.answered:
             with suppress(TrialFailed):
-                one.receive()
+                participant.receive()
 
 
 @contextmanager
 def _undone(coupling: Coupling) -> Iterator[None]:
     """Bring the coupler's memory back at the end: couplings, books, logs and costs."""
     began = time.perf_counter()
-    groups = {k: one for k, one in coupling.members.items() if isinstance(one, Group)}
+    groups = {k: group for k, group in coupling.members.items() if isinstance(group, Group)}
     state, books = coupling.save(), coupling.ledger.save()
     inner = {name: group.save() for name, group in groups.items()}
     couplings = list(_couplings(coupling))
-    logs, costs = [one.log for one in couplings], dataclasses.replace(coupling.costs)
+    logs, costs = [each.log for each in couplings], dataclasses.replace(coupling.costs)
     before = dict(coupling.outputs)
-    for one in coupling.components.values():
-        one.trial = True
+    for participant in coupling.components.values():
+        participant.trial = True
     for each in couplings:
         each.log = None
     try:
         yield
     finally:
-        for one in coupling.components.values():
-            one.trial = False
+        for participant in coupling.components.values():
+            participant.trial = False
         coupling.load(state)
         for name, group in groups.items():
             group.load(inner[name])
@@ -149,13 +149,13 @@ def _couplings(coupling: Coupling) -> Iterator[Coupling]:
 
 def _require_undone(coupling: Coupling, before: Mapping[str, Fields]) -> None:
     """End the run if a component did not come back: it would go on from a wrong state."""
-    for name, one in coupling.components.items():
-        gives, now = coupling.exchange.gives[name], one.call("give").fields
+    for name, participant in coupling.components.items():
+        gives, now = coupling.exchange.gives[name], participant.call("give").fields
         for key, array in before[name].items():
             if gives[key].centring == "instant" and not np.array_equal(now[key], array):
                 raise ComponentFailed(
                     name,
-                    one.window,
+                    participant.window,
                     f"load must bring back what save gave; {key} differs after a window was "
                     "undone. Run quintet conform on its kind.",
                 )

@@ -23,5 +23,5 @@ def maker(kind: str) -> Maker:
     (entry,) = entry_points(group="quintet.links", name=kind) or (None,)
     if entry is None:
         raise KeyError(kind)
-    made: Maker = entry.load()
-    return made
+    make: Maker = entry.load()
+    return make

@@ -40,10 +40,10 @@ class DirectKeys:
 
 
 @with_keys(DirectKeys)
-def make(name: str, given: DirectKeys, ports: Mapping[str, Ports]) -> Link:
+def make(name: str, keys: DirectKeys, ports: Mapping[str, Ports]) -> Link:
     """Make a link with the names of its components if it has none."""
-    names = dict.fromkeys(path.split(".")[0] for pair in given.pairs for path in pair)
-    return join(name or "-".join(names), given.pairs, ports)
+    names = dict.fromkeys(path.split(".")[0] for pair in keys.pairs for path in pair)
+    return join(name or "-".join(names), keys.pairs, ports)
 
 
 def join(name: str, pairs: Any, ports: Mapping[str, Ports]) -> "Direct":
@@ -53,12 +53,12 @@ def join(name: str, pairs: Any, ports: Mapping[str, Ports]) -> "Direct":
     for giver, taker in pairs:
         if is_stand_in(ports.get(taker.partition(".")[0])):
             continue
-        given = _port(name, giver, ports, 1, mistakes)
+        giving = _port(name, giver, ports, 1, mistakes)
         taken = _port(name, taker, ports, 0, mistakes)
-        if given and taken:
-            wrong = misfits(taker.split(".")[0], taken, given)
-            mistakes += [f"link {name}: {one}. Change one of the ports." for one in wrong]
-            joined.append((giver.split(".")[0], given, taker.split(".")[0], taken))
+        if giving and taken:
+            wrong = misfits(taker.split(".")[0], taken, giving)
+            mistakes += [f"link {name}: {misfit}. Change one of the ports." for misfit in wrong]
+            joined.append((giver.split(".")[0], giving, taker.split(".")[0], taken))
     if mistakes:
         raise SceneError(mistakes)
     return Direct(name, joined)
@@ -90,19 +90,19 @@ class Direct:
         self.partner = {b: p.name for _, _, b, p in joined if p.items == "partner"}
         works: dict[str, Works] = {}
         transfers = []
-        for giver, given, taker, taken in joined:
-            for one in given.fields:
-                if pair := self._velocity(taker, giver, one, taken=True):
-                    works.setdefault(giver, []).append((f"{given.name}.{one.name}", *pair))
+        for giver, giving, taker, taken in joined:
+            for field in giving.fields:
+                if pair := self._velocity(taker, giver, field, taken=True):
+                    works.setdefault(giver, []).append((f"{giving.name}.{field.name}", *pair))
             on = [(f"{taken.name}.{f.name}", self._velocity(taker, giver, f)) for f in taken.fields]
             transfers.append(
                 Transfer(
                     giver,
                     taker,
-                    reads=tuple(f"{given.name}.{f.name}" for f in taken.fields),
+                    reads=tuple(f"{giving.name}.{f.name}" for f in taken.fields),
                     fills=tuple(f"{taken.name}.{f.name}" for f in taken.fields),
                     sums=tuple(
-                        (f"{given.name}.{f.name}", f"{taken.name}.{f.name}")
+                        (f"{giving.name}.{f.name}", f"{taken.name}.{f.name}")
                         for f in taken.fields
                         if f.centring == "impulse"
                     ),
@@ -123,14 +123,14 @@ class Direct:
         """
         if not force.works_with:
             return None
-        for giver, given, taker, taking in self.joined:
-            fields = {one.name: one for one in taking.fields}
+        for giver, giving, taker, taking in self.joined:
+            fields = {field.name: field for field in taking.fields}
             if (giver, taker) != (mover, pusher) or force.works_with not in fields:
                 continue
-            port = taking if taken else given
-            whole = [one for one in port.fields if one.rate == force.works_with]
+            port = taking if taken else giving
+            whole = [field for field in port.fields if field.rate == force.works_with]
             if taken:
-                whole = [one for one in whole if one.shape == (3,) and force.unit == "N"]
+                whole = [field for field in whole if field.shape == (3,) and force.unit == "N"]
             place = f"{port.name}.{whole[0].name}" if whole else ""
             return f"{port.name}.{force.works_with}", place
         return None
@@ -142,11 +142,11 @@ class Direct:
     def refuses(self, initial: Mapping[str, Fields]) -> list[str]:
         """See `exchange.refused_starts`: what is larger than the taker requests."""
         wrong = []
-        for giver, given, taker, taken in self.joined:
+        for giver, giving, taker, taken in self.joined:
             for request in taken.requests:
                 if not request.name.startswith(LARGEST):
                     continue
-                place = f"{given.name}.{request.name.removeprefix(LARGEST)}"
+                place = f"{giving.name}.{request.name.removeprefix(LARGEST)}"
                 limit = initial.get(taker, {}).get(f"{taken.name}.{request.name}")
                 values = initial.get(giver, {}).get(place)
                 if limit is None or values is None or not values.size:
@@ -163,19 +163,19 @@ class Direct:
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Pass on the static fields that the taking port asks for."""
         passed: dict[str, dict[str, Array]] = {}
-        for giver, given, taker, taken in self.joined:
+        for giver, giving, taker, taken in self.joined:
             for field in taken.static:
-                array = described[giver].get(f"{given.name}.{field.name}")
+                array = described[giver].get(f"{giving.name}.{field.name}")
                 if array is not None:
                     passed.setdefault(taker, {})[f"{taken.name}.{field.name}"] = array
-        return Binding(passed, tuple(_passing(one) for one in self.transfers))
+        return Binding(passed, tuple(_passing(transfer) for transfer in self.transfers))
 
 
 def _passing(transfer: Transfer) -> Callable[[Ends, Ends], Mapped]:
     names = tuple(zip(transfer.reads, transfer.fills, strict=True))
 
     def maps(_: Ends, end: Ends) -> Mapped:
-        given = end[transfer.giver]
-        return {taken: given[key] for key, taken in names}
+        outputs = end[transfer.giver]
+        return {taken: outputs[key] for key, taken in names}
 
     return maps

@@ -62,9 +62,9 @@ class FsiKeys:
 
 
 @with_keys(FsiKeys)
-def make(name: str, given: FsiKeys, ports: Mapping[str, Ports]) -> Link:
+def make(name: str, keys: FsiKeys, ports: Mapping[str, Ports]) -> Link:
     """Make a link, with the contact that it asks for."""
-    return join(name, given.between, ports, given.contact == "potential")
+    return join(name, keys.between, ports, keys.contact == "potential")
 
 
 def join(
@@ -105,8 +105,8 @@ def join(
 def _same_dimensions(name: str, ports: Mapping[str, Port]) -> None:
     """Refuse a fluid of two dimensions beside bodies of three, and the reverse."""
     planar = [
-        one
-        for one, port in ports.items()
+        component
+        for component, port in ports.items()
         if any(field.name == DIMENSIONS.name for field in (*port.static, *port.requests))
     ]
     if len(planar) == 1:
@@ -165,9 +165,9 @@ class Fsi:
 
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Let the samples of the surface ride on what moves it."""
-        found = self.structure.bind(self.sampling, described[self.sampling.body])
+        binding = self.structure.bind(self.sampling, described[self.sampling.body])
         count = len(self.transfers)
-        return replace(found, maps=found.maps[:count], moment=found.moment[:count])
+        return replace(binding, maps=binding.maps[:count], moment=binding.moment[:count])
 
 
 def _sampled(mirrored: bool) -> tuple[str, ...]:

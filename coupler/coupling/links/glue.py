@@ -80,9 +80,9 @@ class GlueKeys:
 
 
 @with_keys(GlueKeys)
-def make(name: str, given: GlueKeys, ports: Mapping[str, Ports]) -> Link:
+def make(name: str, keys: GlueKeys, ports: Mapping[str, Ports]) -> Link:
     """Make a link of steps that are equal on both sides."""
-    return join(name, given.between, ports, given.reach)
+    return join(name, keys.between, ports, keys.reach)
 
 
 def join(
@@ -182,13 +182,13 @@ class Glue:
     ) -> None:
         """Refuse particles that lie beside all faces, or too far above them."""
         beside, far = beyond > BESIDE * size, gap > self.reach * size
-        for one in np.flatnonzero(beside | far)[:1]:
-            how = f"{beyond[one]:.3g} m beside" if beside[one] else f"{gap[one]:.3g} m from"
+        for row in np.flatnonzero(beside | far)[:1]:
+            how = f"{beyond[row]:.3g} m beside" if beside[row] else f"{gap[row]:.3g} m from"
             raise LinkError(
                 f"link {self.name}: a glued particle must lie above a face of {self.mesh}, no "
-                f"further from it than reach = {self.reach:g} of its longest side; particle {one} "
-                f"of {self.particles}, at {np.array2string(place[one], precision=4)} m, is {how} "
-                f"the nearest one, face {face[one]} of {size[one]:.3g} m. Let "
+                f"further from it than reach = {self.reach:g} of its longest side; particle {row} "
+                f"of {self.particles}, at {np.array2string(place[row], precision=4)} m, is {how} "
+                f"the nearest one, face {face[row]} of {size[row]:.3g} m. Let "
                 "the faces reach under all glued particles, glue fewer, or raise reach."
             )
 

@@ -57,10 +57,10 @@ class HeatKeys:
 
 
 @with_keys(HeatKeys)
-def make(name: str, given: HeatKeys, ports: Mapping[str, Ports]) -> Link:
+def make(name: str, keys: HeatKeys, ports: Mapping[str, Ports]) -> Link:
     """Make a link with its relaxation by window."""
-    factors = given.relaxation if isinstance(given.relaxation, tuple) else (given.relaxation,)
-    return join(name, given.between, ports, factors)
+    factors = keys.relaxation if isinstance(keys.relaxation, tuple) else (keys.relaxation,)
+    return join(name, keys.between, ports, factors)
 
 
 def join(

@@ -12,7 +12,7 @@ from quintet.interfaces.params import parameters, read, shown, unknown
 
 
 def _is_pair(value: Any) -> bool:
-    return isinstance(value, list) and [type(one) for one in value] == [str, str]
+    return isinstance(value, list) and [type(entry) for entry in value] == [str, str]
 
 
 def _two_components(value: Any) -> tuple[Any, ...]:
@@ -66,22 +66,22 @@ class LinkKind:
 
     def __call__(self, number: int, table: dict[str, Any], ports: Mapping[str, Ports]) -> Link:
         """Check the table, and make the link; one between two has their names if it has none."""
-        where, common = f"links.{number}", {one.name for one in fields(LinkKeys)}
-        own_names = {one.name for one in fields(self.keys)}
+        where, common = f"links.{number}", {field.name for field in fields(LinkKeys)}
+        own_names = {field.name for field in fields(self.keys)}
         known = [*common, *own_names, *getattr(self.keys, "RENAMED", ())]
         if strange := [key for key in table if key not in known]:
             raise SceneError([unknown(f"{where}.{key}", key, known) for key in strange])
-        shared = {"kind": "", **{key: one for key, one in table.items() if key in common}}
+        shared = {"kind": "", **{key: value for key, value in table.items() if key in common}}
         all_have, wrong = read(LinkKeys, shared, where)
-        own = {key: one for key, one in table.items() if key not in common}
-        given, also_wrong = read(self.keys, own, where)
-        if all_have is None or given is None:
+        of_kind = {key: value for key, value in table.items() if key not in common}
+        keys, also_wrong = read(self.keys, of_kind, where)
+        if all_have is None or keys is None:
             raise SceneError([*wrong, *also_wrong])
-        pair = getattr(given, "between", ())
+        pair = getattr(keys, "between", ())
         for name in pair:
             if name not in ports:
                 raise SceneError(unknown(f"{where}: component {name}", name, ports))
-        return self.make(all_have.name or "-".join(pair), given, ports)
+        return self.make(all_have.name or "-".join(pair), keys, ports)
 
 
 def with_keys(keys: type) -> Callable[[Make], LinkKind]:

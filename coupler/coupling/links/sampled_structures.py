@@ -16,7 +16,7 @@ from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError
 from quintet.interfaces.ports import DIMENSIONS, FACES, LOAD, MOTION, NODE_LOAD
 
-POSES = tuple(f"motion.{one.name}" for one in MOTION.fields)
+POSES = tuple(f"motion.{field.name}" for field in MOTION.fields)
 # What an answer to a request for samples holds, and the shape of one row.
 OF_BODIES: dict[str, tuple[int, ...]] = {"arm": (3,), "normal": (3,), "volume": (), "body": ()}
 OF_FACES: dict[str, tuple[int, ...]] = {
@@ -69,16 +69,16 @@ def answered(
     link: str, name: str, port: str, told: Fields, shapes: Mapping[str, tuple[int, ...]]
 ) -> list[Array]:
     """Fields of an answer to a request for samples, checked: a row for each sample."""
-    found = [told.get(f"{port}.{field}") for field in shapes]
-    rows = -1 if found[0] is None else len(found[0])
-    for (field, shape), array in zip(shapes.items(), found, strict=True):
+    answers = [told.get(f"{port}.{field}") for field in shapes]
+    rows = -1 if answers[0] is None else len(answers[0])
+    for (field, shape), array in zip(shapes.items(), answers, strict=True):
         if array is None or array.shape != (rows, *shape):
             raise LinkError(
                 f"link {link}: sample of {name} must answer with {port}.{field} of shape "
                 f"{('n', *shape)}, a row for each sample; found "
                 f"{'none' if array is None else array.shape}. Correct it."
             )
-    return [array for array in found if array is not None]
+    return [array for array in answers if array is not None]
 
 
 def _bind_bodies(of: Sampling, bodies: Fields) -> Binding:
@@ -104,18 +104,18 @@ def _static(of: Sampling, normal: Array, volume: Array, body: Array) -> dict[str
 def _move_bodies(
     body: str, samples: RigidMap, mirror: RigidMap | None, _: Ends, end: Ends
 ) -> Mapped:
-    given = end[body]
-    position, velocity = samples.map_consistent(*(given[key] for key in POSES))
+    outputs = end[body]
+    position, velocity = samples.map_consistent(*(outputs[key] for key in POSES))
     moved = {"surface.position": position, "surface.velocity": velocity}
     if mirror is not None:
-        arms = mirror.arms(given["motion.orientation"])
-        moved["surface.mirror"] = given["motion.position"][samples.body] + arms
+        arms = mirror.arms(outputs["motion.orientation"])
+        moved["surface.mirror"] = outputs["motion.position"][samples.body] + arms
     return moved
 
 
 def _load_bodies(of: Sampling, samples: RigidMap, start: Ends, end: Ends) -> Mapped:
     # An impulse was gathered along the way between the two poses: use their middle.
-    turns = [one[of.body]["motion.orientation"] for one in (start, end)]
+    turns = [outputs[of.body]["motion.orientation"] for outputs in (start, end)]
     arms = 0.5 * (samples.arms(turns[0]) + samples.arms(turns[1]))
     force, torque = samples.map_conservative(end[of.fluid]["surface_load.force"], arms)
     return {"load.force": force, "load.torque": torque}
@@ -132,7 +132,7 @@ def _bind_faces(of: Sampling, mesh: Fields) -> Binding:
     told = answered(of.link, of.body, "faces", mesh, OF_FACES)
     node, *weights, depth, side, normal, volume = told
     nodes = len(mesh["faces.start"])
-    surface, along, across = (ShapeMap(node.astype(np.int64), one, nodes) for one in weights)
+    surface, along, across = (ShapeMap(node.astype(np.int64), weight, nodes) for weight in weights)
     offset = OffsetMap(surface, along, across, depth, side)
     maps = partial(_move_faces, of, offset), partial(_load_faces, of, offset)
     static = _static(of, normal, volume, np.zeros(len(volume)))

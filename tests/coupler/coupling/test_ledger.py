@@ -46,11 +46,11 @@ def test_all_that_was_given_is_applied_or_on_its_way():
     sums = {"pushed.force": force.sum(axis=0).tolist()}
     header = {"sent": {**sums, "pushed.force/size": [np.abs(force).sum()]}}
     fields = {"pushed.force": force}
-    ledger.given("b", header, fields)
+    ledger.book_given("b", header, fields)
     ledger.given_for(back, fields)
     ledger.close_window(late, {})
     assert ledger.worst == 0.0
-    ledger.given("b", header, fields)
+    ledger.book_given("b", header, fields)
     ledger.given_for(back, fields)
     ledger.applied("a", fields, {"received": sums, "applied": sums})
     ledger.close_window(late, {})
@@ -100,7 +100,7 @@ def test_work_that_only_one_side_counts_is_no_residual():
     exchange.links[0].works = {"b": [("pushed.force", "moved.velocity", "")]}
     ledger = Ledger(exchange)
     fields = {"pushed.force": np.ones((1, 3))}
-    ledger.given("b", {"sent": {"pushed.force/work": [3.0]}}, fields)
+    ledger.book_given("b", {"sent": {"pushed.force/work": [3.0]}}, fields)
     account = ledger.accounts["rope"]
     assert account.work_given == 3.0
     assert account.energy_residual == 0.0

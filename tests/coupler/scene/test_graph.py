@@ -38,8 +38,8 @@ def test_all_components_ports_and_links_are_drawn(name):
     assert sorted(rows) == sorted((way, port.name) for way, port in told)
     found = list(edges(scene))
     for one in found:
-        assert f"{one.link}: {one.giver}.{one.given} → {one.taker}.{one.taken}" in lines
-    assert drawn.count("◄") == len({(one.taker, one.taken) for one in found})
+        assert f"{one.link}: {one.giver}.{one.giving_port} → {one.taker}.{one.taking_port}" in lines
+    assert drawn.count("◄") == len({(one.taker, one.taking_port) for one in found})
 
 
 def follow(lines, row, column):
