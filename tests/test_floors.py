@@ -22,32 +22,26 @@ STOREYS = [
 ]
 
 FILES_IN_CIRCLES = {
-    "components/dem_bodies/params",
-    "components/dem_bodies/shapes",
     "components/sph_fluid/params",
     "components/sph_fluid/setup",
 }
 PARTS_IN_CIRCLES = {
-    "components/dem_bodies",
     "components/fe_plate",
     "components/meshless_gas",
     "components/sph_fluid",
 }
 UPWARD = {
-    "components/dem_bodies/plan: build",
     "components/fe_plate/heat/state: kernels",
     "components/fe_plate/state: kernels",
 }
 ABOVE_COMPONENT = {"analysis"}  # sub-folders and files that drive the whole solver
 LACKING = {
-    "dem_bodies": {"features"},
     "fe_plate": {"laws"},
     "heat": {"features", "diagnostics"},
     "sph_fluid": {"plan", "view"},
 }
 VAGUE = {"one", "found", "given", "made", "kept", "own"}
 VAGUE_LOCALS = {
-    "components/dem_bodies",
     "components/shared",
     "components/sph_fluid",
     "components/stand_ins",

@@ -1,12 +1,20 @@
-"""What is wrong when a run must end, and what touches where."""
+"""Why a run must end, warnings, points of contact, and totals."""
+
+import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from quintet.components.dem_bodies.contact import ball_search
+from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.kernels.locked_motion import write_momenta_of_locked
 from quintet.components.dem_bodies.state import (
+    CONTACT_WORK,
     DEEPEST,
     DEEPEST_PAIR,
+    ELASTIC_ENERGY,
+    LOAD_WORK,
+    STIFFEST,
     TOUCHING,
     BallPairs,
     BodyPairs,
@@ -14,10 +22,10 @@ from quintet.components.dem_bodies.state import (
     Numbers,
     State,
 )
-from quintet.interfaces.component import Fields
+from quintet.interfaces.component import Fields, Totals
 from quintet.interfaces.errors import StepError
 
-DOUBTFUL_DEPTH = 0.2  # overlap over contact radius: more is not as stiff bodies do
+DOUBTFUL_DEPTH = 0.2  # overlap over contact radius: stiff bodies overlap less
 FEWEST_STEPS = 5  # of a contact
 ALLOWED_DEPTH = 0.5  # overlap over contact radius; Hertz's law is for small ones
 
@@ -32,41 +40,54 @@ def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: floa
         return StepError(
             f"{after}: the state must stay finite; body {k} is at {state.position[a].tolist()} m "
             f"with {state.velocity[a].tolist()} m/s under a load of {state.load[a].tolist()} N, "
-            "N m. Look at the load it was given, or make steps_per_contact larger."
+            "N m. Check its load, or increase steps_per_contact."
         )
     i, j = deepest_pair(state, balls, others)
     other, where = f"body {j}" if j < bodies else "a plane", state.position[state.row[i]]
     return StepError(
-        f"{after}: a contact may be {ALLOWED_DEPTH} of its radius deep; body {i} is "
-        f"{state.report[DEEPEST]:.3g} of it deep in {other}, near {where.round(4).tolist()} m. "
-        "Make youngs_modulus or edge_radius larger, or impact_speed nearer to that of impacts."
+        f"{after}: the overlap of a contact must be at most {ALLOWED_DEPTH} of its radius; that of "
+        f"body {i} with {other} is {state.report[DEEPEST]:.3g} of it, near "
+        f"{where.round(4).tolist()} m. Increase youngs_modulus or edge_radius, or set impact_speed "
+        "to the speed of the impacts."
     )
 
 
-def doubts(coarsest: float, deepest: float) -> dict[str, str]:
-    """Say why contacts may be wrong.
+@dataclass(slots=True)
+class Accumulated:
+    """Time, works and extremes of a run."""
 
-    Parameters
-    ----------
-    coarsest : float, 1
-        Longest step in contact over the duration of that contact.
-    deepest : float, 1
-        Largest overlap over the radius of the contact.
-    """
-    found = {}
-    if coarsest * FEWEST_STEPS > 1.0:
-        found["steps"] = (
-            f"a contact must last {FEWEST_STEPS} steps or more, or its rebound is wrong; one "
-            f"lasted {1.0 / coarsest:.2g}. Take a shorter fixed_step, or none, and an impact_speed "
-            "that is that of the fastest impact."
-        )
-    if deepest > DOUBTFUL_DEPTH:
-        found["overlap"] = (
-            f"bodies must overlap by less than {DOUBTFUL_DEPTH:g} of the radius of their contact, "
-            f"as Hertz's law is for small overlaps; found {deepest:.2g}. Make youngs_modulus or "
-            "edge_radius larger."
-        )
-    return found
+    time: float = 0.0  # s
+    dissipated: float = 0.0  # J, by dampers and friction
+    load_work: float = 0.0  # J, done by the loads
+    coarsest: float = 0.0  # longest step in contact, over the duration of that contact
+    deepest: float = 0.0  # largest overlap over the radius of the contact
+
+    def add(self, dt: float, elastic: float, report: Numbers) -> None:
+        """Add a step of length dt [s]; `elastic` is the contacts' energy [J] before it."""
+        lost = elastic - report[CONTACT_WORK] - report[ELASTIC_ENERGY]
+        self.time += dt
+        self.load_work += float(report[LOAD_WORK])
+        self.dissipated += float(lost)
+        duration = DURATION * SPEED_UP / math.sqrt(max(report[STIFFEST], 1e-300))  # s
+        self.coarsest = max(self.coarsest, float(dt / duration))
+        self.deepest = max(self.deepest, float(report[DEEPEST]))
+
+    def warnings(self) -> dict[str, str]:
+        """Warn of contacts that few steps resolved, and of deep overlaps."""
+        warnings = {}
+        if self.coarsest * FEWEST_STEPS > 1.0:
+            warnings["steps"] = (
+                f"a contact must last at least {FEWEST_STEPS} steps, or its rebound is wrong; the "
+                f"shortest lasted {1.0 / self.coarsest:.2g}. Shorten fixed_step or leave it out, "
+                "and set impact_speed to the speed of the fastest impact."
+            )
+        if self.deepest > DOUBTFUL_DEPTH:
+            warnings["overlap"] = (
+                f"bodies must overlap by less than {DOUBTFUL_DEPTH:g} of the radius of their "
+                f"contact, as Hertz's law holds for small overlaps; found {self.deepest:.2g}. "
+                "Increase youngs_modulus or edge_radius."
+            )
+        return warnings
 
 
 def deepest_pair(state: State, balls: BallPairs | None, others: BodyPairs) -> tuple[int, int]:
@@ -93,7 +114,7 @@ def contact_points(
     """
     count = int(state.report[TOUCHING])
     geometry, bodies = others.geometry[:count], state.body[others.touching[:count, 1:3]]
-    listed = {
+    points = {
         "bodies": bodies,
         "point": geometry[:, 3:6],
         "normal": geometry[:, :3],
@@ -101,9 +122,9 @@ def contact_points(
         "depth": geometry[:, 6],
     }
     if balls is None:
-        return {key: array.copy() for key, array in listed.items()}
-    found = ball_search.touching_balls(model, state, balls)._asdict()
-    return {key: np.concatenate([found[key], array]) for key, array in listed.items()}
+        return {key: array.copy() for key, array in points.items()}
+    of_balls = ball_search.touching_balls(model, state, balls)._asdict()
+    return {key: np.concatenate([of_balls[key], array]) for key, array in points.items()}
 
 
 def angular_momenta(model: Model, state: State) -> Numbers:
@@ -116,7 +137,7 @@ def angular_momenta(model: Model, state: State) -> Numbers:
 
 
 def kinetic_energy(model: Model, state: State) -> float:
-    """Kinetic energy [J] of all bodies, added up one by one: no bit depends on their number."""
+    """Kinetic energy [J] of all bodies, added up in the order of the rows."""
     v, ω, ball = state.velocity[:-1], state.angular_velocity[:-1], model.ball[:-1]
     momenta = np.where(ball[:, None], ω, angular_momenta(model, state)[:-1])
     rotation = 0.5 * inner(momenta, ω)
@@ -128,3 +149,18 @@ def kinetic_energy(model: Model, state: State) -> float:
 def inner(a: Numbers, b: Numbers) -> Numbers:
     """Inner products (n,) of the rows of two arrays (n, 3)."""
     return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2])
+
+
+def totals(model: Model, state: State, mass: Numbers) -> Totals:
+    """Mass, momentum and energies of bodies of a mass (m,) kg; internal is elastic energy."""
+    row = state.row[: len(mass)]
+    x, momentum = state.position[row], mass[:, None] * state.velocity[row]
+    angular_momentum = angular_momenta(model, state)[row]
+    return Totals(
+        mass=float(mass.sum()),
+        momentum=momentum.sum(axis=0),
+        angular_momentum=(angular_momentum + np.cross(x, momentum)).sum(axis=0),
+        kinetic=kinetic_energy(model, state),
+        potential=-float(mass @ (x @ model.gravity)),
+        internal=float(state.report[ELASTIC_ENERGY]),
+    )

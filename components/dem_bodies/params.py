@@ -8,8 +8,8 @@ from pydantic import Field
 from quintet.components.dem_bodies.shapes import overlaps
 from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.description import rigid_body
-from quintet.components.dem_bodies.shapes.planar import check_plane
-from quintet.components.dem_bodies.shapes.rigid_body import Agglomerate, Copies, Quaternion
+from quintet.components.dem_bodies.shapes.rigid_body import Agglomerate, Copies, Plane, Quaternion
+from quintet.components.dem_bodies.shapes.two_dimensions import check_plane
 from quintet.components.shared.geometry.shape_keys import (
     RENAMED,
     BoxKeys,
@@ -157,25 +157,6 @@ class Body(BoxKeys, RoundKeys, PolygonKeys, MeshKeys):
 
 
 @parameters
-class Plane:
-    """A fixed half-space.
-
-    Parameters
-    ----------
-    point : m
-        Any of its surface.
-    normal : 1
-        To the free side; of any length.
-    material
-        One of the materials.
-    """
-
-    point: Vector
-    normal: Vector
-    material: str
-
-
-@parameters
 class DemBodiesParams:
     """Rigid bodies, the materials that they are made of, and the planes that hold them.
 
@@ -235,7 +216,7 @@ class DemBodiesParams:
                 self._known(f"pairs[{k}].between", name)
         bodies = [rigid_body(f"bodies[{k}]", body) for k, body in enumerate(self.bodies)]
         object.__setattr__(self, "bodies", Bodies(bodies))
-        check_plane(self)
+        check_plane(self.placed, self.planes, self.gravity, self.dimensions)
         check_pairs(self.pairs)
         overlaps.check(self.placed, self.planes)
 

@@ -5,10 +5,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from quintet.components.dem_bodies.build import Solid
-from quintet.components.dem_bodies.params import Plane
 from quintet.components.dem_bodies.shapes import planar
-from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
+from quintet.components.dem_bodies.shapes.solid import Solid
 from quintet.components.dem_bodies.state import State, Whole
 from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array, Fields
@@ -76,7 +75,7 @@ def planes_view(planes: Sequence[Plane], state: State) -> Fields:
     limits = np.concatenate([points, np.tile(low, (3, 1)), np.tile(high, (3, 1))])
     inwards = np.concatenate([normals, np.eye(3), -np.eye(3)])
     centre, reach = 0.5 * (low + high), float(np.linalg.norm(high - low))
-    found = []
+    outlines = []
     for k, (point, normal) in enumerate(zip(points, normals, strict=True)):
         middle = centre - normal * (normal @ (centre - point))
         corners = middle + reach * _square(normal)
@@ -84,8 +83,8 @@ def planes_view(planes: Sequence[Plane], state: State) -> Fields:
             if m != k:
                 corners = _before(corners, limit, inward, ON * size)
         if len(corners) >= 3:
-            found.append(corners)
-    return polygons(found)
+            outlines.append(corners)
+    return polygons(outlines)
 
 
 def _square(normal: Array) -> Array:
@@ -101,11 +100,11 @@ def _before(corners: Array, point: Array, inward: Array, allowed: float) -> Arra
     if not len(corners):
         return corners
     heights = (corners - point) @ inward
-    kept: list[Array] = []
+    cut: list[Array] = []
     ends = zip(np.roll(corners, -1, axis=0), np.roll(heights, -1), strict=True)
     for corner, height, (end, end_height) in zip(corners, heights, ends, strict=True):
         if height >= -allowed:
-            kept.append(corner)
+            cut.append(corner)
         if (height < -allowed) != (end_height < -allowed):
-            kept.append(corner + (end - corner) * (height / (height - end_height)))
-    return np.array(kept).reshape(-1, 3)
+            cut.append(corner + (end - corner) * (height / (height - end_height)))
+    return np.array(cut).reshape(-1, 3)

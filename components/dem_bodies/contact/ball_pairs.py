@@ -17,8 +17,8 @@ from quintet.components.dem_bodies.state import (
 )
 
 
-def ball_pairs(model: Model, begin: Whole, partner: Short, asked: bool) -> BallPairs:
-    """Pairs of given partners, without history; whether their forces are `asked` for."""
+def ball_pairs(model: Model, begin: Whole, partner: Short, records_forces: bool) -> BallPairs:
+    """Pairs of these partners, without history."""
     rows, pairs, blocks = len(model.kind), len(partner), blocks_of(len(model.kind))
     row, earliest = np.empty(pairs, np.uint32), np.zeros(blocks, np.int64)
     ends = np.zeros(blocks + 1, np.int64), np.zeros(rows + 1, np.int64)
@@ -34,7 +34,7 @@ def ball_pairs(model: Model, begin: Whole, partner: Short, asked: bool) -> BallP
         constants=constants_of_pairs(model, row, partner, some),
         history=np.zeros((4, pairs)),
         rolling_moment=np.zeros((pairs, 3)) if rolls else None,
-        force=np.zeros((pairs if rolls or asked else 0, 3)),
+        force=np.zeros((pairs if rolls or records_forces else 0, 3)),
         outgoing=np.zeros((len(incoming), 6)),
         outgoing_begin=ends[0],
         incoming_begin=ends[1],

@@ -44,20 +44,20 @@ def sorted_balls(model: Model, state: State, skin: float) -> tuple[Sorted, Whole
 def list_ball_pairs(
     model: Model,
     state: State,
-    around: Sorted,
+    cells: Sorted,
     old: BallPairs,
     old_body: Whole,
     skin: float,
-    asked: bool,
+    records_forces: bool,
 ) -> BallPairs:
-    """List anew all pairs of balls, and of balls and planes, nearer than the skin [m]."""
-    begin = np.empty(len(around.keys) + 1, np.int64)
+    """List all pairs of balls, and of balls and planes, nearer than the skin [m]."""
+    begin = np.empty(len(cells.keys) + 1, np.int64)
     partner = np.empty(2 * len(old.partner) + 64, np.uint32)
-    count = list_partners(model, state.motion, around.keys, skin, begin, partner)
+    count = list_partners(model, state.motion, cells.keys, skin, begin, partner)
     if count > len(partner):
         partner = np.empty(count, np.uint32)
-        list_partners(model, state.motion, around.keys, skin, begin, partner)
-    new = ball_pairs(model, begin, partner[:count].copy(), asked)
+        list_partners(model, state.motion, cells.keys, skin, begin, partner)
+    new = ball_pairs(model, begin, partner[:count].copy(), records_forces)
     transfer_history(old, old_body, new, state.body)
     return new
 

@@ -33,16 +33,16 @@ def list_partners(
     model: Model, motion: Numbers, keys: Whole, skin: float, begin: Whole, partner: Short
 ) -> int:
     """Write the partners of each row, while there is room, and where rows begin; count them."""
-    planes, rows, count, found = model.plane.shape[0], motion.shape[0], keys.shape[0], 0
+    planes, rows, count, listed = model.plane.shape[0], motion.shape[0], keys.shape[0], 0
     low, high = np.zeros(5, np.int64), np.zeros(5, np.int64)
     for a in range(count):
-        begin[a] = found
+        begin[a] = listed
         x, radius = row_vector(motion, a), motion[a, RADIUS]
         for p in range(planes):
             if sphere_plane(x, radius, row_vector(model.plane, p), model.plane[p, 3])[0] < skin:
-                if found < partner.shape[0]:
-                    partner[found] = rows + p
-                found += 1
+                if listed < partner.shape[0]:
+                    partner[listed] = rows + p
+                listed += 1
         for k in range(5):
             first = keys[a] + AHEAD[k][0]
             last = first + AHEAD[k][1]
@@ -53,8 +53,8 @@ def list_partners(
             for b in range(max(low[k], a + 1), high[k]):
                 d, near = sub(x, row_vector(motion, b)), radius + motion[b, RADIUS] + skin
                 if dot(d, d) < near * near:
-                    if found < partner.shape[0]:
-                        partner[found] = b
-                    found += 1
-    begin[count] = found
-    return found
+                    if listed < partner.shape[0]:
+                        partner[listed] = b
+                    listed += 1
+    begin[count] = listed
+    return listed

@@ -106,17 +106,17 @@ def match_pairs(
             begin[min(*bodies_of(old_row[k], old_partner[k], old_body)) + 2] += 1
     for i in range(bodies):
         begin[i + 2] += begin[i + 1]
-    found = np.empty(begin[bodies + 1], np.int64)
+    touching = np.empty(begin[bodies + 1], np.int64)
     for k in range(old_row.shape[0]):
         if old_history[3, k] != 0.0:
             i = min(*bodies_of(old_row[k], old_partner[k], old_body))
-            found[begin[i + 1]] = k
+            touching[begin[i + 1]] = k
             begin[i + 1] += 1
     for k in range(row.shape[0]):
         i, j = bodies_of(row[k], partner[k], body)
         source[k] = 0
         for place in range(begin[min(i, j)], begin[min(i, j) + 1]):
-            old = found[place]
+            old = touching[place]
             p, q = bodies_of(old_row[old], old_partner[old], old_body)
             if max(p, q) == max(i, j):
                 source[k] = old + 1 if p == i else -old - 1

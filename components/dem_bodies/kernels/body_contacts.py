@@ -16,10 +16,10 @@ from quintet.components.dem_bodies.kernels.locked_motion import free_inverse_mas
 from quintet.components.dem_bodies.kernels.sharp import (
     SUNK,
     box_of,
+    corner_penetration,
     edge_of,
-    sunk_corner,
-    sunk_edges,
-    sunk_in_polygon,
+    edge_penetration,
+    polygon_penetration,
 )
 from quintet.components.dem_bodies.laws import contact_force, damping_weight, pair_constants
 from quintet.components.dem_bodies.state import (
@@ -51,10 +51,10 @@ LOCKED_MASS = 1e9
 @njit(**INNER)
 def add_contact(
     report: Numbers, history: Numbers, touching: Whole, geometry: Numbers, count: int, pair: int,
-    ahead: int, i: int, j: int, materials: int, found: Gap, radius: float, smallest: float,
+    ahead: int, i: int, j: int, materials: int, separation: Gap, radius: float, smallest: float,
 ) -> int:  # fmt: skip
     """Write down a pair if it touches, forget its history if not; return the number of contacts."""
-    gap, n, point = found
+    gap, n, point = separation
     report[SMALLEST_GAP] = min(report[SMALLEST_GAP], gap)
     if not gap < 0.0:
         if history[pair, 3] > 0.0:
@@ -74,76 +74,121 @@ def add_contact(
 
 
 @njit(**INNER)
-def detect_contacts(model: Model, state: State, pairs: BodyPairs, ahead: int) -> int:
-    """Write down all pairs that touch, numbered after those of balls; return how many."""
-    count, kinds, ground = 0, model.material_pairs.shape[0], model.bounding_radius.shape[0]
-    begin, ends, history = pairs.begin, pairs.ends, pairs.history
-    touching, geometry, report = pairs.touching, pairs.geometry, state.report
-    material, row, size, edge_radius = (
-        model.material, model.sphere_row, model.sphere_radius, model.edge_radius,
+def spheres_on_planes(model: Model, state: State, pairs: BodyPairs, ahead: int, count: int) -> int:
+    """Write down the spheres that touch planes; return the number of contacts so far."""
+    ground, kinds = model.bounding_radius.shape[0], model.material_pairs.shape[0]
+    begin, ends, material, row = pairs.begin, pairs.ends, model.material, model.sphere_row
+    history, touching, geometry, report = (
+        pairs.history, pairs.touching, pairs.geometry, state.report,
     )  # fmt: skip
-    centre, plane, edge = state.centre, model.plane, model.edge_ends
-    radius, bearing, thickness = (
-        model.contact_radius, model.body_contact_radius, model.half_thickness,
-    )  # fmt: skip
-    motion, axes, half = state.motion, state.axes, model.half_extent
-    local, begin_of = model.sphere_centre, model.sphere_begin
+    centre, plane, size = state.centre, model.plane, model.sphere_radius
+    radius, thickness, of_plane = model.contact_radius, model.half_thickness, model.plane_material
     for k in range(begin[SPHERE_PLANE], begin[SPHERE_PLANE + 1]):
         s, p = ends[k, 0], ends[k, 1]
-        i, r = row[s], size[s]
-        both = material[i] * kinds + model.plane_material[p]
-        found = sphere_plane(row_vector(centre, s), r, row_vector(plane, p), plane[p, 3])
+        i = row[s]
+        both = material[i] * kinds + of_plane[p]
+        gap = sphere_plane(row_vector(centre, s), size[s], row_vector(plane, p), plane[p, 3])
         mean, low = radius[s], min(radius[s], thickness[i])
         count = add_contact(
-            report, history, touching, geometry, count, k, ahead, i, ground, both, found, mean, low
+            report, history, touching, geometry, count, k, ahead, i, ground, both, gap, mean, low
         )
+    return count
+
+
+@njit(**INNER)
+def spheres_on_spheres(model: Model, state: State, pairs: BodyPairs, ahead: int, count: int) -> int:
+    """Write down the spheres that touch spheres; return the number of contacts so far."""
+    begin, ends, material, row = pairs.begin, pairs.ends, model.material, model.sphere_row
+    history, touching, geometry, report = (
+        pairs.history, pairs.touching, pairs.geometry, state.report,
+    )  # fmt: skip
+    centre, size, kinds = state.centre, model.sphere_radius, model.material_pairs.shape[0]
     for k in range(begin[SPHERE_SPHERE], begin[SPHERE_SPHERE + 1]):
         s, p = ends[k, 0], ends[k, 1]
         i, j, r, q = row[s], row[p], size[s], size[p]
         both = material[i] * kinds + material[j]
-        found = sphere_sphere(row_vector(centre, s), row_vector(centre, p), r, q)
+        gap = sphere_sphere(row_vector(centre, s), row_vector(centre, p), r, q)
         mean, low = r * q / (r + q), min(r, q)
         count = add_contact(
-            report, history, touching, geometry, count, k, ahead, i, j, both, found, mean, low
+            report, history, touching, geometry, count, k, ahead, i, j, both, gap, mean, low
         )
+    return count
+
+
+@njit(**INNER)
+def spheres_on_bodies(model: Model, state: State, pairs: BodyPairs, ahead: int, count: int) -> int:
+    """Write down the spheres that touch boxes or polygons; return the number of contacts so far."""
+    begin, ends, material, row = pairs.begin, pairs.ends, model.material, model.sphere_row
+    history, touching, geometry, report = (
+        pairs.history, pairs.touching, pairs.geometry, state.report,
+    )  # fmt: skip
+    radius, bearing, thickness = (
+        model.contact_radius, model.body_contact_radius, model.half_thickness,
+    )  # fmt: skip
+    centre, size, edge_radius = state.centre, model.sphere_radius, model.edge_radius
+    motion, axes, half = state.motion, state.axes, model.half_extent
+    local, begin_of, kinds = model.sphere_centre, model.sphere_begin, model.material_pairs.shape[0]
     for k in range(begin[SPHERE_BOX], begin[SPHERE_BOX + 1]):
         s, j = ends[k, 0], ends[k, 1]
         i, r = row[s], size[s]
         both, q = material[i] * kinds + material[j], edge_radius[j]
-        found = sphere_body(model, state, s, j)
-        if (model.sharp[i] or model.sharp[j]) and found[0] < -SUNK * (r + q):
+        gap = sphere_body(model, state, s, j)
+        if (model.sharp[i] or model.sharp[j]) and gap[0] < -SUNK * (r + q):
             mine = box_of(motion, axes, half, edge_radius, i)
             other = box_of(motion, axes, half, edge_radius, j)
             if model.polygon[j]:
                 spheres = (begin_of[i], begin_of[i + 1]) if model.polygon[i] else (s, s + 1)
                 corners = begin_of[j], begin_of[j + 1]
-                found = sunk_in_polygon(centre, size, local, s, spheres, corners, other)
+                gap = polygon_penetration(centre, size, local, s, spheres, corners, other)
             else:
-                found = sunk_corner(row_vector(centre, s), r, mine, other)
+                gap = corner_penetration(row_vector(centre, s), r, mine, other)
         low = min(min(radius[s], thickness[i]), min(bearing[j], thickness[j]))
         count = add_contact(
-            report, history, touching, geometry, count, k, ahead, i, j, both, found, radius[s], low
+            report, history, touching, geometry, count, k, ahead, i, j, both, gap, radius[s], low
         )
+    return count
+
+
+@njit(**INNER)
+def crossing_edges(model: Model, state: State, pairs: BodyPairs, ahead: int, count: int) -> int:
+    """Write down the edges that touch edges; return the number of contacts so far."""
+    begin, ends, material, row = pairs.begin, pairs.ends, model.material, model.sphere_row
+    history, touching, geometry, report = (
+        pairs.history, pairs.touching, pairs.geometry, state.report,
+    )  # fmt: skip
+    bearing, thickness = model.body_contact_radius, model.half_thickness
+    centre, edge, edge_radius = state.centre, model.edge_ends, model.edge_radius
+    motion, axes, half = state.motion, state.axes, model.half_extent
+    local, kinds = model.sphere_centre, model.material_pairs.shape[0]
     for k in range(begin[EDGE_EDGE], begin[EDGE_EDGE + 1]):
         e, f = ends[k, 0], ends[k, 1]
         i, j = row[edge[e, 0]], row[edge[f, 0]]
         both, r, q = material[i] * kinds + material[j], edge_radius[i], edge_radius[j]
         a, b = row_vector(centre, edge[e, 0]), row_vector(centre, edge[f, 0])
         along = sub(row_vector(centre, edge[e, 1]), a)
-        found = edge_edge(a, along, b, sub(row_vector(centre, edge[f, 1]), b), r, q)
+        gap = edge_edge(a, along, b, sub(row_vector(centre, edge[f, 1]), b), r, q)
         # Crossed cylinders: as a sphere on a plane, of the mean radius.
         mean = math.sqrt(bearing[i] * bearing[j])
         low = min(min(bearing[i], thickness[i]), min(bearing[j], thickness[j]))
-        if (model.sharp[i] or model.sharp[j]) and found[0] < low:
+        if (model.sharp[i] or model.sharp[j]) and gap[0] < low:
             mine = box_of(motion, axes, half, edge_radius, i)
             other = box_of(motion, axes, half, edge_radius, j)
             first = edge_of(centre, local, edge[e, 0], edge[e, 1])
             second = edge_of(centre, local, edge[f, 0], edge[f, 1])
-            found = sunk_edges(first, mine, second, other, found)
+            gap = edge_penetration(first, mine, second, other, gap)
         count = add_contact(
-            report, history, touching, geometry, count, k, ahead, i, j, both, found, mean, low
+            report, history, touching, geometry, count, k, ahead, i, j, both, gap, mean, low
         )
     return count
+
+
+@njit(**INNER)
+def detect_contacts(model: Model, state: State, pairs: BodyPairs, ahead: int) -> int:
+    """Write down all pairs that touch, numbered after those of balls; return how many."""
+    count = spheres_on_planes(model, state, pairs, ahead, 0)
+    count = spheres_on_spheres(model, state, pairs, ahead, count)
+    count = spheres_on_bodies(model, state, pairs, ahead, count)
+    return crossing_edges(model, state, pairs, ahead, count)
 
 
 @njit(**INNER)

@@ -74,14 +74,14 @@ def free_inverse_inertia(model: Model, i: int, r: Matrix) -> Symmetric:
     xx, yy, zz = a * xx + (1.0 - a), b * yy + (1.0 - b), c * zz + (1.0 - c)
     xy, xz, yz = a * b * xy, a * c * xz, b * c * yz
     u, v, w = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
-    one = 1.0 / (xx * u + xy * v + xz * w)
+    inverse = 1.0 / (xx * u + xy * v + xz * w)
     return (
-        a * one * u,
-        b * one * (xx * zz - xz * xz),
-        c * one * (xx * yy - xy * xy),
-        a * b * one * v,
-        a * c * one * w,
-        b * c * one * (xy * xz - xx * yz),
+        a * inverse * u,
+        b * inverse * (xx * zz - xz * xz),
+        c * inverse * (xx * yy - xy * xy),
+        a * b * inverse * v,
+        a * c * inverse * w,
+        b * c * inverse * (xy * xz - xx * yz),
     )
 
 
@@ -149,5 +149,5 @@ def write_momenta_of_locked(model: Model, state: State, momenta: Numbers) -> Non
     for i in range(momenta.shape[0]):
         if model.locked[i]:
             r = matrix(quaternion(state.orientation.reshape(-1), 4 * i))
-            found = times(world_inertia(model.inertia, i, r), row_vector(state.motion, i, OMEGA))
-            set_row_vector(momenta, i, 0, found)
+            momentum = times(world_inertia(model.inertia, i, r), row_vector(state.motion, i, OMEGA))
+            set_row_vector(momenta, i, 0, momentum)

@@ -41,7 +41,7 @@ EQUAL = 1.0 + 1e-3  # overlaps that differ by no more are the same
 
 
 class Box(NamedTuple):
-    """A rounded box in numbers: arrays that are handed on cost more than all that is done here."""
+    """A rounded box in numbers: to pass arrays costs more than all that is done here."""
 
     middle: Vector  # m
     axes: Matrix
@@ -50,7 +50,7 @@ class Box(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """A rounded edge of a box: its inner ends in the world, and one of them in body axes."""
+    """A rounded edge of a box: its inner ends in the world, and both in body axes."""
 
     start: Vector  # m
     along: Vector  # m
@@ -89,7 +89,7 @@ def face_normals(box: Box) -> tuple[Vector, Vector, Vector]:
 
 
 @njit(**INNER)
-def sunk_corner(centre: Vector, radius: float, mine: Box, other: Box) -> Gap:
+def corner_penetration(centre: Vector, radius: float, mine: Box, other: Box) -> Gap:
     """Sphere that is sunk in another box, and the face through which it came.
 
     `mine` is the box of which it is a corner; it has no edge radius if the sphere is of none.
@@ -110,7 +110,7 @@ def sunk_corner(centre: Vector, radius: float, mine: Box, other: Box) -> Gap:
 
 
 @njit(**INNER)
-def sunk_in_polygon(
+def polygon_penetration(
     centres: Numbers, radii: Numbers, corner: Numbers, s: int, mine: tuple[int, int],
     others: tuple[int, int], other: Box,
 ) -> Gap:  # fmt: skip
@@ -137,16 +137,16 @@ def sunk_in_polygon(
 
 
 @njit(**INNER)
-def least_overlap(one: Box, other: Box) -> float:
+def least_overlap(box_i: Box, box_j: Box) -> float:
     """Least overlap [m] of two boxes along the normals of their faces."""
-    d, least = sub(one.middle, other.middle), FAR
-    for n in face_normals(one) + face_normals(other):
-        least = min(least, extent(one, n) + extent(other, n) - abs(dot(d, n)))
+    d, least = sub(box_i.middle, box_j.middle), FAR
+    for n in face_normals(box_i) + face_normals(box_j):
+        least = min(least, extent(box_i, n) + extent(box_j, n) - abs(dot(d, n)))
     return least
 
 
 @njit(**INNER)
-def bears(box: Box, edge: Edge, n: Vector) -> bool:
+def supports(box: Box, edge: Edge, n: Vector) -> bool:
     """Whether a direction lies between the normals of the two faces at an edge of a box."""
     v = to_body(box.axes, n[0], n[1], n[2])
     for k in range(3):
@@ -157,19 +157,19 @@ def bears(box: Box, edge: Edge, n: Vector) -> bool:
 
 
 @njit(**INNER)
-def sunk_edges(mine: Edge, one: Box, others: Edge, other: Box, found: Gap) -> Gap:
-    """Crossing edges of two boxes: as they were found, or how deep they have passed each other."""
-    n = cross(mine.along, others.along)
+def edge_penetration(edge_i: Edge, box_i: Box, edge_j: Edge, box_j: Box, gap: Gap) -> Gap:
+    """Gap of two boxes' crossing edges, or how deep they have passed each other."""
+    n = cross(edge_i.along, edge_j.along)
     n = scaled(1.0 / math.sqrt(dot(n, n)), n)
     back = scaled(-1.0, n)
-    if not (bears(other, others, n) and bears(one, mine, back)):
+    if not (supports(box_j, edge_j, n) and supports(box_i, edge_i, back)):
         n, back = back, n
-        if not (bears(other, others, n) and bears(one, mine, back)):
-            return found
-    s, t = nearest_on_lines(mine.start, mine.along, others.start, others.along)
-    p = axpy(s, mine.along, mine.start)
-    apart = dot(sub(p, axpy(t, others.along, others.start)), n)
-    gap = apart - one.edge_radius - other.edge_radius
-    if apart >= 0.0 or -gap > EQUAL * least_overlap(one, other):
-        return found
-    return gap, n, axpy(-one.edge_radius - 0.5 * gap, n, p)
+        if not (supports(box_j, edge_j, n) and supports(box_i, edge_i, back)):
+            return gap
+    s, t = nearest_on_lines(edge_i.start, edge_i.along, edge_j.start, edge_j.along)
+    p = axpy(s, edge_i.along, edge_i.start)
+    apart = dot(sub(p, axpy(t, edge_j.along, edge_j.start)), n)
+    depth = apart - box_i.edge_radius - box_j.edge_radius
+    if apart >= 0.0 or -depth > EQUAL * least_overlap(box_i, box_j):
+        return gap
+    return depth, n, axpy(-box_i.edge_radius - 0.5 * depth, n, p)

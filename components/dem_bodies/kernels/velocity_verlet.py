@@ -84,7 +84,7 @@ def drift_balls(
     All arrays are flat. None is handed on in a branch, or references are counted in the loop.
     """
     half, half_gravity = 0.5 * dt, scaled(0.5 * dt, vector(gravity, 0))
-    work, given, furthest = 0.0, 0.0, 0.0
+    work, load_work, furthest = 0.0, 0.0, 0.0
     for i in range(start, end):
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
         force, torque = vector(contact, c), vector(contact, c + 3)
@@ -93,7 +93,7 @@ def drift_balls(
         v, before = axpy(1.0, change, vector(motion, m + VELOCITY)), vector(motion, m + OMEGA)
         ω = kick_rotation(before, half * inverse_moment[i], torque, twist)
         work += kick_work(half, force, torque, v, change, before, ω)
-        given += kick_work(half, outer, twist, v, change, before, ω)
+        load_work += kick_work(half, outer, twist, v, change, before, ω)
         x = axpy(dt, v, vector(motion, m))
         set_vector(motion, m, x)
         set_vector(motion, m + VELOCITY, v)
@@ -104,7 +104,7 @@ def drift_balls(
         set_quaternion(orientation, 4 * i, q)
         moved = sub(x, vector(listed, 3 * i))
         furthest = max(furthest, dot(moved, moved))
-    return work, given, furthest
+    return work, load_work, furthest
 
 
 @njit(**INNER)
@@ -152,7 +152,7 @@ def kick_body(
 def drift_body(model: Model, state: State, i: int, dt: float) -> tuple[float, float, float]:
     """Drift of a body that is no ball: works [J] and the largest displacement squared [m²]."""
     half, motion = 0.5 * dt, state.motion
-    change, _, work, given = kick_body(model, state, i, half)
+    change, _, work, load_work = kick_body(model, state, i, half)
     v = row_vector(motion, i, VELOCITY)
     set_row_vector(motion, i, 0, axpy(dt, v, row_vector(motion, i)))
     set_row_vector(motion, i, END_VELOCITY, axpy(1.0, change, v))
@@ -167,7 +167,7 @@ def drift_body(model: Model, state: State, i: int, dt: float) -> tuple[float, fl
     if model.locked[i] and turns_evenly(model, i):
         end_ω = row_vector(motion, i, OMEGA)
     set_row_vector(motion, i, END_OMEGA, end_ω)
-    return work, given, place_spheres(model, state, i)
+    return work, load_work, place_spheres(model, state, i)
 
 
 @njit(**INNER)
@@ -206,9 +206,9 @@ def drift(
         listed = state.listed_centre.reshape(-1)
     for block in range(first, last):
         start, end = block * BLOCK, min((block + 1) * BLOCK, bodies)
-        work, given, furthest = 0.0, 0.0, 0.0
+        work, load_work, furthest = 0.0, 0.0, 0.0
         if pairs is not None:
-            work, given, furthest = drift_balls(
+            work, load_work, furthest = drift_balls(
                 start, min(end, balls), model.gravity, model.inverse_mass, model.inverse_moment,
                 motion, contact, load, orientation, listed, dt, loaded,
             )  # fmt: skip
@@ -216,9 +216,9 @@ def drift(
                 for i in range(start, min(end, balls)):
                     set_row_vector(state.centre, i, 0, row_vector(state.motion, i))
         for i in range(max(start, balls), end):
-            done, gave, moved = drift_body(model, state, i, dt)
-            work, given, furthest = work + done, given + gave, max(furthest, moved)
-        sums[block, CONTACT_WORK], sums[block, LOAD_WORK] = work, given
+            done, by_load, moved = drift_body(model, state, i, dt)
+            work, load_work, furthest = work + done, load_work + by_load, max(furthest, moved)
+        sums[block, CONTACT_WORK], sums[block, LOAD_WORK] = work, load_work
         sums[block, TRAVEL] = furthest
 
 
@@ -229,8 +229,8 @@ def add_incoming(
     """Add the loads that pairs of earlier blocks have on the rows [start, end)."""
     for i in range(start, end):
         c, force, torque = 6 * i, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        for one in range(begin[i], begin[i + 1]):
-            k = 6 * incoming[one]
+        for place in range(begin[i], begin[i + 1]):
+            k = 6 * incoming[place]
             force = axpy(1.0, vector(outgoing, k), force)
             torque = axpy(1.0, vector(outgoing, k + 3), torque)
         set_vector(contact, c, axpy(1.0, force, vector(contact, c)))
@@ -244,7 +244,7 @@ def end_kick_balls(
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """Half kick of the balls in rows [start, end): works [J] and how fast they move."""
     half_gravity = scaled(half, vector(gravity, 0))
-    work, given, velocity2, rotation2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
+    work, load_work, velocity2, rotation2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(start, end):
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
         force, torque = vector(contact, c), vector(contact, c + 3)
@@ -255,11 +255,11 @@ def end_kick_balls(
         set_vector(motion, m + VELOCITY, v)
         set_vector(motion, m + OMEGA, ω)
         work += kick_work(half, force, torque, v, change, before, ω)
-        given += kick_work(half, outer, twist, v, change, before, ω)
+        load_work += kick_work(half, outer, twist, v, change, before, ω)
         radius, ω2 = motion[m + RADIUS], dot(ω, ω)
         velocity2, rotation2 = max(velocity2, dot(v, v)), max(rotation2, radius * radius * ω2)
         centripetal = max(centripetal, radius * ω2)
-    return work, given, velocity2, rotation2, centripetal
+    return work, load_work, velocity2, rotation2, centripetal
 
 
 @njit(**INNER)
@@ -298,18 +298,18 @@ def end_kick(
     half, gravity, bodies = 0.5 * dt, vector(model.gravity, 0), model.bounding_radius.shape[0]
     start, end, balls = block * BLOCK, min((block + 1) * BLOCK, bodies), bodies
     balls -= model.others.shape[0]
-    work, given, velocity2, rotation2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
+    work, load_work, velocity2, rotation2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
     if pairs is not None:
         motion, contact = state.motion.reshape(-1), state.contact_load.reshape(-1)
         load, outgoing = state.load.reshape(-1), pairs.outgoing.reshape(-1)
         add_incoming(start, end, contact, outgoing, pairs.incoming_begin, pairs.incoming)
-        work, given, velocity2, rotation2, centripetal = end_kick_balls(
+        work, load_work, velocity2, rotation2, centripetal = end_kick_balls(
             start, min(end, balls), model.gravity, model.inverse_mass, model.inverse_moment,
             motion, contact, load, half, loaded,
         )  # fmt: skip
     for i in range(max(start, balls), end):
-        _, ω, done, gave = kick_body(model, state, i, half)
-        work, given = work + done, given + gave
+        _, ω, done, by_load = kick_body(model, state, i, half)
+        work, load_work = work + done, load_work + by_load
         v, radius, ω2 = row_vector(state.motion, i, VELOCITY), state.motion[i, RADIUS], dot(ω, ω)
         velocity2, rotation2 = max(velocity2, dot(v, v)), max(rotation2, radius * radius * ω2)
         centripetal = max(centripetal, radius * ω2)
@@ -318,7 +318,7 @@ def end_kick(
         largest, spin_up2 = load_accelerations(start, end, model, state)
         acceleration2 = max(acceleration2, largest)
     sums[block, CONTACT_WORK] += work
-    sums[block, LOAD_WORK] += given
+    sums[block, LOAD_WORK] += load_work
     sums[block, VELOCITY2], sums[block, ROTATION2] = velocity2, rotation2
     sums[block, ACCELERATION2], sums[block, SPIN_UP2] = acceleration2, spin_up2
     sums[block, CENTRIPETAL] = centripetal

@@ -94,19 +94,19 @@ def require_few(file: str, dim: int, radius: float, count: int) -> None:
 def require_fit(file: str, scale: float, size: Array, dim: int, radius: float) -> None:
     """Refuse spheres that do not fit into the shape, or leave gaps between them."""
     edges = " x ".join(f"{edge:.4g}" for edge in size)
-    found = f"found {radius:g} m for {Path(file).name} of {edges} m at scale {scale:g}."
+    size_text = f"found {radius:g} m for {Path(file).name} of {edges} m at scale {scale:g}."
     if 2.0 * radius > size.min() * (1.0 + 1e-9):
         raise ValueError(
             "sphere_radius must be at most half the shape's shortest edge, "
-            f"{0.5 * size.min():.4g} m; {found} Make it smaller, or correct scale: it is 0.001 for "
-            "a file in mm."
+            f"{0.5 * size.min():.4g} m; {size_text} Make it smaller, or correct scale: it is 0.001 "
+            "for a file in mm."
         )
     least = math.ceil(0.5 * float(size.max()) / radius - 1e-9)
     if dim < max(2, least):
         raise ValueError(
             "the spheres must touch, which dim * 2 * sphere_radius >= the longest edge gives; "
-            f"{found} dim is {dim}. Make dim {max(2, least)} or larger, or sphere_radius larger, "
-            "or correct scale: it is 0.001 for a file in mm."
+            f"{size_text} dim is {dim}. Make dim {max(2, least)} or larger, or sphere_radius "
+            "larger, or correct scale: it is 0.001 for a file in mm."
         )
 
 
@@ -119,11 +119,11 @@ def covering(places: Array, shape: Solid, radius: float, spacing: float) -> Arra
     above, deep = depth < radius * (1.0 - CLOSE), depth > radius * (1.0 + CLOSE)
     outer = above & (depth > radius - spacing)
     moved = moved_in(places[outer], foot[outer], depth[outer], shape, radius)
-    kept = np.zeros((0, 3))
+    centres = np.zeros((0, 3))
     for centre in np.concatenate([places[~above & ~deep], moved, places[deep]]):
-        if not len(kept) or np.linalg.norm(kept - centre, axis=1).min() > 0.5 * spacing:
-            kept = np.vstack([kept, centre])
-    return kept
+        if not len(centres) or np.linalg.norm(centres - centre, axis=1).min() > 0.5 * spacing:
+            centres = np.vstack([centres, centre])
+    return centres
 
 
 def distances(points: Array, shape: Solid) -> tuple[Array, Array]:
@@ -139,7 +139,7 @@ def signed(points: Array, away: Array, shape: Solid) -> Array:
 
 def moved_in(points: Array, foot: Array, depth: Array, shape: Solid, radius: float) -> Array:
     """Move points along their normals to a depth of R; return those that come to it."""
-    found = [np.zeros((0, 3))]
+    placed = [np.zeros((0, 3))]
     for _ in range(ROUNDS):
         sound = np.abs(depth) > 1e-9 * radius  # on the surface itself there is no direction
         inward = (points[sound] - foot[sound]) / depth[sound, None]
@@ -147,6 +147,6 @@ def moved_in(points: Array, foot: Array, depth: Array, shape: Solid, radius: flo
         foot, away = distances(points, shape)
         depth = signed(points, away, shape)
         there = np.abs(depth - radius) <= CLOSE * radius
-        found.append(points[there])
+        placed.append(points[there])
         points, foot, depth = points[~there], foot[~there], depth[~there]
-    return np.concatenate(found)
+    return np.concatenate(placed)

@@ -86,15 +86,15 @@ def places(body: RigidBody) -> Array:
         return np.array([body.position])
     lattice = body.copies
     numbers = lattice_points([np.arange(n) for n in lattice.number], x_fastest=False)
-    found = np.array(body.position) + numbers * np.array(lattice.spacing)  # (n, 3) m
+    points = np.array(body.position) + numbers * np.array(lattice.spacing)  # (n, 3) m
     if lattice.scatter == 0.0:
-        return found
+        return points
     random = np.random.default_rng(lattice.seed)
-    scattered = random.uniform(-1.0, 1.0, found.shape)
+    scattered = random.uniform(-1.0, 1.0, points.shape)
     if body.shape in planar.SHAPES:
         scattered[:, 1] = 0.0
-    found += lattice.scatter * scattered
-    return found
+    points += lattice.scatter * scattered
+    return points
 
 
 def some_places(body: RigidBody, low: Array, high: Array) -> tuple[Array, Array]:

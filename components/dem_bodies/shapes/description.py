@@ -84,12 +84,12 @@ def check_locked(where: str, body: RigidBody) -> None:
     if len(set(body.locked)) < len(body.locked):
         raise ValueError(
             f"{where}.locked must name each direction once; found {', '.join(body.locked)}. Leave "
-            "out what is there twice."
+            "out the repetition."
         )
     rotations = [f"rotation_{axis}" for axis in "xyz"]
-    locked = [one in body.locked for one in rotations]
-    for axis, held, ω in zip("xyz", locked, body.angular_velocity, strict=True):
-        if held and ω != 0.0 and not all(locked):
+    locked = [rotation in body.locked for rotation in rotations]
+    for axis, is_locked, ω in zip("xyz", locked, body.angular_velocity, strict=True):
+        if is_locked and ω != 0.0 and not all(locked):
             raise ValueError(
                 f"{where}.angular_velocity must be 0 about {axis}, which is locked; found {ω:g} "
                 f"rad/s. Set it to 0, or lock {', '.join(rotations)} for a body that turns evenly."

@@ -8,24 +8,20 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations, product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import placement, planar
 from quintet.components.dem_bodies.shapes.copies import Bodies, at, places, some_places
 from quintet.components.dem_bodies.shapes.near_pairs import near_pairs
-from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
 from quintet.interfaces.component import Array
-
-if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import Plane
 
 MOST_SCATTERED = 400_000  # copies whose places are looked at one by one
 MOST_NEIGHBOURS = 20_000  # of a copy, within whose reach it stands
 
 
-def check(bodies: Bodies, planes: "Sequence[Plane]") -> None:
+def check(bodies: Bodies, planes: Sequence[Plane]) -> None:
     """Refuse bodies that start inside one another or below a plane."""
     for first, body in zip(bodies.first, bodies.templates, strict=False):
         for m, plane in enumerate(planes):
@@ -36,7 +32,7 @@ def check(bodies: Bodies, planes: "Sequence[Plane]") -> None:
     check_others(bodies)
 
 
-def require_above(first: int, body: RigidBody, m: int, plane: "Plane") -> None:
+def require_above(first: int, body: RigidBody, m: int, plane: Plane) -> None:
     """Refuse a body, or the lowest of its copies, that reaches below a plane."""
     reach = placement.bounding_radius(body)
     if body.copies is None and placement.height(body, plane) > reach:
@@ -171,14 +167,14 @@ def bounds(body: RigidBody) -> Array:
     return ends
 
 
-def meet(one: Array, other: Array) -> bool:
+def meet(box_i: Array, box_j: Array) -> bool:
     """Whether two boxes (2, 3) m overlap."""
-    return bool((np.minimum(one[1], other[1]) > np.maximum(one[0], other[0])).all())
+    return bool((np.minimum(box_i[1], box_j[1]) > np.maximum(box_i[0], box_j[0])).all())
 
 
 def compare_lattice(bodies: Bodies, k: int, others: list[int]) -> None:
     """Compare the copies of one body with others, which may have copies too, where both are."""
-    found: list[tuple[Array, ...]] = []  # template, number, place and radius of each
+    groups: list[tuple[Array, ...]] = []  # template, number, place and radius of each
     boxes = {j: bounds(bodies.templates[j]) for j in (k, *others)}
     low = np.min([boxes[j][0] for j in others], axis=0)
     high = np.max([boxes[j][1] for j in others], axis=0)
@@ -193,8 +189,8 @@ def compare_lattice(bodies: Bodies, k: int, others: list[int]) -> None:
         around = np.ptp(extent(body), axis=0)
         numbers, where = some_places(body, room[0] - around, room[1] + around)
         radius = np.full(len(where), placement.bounding_radius(body))
-        found.append((np.full(len(where), j), numbers, where, radius))
-    compare(bodies, *map(np.concatenate, zip(*found, strict=True)))
+        groups.append((np.full(len(where), j), numbers, where, radius))
+    compare(bodies, *map(np.concatenate, zip(*groups, strict=True)))
 
 
 def compare(bodies: Bodies, group: Array, number: Array, where: Array, radius: Array) -> None:
@@ -202,8 +198,8 @@ def compare(bodies: Bodies, group: Array, number: Array, where: Array, radius: A
     first = np.array(bodies.first)[group] + number
     round_ = np.array([bodies.templates[k].radius is not None for k in group])
     for i, j in near_pairs(where, radius):
-        kept = (group[i] != group[j]) | (np.array(bodies.counts)[group[i]] == 1)
-        i, j = i[kept], j[kept]
+        other = (group[i] != group[j]) | (np.array(bodies.counts)[group[i]] == 1)
+        i, j = i[other], j[other]
         gap = np.linalg.norm(where[i] - where[j], axis=1) - radius[i] - radius[j]
         for k in np.flatnonzero(~(round_[i] & round_[j])):
             pair = (at(bodies.templates[group[n]], where[n]) for n in (i[k], j[k]))

@@ -1,19 +1,15 @@
 """How far bodies are from one another and from planes, as they stand at the start."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.agglomerate import Agglomerate, agglomerate
-from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array
-
-if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import Plane
 
 ROUNDED = 0.05  # of a box's shortest edge: radius of its edges unless a scene says otherwise
 ALLOWED = 1e-6  # overlap over the size of the smaller body: rounding of what touches exactly
@@ -54,13 +50,11 @@ def contact_spheres(body: RigidBody) -> Spheres:
         radius = edge_radius(body)
         centres = in_space(planar.inner_corners(planar.corners(body), radius))
         return centres, np.full(len(centres), radius)
-    one = cover(body)
-    if one is not None:
-        return one.centres, np.full(len(one.centres), one.radius)
+    if (covered := cover(body)) is not None:
+        return covered.centres, np.full(len(covered.centres), covered.radius)
     assert body.centres is not None and body.radii is not None
-    return np.array(body.centres) - measure_union((body.centres, body.radii))[1], np.array(
-        body.radii
-    )
+    centre = measure_union((body.centres, body.radii))[1]
+    return np.array(body.centres) - centre, np.array(body.radii)
 
 
 def world_spheres(body: RigidBody) -> Spheres:
@@ -79,7 +73,7 @@ def bounding_radius(body: RigidBody) -> float:
     return float((np.linalg.norm(centres, axis=1) + radii).max())
 
 
-def height(body: RigidBody, plane: "Plane") -> float:
+def height(body: RigidBody, plane: Plane) -> float:
     """Distance [m] of a body's centre of mass from a plane."""
     rise = sum(
         (a - b) * n for a, b, n in zip(body.position, plane.point, plane.normal, strict=True)
@@ -87,7 +81,7 @@ def height(body: RigidBody, plane: "Plane") -> float:
     return rise / math.hypot(*plane.normal)
 
 
-def plane_gap(body: RigidBody, plane: "Plane") -> float:
+def plane_gap(body: RigidBody, plane: Plane) -> float:
     """Distance [m] of a body's lowest point from a plane."""
     normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
     origin = np.array(plane.point)

@@ -3,9 +3,6 @@
 Arrays of corners are (k, 2) m, x and z, and go round from x to z.
 """
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
@@ -16,17 +13,14 @@ from quintet.components.shared.geometry.polygons import (
 )
 from quintet.interfaces.component import Array
 
-if TYPE_CHECKING:
-    from quintet.components.dem_bodies.params import DemBodiesParams
-
 SHAPES = ("disc", "polygon")
 
 
 def corners(body: RigidBody) -> Array:
     """Corners (k, 2) m of a polygon about its centre of mass."""
     assert body.corners is not None
-    found = in_order(body.corners)
-    return np.asarray(found - area_moments(found).centre)
+    outline = in_order(body.corners)
+    return np.asarray(outline - area_moments(outline).centre)
 
 
 def inner_corners(corner: Array, radius: float) -> Array:
@@ -42,12 +36,6 @@ def inner_corners(corner: Array, radius: float) -> Array:
 def shortest_edge(body: RigidBody) -> float:
     """Length [m] of a polygon's shortest edge."""
     return float(np.linalg.norm(edges(np.array(body.corners)), axis=1).min())
-
-
-def triangles(count: int) -> Array:
-    """Corners (count - 2, 3) of the triangles that fill a convex polygon."""
-    last = np.arange(2, count)
-    return np.stack([np.zeros_like(last), last - 1, last], axis=1)
 
 
 def polygon_distance(corner: Array, points: Array) -> Array:
@@ -80,43 +68,3 @@ def leaves_edges(body: RigidBody, radius: float) -> bool:
     """Whether circles of a radius [m] in a polygon's corners leave something of each edge."""
     corner = corners(body)
     return bool(((edges(inner_corners(corner, radius)) * edges(corner)).sum(axis=1) > 0.0).all())
-
-
-def check_plane(params: "DemBodiesParams") -> None:
-    """Refuse shapes of other dimensions, and motion that would leave the plane."""
-    planar = params.dimensions == 2
-    templates = params.placed.templates
-    each = list(zip(params.placed.first, templates, strict=False))
-    for k, body in each:
-        if (body.shape in SHAPES) != planar:
-            rule = f"{' or '.join(SHAPES)}" if planar else "a shape of three dimensions"
-            raise ValueError(
-                f"bodies[{k}].shape must be {rule} where dimensions is {params.dimensions}; found "
-                f"{body.shape}. Choose another, or set dimensions to {3 if planar else 2}."
-            )
-    if not planar:
-        return
-    _require_plane("gravity", params.gravity, (1,))
-    for k, plane in enumerate(params.planes):
-        _require_plane(f"planes[{k}].normal", plane.normal, (1,))
-    first = templates[0].position[1]
-    for k, body in each:
-        where, y = f"bodies[{k}]", body.position[1]
-        if body.copies is not None and body.copies.number[1] > 1:
-            where, y = f"bodies[{k + body.copies.number[2]}]", y + body.copies.spacing[1]
-        if y != first:
-            raise ValueError(
-                f"{where} must have the y of all others, {first:g} m, in two dimensions; "
-                f"found {y:g} m. Correct it."
-            )
-        _require_plane(f"{where}.velocity", body.velocity, (1,))
-        _require_plane(f"{where}.angular_velocity", body.angular_velocity, (0, 2))
-        _require_plane(f"{where}.orientation (w, x, y, z)", body.orientation, (1, 3))
-
-
-def _require_plane(where: str, found: Sequence[float], none: tuple[int, ...]) -> None:
-    if any(found[axis] != 0.0 for axis in none):
-        raise ValueError(
-            f"{where} must stay in the plane of x and z, in two dimensions; found {tuple(found)}. "
-            "Set what leaves it to 0."
-        )

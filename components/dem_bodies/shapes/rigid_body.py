@@ -61,6 +61,25 @@ class Agglomerate:
     sphere_radius: Positive
 
 
+@parameters
+class Plane:
+    """A fixed half-space.
+
+    Parameters
+    ----------
+    point : m
+        Any of its surface.
+    normal : 1
+        To the free side; of any length.
+    material
+        One of the materials.
+    """
+
+    point: Vector
+    normal: Vector
+    material: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigidBody:
     """One rigid body, or a lattice of equal ones; what other shapes have is None."""

@@ -93,7 +93,7 @@ def test_an_impact_too_hard_for_hertz_is_refused():
     body = box([0.0, 0.0, 0.0751], velocity=[0.0, 0.0, -20.0])
     cube = build([body], stuff, planes=[FLOOR], impact_speed=20.0)
     with pytest.raises(
-        StepError, match=r"body 0 is 0\.5.* deep in a plane.*Make youngs_modulus or edge_radius"
+        StepError, match=r"body 0 with a plane is 0\.5.*Increase youngs_modulus or edge_radius"
     ):
         run(cube, 1e-3)
 
@@ -105,7 +105,7 @@ def swing(young, restitution, step):
     """
     stuff = {"a": material(youngs_modulus=young, restitution=restitution, friction=0.0)}
     ball = build([sphere([0.0, 0.0, RADIUS], 2 * RADIUS)], stuff, planes=[FLOOR])
-    modulus, ζ = ball.model.material_pairs[0, 0, 0], ball.damping
+    modulus, ζ = ball.model.material_pairs[0, 0, 0], ball.limit.damping
     weight = 9.81 * ball.mass[0]
     depth = (0.75 * weight / (modulus * math.sqrt(RADIUS))) ** (2.0 / 3.0)
     ω = math.sqrt(2.0 * modulus * math.sqrt(RADIUS * depth) / ball.mass[0])
@@ -167,8 +167,8 @@ def flight(size, **given):
     high = box([0.0, 0.0, 0.6 * np.linalg.norm(size) + 0.2], size, **turning, **given)
     began = time.perf_counter()
     scene = build([high], planes=[FLOOR])
-    lists, steps, renew = [], [], scene._list
-    scene._list = lambda: (lists.append(1), renew())
+    lists, steps, renew = [], [], scene.lists.renew
+    scene.lists.renew = lambda state: (lists.append(1), renew(state))
     run(scene, 0.2, steps.append)
     return len(steps), len(lists), time.perf_counter() - began
 

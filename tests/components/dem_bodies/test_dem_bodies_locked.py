@@ -44,7 +44,7 @@ def test_only_what_is_free_answers_a_load_and_momentum_is_its_impulse(locked):
     run(body, 0.3, time.append, dt=1e-3)
     assert (motion(body)[~free] == 0.0).all()
     np.testing.assert_allclose(momenta(body)[free], 0.3 * load[free], rtol=1e-12)
-    assert body.accumulated.given == pytest.approx(body.totals().kinetic, rel=1e-4)
+    assert body.accumulated.load_work == pytest.approx(body.totals().kinetic, rel=1e-4)
     body.take({})
     before = momenta(body)
     run(body, 0.1, dt=1e-3)

@@ -65,7 +65,8 @@ def test_threads_change_no_bit_of_what_resists_rolling_beside_a_box():
         scenes.append(crowd(threads=threads, others=(above,), rolling_friction=0.2))
         run(scenes[-1], 1.2e-3, dt=2e-5)
     assert [scene.team.size for scene in scenes] == [1, 2]
-    assert len(scenes[0].others.key) > 10 and np.abs(scenes[0].balls.rolling_moment).max() > 0.0
+    lists = scenes[0].lists
+    assert len(lists.bodies.key) > 10 and np.abs(lists.balls.rolling_moment).max() > 0.0
     assert_same_bits(*scenes)
 
 
@@ -90,7 +91,7 @@ def test_deepest_of_many_is_the_one_that_is_told(mixed):
     found, report = mixed.contact_points(), mixed.state.report
     k = int(np.argmax(found["depth"]))
     assert report[DEEPEST] == pytest.approx(found["depth"][k] / 0.005, rel=1e-6)
-    i, j = deepest_pair(mixed.state, mixed.balls, mixed.others)
+    i, j = deepest_pair(mixed.state, mixed.lists.balls, mixed.lists.bodies)
     assert [i, min(j, mixed.count)] == found["bodies"][k].tolist()
 
 
@@ -228,6 +229,6 @@ def test_benchmark_touches_its_six_neighbours():
     scene = DemBodies(params)
     for _ in range(20):
         scene.step(scene.stable_dt())
-    assert np.count_nonzero(scene.balls.history[3]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
+    assert np.count_nonzero(scene.lists.balls.history[3]) == 3 * 6 * 6 * 5 + 3 * 6 * 6
     with pytest.raises(ValueError, match=r"contact_forces must be true.*found false\. Set it"):
         scene.contact_points()

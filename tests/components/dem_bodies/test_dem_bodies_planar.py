@@ -21,7 +21,7 @@ from dem_scenes import (
 )
 
 from quintet.components.dem_bodies import MANIFEST
-from quintet.components.dem_bodies.build import solid
+from quintet.components.dem_bodies.shapes.solid import measure
 from quintet.components.dem_bodies.state import DEEPEST_PAIR
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.ports import PLANAR_MOTION
@@ -61,7 +61,7 @@ def test_mass_is_area_times_density_and_inertia_that_of_the_prism_about_its_axis
     body, area, moment
 ):
     one = params([body], dimensions=2).bodies[0]
-    found = solid(one)
+    found = measure(one)
     assert found.mass == pytest.approx(one.density * area, rel=1e-12)
     assert found.inertia[1, 1] == pytest.approx(found.mass * moment, rel=1e-12)
 
@@ -126,7 +126,7 @@ def test_a_polygon_that_strikes_with_a_corner_rebounds_as_a_rigid_body():
         found.step(found.stable_dt())
     arm = found.state.centre[lowest] - found.state.position[0]
     run(found, 0.005)
-    one = solid(found.params.bodies[0])
+    one = measure(found.params.bodies[0])
     turning = -arm[0]  # (r × n)_y
     impulse = (1.0 + e) / (1.0 / one.mass + turning**2 / one.inertia[1, 1])
     assert of(found, "velocity")[0, 2] == pytest.approx(impulse / one.mass - 1.0, abs=0.01)

@@ -79,4 +79,4 @@ def test_rolling_is_the_lower_of_both_unless_a_pair_says_otherwise(between, expe
 
 def test_nothing_that_rolls_is_compiled_without_it():
     ball = build([sphere([0.0, 0.0, 0.05], 0.1)], planes=[FLOOR])
-    assert ball.balls.rolling_moment is None
+    assert ball.lists.balls.rolling_moment is None

@@ -1,0 +1,116 @@
+"""Mass and inertia of bodies, the spheres that make their contacts, and how wide they are."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.copies import Bodies
+from quintet.components.dem_bodies.shapes.placement import (
+    ROUNDED,
+    contact_spheres,
+    cover,
+    edge_radius,
+)
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.sphere_union import measure_union
+from quintet.components.shared.geometry.polygons import area_moments
+from quintet.interfaces.component import Array
+from quintet.interfaces.faces import CORNERS
+
+THIN = 0.1  # of a box's longest edge: a thinner box is listed as if it were as thick
+
+
+class Solid(NamedTuple):
+    """Mass and inertia of one body, and the spheres that make its contacts."""
+
+    mass: float  # kg
+    inertia: Array  # (3, 3) kg m2, body axes
+    centres: Array  # (s, 3) m, body axes
+    radii: Array  # (s,) m
+    size: Array  # (3,) m, edges of the box that holds it
+
+
+def solids(bodies: Bodies) -> list[Solid]:
+    """Measure all bodies; copies share the result of the first."""
+    templates = zip(bodies.templates, bodies.counts, strict=True)
+    return [solid for body, count in templates for solid in count * [measure(body)]]
+
+
+def measure(body: RigidBody) -> Solid:
+    """Measure a body: a union of spheres by voxels, all others exactly."""
+    if body.size is not None:
+        size = np.array(body.size)
+        volume = float(size.prod())
+        inertia = (np.eye(3) * (size**2).sum() - np.diag(size**2)) / 12.0 * volume
+        centres = CORNERS * (0.5 * size - edge_radius(body))
+        radii = np.full(8, edge_radius(body))
+    else:
+        centres, radii = contact_spheres(body)
+        size = np.ptp(np.vstack([centres - radii[:, None], centres + radii[:, None]]), axis=0)
+        if body.shape in planar.SHAPES:
+            volume, inertia = planar_inertia(body)
+            if body.corners is not None:
+                size[[0, 2]] = np.ptp(planar.corners(body), axis=0)
+            size[1] = 1.0
+        elif body.radius is not None:
+            diameter = 2.0 * body.radius
+            volume = np.pi / 6.0 * diameter**3
+            inertia = np.eye(3) * volume * diameter**2 / 10.0
+        elif (covered := cover(body)) is not None:
+            volume, inertia = covered.volume, covered.inertia
+        else:
+            assert body.centres is not None and body.radii is not None
+            volume, _, inertia = measure_union((body.centres, body.radii))
+    density = body.density if body.mass is None else body.mass / volume
+    assert density is not None
+    return Solid(density * volume, density * inertia, centres, radii, size)
+
+
+def planar_inertia(body: RigidBody) -> tuple[float, Array]:
+    """Volume [m3] of 1 m along y, and inertia at unit density: about all axes that about y."""
+    if body.radius is not None:
+        diameter = 2.0 * body.radius
+        area, moment = np.pi / 4.0 * diameter**2, np.pi / 32.0 * diameter**4
+    else:
+        area, _, moment = area_moments(planar.corners(body))
+    return area, moment * np.eye(3)
+
+
+def is_ball(body: RigidBody) -> bool:
+    """Whether a body is one free sphere: balls have a list and kernels of their own."""
+    return body.radius is not None and not body.locked
+
+
+def contact_length(body: RigidBody, solid: Solid) -> float:
+    """Smallest contact radius [m] of a body; of a slender box that of a less slender one."""
+    radius = float(solid.radii.min())
+    if body.corners is not None:
+        shortest = max(planar.shortest_edge(body), THIN * float(solid.size.max()))
+        return max(radius, ROUNDED * shortest)
+    if body.size is None:
+        return radius
+    return max(radius, ROUNDED * max(min(body.size), THIN * max(body.size)))
+
+
+def contact_radii(body: RigidBody, solid: Solid) -> Array:
+    """Contact radii (s,) m of a body's spheres: at corners, that of a blunt edge."""
+    if body.size is None and body.corners is None:
+        return solid.radii
+    return np.full(len(solid.radii), contact_length(body, solid))
+
+
+def half_thickness(body: RigidBody) -> float:
+    """Half the least width [m] of a box or polygon."""
+    if body.size is not None:
+        return 0.5 * min(body.size)
+    return float(-planar.polygon_distance(planar.corners(body), np.zeros((1, 2)))[0])
+
+
+def largest_inverse_effective_mass(solid: Solid) -> float:
+    """Largest 1/m* [1/kg] of a body's contact spheres over all directions of the normal."""
+    x, y, z = solid.centres.T
+    o = np.zeros_like(x)
+    skew = np.array([[o, -z, y], [z, o, -x], [-y, x, o]]).transpose(2, 0, 1)  # r × n = skew n
+    turning = skew.transpose(0, 2, 1) @ np.linalg.inv(solid.inertia) @ skew
+    return 1.0 / solid.mass + float(np.linalg.eigvalsh(turning).max())
