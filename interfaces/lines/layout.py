@@ -52,8 +52,9 @@ def aligned(offset: int) -> int:
 
 
 @functools.lru_cache(CACHED)
-def lay_out(table: tuple[tuple[str, str, Shape], ...]) -> Layout:
+def lay_out(arrays: tuple[tuple[str, np.dtype[Any], Shape], ...]) -> Layout:
     """Lay out arrays of these names, types and shapes one after the other."""
+    table = tuple((key, dtype.str, shape) for key, dtype, shape in arrays)
     for key, name, _ in table:
         if name not in DTYPES:
             raise MessageError(

@@ -35,11 +35,10 @@ class Message:
 
     header: dict[str, Any]
     fields: dict[str, Array] = field(default_factory=dict)
+    order: str = field(init=False)  # name of the order or answer
 
-    @property
-    def order(self) -> str:
-        """Name of the order or answer."""
-        return str(self.header.get("order", ""))
+    def __post_init__(self) -> None:
+        self.order = str(self.header.get("order", ""))
 
 
 def encode(
@@ -50,7 +49,7 @@ def encode(
     A frame of more than `limit` bytes is refused before any memory is taken for it.
     """
     try:
-        layout = lay_out(tuple([(key, a.dtype.str, a.shape) for key, a in fields.items()]))
+        layout = lay_out(tuple([(key, a.dtype, a.shape) for key, a in fields.items()]))
     except AttributeError:
         _refuse_no_array(fields)
         raise

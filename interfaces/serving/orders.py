@@ -72,12 +72,14 @@ REQUIRED: dict[str, dict[str, Rule]] = {
 }
 
 
-# Of each order: key, rule, whether the order must have it.
-RULES: dict[str, list[tuple[str, Rule, bool]]] = {
-    order: [(key, rule, False) for key, rule in {**OF_ALL, **OPTIONAL.get(order, {})}.items()]
-    + [(key, rule, True) for key, rule in REQUIRED.get(order, {}).items()]
-    for order in {"", *OPTIONAL, *REQUIRED}
-}
+def _rules(order: str) -> list[tuple[str, Rule, bool]]:
+    """Of an order: key, rule, whether the order must have it."""
+    required = REQUIRED.get(order, {})
+    rules = {**OF_ALL, **OPTIONAL.get(order, {}), **required}
+    return [(key, rule, key in required) for key, rule in rules.items()]
+
+
+RULES = {order: _rules(order) for order in ("", *OPTIONAL, *REQUIRED)}
 
 
 def check_order(order: str, header: Mapping[str, Any]) -> None:

@@ -38,7 +38,8 @@ class Outputs:
         self.shares: Mapping[str, Rows] = {}  # port taken -> first and last row + 1 of each link
         self.work: dict[str, list[float]] = {}  # of each link
         self.moment: dict[str, Array] = {}
-        self.rows: dict[str, int] = {}  # of each field, from the first time that it was given
+        # Type and shape of each field that passed the checks last.
+        self.accepted: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {}
 
     def want(self, keys: Iterable[str]) -> None:
         """Ask for these fields only."""
@@ -62,25 +63,30 @@ class Outputs:
                 f"give() must return its fields by name; found {type(fields).__name__}. Correct it."
             )
         for key, array in fields.items():
-            if not isinstance(array, np.ndarray) or array.dtype.kind not in NUMBERS:
-                kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
-                raise PortError(
-                    f"output {key} must be an array of real numbers; found {kind}. Correct give()."
-                )
-            field = self.fields.get(key)
-            if field is None or not array.ndim or array.shape[1:] != field.shape:
-                known = field.shape if field else None
-                raise PortError(
-                    f"output {key} must have shape (n, *{known}) as its port says; found "
-                    f"{array.shape}. Correct give(), or the port."
-                )
-            if len(array) != self.rows.setdefault(key, len(array)):
-                raise PortError(
-                    f"output {key} must keep its shape {(self.rows[key], *field.shape)}; found "
-                    f"{array.shape}. The number of items of a port must not change: let a field "
-                    "`active` say which of them exist."
-                )
+            if type(array) is not np.ndarray or (array.dtype, array.shape) != self.accepted.get(key):
+                self._check(key, array)
         return fields
+
+    def _check(self, key: str, array: Any) -> None:
+        if not isinstance(array, np.ndarray) or array.dtype.kind not in NUMBERS:
+            kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
+            raise PortError(
+                f"output {key} must be an array of real numbers; found {kind}. Correct give()."
+            )
+        field = self.fields.get(key)
+        if field is None or not array.ndim or array.shape[1:] != field.shape:
+            known = field.shape if field else None
+            raise PortError(
+                f"output {key} must have shape (n, *{known}) as its port says; found "
+                f"{array.shape}. Correct give(), or the port."
+            )
+        if key in self.accepted and array.shape != self.accepted[key][1]:
+            raise PortError(
+                f"output {key} must keep its shape {self.accepted[key][1]}; found "
+                f"{array.shape}. The number of items of a port must not change: let a field "
+                "`active` say which of them exist."
+            )
+        self.accepted[key] = array.dtype, array.shape
 
     def add(self, outputs: Fields, taken: Fields, dt: float) -> None:
         """Add one step."""
