@@ -8,11 +8,13 @@ from quintet.components.shared import compilation
 compilation.announce()
 
 # As written: for loops that must notice numbers that are not finite, or whose sums must keep
-# their order.
-EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
+# their order. The option is stated because numba otherwise takes that of whichever function calls
+# first, and a function's bits would depend on what was compiled before it.
+EXACT = {"error_model": "numpy", "cache": True, "nogil": True, "fastmath": False}
 # Sums may be reordered into vectors, and every number is taken to be finite.
 FAST = EXACT | {"fastmath": True}
 # Of functions that only other kernels call: without the code for calls from Python and C.
 INNER = EXACT | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+FAST_INNER = INNER | {"fastmath": True}
 # Of laws that loops over lanes call: always part of the loop, so that vectors are made of it.
 LANEWISE = INNER | {"forceinline": True}

@@ -21,8 +21,7 @@ class Transport(NamedTuple):
     gas_constant: float  # J/kg/K
 
 
-# Without the option it would get the one of the kernel that is compiled first, exact or fast.
-@njit(**INNER, fastmath=False)
+@njit(**INNER)
 def sutherland(temperature, law):  # type: ignore[no-untyped-def]
     """Dynamic viscosity of a gas.
 

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from quintet.components.meshless_gas.laws.transport import sutherland
-from quintet.components.shared.numba_options import FAST, INNER
+from quintet.components.shared.numba_options import FAST, FAST_INNER
 
 TWO_THIRDS = 2.0 / 3.0
 
@@ -51,7 +51,7 @@ def write_ghost_slopes(begin, end, owner, turn, gradients):  # type: ignore[no-u
             gradients[first + g, a] = along
 
 
-@njit(**INNER, fastmath=True)
+@njit(**FAST_INNER)
 def stress(u, v, w, mu):  # type: ignore[no-untyped-def]
     """Viscous stress xx yy zz xy xz yz over μ-scaled gradients of three velocities."""
     third = TWO_THIRDS * (u[0] + v[1] + w[2])
@@ -65,7 +65,7 @@ def stress(u, v, w, mu):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INNER, fastmath=True)
+@njit(**FAST_INNER)
 def corrected(a, b, rise, r, inverse):  # type: ignore[no-untyped-def]
     """Gradient between two nodes whose component along r is their difference."""
     x, y, z = 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])
@@ -73,7 +73,7 @@ def corrected(a, b, rise, r, inverse):  # type: ignore[no-untyped-def]
     return x - excess * r[0], y - excess * r[1], z - excess * r[2]
 
 
-@njit(**INNER, fastmath=True)
+@njit(**FAST_INNER)
 def along(tensor, x, y, z):  # type: ignore[no-untyped-def]
     """A symmetric tensor xx yy zz xy xz yz times a vector."""
     xx, yy, zz, xy, xz, yz = tensor
