@@ -63,7 +63,8 @@ class Outputs:
                 f"give() must return its fields by name; found {type(fields).__name__}. Correct it."
             )
         for key, array in fields.items():
-            if type(array) is not np.ndarray or (array.dtype, array.shape) != self.accepted.get(key):
+            accepted = self.accepted.get(key)
+            if type(array) is not np.ndarray or (array.dtype, array.shape) != accepted:
                 self._check(key, array)
         return fields
 
