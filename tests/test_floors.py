@@ -44,7 +44,6 @@ VAGUE = {"one", "found", "given", "made", "kept", "own"}
 VAGUE_LOCALS = {
     "components/shared",
     "components/sph_fluid",
-    "components/stand_ins",
     "scenarios",
 }
 

@@ -210,7 +210,7 @@ class DemBodies(Component):
 
     def walls(self) -> Fields:
         """Polygons on the planes, near the bodies."""
-        return planes_view(self.params.planes, self.state)
+        return planes_view(self.model.plane, self.state)
 
     def items(self) -> int:
         """Count the bodies."""

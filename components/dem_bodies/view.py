@@ -6,12 +6,12 @@ from functools import lru_cache
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
-from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import Solid
-from quintet.components.dem_bodies.state import State, Whole
-from quintet.components.shared.geometry.polygons import in_space
+from quintet.components.dem_bodies.state import Numbers, State
+from quintet.components.shared.geometry import body_view
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.faces import CORNERS, FACES, polygons, stacked
+from quintet.interfaces.faces import polygons
 
 REACH = 1.0  # sizes of what holds bodies and planes, by which planes are shown beyond it
 ON = 1e-9  # of that size: what lies on a plane is not beyond it
@@ -19,53 +19,41 @@ ON = 1e-9  # of that size: what lies on a plane is not beyond it
 
 def view(bodies: Sequence[RigidBody], solids: Sequence[Solid], state: State) -> Fields:
     """Corners and faces of boxes, polygons and meshes, centres and radii of spheres; velocities."""
-    points: list[Array] = []
-    radii: list[Array] = []
-    owners: list[int] = []
-    faces: list[Array] = []
-    for k, (body, solid, a) in enumerate(zip(bodies, solids, state.row, strict=False)):
-        corners, radius = solid.centres, solid.radii
-        if body.size is not None:
-            corners, radius = CORNERS * 0.5 * np.array(body.size), np.zeros(8)
-            faces.append(FACES + len(owners))
-        elif body.corners is not None:
-            corners = in_space(planar.corners(body))
-            radius = np.zeros(len(corners))
-            faces.append(np.arange(len(corners))[None] + len(owners))
-        elif body.file is not None:
-            corners, cells = mesh(body.file, body.scale or 1.0)
-            radius = np.zeros(len(corners))
-            faces.append(cells + len(owners))
-        axes = state.axes[a].reshape(3, 3)
-        points.append(state.position[a] + corners @ axes.T)
-        radii.append(radius)
-        owners += [k] * len(corners)
-    where, owner = np.vstack(points), np.array(owners)
-    row = state.row[owner]
-    turning = np.cross(state.angular_velocity[row], where - state.position[row])
-    velocity = state.velocity[row] + turning
-    shown = {"points": where, "velocity": velocity, "radius": np.concatenate(radii), "body": owner}
-    return shown | ({"cells": stacked(faces)} if faces else {})
+    row = state.row[:-1]
+    outlines = [_outline(body, solid) for body, solid in zip(bodies, solids, strict=True)]
+    motion = state.velocity[row], state.angular_velocity[row]
+    axes = state.axes[row].reshape(-1, 3, 3)
+    return body_view.bodies_view(outlines, state.position[row], axes, *motion)
+
+
+def _outline(body: RigidBody, solid: Solid) -> body_view.Outline:
+    if body.size is not None:
+        return body_view.box(body.size)
+    if body.corners is not None:
+        return body_view.polygon(planar.corners(body))
+    if body.file is not None:
+        return mesh(body.file, body.scale or 1.0)
+    return body_view.Outline(solid.centres, solid.radii)
 
 
 @lru_cache(maxsize=16)
-def mesh(file: str, scale: float) -> tuple[Array, Whole]:
-    """Vertices (n, 3) m about the centre of mass, and triangles (t, 3), of a body from a file."""
+def mesh(file: str, scale: float) -> body_view.Outline:
+    """Vertices about the centre of mass, and triangles, of a body from a file."""
     # Left out of scenes without meshes.
     from quintet.components.shared.geometry.mesh_files import read
 
     shape = read(file, scale)
     corners, cells = np.unique(shape.triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    return corners - shape.centre, cells.reshape(-1, 3)
+    points = corners - shape.centre
+    return body_view.Outline(points, np.zeros(len(points)), cells.reshape(-1, 3))
 
 
-def planes_view(planes: Sequence[Plane], state: State) -> Fields:
-    """Polygons on the planes: what of each is before the others, and not far from the bodies."""
+def planes_view(planes: Numbers, state: State) -> Fields:
+    """Polygons on planes (p, 4): the part of each before the others, and near the bodies."""
     where, radius = state.position[:-1], state.motion[:-1, 3]
     low, high = (where - radius[:, None]).min(axis=0), (where + radius[:, None]).max(axis=0)
-    points = np.array([plane.point for plane in planes]).reshape(-1, 3)
-    normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
-    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = planes[:, :3]
+    points = normals * planes[:, 3:]
     centre = 0.5 * (low + high)
     feet = centre - normals * ((centre - points) * normals).sum(axis=1, keepdims=True)
     low, high = np.vstack([feet, low]).min(axis=0), np.vstack([feet, high]).max(axis=0)

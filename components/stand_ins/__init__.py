@@ -1,7 +1,7 @@
-"""Stand-ins: what takes a solver's place in a run.
+"""Components that take a solver's place in a run.
 
-``replay`` gives again what a recorded component gave; ``prescribed`` moves rigid bodies on a
-given path whatever the loads on them, and can give these; ``echo`` sends back what it was sent, to
+``replay`` repeats the outputs of a recorded component; ``prescribed`` moves rigid bodies on given
+paths whatever the loads on them, and can return these loads; ``echo`` returns its inputs, to
 measure the exchange.
 """
 
@@ -18,9 +18,9 @@ def _prescribed(params: PrescribedParams) -> Fields:
     # Only a scene that has one imports it.
     from quintet.components.stand_ins.prescribed import Prescribed
 
-    made = Prescribed(params)
-    motion = frozenset(f"motion.{one.name}" for one in MOTION.fields)
-    return {**made.describe(), **made.give(motion)}
+    bodies = Prescribed(params)
+    motion = frozenset(f"motion.{field.name}" for field in MOTION.fields)
+    return {**bodies.describe(), **bodies.give(motion)}
 
 
 REPLAY = Manifest(

@@ -1,4 +1,4 @@
-"""What the laws of the contract are tried on: paths, a small recording, and an echo."""
+"""Cases for the laws of the contract: paths, a small recording, and an echo."""
 
 from pathlib import Path
 from typing import Any
@@ -47,7 +47,7 @@ def replay() -> tuple[ConformCase, ...]:
 
 
 def _recorded(folder: Path) -> dict[str, Any]:
-    """Write the least recording that can be replayed."""
+    """Write the smallest recording that can be replayed."""
     time = WINDOW * np.arange(ROWS)
     turn = np.array([0.5, -1.0, 0.0])  # rad/s, of two bodies about x, and one that stands
     half = 0.5 * np.outer(time, turn)

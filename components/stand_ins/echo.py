@@ -1,4 +1,4 @@
-"""Gives back what it takes; and, asked to, fails in each way that a solver can."""
+"""Returns its inputs; on request, fails in each way that a solver can."""
 
 import os
 import signal
@@ -25,12 +25,12 @@ class Echo(Component):
         return float("inf")
 
     def take(self, fields: Fields) -> None:
-        """Keep what came."""
+        """Keep the value."""
         if "passed.value" in fields:
             self.value = np.array(fields["passed.value"])
 
     def step(self, dt: float) -> None:
-        """Compute nothing; fail if it is time to."""
+        """Compute nothing; fail at the given step."""
         if self.steps == self.params.fails_at:
             self._fail()
         self.steps += 1
@@ -49,7 +49,7 @@ class Echo(Component):
                 self.value = np.full_like(self.value, np.nan)
 
     def give(self, wanted: Keys) -> Fields:
-        """Return what came last."""
+        """Return the last value."""
         return {key: self.value.copy() for key in wanted}
 
     def save(self) -> Fields:
@@ -57,7 +57,7 @@ class Echo(Component):
         return {"value": self.value.copy(), "steps": np.array([self.steps])}
 
     def load(self, state: Fields) -> None:
-        """Come back to them."""
+        """Restore them."""
         self.value, self.steps = np.array(state["value"]), int(state["steps"][0])
 
     def items(self) -> int:

@@ -18,7 +18,7 @@ from quintet.interfaces.ports import LOAD, MOTION, PLANAR_MOTION
 PLANAR = ("disc", "polygon")
 PASSED = Port("passed", (Field("value", (3,), "m"),))
 RETURNED = Port("returned", (Field("value", (3,), "m"),))
-# Loads on bodies that do not yield, as they came: the force of water on a fixed block.
+# Loads on bodies that do not yield: the force of water on a fixed block, for example.
 MEASURED_LOAD = Port("measured_load", LOAD.fields)
 
 
@@ -78,7 +78,7 @@ class PrescribedParams:
     bodies
         At least one, in the order in which ports count them.
     measure_loads
-        Whether the loads on them are taken, and given again as port `measured_load`.
+        Whether the loads on them are taken, and returned as port `measured_load`.
     """
 
     RENAMED: ClassVar = {"held": "measure_loads"}
@@ -87,7 +87,7 @@ class PrescribedParams:
 
     def __post_init__(self) -> None:
         if not self.bodies:
-            raise ValueError("bodies: at least one is needed; found none. Add one.")
+            raise ValueError("bodies: at least one is required; found none. Add one.")
         for k, body in enumerate(self.bodies):
             check_body(f"bodies[{k}]", body, self.planar)
 
@@ -101,8 +101,8 @@ def check_body(where: str, body: PrescribedBody, planar: bool) -> None:
     """Refuse a body whose description is incomplete, or that is not of the others' dimensions."""
     if (body.shape in PLANAR) != planar:
         raise ValueError(
-            f"{where}.shape must have two dimensions ({', '.join(PLANAR)}) as that of all others, "
-            f"or none of theirs; found {body.shape}. Put it in a component of its own."
+            f"{where}.shape must have as many dimensions as those of the other bodies, two "
+            f"({', '.join(PLANAR)}) or three; found {body.shape}. Put it in another component."
         )
     shape_of(body, where)
     if body.corners is not None:
@@ -118,7 +118,7 @@ def check_body(where: str, body: PrescribedBody, planar: bool) -> None:
 
 @parameters
 class EchoParams:
-    """How many items go to and fro; and, to try out failures, how it fails.
+    """Number of items exchanged; and, to test failures, how it fails.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class EchoParams:
     fails_at : 1
         Step at which it fails; below 0 never.
     fails_by
-        How it fails: by an exception, by leaving, with a value that is not finite, by a signal that
+        How it fails: by an exception, by leaving, by a value that is not finite, by a signal that
         kills it, or by one that stops it.
     """
 
@@ -137,11 +137,11 @@ class EchoParams:
 
 
 def prescribed_ports(params: PrescribedParams) -> Ports:
-    """It gives motion; if asked to it takes loads, and gives them again."""
+    """Motion is given; with `measure_loads` loads are taken and returned."""
     motion = PLANAR_MOTION if params.planar else MOTION
     return ((LOAD,), (motion, MEASURED_LOAD)) if params.measure_loads else ((), (motion,))
 
 
 def echo_ports(params: EchoParams) -> Ports:
-    """It takes and gives one field of three numbers an item."""
+    """One field of three numbers per item, in and out."""
     return (PASSED,), (RETURNED,)

@@ -6,10 +6,7 @@ import numpy as np
 
 from quintet.components.shared.geometry.shape_keys import shape_of
 from quintet.components.shared.geometry.shapes import Box, Disc, Polygon, Shape, Sphere
-from quintet.components.stand_ins.params import (
-    PrescribedParams,
-    prescribed_ports,
-)
+from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
 from quintet.interfaces.component import Array, Component, Field, Fields, Keys
 from quintet.interfaces.params import Vector
 from quintet.interfaces.ports import MOTION, VELOCITY
@@ -29,14 +26,13 @@ class Prescribed(Component):
         bodies = params.bodies
         self.planar = params.planar
         self.shapes = shapes = [shape_of(body, "bodies") for body in bodies]
-        self.mass = np.array([one.mass for one in bodies])  # (n,) kg
+        self.mass = np.array([body.mass for body in bodies])  # (n,) kg
         self.origin = np.array([centre_of(shape) for shape in shapes])  # (n, 3) m
-        self.velocity = np.array([one.velocity for one in bodies])  # (n, 3) m/s
-        self.angular_velocity = np.array([one.angular_velocity for one in bodies])  # (n, 3) rad/s
-        self.amplitude = np.array([one.amplitude for one in bodies])  # (n, 3) m
-        self.angular_frequency = (
-            2.0 * math.pi * np.array([[one.frequency] for one in bodies])
-        )  # rad/s
+        self.velocity = np.array([body.velocity for body in bodies])  # (n, 3) m/s
+        self.angular_velocity = np.array([body.angular_velocity for body in bodies])  # rad/s
+        self.amplitude = np.array([body.amplitude for body in bodies])  # (n, 3) m
+        frequency = np.array([[body.frequency] for body in bodies])  # (n, 1) 1/s
+        self.angular_frequency = 2.0 * math.pi * frequency  # rad/s
         self.time = 0.0  # s
 
     def describe(self) -> Fields:
@@ -56,13 +52,13 @@ class Prescribed(Component):
         return math.inf
 
     def take(self, fields: Fields) -> None:
-        """Keep the loads, to give them again; nothing moves by them."""
+        """Keep the loads, to return them; they move nothing."""
         for key in LOADS:
             if f"load.{key}" in fields:
                 self.loads[f"measured_load.{key}"] = np.array(fields[f"load.{key}"])
 
     def step(self, dt: float) -> None:
-        """Let time pass."""
+        """Advance the time."""
         self.time += dt
 
     def give(self, wanted: Keys) -> Fields:
@@ -71,21 +67,21 @@ class Prescribed(Component):
         moved = self.velocity * self.time + self.amplitude * np.sin(phase)
         rate = self.velocity + self.amplitude * self.angular_frequency * np.cos(phase)
         loads = {key: value.copy() for key, value in self.loads.items()} if self.takes else {}
-        given = {
+        fields = {
             **loads,
             "motion.position": self.origin + moved,
             "motion.velocity": rate,
             "motion.orientation": steady_rotation(self.angular_velocity, self.time),
             "motion.angular_velocity": self.angular_velocity.copy(),
         }
-        return {key: given[key] for key in wanted}
+        return {key: fields[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out the time and the loads."""
         return {"time": np.array([self.time])} | {k: v.copy() for k, v in self.loads.items()}
 
     def load(self, state: Fields) -> None:
-        """Come back to a time."""
+        """Restore a time, and the loads."""
         self.time = float(state["time"][0])
         self.loads = {key: np.array(state[key]) for key in self.loads}
 

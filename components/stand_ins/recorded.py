@@ -1,4 +1,4 @@
-"""What a recording tells of a component in it, without reading it whole."""
+"""Ports, sizes and start of a recorded component, without reading the whole recording."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,8 +16,8 @@ from quintet.interfaces.recordings import CheckedFile, readable
 
 def recording_file(path: str) -> Path:
     """File of a recording that is given as a file or as a run's folder."""
-    found = Path(path)
-    return found / "recording.h5" if found.is_dir() else found
+    place = Path(path)
+    return place / "recording.h5" if place.is_dir() else place
 
 
 @contextmanager
@@ -48,25 +48,25 @@ def recorded_ports(params: ReplayParams) -> Ports:
 
 
 def recorded_plan(params: ReplayParams) -> Plan:
-    """Tell how many items and bytes there are, and at which times."""
+    """Number of items, their bytes, and the recorded times."""
     with recorded(params) as file:
         group = file.component(params.component)
         times = file.marks(params.component)["ticks"] * file.file.attrs["tick"]
         data = list(group["fields"].values())
-        items = max((one.shape[1] for one in data), default=1) or 1
-        size = sum(8.0 * np.prod(one.shape, dtype=float) for one in data)
+        items = max((rows.shape[1] for rows in data), default=1) or 1
+        size = sum(8.0 * np.prod(rows.shape, dtype=float) for rows in data)
         return Plan(items, float("inf"), bytes_per_item=size / items, times=times)
 
 
 def recorded_start(params: ReplayParams) -> Fields:
-    """Tell what was described then, and the instants at the recording's start."""
+    """Static fields, and instants at the recording's start."""
     _, gives = recorded_ports(params)
     with recorded(params) as file:
         group = file.component(params.component)
         known = fields_of(gives)
         static = group.get("static", {}).items()
-        found = {key: array[()] for key, array in static if not key.startswith("samples.")}
+        fields = {key: array[()] for key, array in static if not key.startswith("samples.")}
         for key, data in group["fields"].items():
             if known[key].centring == "instant" and len(data):
-                found[key] = file.field(params.component, key, slice(1))[0]
-        return found
+                fields[key] = file.field(params.component, key, slice(1))[0]
+        return fields

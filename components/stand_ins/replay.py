@@ -1,4 +1,4 @@
-"""A recorded component, again: gives at each window's end what was recorded there."""
+"""A recorded component: at the end of each window it gives the fields recorded there."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ class Replay(Component):
     def __init__(self, params: ReplayParams) -> None:
         self.takes, self.gives = recorded_ports(params)
         fields = fields_of(self.gives)
-        self.impulses = {key for key, one in fields.items() if one.centring == "impulse"}
+        self.impulses = {key for key, field in fields.items() if field.centring == "impulse"}
         with recorded(params) as file:
             name, group = params.component, file.component(params.component)
             marks = file.marks(name)
@@ -34,7 +34,7 @@ class Replay(Component):
         self._from = 0  # row at the beginning of the last step
 
     def describe(self) -> Fields:
-        """Give what was described then."""
+        """Return the recorded static fields."""
         return {key: array.copy() for key, array in self.static.items()}
 
     def sample(self, request: Fields) -> Fields:
@@ -47,19 +47,19 @@ class Replay(Component):
             return mesh_answer(port, request, self.static)
         for number in {key.split(".")[1] for key in self.samples}:
             start = f"{SAMPLES}.{number}."
-            told = {
+            answer = {
                 k.removeprefix(start): a for k, a in self.samples.items() if k.startswith(start)
             }
-            if all(np.array_equal(told.get(key, ()), array) for key, array in request.items()):
-                return {key: array for key, array in told.items() if key not in request}
-        asked = ", ".join(f"{key} {array[0]:g}" for key, array in request.items())
+            if all(np.array_equal(answer.get(key, ()), array) for key, array in request.items()):
+                return {key: array for key, array in answer.items() if key not in request}
+        requested = ", ".join(f"{key} {array[0]:g}" for key, array in request.items())
         raise SceneError(
             "a replay of bodies can be sampled only as they were in the recorded run; found a "
-            f"request for {asked}. Ask for the same, or record a run that does."
+            f"request for {requested}. Request the same, or record a run with this request."
         )
 
     def stable_dt(self) -> float:
-        """Return what the recorded component allowed then."""
+        """Return the recorded stable step."""
         return float(self.stable[self.row])
 
     def take(self, fields: Fields) -> None:
@@ -91,15 +91,15 @@ class Replay(Component):
                 f"a replay can give only at recorded times; {self._into:g} s after row {self.row} "
                 "is between two. Use the window of the recorded run."
             )
-        found = {}
+        values = {}
         for key in wanted:
             rows = self.rows[key]
             if key not in self.impulses or not self._from < self.row:
                 nothing = key in self.impulses and self.row > 0
-                found[key] = np.zeros_like(rows[0]) if nothing else rows[self.row].copy()
+                values[key] = np.zeros_like(rows[0]) if nothing else rows[self.row].copy()
             else:
-                found[key] = rows[self._from + 1 : self.row + 1].sum(axis=0)
-        return found
+                values[key] = rows[self._from + 1 : self.row + 1].sum(axis=0)
+        return values
 
     def save(self) -> Fields:
         """Copy out the place in the recording."""
@@ -110,7 +110,7 @@ class Replay(Component):
         }
 
     def load(self, state: Fields) -> None:
-        """Come back to a place."""
+        """Restore a place in the recording."""
         self.row, self._into = int(state["row"][0]), float(state["into"][0])
         self._from = int(state["from"][0])
 

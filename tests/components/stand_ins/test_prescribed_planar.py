@@ -40,8 +40,8 @@ def test_discs_and_polygons_are_sampled_in_their_plane():
 @pytest.mark.parametrize(
     ("bodies", "sentence"),
     [
-        ((DISC_BODY, BOX), "bodies[1].shape must have two dimensions (disc, polygon) as that of"),
-        ((BOX, WEDGE), "bodies[1].shape must have two dimensions (disc, polygon) as that of"),
+        ((DISC_BODY, BOX), "bodies[1].shape must have as many dimensions as those of"),
+        ((BOX, WEDGE), "bodies[1].shape must have as many dimensions as those of"),
         (({**WEDGE, "radius": 1.0},), "a polygon is described by corners alone"),
         (({"shape": "box"},), "a box is described by lowest and highest alone; found none"),
         (({**WEDGE, "corners": [[0, 0], [1, 0]]},), "must go once round a convex polygon"),

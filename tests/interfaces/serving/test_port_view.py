@@ -70,13 +70,13 @@ def test_boxes_turn_and_spheres_have_their_radius():
     bodies.step(1.0)
     shown, units = look_at(bodies)
     assert units == {"velocity": "m/s", "radius": "m"}
-    assert shown["radius"].tolist() == [0.2, *[0.0] * 8]
-    box = shown["points"][1:]
+    assert shown["radius"].tolist() == [*[0.0] * 8, 0.2]
+    box = shown["points"][:8]
     assert np.ptp(box, axis=0) == pytest.approx([4.0, 2.0, 6.0])
-    assert shown["cells"].min() == 1 and shown["cells"].shape == (6, 4)
+    assert shown["cells"].max() == 7 and shown["cells"].shape == (6, 4)
     arm = box - [1.0, 0.0, 0.0]
-    assert shown["velocity"][1:] == pytest.approx(np.cross(quarter, arm))
-    for face in box[shown["cells"] - 1]:  # seen from outside
+    assert shown["velocity"][:8] == pytest.approx(np.cross(quarter, arm))
+    for face in box[shown["cells"]]:  # seen from outside
         normal = np.cross(face[1] - face[0], face[2] - face[0])
         assert normal @ (face.mean(axis=0) - box.mean(axis=0)) > 0.0
 
@@ -91,7 +91,7 @@ def test_polygons_and_discs_are_one_face_and_one_circle():
         ]
     )  # fmt: skip
     shown, _ = look_at(bodies)
-    assert shown["cells"].tolist() == [[1, 2, 3, 4, 5], [6, 7, 8, -1, -1]]
-    assert shown["radius"][0] == pytest.approx(0.2)
+    assert shown["cells"].tolist() == [[0, 1, 2, 3, 4], [6, 7, 8, -1, -1]]
+    assert shown["radius"][5] == pytest.approx(0.2)
     assert shown["points"][shown["cells"][0], 2].max() == 3.0
     assert shown["points"][6:].tolist() == [[7.0, 0.0, 0.0], [8.0, 0.0, 0.0], [7.0, 0.0, 1.0]]
