@@ -9,7 +9,7 @@ from quintet.components.particle_dynamics.integrators import LIMIT, STAGES
 from quintet.components.particle_dynamics.spheres import MANIFEST
 from quintet.components.particle_dynamics.spheres.build import build, initial_state
 from quintet.components.particle_dynamics.spheres.diagnostics import totals, warnings
-from quintet.components.particle_dynamics.spheres.features import impacts
+from quintet.components.particle_dynamics.spheres.features import Impacts, impacts
 from quintet.components.particle_dynamics.spheres.kernels import fly
 from quintet.components.particle_dynamics.spheres.params import ParticleSpheresParams
 from quintet.components.particle_dynamics.spheres.ports import SHOWS
@@ -105,22 +105,21 @@ class ParticleSpheres(Component):
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s], in parts where spheres would overlap by too much."""
-        if self.impacts is None or self.impacts.near is None:
+        if self.impacts is None or not self.impacts.collide:
             self._advance(dt)
             return
         start, parts = self.save(), 1
         allowed = max(self.impacts.overlap(self.state.position), TOUCHING)
-        while not self._advance_in_parts(dt, parts, allowed) and parts < MOST_PARTS:
+        while not self._advance_in_parts(dt, parts, allowed, self.impacts) and parts < MOST_PARTS:
             parts *= 2
             self.load(start)
         self.state.sums[TIME] = start["sums"][TIME] + dt
 
-    def _advance_in_parts(self, dt: float, parts: int, allowed: float) -> bool:
+    def _advance_in_parts(self, dt: float, parts: int, allowed: float, impacts: Impacts) -> bool:
         """Advance by equal parts of dt; return whether no two overlap by more than allowed."""
-        assert self.impacts is not None
         for _ in range(parts):
             self._advance(dt / parts)
-            overlap = self.impacts.overlap(self.state.position)
+            overlap = impacts.overlap(self.state.position)
             if overlap > allowed:
                 if parts < MOST_PARTS:
                     return False

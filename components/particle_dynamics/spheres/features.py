@@ -37,6 +37,11 @@ class Impacts:
         self.spheres, self.planes, self.restitution = spheres, planes, restitution
         self.near = NearPairs(spheres.radius) if collide else None
 
+    @property
+    def collide(self) -> bool:
+        """Whether spheres strike each other."""
+        return self.near is not None
+
     def closing_speed(self, rates: Array) -> float:
         """Greatest rate at which two spheres, or one and a wall, may approach each other.
 

@@ -2,21 +2,36 @@
 
 Flight has symplectic stages, and rotation of fourth order.
 
-An impact is found at the end of a step and given its own time within it: with constant
-accelerations the relative motion since then follows, and so do the velocities at contact. An
-impulse Δp at a time t before the end of the step changes a velocity by Δp/m and a place by t Δp/m.
-What rests on another (its velocity at contact is none) is stopped, and put where it touches.
+An impact is detected at the end of a step and has its own time within it: with constant
+accelerations the relative motion since then follows, and so do the velocities at contact.
 """
 
 import math
 
 from numba import njit
 
-from quintet.components.particle_dynamics.spheres.laws import time_since_contact
+from quintet.components.particle_dynamics.spheres.laws import (
+    impact_of_spheres,
+    impact_on_wall,
+)
 from quintet.components.shared.numba_options import EXACT
-from quintet.components.shared.rotations import rotated
+from quintet.components.shared.rotations import Vector, dot, rotated
 from quintet.components.shared.search.cells import Whole
 from quintet.interfaces.component import Array
+
+
+@njit(**EXACT)
+def difference(vectors: Array, i: int, j: int) -> Vector:
+    """Row i less row j of vectors (n, 3)."""
+    x = vectors[i, 0] - vectors[j, 0]
+    return x, vectors[i, 1] - vectors[j, 1], vectors[i, 2] - vectors[j, 2]
+
+
+@njit(**EXACT)
+def add_along(vectors: Array, i: int, length: float, normal: Vector) -> None:
+    """Add a length along a unit vector to row i of vectors (n, 3)."""
+    for k in range(3):
+        vectors[i, k] += length * normal[k]
 
 
 @njit(**EXACT)
@@ -80,33 +95,11 @@ def bounce_from_walls(
     dt: float, position: Array, velocity: Array, acceleration: Array, radius: Array, mass: Array,
     moves: Array, walls: Array, restitution: float,
 ) -> tuple[float, int]:  # fmt: skip
-    """Turn back spheres that reach into a wall and approach it, without friction.
-
-    Parameters
-    ----------
-    dt : float, s
-        Length of the step: contacts are no older.
-    position, velocity : (n, 3) float array, m and m/s
-        Changed.
-    acceleration : (n, 3) float array, m/s2
-        In flight.
-    radius, mass : (n,) float array, m and kg
-    moves : (n,) bool array
-        Whether a sphere has been launched.
-    walls : (w, 4) float array
-        Unit normals and offsets [m].
-    restitution : float
-
-    Returns
-    -------
-    float
-        Kinetic energy [J] that was lost.
-    int
-        Number of impacts.
-    """
+    """Turn back spheres that reach into a wall (w, 4) and approach it; arguments as of `bounce`."""
     lost, impacts = 0.0, 0
     for i in range(position.shape[0]):
         for w in range(walls.shape[0]):
+            normal = walls[w, 0], walls[w, 1], walls[w, 2]
             height, speed, pull = -walls[w, 3], 0.0, 0.0
             for k in range(3):
                 height += walls[w, k] * position[i, k]
@@ -116,21 +109,10 @@ def bounce_from_walls(
             if depth <= 0.0 or speed <= 0.0 or not moves[i]:
                 continue
             impacts += 1
-            square = speed * speed - 2.0 * pull * depth  # (m/s)², at contact
-            at_contact = math.sqrt(max(square, 0.0))
-            since = 2.0 * depth / (speed + at_contact)
-            if square <= 0.0:
-                change, shift = speed, min(depth, 0.5 * abs(pull) * dt * dt)
-                lost += 0.5 * mass[i] * max(speed * speed - 2.0 * pull * shift, 0.0)
-            else:
-                if since > dt:  # it has been in the wall since before the step
-                    at_contact, since = speed, 0.0
-                change = (1.0 + restitution) * at_contact
-                shift = change * since
-                lost += 0.5 * mass[i] * at_contact**2 * (1.0 - restitution * restitution)
-            for k in range(3):
-                velocity[i, k] += change * walls[w, k]
-                position[i, k] += shift * walls[w, k]
+            change, shift, loss = impact_on_wall(depth, speed, pull, mass[i], dt, restitution)
+            lost += loss
+            add_along(velocity, i, change, normal)
+            add_along(position, i, shift, normal)
     return lost, impacts
 
 
@@ -140,10 +122,9 @@ def deepest_overlap(position: Array, radius: Array, begin: Whole, other: Whole) 
     deepest = 0.0
     for i in range(position.shape[0]):
         for place in range(begin[i], begin[i + 1]):
-            j, square = other[place], 0.0
-            for k in range(3):
-                square += (position[i, k] - position[j, k]) ** 2
-            reach = radius[i] + radius[j]
+            j = other[place]
+            r, reach = difference(position, i, j), radius[i] + radius[j]
+            square = dot(r, r)
             if square < reach * reach:
                 depth = (reach - math.sqrt(square)) / (2.0 * min(radius[i], radius[j]))
                 deepest = max(deepest, depth)
@@ -186,41 +167,18 @@ def bounce(
         i = count - 1 - row if backwards else row
         for column in range(begin[i + 1] - begin[i]):
             j = other[begin[i + 1] - 1 - column] if backwards else other[begin[i] + column]
-            inverse = moves[i] / mass[i] + moves[j] / mass[j]
-            x, y, z = (position[i, 0] - position[j, 0], position[i, 1] - position[j, 1],
-                       position[i, 2] - position[j, 2])  # fmt: skip
-            u, v, w = (velocity[i, 0] - velocity[j, 0], velocity[i, 1] - velocity[j, 1],
-                       velocity[i, 2] - velocity[j, 2])  # fmt: skip
-            square, along = x * x + y * y + z * z, x * u + y * v + z * w
-            reach = radius[i] + radius[j]
-            if square >= reach * reach or along >= 0.0 or inverse == 0.0:
+            inverse_i, inverse_j = moves[i] / mass[i], moves[j] / mass[j]
+            inverse, reach = inverse_i + inverse_j, radius[i] + radius[j]
+            r, v = difference(position, i, j), difference(velocity, i, j)
+            if dot(r, r) >= reach * reach or dot(r, v) >= 0.0 or inverse == 0.0:
                 continue
             impacts += 1
-            ax, ay, az = (acceleration[i, 0] - acceleration[j, 0],
-                          acceleration[i, 1] - acceleration[j, 1],
-                          acceleration[i, 2] - acceleration[j, 2])  # fmt: skip
-            t = time_since_contact(x, y, z, u, v, w, ax, ay, az, reach)
-            if not 0.0 < t <= dt:  # they have overlapped since before the step
-                t = 0.0
-            nx, ny, nz = (x - t * (u - 0.5 * t * ax), y - t * (v - 0.5 * t * ay),
-                          z - t * (w - 0.5 * t * az))  # fmt: skip
-            r = math.sqrt(nx * nx + ny * ny + nz * nz)
-            nx, ny, nz = nx / r, ny / r, nz / r
-            speed = -(nx * (u - t * ax) + ny * (v - t * ay) + nz * (w - t * az))
-            change, shift = (1.0 + restitution) * speed, (1.0 + restitution) * speed * t
-            loss = 0.5 * speed * speed * (1.0 - restitution * restitution)
-            if speed <= 0.0:  # one rests on the other
-                r = math.sqrt(square)
-                nx, ny, nz = x / r, y / r, z / r
-                pull = -(nx * ax + ny * ay + nz * az)
-                change, shift = -along / r, min(reach - r, 0.5 * abs(pull) * dt * dt)
-                loss = max(0.5 * change * change - pull * shift, 0.0)
+            a = difference(acceleration, i, j)
+            normal, change, shift, loss = impact_of_spheres(r, v, a, reach, dt, restitution)
             lost += loss / inverse
-            for k in range(3):
-                n = nx if k == 0 else ny if k == 1 else nz
-                share_i, share_j = moves[i] / mass[i] / inverse, moves[j] / mass[j] / inverse
-                velocity[i, k] += share_i * change * n
-                velocity[j, k] -= share_j * change * n
-                position[i, k] += share_i * shift * n
-                position[j, k] -= share_j * shift * n
+            share_i, share_j = inverse_i / inverse, inverse_j / inverse
+            add_along(velocity, i, share_i * change, normal)
+            add_along(velocity, j, -share_j * change, normal)
+            add_along(position, i, share_i * shift, normal)
+            add_along(position, j, -share_j * shift, normal)
     return lost, impacts
