@@ -124,25 +124,23 @@ def spheres(centres: Array, radii: Array, volume: float, asked: Sampling) -> Bod
     """Sample a union of spheres (k, 3) m, (k,) m about its centre of mass, of a volume [m3]."""
     require_width(2.0 * float(radii.max()), asked)
     low, high = (centres - radii[:, None]).min(axis=0), (centres + radii[:, None]).max(axis=0)
-    return _closed(closed.depths_in_spheres(centres, radii), low, high, volume, asked)
+    return _closed(closed.Body(closed.depths_in_spheres(centres, radii), low, high, volume), asked)
 
 
 def mesh(triangles: Array, volume: float, asked: Sampling) -> BodySamples:
     """Sample a closed surface of triangles (t, 3, 3) m about its centre of mass [m3]."""
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
     require_width(float((high - low).min()), asked)
-    return _closed(closed.depths_in_mesh(triangles), low, high, volume, asked)
+    return _closed(closed.Body(closed.depths_in_mesh(triangles), low, high, volume), asked)
 
 
-def _closed(
-    depths: closed.Depths, low: Array, high: Array, volume: float, asked: Sampling
-) -> BodySamples:
+def _closed(body: closed.Body, asked: Sampling) -> BodySamples:
     _require_space(asked)
     less = asked.inset - 0.5 * asked.spacing
-    found, deepest = closed.fill_closed(depths, low, high, volume, asked.spacing, asked.depth, less)
+    samples, deepest = closed.fill_closed(body, asked.spacing, asked.depth, less)
     # The deepest place of the lattice may miss the middle by half a cell.
     require_width(2.0 * deepest + asked.spacing, asked)
-    return BodySamples(*found)
+    return BodySamples(*samples)
 
 
 def disc(diameter: float, asked: Sampling) -> BodySamples:

@@ -6,36 +6,49 @@ stands for an equal share of the body's volume.
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from quintet.interfaces.component import Array
 
 CLOSE = 0.5  # spacings: samples of one place, of which one stands for all
+FINER = 0.01  # by which the pitch of the lattice shrinks until there are enough samples
+TRIES = 12
 # Points (n, 3) m -> how deep (n,) m they lie in the body, negative outside, and outward normals.
 Depths = Callable[[Array], tuple[Array, Array]]
 Samples = tuple[Array, Array, Array, Array]  # arm, normal, volume, image
 
 
-def fill_closed(
-    depths: Depths,
-    low: Array,
-    high: Array,
-    volume: float,
-    spacing: float,
-    depth: float,
-    less: float,
-) -> tuple[Samples, float]:
+class Body(NamedTuple):
+    """A closed body in its own frame."""
+
+    depths: Depths
+    low: Array  # (3,) m, corners of the box that holds it
+    high: Array
+    volume: float  # m3
+
+
+class Layers(NamedTuple):
+    """Samples of a whole body."""
+
+    arm: Array  # (n, 3) m
+    below: Array  # (n,) m, their depths
+    normal: Array  # (n, 3)
+    filled: float  # share of the body
+    deepest: float  # m, of the lattice that they come from: about half the body's width
+
+
+def fill_closed(body: Body, spacing: float, depth: float, less: float) -> tuple[Samples, float]:
     """Sample a closed body, to a depth below its surface.
+
+    Each sample acts as a particle of the fluid, which finds the body as large as their cubes
+    together: the lattice is made finer until they are as many as the body holds, or some more, of
+    which those nearest to others are left out.
 
     Parameters
     ----------
-    depths : function
-        Of points in the body's frame.
-    low, high : (3,) float arrays, m
-        Corners of the box that holds the body.
-    volume : float, m3
-        Of the body.
+    body : Body
     spacing, depth : float, m
         Distance of samples; how far below the outermost they reach.
     less : float, m
@@ -46,39 +59,56 @@ def fill_closed(
     -------
     samples, and the depth [m] of the deepest lattice place: about half the body's width
     """
-    beyond = max(-less, 0.0)
-    low, high = low - beyond, high + beyond
-    count = np.maximum(np.ceil((high - low) / spacing).astype(int), 1)
-    axes = [
-        0.5 * (a + b) + (np.arange(n) - 0.5 * (n - 1)) * spacing
-        for a, b, n in zip(low, high, count, strict=True)
-    ]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    below, normal = depths(points)
+    layers, wanted = _layers(body, spacing, spacing, less), body.volume / spacing**3
+    excess = len(layers.arm) / max(wanted * layers.filled, 1.0)
+    pitch = spacing * max(1.0, excess ** (1.0 / 3.0))
+    for _ in range(TRIES):
+        if pitch != spacing:
+            layers = _layers(body, spacing, pitch, less)
+        if len(layers.arm) >= round(wanted * layers.filled):
+            break
+        pitch *= 1.0 - FINER
+    rows = _most_apart(layers.arm, round(wanted * layers.filled))
+    volume = body.volume * layers.filled / max(len(rows), 1)
+    rows = rows[layers.below[rows] < depth + less]
+    arm, normal = layers.arm[rows], layers.normal[rows]
+    image = arm + 2.0 * layers.below[rows, None] * normal
+    return (arm, normal, np.full(len(arm), volume), image), layers.deepest
+
+
+def _layers(body: Body, spacing: float, pitch: float, less: float) -> Layers:
+    """Layers one spacing thick, of the places that a lattice with a pitch [m] has in a body."""
+    points = _lattice(body, pitch, max(-less, 0.0))
+    below, normal = body.depths(points)
     inside, filled = int((below > 0.0).sum()), below > less
     points, below, normal = points[filled], below[filled], normal[filled]
     if not inside or not len(points):
-        nothing = np.zeros((0, 3))
-        return (nothing, nothing, np.zeros(0), nothing), 0.0
-    widest, share = float(below.max()), volume / inside
-    near = below < less + depth + spacing
-    points, below, normal = points[near], below[near], normal[near]
+        return Layers(points[:0], below[:0], normal[:0], 0.0, 0.0)
+    deepest = float(below.max())
     wanted = less + (np.floor((below - less) / spacing) + 0.5) * spacing
     moved = points + (below - wanted)[:, None] * normal
-    reached, turned = depths(moved)
+    reached, turned = body.depths(moved)
     # At creases a move may lead past the nearest part of the surface: such points stay.
     sound = np.abs(reached - wanted) < 0.25 * spacing
     arm = np.where(sound[:, None], moved, points)
     below, normal = np.where(sound, reached, below), np.where(sound[:, None], turned, normal)
-    parts = np.full(len(arm), share)
-    keep = _apart(arm, parts, CLOSE * spacing)
-    keep = keep[below[keep] < depth + less]
-    image = arm + 2.0 * below[:, None] * normal
-    return (arm[keep], normal[keep], parts[keep], image[keep]), widest
+    keep = _apart(arm, CLOSE * spacing)
+    return Layers(arm[keep], below[keep], normal[keep], len(points) / inside, deepest)
 
 
-def _apart(points: Array, volume: Array, close: float) -> Array:
-    """Numbers of points that are kept; those too near to one give it their volume."""
+def _lattice(body: Body, pitch: float, beyond: float = 0.0) -> Array:
+    """Places (n, 3) m about the middle of a body and so far [m] beyond it."""
+    low, high = body.low - beyond, body.high + beyond
+    count = np.maximum(np.ceil((high - low) / pitch).astype(int), 1)
+    axes = [
+        0.5 * (a + b) + (np.arange(n) - 0.5 * (n - 1)) * pitch
+        for a, b, n in zip(low, high, count, strict=True)
+    ]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _apart(points: Array, close: float) -> Array:
+    """Numbers of points that are kept: of those too near to each other the first."""
     # Left out of scenes without such bodies.
     from scipy.spatial import cKDTree
 
@@ -86,7 +116,22 @@ def _apart(points: Array, volume: Array, close: float) -> Array:
     for i, j in sorted(cKDTree(points).query_pairs(close)):
         if kept[i] and kept[j]:
             kept[j] = False
-            volume[i] += volume[j]
+    return np.flatnonzero(kept)
+
+
+def _most_apart(points: Array, most: int) -> Array:
+    """Numbers of so many points; left out are those nearest to others."""
+    # Left out of scenes without such bodies.
+    from scipy.spatial import cKDTree
+
+    surplus, kept = len(points) - most, np.ones(len(points), bool)
+    if surplus <= 0:
+        return np.flatnonzero(kept)
+    distance, nearest = cKDTree(points).query(points, 2)
+    for i in np.argsort(distance[:, 1], kind="stable"):
+        if surplus and kept[nearest[i, 1]]:
+            kept[i] = False
+            surplus -= 1
     return np.flatnonzero(kept)
 
 

@@ -1,59 +1,64 @@
-"""Unions of spheres in water are pushed up by the weight of the water that they displace."""
-
-from itertools import product
+"""Unions of spheres and agglomerates in water are pushed up by the weight of what they displace."""
 
 import numpy as np
 import pytest
+import trimesh
 from fluid_params import fluid_params
 
-from quintet.components.dem_bodies.shapes.sphere_union import measure_union
-from quintet.components.shared.geometry.surface_samples import Sampling, spheres
+from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import outputs_of
+from quintet.interfaces.params import read
 
-SPACING, CELLS = 0.03, 12  # m; along each edge of the tank
-CENTRES = ((-1.5 * SPACING, 0.0, 0.0), (1.5 * SPACING, 0.0, 0.0))
-RADII = (3.0 * SPACING, 3.0 * SPACING)
-SPEED, BEGIN, END = 20.0, 0.3, 0.45  # m/s; s
-
-
-def columns() -> tuple:
-    """Boxes of water around the union in the middle of the tank."""
-    place = SPACING * (np.arange(CELLS) + 0.5 - 0.5 * CELLS)
-    found = []
-    for i, j in product(range(CELLS), repeat=2):
-        points = np.stack([np.full(CELLS, place[i]), np.full(CELLS, place[j]), place], axis=1)
-        away = np.linalg.norm(points[:, None] - np.array(CENTRES), axis=2)
-        wet = np.concatenate([[False], (away > RADII).all(axis=1), [False]])
-        starts, ends = (np.flatnonzero(np.diff(wet.astype(int)) == sign) for sign in (1, -1))
-        for low, high in zip(starts.tolist(), ends.tolist(), strict=True):
-            corners = (i, j, low), (i + 1, j + 1, high)
-            found.append(tuple(tuple(SPACING * x for x in corner) for corner in corners))
-    return tuple(found)
+SPACING, CELLS = 0.03, 14  # m; along each edge of the tank
+RADIUS, HALF = 3.5 * SPACING, 1.75 * SPACING  # m; of the spheres, and half of their distance
+SIDE = CELLS * SPACING
+SPEED, BEGIN, END = 22.0, 0.2, 0.5  # m/s; s
+MATERIAL = {"youngs_modulus": 1e9, "poissons_ratio": 0.3, "restitution": 0.5, "friction": 0.4}
 
 
-def test_a_union_of_spheres_is_pushed_up_by_the_weight_of_its_water():
-    side = CELLS * SPACING
-    settings = {
-        "spacing": SPACING,
-        "sound_speed": SPEED,
-        "fluid": columns(),
-        "boundary.walls": ((0.0, 0.0, 0.0), (side, side, side + 0.09)),
-        "boundary.method": "mdbc",
-        "density_diffusion": 0.1,
-        "negative_pressure": True,
+def body_of(shape, folder):
+    """A union of two spheres, or a capsule from a file."""
+    if shape == "spheres":
+        return {"centres": [[-HALF, 0.0, 0.0], [HALF, 0.0, 0.0]], "radii": [RADIUS, RADIUS]}
+    capsule = trimesh.creation.capsule(height=2.0 * HALF, radius=RADIUS, count=[16, 16])
+    capsule.export(folder / "capsule.stl")
+    spheres = {"dim": 8, "sphere_radius": 0.08}
+    return {"file": str(folder / "capsule.stl"), "agglomerate": spheres}
+
+
+@pytest.mark.parametrize("shape", ["spheres", "mesh"])
+def test_a_body_in_water_is_pushed_up_by_the_weight_of_what_it_displaces(shape, tmp_path):
+    body = {"shape": shape, "density": 1.0, "material": "wood", **body_of(shape, tmp_path)}
+    table = {"materials": {"wood": MATERIAL}, "bodies": [body]}
+    params, mistakes = read(DemBodiesParams, table, "bodies", tmp_path)
+    assert not mistakes
+    bodies = DemBodies(params)
+    fluid = SphFluid(
+        fluid_params(
+            spacing=SPACING,
+            sound_speed=SPEED,
+            fluid=(((0.0, 0.0, 0.0), (SIDE, SIDE, SIDE)),),
+            remove_inside_bodies=True,
+            boundary__walls=((0.0, 0.0, 0.0), (SIDE, SIDE, SIDE + 0.12)),
+            boundary__method="mdbc",
+            density_diffusion=0.1,
+            negative_pressure=True,
+        )
+    )
+    request = {key.replace("surface", "motion"): x for key, x in fluid.describe().items()}
+    both = {"motion.mirror": np.ones(1), "motion.dimensions": np.full(1, 3.0)}
+    samples = bodies.sample(request | both)
+    static = {f"surface.{key}": samples[f"motion.{key}"] for key in ("normal", "volume", "body")}
+    fluid.bind(static, frozenset({"surface"}))
+    fields = {
+        "surface.position": samples["motion.arm"] + 0.5 * SIDE,
+        "surface.mirror": samples["motion.image"] + 0.5 * SIDE,
+        "surface.velocity": np.zeros_like(samples["motion.arm"]),
     }
-    fluid = SphFluid(fluid_params(**settings))
-    stated = fluid.describe()
-    depth, inset = (float(stated[f"surface.{key}"][0]) for key in ("depth", "inset"))
-    volume = measure_union((CENTRES, RADII))[0]
-    asked = Sampling(SPACING, depth, inset, mirrored=True)
-    body = spheres(np.array(CENTRES), np.array(RADII), volume, asked)
-    static = {"surface.normal": body.normal, "surface.volume": body.volume}
-    fluid.bind(static | {"surface.body": np.zeros(len(body.arm))}, frozenset({"surface"}))
-    placed = {"surface.position": body.arm, "surface.mirror": body.image}
-    middle = {key: points + 0.5 * side for key, points in placed.items()}
-    fluid.take(middle | {"surface.velocity": np.zeros_like(body.arm)})
+    fluid.prime(fields)
+    fluid.take(fields)
     time, spent, impulse = 0.0, 0.0, np.zeros(3)
     while time < END:
         dt = fluid.stable_dt()
@@ -62,6 +67,24 @@ def test_a_union_of_spheres_is_pushed_up_by_the_weight_of_its_water():
         if time > BEGIN:
             spent += dt
             impulse += dt * outputs_of(fluid)["surface_load.force"].sum(axis=0)
-    push = impulse / spent / (9810.0 * volume)
+    weight = 9810.0 * float(bodies.describe()["motion.mass"][0])  # of 1 kg/m3: the volume
+    push = impulse / spent / weight
     assert push[2] == pytest.approx(1.0, abs=0.02)
-    assert np.abs(push[:2]).max() < 1e-3
+    assert np.abs(push[:2]).max() < 0.01
+
+
+@pytest.mark.parametrize("shape", ["spheres", "mesh"])
+@pytest.mark.parametrize("across", [6.0, 8.3])
+def test_samples_of_a_body_are_as_many_as_cubes_of_the_spacing_that_it_holds(
+    shape, across, tmp_path
+):
+    body = {"shape": shape, "density": 1.0, "material": "wood", **body_of(shape, tmp_path)}
+    table = {"materials": {"wood": MATERIAL}, "bodies": [body]}
+    bodies = DemBodies(read(DemBodiesParams, table, "bodies", tmp_path)[0])
+    spacing = 2.0 * RADIUS / across
+    request = {"spacing": spacing, "depth": 1.0, "inset": 0.5 * spacing, "mirror": 1.0}
+    asked = {f"motion.{key}": np.full(1, x) for key, x in (request | {"dimensions": 3.0}).items()}
+    volume = float(bodies.describe()["motion.mass"][0])
+    samples = bodies.sample(asked)["motion.volume"]
+    assert len(samples) == round(volume / spacing**3)
+    assert samples.sum() == pytest.approx(volume, rel=1e-9)
