@@ -17,6 +17,7 @@ from quintet.interfaces.units import check_unit
 Array = NDArray[Any]
 Fields = Mapping[str, Array]  # "port.field" -> (n, *shape)
 Keys = AbstractSet[str]  # of fields: "port.field"
+PATIENCE = 60.0  # s, where neither a kind nor a scene says
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +152,9 @@ class Component(ABC):
     gives: tuple[Port, ...] = ()
     compiles: bool = False  # whether to try a step, which is undone, before the run's clock starts
     shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
+    gives_integrals: bool = False  # whether `give` returns integrals over the last step, not rates
+    patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
+    Params: Any = None  # its parameter class, where no manifest names one
     manifest: ClassVar[Any] = None  # of a kind that publishes one; classes derived from it have it
 
     @classmethod
@@ -160,6 +164,21 @@ class Component(ABC):
             return cls.takes, cls.gives
         takes, gives = cls.manifest.ports(params)
         return takes, gives
+
+    @classmethod
+    def plan_of(cls, params: Any) -> Any:
+        """What a run will need with these parameters: a `manifest.Plan`; None: not known."""
+        return cls.manifest.plan(params) if cls.manifest and cls.manifest.plan else None
+
+    @classmethod
+    def initial_of(cls, params: Any) -> Fields:
+        """What it will describe and give at the start, as far as the parameters tell it."""
+        return cls.manifest.initial(params) if cls.manifest and cls.manifest.initial else {}
+
+    @staticmethod
+    def conform_cases() -> tuple[Any, ...]:
+        """`manifest.ConformCase`s, on which ``quintet conform`` tries the laws of the contract."""
+        return ()
 
     def describe(self) -> Fields:
         """Static fields of the ports it gives, and its requests at those it takes."""

@@ -6,17 +6,16 @@ entry-point group ``quintet.components``, or as ``module:Class``.
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import Array, Component, Field, Fields, Port
+from quintet.interfaces.component import PATIENCE, Array, Component, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
 
-PATIENCE = 60.0  # s, where neither a kind nor a scene says
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
 
 
@@ -110,7 +109,7 @@ class Manifest:
     params: type
     component: str  # "module:Class"
     ports: Callable[[Any], Ports]
-    plan: Callable[[Any], Plan] | None = None
+    plan: Callable[[Any], Plan | None] | None = None
     initial: Callable[[Any], Fields] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
@@ -132,8 +131,7 @@ class Manifest:
         """What the laws of the contract are tried on: none if neither it nor its class says."""
         if self.conform:
             return tuple(resolve(self.conform)())
-        cases = getattr(self.load(), "conform_cases", None)
-        return tuple(cases()) if cases else ()
+        return tuple(self.load().conform_cases())
 
 
 _looked_in: list[str] = []  # folders that `look_in` has put on the import path
@@ -164,18 +162,16 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
     kind = kind or path
     if not (isinstance(cls, type) and issubclass(cls, Component)):
         raise SceneError(f"kind {kind}: {cls!r} is not a Component. Derive it from Component.")
-    params = getattr(cls, "Params", None)
-    if params is None:
+    if cls.Params is None:
         raise SceneError(
             f"kind {kind}: a component class must have a Params dataclass; {cls.__name__} has "
             "none. Write `@parameters class Params` inside it."
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
-    of_kind: Manifest | None = cls.manifest  # of the one that it derives from
-    plan = getattr(cls, "plan_of", of_kind.plan if of_kind else None)
-    initial = getattr(cls, "initial_of", of_kind.initial if of_kind else None)
-    manifest = Manifest(kind, title, params, path, cls.ports_of, plan, initial, shows=cls.shows)
-    return replace(manifest, patience=getattr(cls, "patience", PATIENCE))
+    functions = (cls.ports_of, cls.plan_of, cls.initial_of)
+    return Manifest(
+        kind, title, cls.Params, path, *functions, patience=cls.patience, shows=cls.shows
+    )
 
 
 def known_kinds() -> dict[str, str]:

@@ -208,7 +208,13 @@ def _drop_renamed(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str
 def _renamed(params: type, names: list[str]) -> str:
     """Path of what the key at the end of these names is called now; "" if it keeps its name."""
     *heads, last = names or [""]
-    return str(getattr(_class_at(params, heads), "RENAMED", {}).get(last, ""))
+    return renamed_keys(_class_at(params, heads)).get(last, "")
+
+
+def renamed_keys(params: type) -> Mapping[str, str]:
+    """Old keys of a parameter class, with the paths of the new ones: its ``RENAMED``, if any."""
+    renamed: Mapping[str, str] = getattr(params, "RENAMED", {})
+    return renamed
 
 
 def _sentence(params: type, where: str, mistake: Any) -> str:

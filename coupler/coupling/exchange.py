@@ -1,150 +1,21 @@
 """What crosses between components: the transfers of all links, and how their rows meet.
 
-Links are data of a scene and remember nothing. What a link makes of the components' static
-fields, its maps, is made when ports are joined and lives here, in the exchange of one run.
+What a link makes of the components' static fields, its maps, is made when ports are joined and
+lives here, in the exchange of one run.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
+from quintet.coupler.coupling.link import Binding, Ends, Link, Mapped, Ports, Transfer
+from quintet.coupler.coupling.pairing import Works, equal_sums, works, works_on
 from quintet.interfaces.component import Array, Field, Fields, Port, fields_of
 from quintet.interfaces.errors import LinkError
 
 MASS = "kg"  # unit of instants that add up, as impulses do
-Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
-Works = list[tuple[str, str, str]]  # force, velocity, position or "": all of one component
-Ends = Mapping[str, Fields]  # outputs of both components of a transfer at one end of a window
-Mapped = dict[str, Array]
 Sampler = Callable[[str, Fields], Fields]  # component and request -> its samples
-
-
-@dataclass(frozen=True, slots=True)
-class Transfer:
-    """One direction of a link: from the giver's outputs to the taker's inputs.
-
-    Parameters
-    ----------
-    giver, taker : str
-        Names of components.
-    reads : tuple of str
-        Outputs of the giver that are mapped.
-    needs : tuple of str
-        Outputs of the taker that the mapping looks at too (the pose of a loaded body).
-    fills : tuple of str
-        Inputs of the taker that it makes.
-    sums : tuple of pairs of str
-        Impulses before and after the mapping whose sums must be equal.
-    works_on : tuple of (str, str, str)
-        An impulse of the taker, the taker's own output with which it does work, and the output
-        of which that is the rate ("" if there is none; "integral" if the output is an impulse
-        itself).
-    """
-
-    giver: str
-    taker: str
-    reads: tuple[str, ...]
-    fills: tuple[str, ...]
-    needs: tuple[str, ...] = ()
-    sums: tuple[tuple[str, str], ...] = ()
-    works_on: tuple[tuple[str, str, str], ...] = ()
-
-    @property
-    def ends(self) -> tuple[str, str]:
-        """Both components."""
-        return self.giver, self.taker
-
-
-@dataclass(frozen=True, slots=True)
-class Demands:
-    """What a link needs of time.
-
-    Parameters
-    ----------
-    equal_steps : bool
-        Whether both sides must step once in every window.
-    schemes : tuple of str
-        Schemes under which it is stable.
-    relaxation : tuple of float
-        Share of the change of its instants that is handed on, in the first windows; the last
-        one holds for all the others. Empty: all of it.
-    settles : bool
-        Whether what it hands on must come to rest from window to window, as the temperature
-        between two bars; it is then watched for swings instead of being stepped twice.
-    reason : str
-        Why, for whoever asks for something else.
-    """
-
-    equal_steps: bool = False
-    schemes: tuple[str, ...] = ("serial", "parallel", "iterated")
-    relaxation: tuple[float, ...] = ()
-    settles: bool = False
-    reason: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Binding:
-    """What a link made of two components' static fields: the maps between their items.
-
-    Parameters
-    ----------
-    static : mapping
-        Component -> static fields that it takes.
-    maps : tuple of functions
-        One for each transfer: outputs of both sides at the start and at the end of the window in
-        which the giver summed its impulses -> inputs of the taker.
-    moment : tuple of functions or None
-        One for each transfer: the same and what was mapped -> the angular impulse about the
-        origin (3,) N m s of what was mapped.
-    """
-
-    static: Mapping[str, Mapped]
-    maps: tuple[Callable[[Ends, Ends], Mapped], ...]
-    moment: tuple[Callable[[Ends, Ends, Fields], Array] | None, ...] = ()
-
-
-class Link(Protocol):
-    """A kind of exchange between two components, matched to their ports: data, no state."""
-
-    @property
-    def name(self) -> str:
-        """Name in the scene."""
-
-    @property
-    def transfers(self) -> tuple[Transfer, ...]:
-        """What it carries, in either direction."""
-
-    @property
-    def works(self) -> Mapping[str, Works]:
-        """Forces and velocities, of the component that gives a force on moving items."""
-
-    @property
-    def partner(self) -> Mapping[str, str]:
-        """Component -> its port whose rows belong to the other side."""
-
-    def demands(self) -> Demands:
-        """What it needs of steps and schemes."""
-
-    def bind(self, described: Mapping[str, Fields]) -> Binding:
-        """Make the maps, from what both sides say of themselves."""
-
-
-def refused_starts(links: Sequence[Link], initial: Mapping[str, Fields]) -> list[str]:
-    """Say what links refuse of how components begin; those with a method ``refuses``.
-
-    `initial` has, as far as they are known, each component's static fields and its instants at the
-    start: the scene is checked by what manifests tell, and what is built once more.
-    """
-    return [
-        sentence for link in links for sentence in getattr(link, "refuses", lambda _: [])(initial)
-    ]
-
-
-def requests_of(link: Link, described: Mapping[str, Fields]) -> Mapping[str, Fields]:
-    """What a link asks components to sample, by their names; of links with a method ``asks``."""
-    return dict(getattr(link, "asks", lambda _: {})(described))
 
 
 @dataclass(slots=True)
@@ -195,6 +66,12 @@ class Exchange:
         pairs = [(n, transfer) for n, link in enumerate(self.links) for transfer in link.transfers]
         self.transfers = [transfer for _, transfer in pairs]
         self.link_of = [number for number, _ in pairs]  # of each transfer
+        self.sums = [equal_sums(transfer, self.takes, self.gives) for transfer in self.transfers]
+        self.works_of = [works(link.transfers, self.takes, self.gives) for link in self.links]
+        self.works_on = [
+            works_on(transfer, self.links[link].transfers, self.takes, self.gives)
+            for link, transfer in pairs
+        ]
         self._bindings: list[Binding] = []
         self.samples: list[tuple[str, Fields, Fields]] = []  # component, request, its answer
         self._maps: list[Callable[[Ends, Ends], Mapped]] = []
@@ -211,7 +88,7 @@ class Exchange:
         self._bindings, self.samples = [], []
         for link in self.links:
             told = dict(described)
-            for name, request in requests_of(link, described).items():
+            for name, request in link.requests(described).items():
                 answer = sample(name, request)
                 told[name] = {**described[name], **answer}
                 self.samples.append((name, request, answer))
@@ -257,8 +134,8 @@ class Exchange:
         counts: dict[tuple[str, str], dict[int, int]] = {}
         for number, transfer in enumerate(self.transfers):
             link, taker = self.link_of[number], transfer.taker
-            partner = self.links[link].partner.get(taker)
-            if partner is None:
+            partner = self._partner_port(link, taker)
+            if not partner:
                 continue
             mapped = self._maps[number](outputs, outputs)
             sizes = [len(a) for key, a in mapped.items() if key.partition(".")[0] == partner]
@@ -269,6 +146,12 @@ class Exchange:
             for link, count in sorted(by_link.items()):
                 self._rows[place][link] = slice(first, first + count)
                 first += count
+
+    def _partner_port(self, link: int, name: str) -> str:
+        """Port of a component whose rows belong to the other side of a link, or ""."""
+        fills = (t.fills for t in self.links[link].transfers if t.taker == name)
+        ports = (self._port(name, key) for keys in fills for key in keys)
+        return next((port.name for port in ports if port.items == "partner"), "")
 
     def shares(self, name: str) -> dict[str, list[tuple[int, int]]]:
         """Rows of each link in the ports of a component that several links share."""
@@ -308,7 +191,11 @@ class Exchange:
 
     def works(self, name: str) -> Works:
         """Pairs of force and velocity by which a component's links do work."""
-        return sorted({work for link in self.links for work in link.works.get(name, [])})
+        return sorted({work for by_name in self.works_of for work in by_name.get(name, [])})
+
+    def both_count_work(self, link: int) -> bool:
+        """Whether the side that is pushed counts the work of a link too."""
+        return any(self.works_on[n] for n, number in enumerate(self.link_of) if number == link)
 
     def joined(self, name: str) -> list[str]:
         """Names of a component's ports that have a partner."""
@@ -323,12 +210,12 @@ class Exchange:
     def wanted(self, name: str, asked: Iterable[str] = ()) -> list[str]:
         """Outputs of a component that a link reads, or that somebody asked for."""
         keys = set(asked)
-        for transfer in self.transfers:
+        for transfer, worked in zip(self.transfers, self.works_on, strict=True):
             if transfer.giver == name:
                 keys |= set(transfer.reads)
             if transfer.taker == name:
                 keys |= set(transfer.needs)
-                keys |= {key for _, *both in transfer.works_on for key in both}
+                keys |= {key for _, *both in worked for key in both}
         return [key for key in self.gives[name] if key in keys]
 
     def deliver(self, number: int, start: Ends, end: Ends) -> Delivery:
@@ -343,7 +230,7 @@ class Exchange:
     def rows(self, number: int, outputs: Fields) -> Fields:
         """Outputs of a transfer's giver; of a port that several links share, the link's rows."""
         giver, link = self.transfers[number].giver, self.link_of[number]
-        taken = self.links[link].partner.get(giver, "")
+        taken = self._partner_port(link, giver)
         shared = self._rows.get((giver, taken), {})
         if len(shared) < 2:
             return outputs

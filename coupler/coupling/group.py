@@ -10,7 +10,7 @@ from typing import Any
 
 from quintet.coupler.coupling.answers import AnswerSums
 from quintet.coupler.coupling.convergence_log import ConvergenceLog
-from quintet.coupler.coupling.exchange import Exchange, WindowInputs, refused_starts
+from quintet.coupler.coupling.exchange import Exchange, WindowInputs
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.plan import CouplingPlan
@@ -200,7 +200,7 @@ def join_ports(
         for name, participant in participants.items()
     }
     initial = {name: {**described[name], **fields} for name, fields in outputs.items()}
-    if refused := refused_starts(exchange.links, initial):
+    if refused := [text for link in exchange.links for text in link.refusals(initial)]:
         raise SceneError(refused)
     exchange.count_rows(outputs)
     for name, participant in participants.items():

@@ -17,6 +17,7 @@ import numpy as np
 from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.motion_audit import MotionAudit
+from quintet.coupler.coupling.pairing import INTEGRAL
 from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.coupler.coupling.run_warnings import RunWarnings
 from quintet.coupler.files.table_file import TableFile
@@ -99,18 +100,17 @@ class Ledger:
         """Book what a component gave: its own sums against those of what arrived."""
         sent = header["sent"]
         for number, transfer in enumerate(self.exchange.transfers):
-            for key, after in transfer.sums if transfer.giver == name else ():
+            for key, after in self.exchange.sums[number] if transfer.giver == name else ():
                 scale = sent.get(f"{key}/size", [0.0])[0]
                 gap = np.subtract(column_sums(fields[key]), sent.get(key, 0.0))
                 self._account(number).note(self.exchange.unit(transfer.taker, after), gap, scale)
         for number, link in enumerate(self.exchange.links):
             account = self.accounts[link.name]
-            for key, velocity, _ in link.works.get(name, []):
+            for key, velocity, _ in self.exchange.works_of[number].get(name, []):
                 share = self.exchange.share_of(number, name, velocity.partition(".")[0])
                 work = sent[f"{key}/work"][share] if f"{key}/work" in sent else 0.0
                 account.work_given += work
-                # Else the other side counts none.
-                if any(transfer.works_on for transfer in link.transfers):
+                if self.exchange.both_count_work(number):
                     account.turnover += abs(work)
 
     def given_for(self, number: int, outputs: Fields) -> None:
@@ -123,7 +123,7 @@ class Ledger:
         `sent` has the sums that each giver made of what it gave.
         """
         transfer, account = delivery.transfer, self._account(delivery.number)
-        for before, after in transfer.sums:
+        for before, after in self.exchange.sums[delivery.number]:
             array, unit = delivery.before[before], self.exchange.unit(transfer.taker, after)
             total = np.asarray(column_sums(delivery.after[after]))
             if unit == "N":
@@ -179,7 +179,7 @@ class Ledger:
     ) -> None:
         """Book the work of the impulses that a component took, by its own motion."""
         takes = self.exchange.transfers
-        for key, rate, place in delivery.transfer.works_on:
+        for key, rate, place in self.exchange.works_on[delivery.number]:
             # What an iteration guessed is what was applied; of shared items each link has its own.
             others = [transfer for transfer in takes if transfer.taker == delivery.transfer.taker]
             alone = sum(key in transfer.fills for transfer in others) == 1
@@ -193,7 +193,7 @@ class Ledger:
     ) -> Array:
         """Mean of a rate over a window: from the displacement where it is known, else the ends'."""
         rate, place = keys
-        if place == "integral":
+        if place == INTEGRAL:
             return after[rate] / dt
         ends = 0.5 * (before[rate] + after[rate])
         if not place:
@@ -204,8 +204,9 @@ class Ledger:
 
     def _alone(self, delivery: Delivery) -> bool:
         """Whether a transfer brings all that its giver gave; shared ports are split by rows."""
-        others = [transfer for transfer in self.exchange.transfers if transfer.sums]
-        return sum(transfer.giver == delivery.transfer.giver for transfer in others) == 1
+        pairs = zip(self.exchange.transfers, self.exchange.sums, strict=True)
+        givers = [transfer.giver for transfer, sums in pairs if sums]
+        return givers.count(delivery.transfer.giver) == 1
 
     def _account(self, number: int) -> Account:
         return self.accounts[self.exchange.links[self.exchange.link_of[number]].name]

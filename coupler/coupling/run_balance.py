@@ -41,7 +41,7 @@ class RunBalance:
         self._given: dict[tuple[str, str], list[tuple[int, str, Running]]] = {}
         self._applied: dict[tuple[str, str], Array] = {}
         for number, transfer in enumerate(exchange.transfers):
-            for before, after in transfer.sums:
+            for before, after in exchange.sums[number]:
                 place = transfer.taker, after
                 self._given.setdefault(place, []).append((number, before, Running()))
 

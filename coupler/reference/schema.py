@@ -47,7 +47,7 @@ class Described(GenerateJsonSchema):
 def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
     """Make the schema of a scene file; `more_kinds` are ``module:Class`` that it knows too."""
     kinds = {kind: _params(kind) for kind in sorted({*known_kinds(), *more_kinds})}
-    links = {kind: getattr(maker(kind), "keys", None) for kind in sorted(known_links())}
+    links = {kind: maker(kind).keys for kind in sorted(known_links())}
     wanted: dict[tuple[str, str], type] = {("scene", "file"): SceneFile}
     wanted |= {("scene", "tables"): SceneTables}
     wanted |= {("common", "components"): ComponentKeys, ("common", "links"): LinkKeys}

@@ -72,13 +72,7 @@ def link_keys(kind: str) -> type:
     """Return the parameter class of a kind of link."""
     if kind not in known_links():
         raise SceneError(unknown(f"describe link {kind}", kind, known_links()))
-    params: type | None = getattr(maker(kind), "keys", None)
-    if params is None:
-        raise SceneError(
-            f"describe link {kind}: it does not publish its keys. Make it with with_keys of "
-            "quintet.coupler.coupling.links.keys."
-        )
-    return params
+    return maker(kind).keys
 
 
 def scene_sections() -> tuple[Section, ...]:

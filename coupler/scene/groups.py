@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from quintet.coupler.coupling import plan
-from quintet.coupler.coupling.exchange import Exchange, Link, refused_starts
+from quintet.coupler.coupling.exchange import Exchange
 from quintet.coupler.coupling.iteration_settings import unknown_fields
+from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.measures.expectation import Expectation, lacking_items
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
@@ -124,7 +125,8 @@ def begins_wrong(
         except Exception as error:  # of any kind: what it does here is its author's
             said = f"{type(error).__name__}: {error}"
             return [f"components.{name}: how it begins cannot be told ({said}). Correct it."]
-    return [*refused_starts(links, initial), *lacking_items(expect, initial)]
+    refused = [text for link in links for text in link.refusals(initial)]
+    return [*refused, *lacking_items(expect, initial)]
 
 
 def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> list[str]:

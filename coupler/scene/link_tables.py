@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
-from quintet.coupler.coupling.exchange import Link
+from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.links import known_links, maker
 from quintet.coupler.scene.scene import ComponentPlan
 from quintet.interfaces.errors import SceneError

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import psutil
 
-from quintet.coupler.coupling.exchange import Exchange, Link
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.coupling.windows import run_windows
 from quintet.coupler.scene.scene import ComponentPlan, Scene, SceneFile

@@ -51,7 +51,7 @@ class Server:
         self.component, self.build_seconds = component, build_seconds
         self.guard = OrderGuard(name)
         self.inputs = Inputs(component.takes)
-        self.outputs = Outputs(component.gives, getattr(component, "gives_integrals", False))
+        self.outputs = Outputs(component.gives, component.gives_integrals)
         fields = self.inputs.fields
         # Turns about several axes do not add up: of rotations the first step alone is checked.
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}

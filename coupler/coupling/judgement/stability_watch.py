@@ -170,7 +170,7 @@ def _foresees(coupling: Coupling, link: str) -> bool:
     inner, exchange = coupling.carries(link) or coupling, coupling.exchange
     return any(
         exchange.links[exchange.link_of[number]].name == link
-        and exchange.transfers[number].taker in exchange.links[exchange.link_of[number]].works
+        and exchange.transfers[number].taker in exchange.works_of[exchange.link_of[number]]
         for number in inner.late
     )
 
@@ -187,7 +187,8 @@ def advice(coupling: Coupling, link: str) -> str:
     """
     inner = coupling.carries(link) or coupling
     key = f"groups.{inner.plan.name}." if inner.plan.name else ""
-    (works,) = (other.works for other in coupling.exchange.links if other.name == link)
+    pairs = zip(coupling.exchange.links, coupling.exchange.works_of, strict=True)
+    works = next(works for other, works in pairs if other.name == link)
     step = min((inner.components[name].stable for name in works), default=math.inf)
     window = inner.last_dt
     shorter = 0.5 * min(window, step)

@@ -7,19 +7,17 @@ between bodies, and for components of a user's own.
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from quintet.coupler.coupling.exchange import (
+from quintet.coupler.coupling.link import (
     Binding,
-    Demands,
     Ends,
     Link,
     Mapped,
     Ports,
     Transfer,
-    Works,
 )
 from quintet.coupler.coupling.links.keys import Pairs, is_stand_in, with_keys
 from quintet.coupler.coupling.links.port_checks import misfits
-from quintet.interfaces.component import Array, Field, Fields, Port
+from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import parameters, unknown
 
@@ -81,66 +79,24 @@ def _port(
     return offered.get(name)
 
 
-class Direct:
+class Direct(Link):
     """Fields pass unchanged from port to port."""
 
     def __init__(self, name: str, joined: list[tuple[str, Port, str, Port]]) -> None:
         self.name = name
         self.joined = joined
-        self.partner = {b: p.name for _, _, b, p in joined if p.items == "partner"}
-        works: dict[str, Works] = {}
-        transfers = []
-        for giver, giving, taker, taken in joined:
-            for field in giving.fields:
-                if pair := self._velocity(taker, giver, field, taken=True):
-                    works.setdefault(giver, []).append((f"{giving.name}.{field.name}", *pair))
-            on = [(f"{taken.name}.{f.name}", self._velocity(taker, giver, f)) for f in taken.fields]
-            transfers.append(
-                Transfer(
-                    giver,
-                    taker,
-                    reads=tuple(f"{giving.name}.{f.name}" for f in taken.fields),
-                    fills=tuple(f"{taken.name}.{f.name}" for f in taken.fields),
-                    sums=tuple(
-                        (f"{giving.name}.{f.name}", f"{taken.name}.{f.name}")
-                        for f in taken.fields
-                        if f.centring == "impulse"
-                    ),
-                    works_on=tuple((key, *pair) for key, pair in on if pair),
-                )
+        self.transfers = tuple(
+            Transfer(
+                giver,
+                taker,
+                reads=tuple(f"{giving.name}.{field.name}" for field in taken.fields),
+                fills=tuple(f"{taken.name}.{field.name}" for field in taken.fields),
             )
-        self.works = works
-        self.transfers = tuple(transfers)
+            for giver, giving, taker, taken in joined
+        )
 
-    def _velocity(
-        self, mover: str, pusher: str, force: Field, taken: bool = False
-    ) -> tuple[str, str] | None:
-        """Key of the velocity with which a force works, and of what that is the rate, or "".
-
-        Looked for among the ports that lead from who is moved to who pushes: as the pusher takes
-        it, or as the mover gives it. On the taking side only a position (3,) is named, from which
-        the moment about the origin follows.
-        """
-        if not force.works_with:
-            return None
-        for giver, giving, taker, taking in self.joined:
-            fields = {field.name: field for field in taking.fields}
-            if (giver, taker) != (mover, pusher) or force.works_with not in fields:
-                continue
-            port = taking if taken else giving
-            whole = [field for field in port.fields if field.rate == force.works_with]
-            if taken:
-                whole = [field for field in whole if field.shape == (3,) and force.unit == "N"]
-            place = f"{port.name}.{whole[0].name}" if whole else ""
-            return f"{port.name}.{force.works_with}", place
-        return None
-
-    def demands(self) -> Demands:
-        """Nothing: any steps, any scheme."""
-        return Demands()
-
-    def refuses(self, initial: Mapping[str, Fields]) -> list[str]:
-        """See `exchange.refused_starts`: what is larger than the taker requests."""
+    def refusals(self, initial: Mapping[str, Fields]) -> list[str]:
+        """Refuse what is larger than the taker requests."""
         wrong = []
         for giver, giving, taker, taken in self.joined:
             for request in taken.requests:

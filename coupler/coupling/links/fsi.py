@@ -10,13 +10,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Literal
 
-from quintet.coupler.coupling.exchange import (
+from quintet.coupler.coupling.link import (
     Binding,
-    Demands,
     Link,
     Ports,
     Transfer,
-    Works,
 )
 from quintet.coupler.coupling.links.keys import Between, with_keys
 from quintet.coupler.coupling.links.port_checks import requires
@@ -41,7 +39,6 @@ from quintet.interfaces.ports import (
 
 # Static field of a fluid that lets links choose: 1 where a contact potential presses on a sample.
 CONTACT = "contact"
-WORK = ("surface_load.force", "surface.velocity", "surface.position")
 
 
 @parameters
@@ -134,14 +131,12 @@ def _names(ports: tuple[Port, ...]) -> str:
     return ", ".join(port.name for port in ports) or "nothing"
 
 
-class Fsi:
+class Fsi(Link):
     """Samples ride on a structure, and their forces become loads on it."""
 
     def __init__(self, sampling: Sampling, structure: Structure, loaded: bool) -> None:
         self.sampling, self.structure = sampling, structure
         self.name, fluid, body = sampling.link, sampling.fluid, sampling.body
-        self.partner = {fluid: SURFACE.name}
-        self.works: dict[str, Works] = {fluid: [WORK]}
         move = Transfer(body, fluid, reads=structure.reads, fills=_sampled(sampling.mirrored))
         load = Transfer(
             fluid,
@@ -149,17 +144,11 @@ class Fsi:
             reads=("surface_load.force",),
             fills=structure.fills,
             needs=structure.needs,
-            sums=(("surface_load.force", structure.fills[0]),),
-            works_on=structure.works_on,
         )
         self.transfers = (move, load) if loaded else (move,)
 
-    def demands(self) -> Demands:
-        """Nothing: any steps, any scheme."""
-        return Demands()
-
-    def asks(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
-        """See `exchange.requests_of`: samples of the surface, as the fluid asks for them."""
+    def requests(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
+        """Samples of the surface, as the fluid asks for them."""
         stated = described[self.sampling.fluid]
         return {self.sampling.body: request(self.sampling, self.structure.motion.name, stated)}
 

@@ -13,7 +13,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from quintet.coupler.coupling.exchange import (
+from quintet.coupler.coupling.link import (
     Binding,
     Demands,
     Ends,
@@ -21,7 +21,6 @@ from quintet.coupler.coupling.exchange import (
     Mapped,
     Ports,
     Transfer,
-    Works,
 )
 from quintet.coupler.coupling.links.keys import Between, is_stand_in, with_keys
 from quintet.coupler.coupling.links.port_checks import fewest, requires
@@ -114,14 +113,12 @@ class Ways(NamedTuple):
     returns: bool  # what still hangs on the nodes, to the mesh
 
 
-class Glue:
+class Glue(Link):
     """Forces and masses to nodes, velocities back."""
 
     def __init__(self, name: str, pair: tuple[str, str], ways: Ways, reach: float) -> None:
         self.name, (self.particles, self.mesh), self.ways, self.reach = name, pair, ways, reach
         particles, mesh = pair
-        self.partner: dict[str, str] = {}
-        self.works: dict[str, Works] = {particles: [("glued_load.force", "glued.velocity", "")]}
         returned = ways.loads and ways.returns
         load = Transfer(
             particles,
@@ -129,10 +126,14 @@ class Glue:
             reads=("glued_load.force",),
             fills=("node_load.force", HUNG) if returned else ("node_load.force",),
             needs=(ERODED[0],) if returned else (),
-            sums=(FORCE,),
-            works_on=(("node_load.force", "node_glue.velocity", "integral"),),
         )
-        move = Transfer(mesh, particles, reads=("node_glue.velocity",), fills=("glued.velocity",))
+        move = Transfer(
+            mesh,
+            particles,
+            reads=("node_glue.velocity",),
+            fills=("glued.velocity",),
+            conservative=False,
+        )
         free = Transfer(mesh, particles, reads=(ERODED[0],), fills=(ERODED[1],))
         self.transfers = self._those((load, move, free))
 
@@ -144,8 +145,8 @@ class Glue:
         """One step of both sides in every window, one after the other."""
         return Demands(equal_steps=True, schemes=("serial",), reason=WHY)
 
-    def asks(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
-        """See `exchange.requests_of`: on which faces the particles hang."""
+    def requests(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
+        """On which faces the particles hang."""
         points = described[self.particles]["glued_load.position"]
         return {self.mesh: {f"{NODE_GLUE.name}.points": points}}
 

@@ -12,7 +12,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from quintet.coupler.coupling.exchange import (
+from quintet.coupler.coupling.link import (
     Binding,
     Demands,
     Ends,
@@ -20,7 +20,6 @@ from quintet.coupler.coupling.exchange import (
     Mapped,
     Ports,
     Transfer,
-    Works,
 )
 from quintet.coupler.coupling.links.keys import Between, with_keys
 from quintet.coupler.coupling.links.port_checks import fewest, requires
@@ -80,15 +79,13 @@ def join(
     raise SceneError(f"link {name}: heat needs: {fewest(complaints)}. Link others.")
 
 
-class Heat:
+class Heat(Link):
     """Temperature to the wall, heat to the nodes."""
 
     def __init__(
         self, name: str, wall: str, mesh: str, relaxation: tuple[float, ...] = (1.0,)
     ) -> None:
         self.name, self.wall, self.mesh, self.relaxation = name, wall, mesh, relaxation
-        self.partner: dict[str, str] = {}
-        self.works: dict[str, Works] = {}
         self.transfers = (
             Transfer(
                 mesh,
@@ -96,7 +93,7 @@ class Heat:
                 reads=("node_temperature.temperature",),
                 fills=("wall_temperature.temperature",),
             ),
-            Transfer(wall, mesh, reads=(HEAT[0],), fills=(HEAT[1],), sums=(HEAT,)),
+            Transfer(wall, mesh, reads=(HEAT[0],), fills=(HEAT[1],)),
         )
 
     def demands(self) -> Demands:
@@ -110,8 +107,8 @@ class Heat:
             reason="its temperature is relaxed from window to window, so windows are not repeated",
         )
 
-    def asks(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
-        """See `exchange.requests_of`: on which faces the points of the wall lie."""
+    def requests(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
+        """On which faces the points of the wall lie."""
         points = described[self.wall]["wall_heat.position"]
         return {self.mesh: {f"{NODE_TEMPERATURE.name}.points": points}}
 

@@ -6,9 +6,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator
 
-from quintet.coupler.coupling.exchange import Link, Ports
+from quintet.coupler.coupling.link import Link, Ports
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import parameters, read, shown, unknown
+from quintet.interfaces.params import parameters, read, renamed_keys, shown, unknown
 
 
 def _is_pair(value: Any) -> bool:
@@ -68,7 +68,7 @@ class LinkKind:
         """Check the table, and make the link; one between two has their names if it has none."""
         where, common = f"links.{number}", {field.name for field in fields(LinkKeys)}
         own_names = {field.name for field in fields(self.keys)}
-        known = [*common, *own_names, *getattr(self.keys, "RENAMED", ())]
+        known = [*common, *own_names, *renamed_keys(self.keys)]
         if strange := [key for key in table if key not in known]:
             raise SceneError([unknown(f"{where}.{key}", key, known) for key in strange])
         shared = {"kind": "", **{key: value for key, value in table.items() if key in common}}
@@ -85,9 +85,9 @@ class LinkKind:
 
 
 def with_keys(keys: type) -> Callable[[Make], LinkKind]:
-    """Make a kind of link of a function ``make(name, given, ports)`` and the class of its keys.
+    """Make a kind of link of a function ``make(name, keys, ports)`` and the class of its keys.
 
-    The class is made by `quintet.interfaces.params.parameters`; `given` is one of it. Its
+    The class is made by `quintet.interfaces.params.parameters`; `keys` is one of it. Its
     docstring is what ``quintet describe`` and ``quintet schema`` tell of each key.
     """
     return lambda make: LinkKind(keys, make)

@@ -1,6 +1,6 @@
 """What the ports of a component lack for a role in a link."""
 
-from quintet.coupler.coupling.exchange import Ports
+from quintet.coupler.coupling.link import Ports
 from quintet.interfaces.component import Port
 
 

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from quintet.coupler.coupling.exchange import Binding, Ends, Mapped
+from quintet.coupler.coupling.link import Binding, Ends, Mapped
 from quintet.coupler.coupling.mapping import OffsetMap, RigidMap, ShapeMap
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import LinkError
@@ -48,7 +48,6 @@ class Structure:
     reads: tuple[str, ...]  # fields that move samples
     fills: tuple[str, ...]  # fields that their forces become
     needs: tuple[str, ...]  # fields of the structure that this takes
-    works_on: tuple[tuple[str, str, str], ...]
     bind: Callable[[Sampling, Fields], Binding]
 
 
@@ -164,10 +163,6 @@ RIGID_BODIES = Structure(
     reads=POSES,
     fills=("load.force", "load.torque"),
     needs=POSES,
-    works_on=(
-        ("load.force", "motion.velocity", "motion.position"),
-        ("load.torque", "motion.angular_velocity", "motion.orientation"),
-    ),
     bind=_bind_bodies,
 )
 FACES_OF_A_MESH = Structure(
@@ -176,6 +171,5 @@ FACES_OF_A_MESH = Structure(
     reads=("faces.position", "faces.velocity"),
     fills=("node_load.force",),
     needs=("faces.position",),
-    works_on=(("node_load.force", "faces.velocity", "faces.position"),),
     bind=_bind_faces,
 )

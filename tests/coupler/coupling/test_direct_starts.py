@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.exchange import refused_starts
 from quintet.coupler.coupling.links import maker
 from quintet.interfaces.component import Field, Port
 
@@ -21,7 +20,7 @@ def _refused(widths, largest):
         initial["a"] = {"grains.width": np.array(widths)}
     if largest is not None:
         initial["b"] = {"grains.largest_width": np.array([largest])}
-    return refused_starts([link], initial)
+    return link.refusals(initial)
 
 
 def test_items_larger_than_the_taker_can_take_are_refused():

@@ -4,12 +4,8 @@ import numpy as np
 import pytest
 from toy_samples import cubes, masses, mesh
 
-from quintet.coupler.coupling.exchange import (
-    Binding,
-    Demands,
-    Exchange,
-    Transfer,
-)
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.link import Binding, Link, Transfer
 from quintet.coupler.coupling.links.fsi import join as join_fsi
 from quintet.coupler.coupling.links.glue import join as join_glue
 from quintet.coupler.coupling.links.port_checks import misfits, requires
@@ -133,16 +129,13 @@ def test_forces_on_own_items_add_up():
     np.testing.assert_allclose(load, (4 + 16 + 200) / 4.0, rtol=1e-14)
 
 
-class _Values:
+class _Values(Link):
     """A link that brings a value, which cannot be added up."""
 
-    name, works, partner = "values", {}, {}
+    name = "values"
 
     def __init__(self, giver):
         self.transfers = (Transfer(giver, "taker", reads=("port.value",), fills=("port.value",)),)
-
-    def demands(self):
-        return Demands()
 
     def bind(self, described):
         giver = self.transfers[0].giver

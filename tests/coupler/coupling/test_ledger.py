@@ -97,7 +97,7 @@ def test_work_that_only_one_side_counts_is_no_residual():
     pairs = [["a.moved", "b.moved"]]
     ports = {"a": ((), (MOVED,)), "b": ((MOVED,), (PUSHED,))}
     exchange = Exchange([maker("direct")(0, {"name": "rope", "pairs": pairs}, ports)], ports)
-    exchange.links[0].works = {"b": [("pushed.force", "moved.velocity", "")]}
+    exchange.works_of[0] = {"b": [("pushed.force", "moved.velocity", "")]}
     ledger = Ledger(exchange)
     fields = {"pushed.force": np.ones((1, 3))}
     ledger.book_given("b", {"sent": {"pushed.force/work": [3.0]}}, fields)

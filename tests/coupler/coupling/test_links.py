@@ -271,9 +271,10 @@ def test_direct_passes_only_what_is_taken():
     carry, _ = link.bind({"puck": {}, "air": {}}).maps
     assert set(carry({}, {"puck": pose})) == {"flight.velocity"}
     assert link.transfers[0].reads == ("pose.velocity",)
-    assert link.transfers[1].sums == (("drag.force", "push.force"), ("drag.heat", "push.heat"))
-    assert link.works == {"air": [("drag.force", "flight.velocity", "")]}
-    assert link.transfers[1].works_on == (("push.force", "pose.velocity", "pose.position"),)
+    exchange = Exchange([link], PORTS)
+    assert exchange.sums == [[], [("drag.force", "push.force"), ("drag.heat", "push.heat")]]
+    assert exchange.works_of == [{"air": [("drag.force", "flight.velocity", "")]}]
+    assert exchange.works_on == [[], [("push.force", "pose.velocity", "pose.position")]]
 
 
 def test_direct_names_ports_that_are_not_there():

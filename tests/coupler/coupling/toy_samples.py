@@ -31,7 +31,7 @@ def mesh(static):
 def bound(link, described, **answers):
     """What a link makes of what components describe and answer."""
     told = dict(described)
-    for name, request in link.asks(described).items():
+    for name, request in link.requests(described).items():
         told[name] = {**described[name], **answers[name](request)}
     return link.bind(told)
 
