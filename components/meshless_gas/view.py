@@ -7,8 +7,9 @@ from quintet.components.meshless_gas.build import Domain, reaches
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.state import Fluxes, State
+from quintet.components.shared.geometry.box_faces import box
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.faces import box, polygons
+from quintet.interfaces.faces import polygons
 
 DARKEST = 15.0  # exponent of the steepest gradient
 CONTRAST = 15.0  # of the greatest curvature: light that it bends is all gone, or twice as bright

@@ -14,9 +14,9 @@ from quintet.components.dem_bodies.shapes.placement import (
 )
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
+from quintet.components.shared.geometry.box_faces import CORNERS
 from quintet.components.shared.geometry.polygons import area_moments
 from quintet.interfaces.component import Array
-from quintet.interfaces.faces import CORNERS
 
 THIN = 0.1  # of a box's longest edge: a thinner box is listed as if it were as thick
 

@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from quintet.components.shared.geometry.box_faces import CORNERS, FACES
 from quintet.components.shared.geometry.polygons import in_space
 from quintet.interfaces.component import Array
-from quintet.interfaces.faces import CORNERS, FACES, stacked
+from quintet.interfaces.faces import stacked
 
 
 class Outline(NamedTuple):

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import Field
 
+from quintet.components.shared.geometry.box_faces import box
 from quintet.components.shared.geometry.shapes import Bounds
 from quintet.interfaces.component import Array
-from quintet.interfaces.faces import box
 from quintet.interfaces.params import Number, Vector
 
 if TYPE_CHECKING:

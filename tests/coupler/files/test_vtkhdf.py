@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import pyvista
 
+from quintet.components.shared.geometry.box_faces import CORNERS, FACES
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
 from quintet.coupler.files.vtkhdf_reader import read_step, scene, times, units
 from quintet.interfaces.errors import PortError, SceneError
-from quintet.interfaces.faces import CORNERS, FACES
 
 COUNTS = (5, 7, 7, 5, 0, 30, 6)
 CELLS = np.array([[0, 1, 2, 3], [0, 1, 2, -1]])

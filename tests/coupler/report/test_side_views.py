@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from started import write_scene
 
+from quintet.components.shared.geometry.box_faces import CORNERS, FACES, box
 from quintet.coupler.cli import main
 from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.report import side_views as drawing
@@ -16,7 +17,7 @@ from quintet.coupler.report.side_views import side_views
 from quintet.coupler.report.view_steps import Quantity, moments, read, view_files
 from quintet.coupler.run import results
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.faces import CLAMPED, CORNERS, FACES, SYMMETRY, box, polygons
+from quintet.interfaces.faces import CLAMPED, SYMMETRY, polygons
 
 UNITS = {"velocity": "m/s", "pressure": "Pa", "stress": "Pa"}
 RED, GREEN, BLUE = range(3)
