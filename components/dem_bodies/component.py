@@ -37,9 +37,9 @@ CONTACT_FIELDS = ("contact.force", "contact.torque")
 
 
 class DemBodies(Component):
-    """Moves rigid bodies under gravity, contact forces and the loads it is given.
+    """Moves rigid bodies under gravity, contact forces and loads.
 
-    A class of one's own may derive from it, with a `Params` that derives from `DemBodiesParams`: in
+    A user's class may derive from it, with a `Params` that derives from `DemBodiesParams`: in
     a scene it is a kind, ``module:Class``, with all ports of this one.
 
     Parameters
@@ -76,7 +76,7 @@ class DemBodies(Component):
         return described(self.params, self.solids)
 
     def sample(self, request: Fields) -> Fields:
-        """Sample the surfaces of all bodies as a partner asks for it."""
+        """Sample the surfaces of all bodies as a partner requests."""
         return sample(self.bodies, request)
 
     def _begin(self) -> None:

@@ -1,4 +1,4 @@
-"""What the laws of the contract are tried on: two bodies without weight that hover over a floor."""
+"""Cases for the laws of the contract: two weightless bodies that hover over a floor."""
 
 from typing import Any
 

@@ -15,7 +15,7 @@ from quintet.components.shared.numba_options import INNER
 from quintet.components.shared.rotations import Vector, axpy, dot, scaled
 
 DAMPING = 2.0 * math.sqrt(5.0 / 6.0)
-LEAST = 1e-200  # what is smaller counts as zero
+LEAST = 1e-200  # smaller numbers count as zero
 ROLLING_STIFFNESS = 2.25
 ROLLING_DAMPING = 0.3  # η, share of critical damping; Ai et al. use the same
 

@@ -1,4 +1,4 @@
-"""What a scene says about rigid bodies in contact; checked once, before anything starts."""
+"""Parameters of rigid bodies in contact; checked once, before a run starts."""
 
 from typing import Annotated, ClassVar, Literal, cast, get_args
 
@@ -24,7 +24,7 @@ from quintet.interfaces.params import (
     parameters,
 )
 
-# In which a body may be locked: translation along, rotation about the axes of the world.
+# Directions that may be locked: translation along, rotation about the axes of the world.
 Direction = Literal["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]
 DIRECTIONS = get_args(Direction)
 Poisson = Annotated[float, Field(ge=0, le=0.5)]
@@ -37,21 +37,21 @@ class Material:
     """An elastic material with its friction and restitution against itself.
 
     Two materials in contact have the lower of their frictions, restitutions and coefficients of
-    rolling friction, unless `pairs` says otherwise.
+    rolling friction, unless `pairs` sets another.
 
     Parameters
     ----------
     youngs_modulus : Pa
-        E, of the elastic material.
+        E.
     poissons_ratio : 1
-        ν, its transverse contraction over its extension.
+        ν, transverse contraction over extension.
     restitution : 1
         Normal velocity after an impact over that before.
     friction : 1
         Coulomb's coefficient.
     rolling_friction : 1
         Coefficient of rolling resistance of spheres, the tangent of the slope on which they begin
-        to roll; boxes and unions of spheres have none but their shape.
+        to roll. Boxes and unions of spheres resist rolling by their shape alone.
     """
 
     RENAMED: ClassVar = {
@@ -68,7 +68,7 @@ class Material:
 
 @parameters
 class Pair:
-    """What holds between two materials, or one and itself, in place of the lower of both.
+    """Contact properties of two materials, or of one with itself, in place of the lower of both.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Pair:
     restitution : 1
         Normal velocity after an impact over that before; the lower of both if not given.
     rolling_friction : 1
-        Coefficient of rolling resistance; the lower of both if not given. A pair says at least one
+        Coefficient of rolling resistance; the lower of both if not given. A pair sets at least one
         of the three.
     """
 
@@ -100,21 +100,21 @@ class Body(BoxKeys, RoundKeys, PolygonKeys, MeshKeys):
         Disc and polygon in two dimensions, the others in three.
     edge_radius : m
         Radius of a box's edges and corners, or of a polygon's corners; less than half the shortest
-        edge of a box. 5 % of the shortest edge if not given. However sharp an edge or thin a body
-        is, it bears as one of 5 % of the shortest edge, or of 0.5 % of the longest.
+        edge of a box. 5 % of the shortest edge if not given. Contacts of sharp or thin bodies have
+        at least the stiffness of a radius of 5 % of the shortest edge, or 0.5 % of the longest.
     centres : m
-        Of spheres that are one body.
+        Of the spheres that make one body.
     radii : m
         Of the same spheres.
     agglomerate
         How spheres cover the surface of a mesh.
     origin : m
         Where the origin of a polygon's corners, of the centres of spheres or of a mesh's file is,
-        before the body is turned; that of the world if not given.
+        before the body is turned; the origin of the world if not given.
     density : kg/m3
-        This or the mass.
+        Give the density or the mass.
     mass : kg
-        This or the density; in two dimensions the mass of 1 m along y.
+        Give the mass or the density; in two dimensions the mass of 1 m along y.
     material
         One of the materials.
     orientation : 1
@@ -125,9 +125,9 @@ class Body(BoxKeys, RoundKeys, PolygonKeys, MeshKeys):
         At the start, in world axes.
     locked
         Translations along, and rotations about, axes of the world that loads and contacts do not
-        change: the body keeps the velocity there that it starts with. An angular velocity about a
-        locked axis needs all three rotations locked. With all six it is a wall, a plate, a piston
-        or a drum. A sphere that is locked in any way has no rolling resistance.
+        change: the body keeps its initial velocity there. An angular velocity about a locked axis
+        requires that all three rotations are locked. A body with all six locked is a wall, a plate,
+        a piston or a drum. A locked sphere has no rolling resistance.
     copies
         A lattice of such bodies, the first where the shape is.
     """
@@ -165,26 +165,26 @@ class DemBodiesParams:
     bodies
         Rigid bodies, in the order in which ports count them.
     materials
-        What they are made of, by name.
+        Materials of the bodies and planes, by name.
     planes
         Fixed half-spaces that hold them.
     dimensions
-        In two all bodies are discs and polygons in the plane of x and z, 1 m deep along y, and move
-        in it.
+        In two dimensions all bodies are discs and polygons in the plane of x and z, 1 m deep along
+        y, and move in it.
     pairs
-        What holds between two materials in place of the lower of both.
+        Contact properties of two materials in place of the lower of both.
     gravity : m/s2
         Acceleration of free fall.
     impact_speed : m/s
-        Of the impacts to be expected; the step resolves them.
+        Of the fastest expected impact; the step resolves it.
     steps_per_contact : 1
         Steps in the duration of such an impact.
     longest_step : s
-        While nothing is about to touch.
+        Limit of the step while nothing is about to touch.
     fixed_step : s
-        In place of the stable one: to see where that ends.
+        Step in place of the stable one, to find the limit of stability.
     contact_forces
-        Whether what contacts do to each body is given, as port `contact`.
+        Whether the loads of contacts on each body are given, as port `contact`.
     """
 
     RENAMED: ClassVar = {"speed": "impact_speed", "step": "fixed_step"}
@@ -201,7 +201,7 @@ class DemBodiesParams:
     contact_forces: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be run, and put every copy among the bodies."""
+        """Refuse contradictions, and put every copy among the bodies."""
         for k, body in enumerate(self.bodies):
             self._known(f"bodies[{k}].material", body.material)
         for k, plane in enumerate(self.planes):
@@ -222,7 +222,7 @@ class DemBodiesParams:
 
     @property
     def placed(self) -> Bodies:
-        """The same bodies with their copies, as what they are once they are checked."""
+        """The same bodies with their copies, of the type that they have after the check."""
         return cast(Bodies, self.bodies)
 
     def _known(self, where: str, name: str) -> None:
@@ -234,12 +234,12 @@ class DemBodiesParams:
 
 
 def check_pairs(pairs: tuple[Pair, ...]) -> None:
-    """Refuse pairs that say nothing, or that are said twice."""
+    """Refuse pairs without a property, and repeated pairs."""
     known: dict[frozenset[str], int] = {}
     for k, pair in enumerate(pairs):
         if pair.friction is None and pair.restitution is None and pair.rolling_friction is None:
             raise ValueError(
-                f"pairs[{k}] must say friction, restitution or rolling_friction; found none. "
+                f"pairs[{k}] must set friction, restitution or rolling_friction; found none. "
                 "Add one of them, or leave the pair out."
             )
         first = known.setdefault(frozenset(pair.between), k)

@@ -1,4 +1,4 @@
-"""What the bodies take and give: loads; motion, and if asked for what contacts do to them."""
+"""Ports of bodies: loads in; motion, and optionally the loads of contacts, out."""
 
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.interfaces.component import Field, Port

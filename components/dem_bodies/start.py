@@ -1,4 +1,4 @@
-"""What bodies state before they are built: masses, and their poses at the start."""
+"""Fields that bodies state before they are built: masses, and their poses at the start."""
 
 import numpy as np
 

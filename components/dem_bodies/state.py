@@ -46,7 +46,7 @@ class Model(NamedTuple):
     sphere_row: Whole  # (s,) row; that of a ball's sphere has its own number
     sphere_centre: Numbers  # (s, 3) m, body axes
     sphere_radius: Numbers  # (s,) m
-    contact_radius: Numbers  # (s,) m, by which it bears: the same, larger at sharp corners
+    contact_radius: Numbers  # (s,) m, of contacts: the same, larger at sharp corners
     edge_begin: Whole  # (n + 1,) as sphere_begin, of edges
     edge_ends: Whole  # (e, 2) spheres at the ends of each edge
     plane: Numbers  # (p, 4) unit normal and offset: normal·x = offset
@@ -65,7 +65,7 @@ class State(NamedTuple):
     orientation: Numbers  # (n, 4) w x y z, body -> world
     angular_momentum: Numbers  # (n, 3) kg m2/s, about the centre; of balls not kept up
     contact_load: Numbers  # (n, 6) N and N m: force and torque of all contacts at the present time
-    previous_contact_load: Numbers  # (n, 6) N and N m, at the last step's beginning, if asked for
+    previous_contact_load: Numbers  # (n, 6) N and N m, at the last step's beginning, if recorded
     load: Numbers  # (n, 6) N and N m, given from outside
     axes: Numbers  # (n, 9) rotation matrices, by rows; of balls not kept up
     world_inverse_inertia: Numbers  # (n, 6) 1/(kg m2), in world axes
@@ -103,7 +103,7 @@ class BallPairs(NamedTuple):
     constants: Numbers  # (kinds of pairs, 7) see laws
     history: Numbers  # (4, pairs) elastic tangential force on the ball [N], 1/√δ; 0 without contact
     rolling_moment: Numbers | None  # (pairs, 3) N m, elastic, on the ball; None if none resists
-    force: Numbers  # (pairs, 3) N, on the ball; (0, 3) if nothing asks for it
+    force: Numbers  # (pairs, 3) N, on the ball; (0, 3) if not recorded
     outgoing: Numbers  # (sent, 6) N and N m, on partners in later blocks, in the order of the pairs
     outgoing_begin: Whole  # (blocks + 1,) block b sends outgoing_begin[b] ... [b + 1] - 1
     incoming_begin: Whole  # (n + 1,) row a gets those in incoming[incoming_begin[a] : ... [a + 1]]
@@ -112,12 +112,12 @@ class BallPairs(NamedTuple):
 
 
 class BodyPairs(NamedTuple):
-    """All other pairs that may touch before they are listed anew, and those that do."""
+    """All other pairs that may touch before the next listing, and those that do."""
 
     key: Whole  # (pairs,) sorted
     begin: Whole  # (5,) where each kind begins
     ends: Whole  # (pairs, 2) sphere and plane, two spheres, sphere and body, or two edges
-    # Elastic tangential force [N] 3; depth [m] at the last step; depth [m] that bears no load,
+    # Elastic tangential force [N] 3; depth [m] at the last step; depth [m] without load,
     # because the pair was already that deep when it came into being.
     history: Numbers  # (pairs, 5)
     touching: Whole  # (pairs, 4) pair, body, body, pair of materials

@@ -80,7 +80,7 @@ class ParticleLattice(Component):
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s], in equal steps of at most the stable one."""
         state, params, neighbours = self.state, self.params, self.neighbours
-        # Without substeps a longer step was asked for by the scene: it is made as it is.
+        # Without substeps a longer step is the scene's choice.
         longest = math.inf if params.substeps == 1 else self.substep
         steps = max(1, math.ceil(dt / longest * (1.0 - 1e-9)))
         heat = state.heat[self.wall]
@@ -103,7 +103,7 @@ class ParticleLattice(Component):
             self._check()
 
     def _check(self) -> None:
-        """Find lost points, broken bonds and missing energy; stop if the scene asks for it."""
+        """Find lost points, broken bonds and missing energy; stop if the scene requires it."""
         self.losses.check(self.state, self.neighbours.pairs, self.built, self.lattice.spacing)
         self.losses.check_energy(self._audit(self._energies()), float(self.state.energies[TIME]))
         if self.params.if_point_lost == "stop" and self.losses.broken:

@@ -1,4 +1,4 @@
-"""What a scene says about a lattice of mass points."""
+"""Parameters of a lattice of mass points."""
 
 import math
 from typing import Annotated, ClassVar, Literal
@@ -120,7 +120,7 @@ class SevenRootForce:
             )
         if (self.top_frequency is None) == (self.amplitude is None):
             raise ValueError(
-                "seven_roots: its strength must be said once; give either top_frequency or "
+                "seven_roots: its strength must be given once; give either top_frequency or "
                 "amplitude."
             )
         first, second, third = self.unstable_roots
@@ -154,7 +154,7 @@ class Damping:
 
 @parameters
 class Drive:
-    """Two nearest points whose distance along their axis is told: a + D sin 2πft.
+    """Two nearest points at a prescribed distance along their axis: a + D sin 2πft.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ class Bath:
     lowest, highest : m
         A box; points within it at the start are in the bath.
     temperature : K
-        That it keeps, until a partner tells another.
+        Of the bath, until a partner sets another.
     rate : 1/s
         γ, at which velocities decay towards it.
     tether : N/m

@@ -16,7 +16,7 @@ RELATIVE = Field("relative_hotness", (), "1")  # over that of the hottest point
 # Of the view, at points.
 SHOWS = (RELATIVE, HOTNESS, TEMPERATURE, VELOCITY)
 POINTS = Port("points", fields=(POSITION, VELOCITY, HOTNESS, RELATIVE, TEMPERATURE))
-# Of the whole, in one row. What was put in since the start is work of the drive and heat of baths.
+# Of the lattice, in one row. Energy put in since the start is work of the drive and heat of baths.
 ENERGIES = Port(
     "energies",
     fields=(
@@ -25,7 +25,7 @@ ENERGIES = Port(
         Field("dissipated", (), "J"),
         Field("work", (), "J"),
         Field("heat", (), "J"),
-        Field("audit", (), "1"),  # what is missing over what was put in
+        Field("audit", (), "1"),  # missing energy over energy put in
         Field("intact", (), "1"),  # share of the bonds to the nearest of 0.8 to 1.2 spacings
         TEMPERATURE,  # mean of all points since averages began
         Field("temperature_error", (), "K"),  # standard error by blocks

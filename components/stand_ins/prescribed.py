@@ -41,7 +41,7 @@ class Prescribed(Component):
         return {"motion.mass": self.mass.copy(), **planar}
 
     def sample(self, request: Fields) -> Fields:
-        """Sample the surfaces of all bodies as a partner asks for it."""
+        """Sample the surfaces of all bodies as a partner requests."""
         # Left out of scenes whose bodies nobody samples.
         from quintet.components.stand_ins.body_samples import sample
 

@@ -1,4 +1,4 @@
-"""Materials in contact, and what is expected of their impacts; plain numbers, before any run.
+"""Materials in contact and their expected impacts; plain numbers, before any run.
 
 With u = δ^{5/4} the damped Hertz contact is a linear oscillator in the phase plane (Antypov &
 Elliott 2011). It ends where the force would become a pull, so that (Schwager & Pöschel 2007)

@@ -163,7 +163,7 @@ def begin_batch(batch: Numbers) -> None:
 
 @njit(**INNER)
 def end_block(sums: Numbers, batch: Numbers, block: int, pair: int) -> None:
-    """Extremes and energy of a block; any pair of the block stands for the deepest."""
+    """Extremes and energy of a block; any pair of the block represents the deepest."""
     gap, deepest, stiffest, energy = FAR, 0.0, 0.0, 0.0
     for c in range(min(BATCH, batch.shape[0])):
         gap, deepest = min(gap, batch[LEAST_GAP + c]), max(deepest, batch[MOST_DEPTH + c])

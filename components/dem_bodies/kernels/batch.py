@@ -1,4 +1,4 @@
-"""Batches of pairs of balls: what is read from rows and pairs, and added to them, one by one."""
+"""Batches of pairs of balls: reading from rows and pairs, and adding to them, one by one."""
 
 import numpy as np
 from numba import njit

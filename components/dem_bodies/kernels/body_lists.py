@@ -58,7 +58,7 @@ def list_spheres_of_box(
 def list_bodies(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
-    """List what is near of two bodies: spheres, spheres and faces, edges."""
+    """List the near parts of two bodies: spheres, spheres and faces, edges."""
     box_i, box_j = model.edge_radius[i] > 0.0, model.edge_radius[j] > 0.0
     if box_j:
         count = list_spheres_of_box(model, state, i, j, skin, keys, count)
@@ -94,7 +94,7 @@ def list_planes(model: Model, state: State, i: int, skin: float, keys: Whole, co
 def list_if_near(
     model: Model, state: State, i: int, j: int, skin: float, keys: Whole, count: int
 ) -> int:
-    """List what is near of two bodies, if they are near one another."""
+    """List the near parts of two bodies, if they are near each other."""
     d = sub(row_vector(state.motion, i), row_vector(state.motion, j))
     near = model.bounding_radius[i] + model.bounding_radius[j] + skin
     if dot(d, d) < near * near:

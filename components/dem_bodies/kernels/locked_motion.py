@@ -51,7 +51,7 @@ def symmetric(rows: Numbers, i: int) -> Symmetric:
 
 @njit(**INNER)
 def masked(free: Numbers, i: int, first: int, v: Vector) -> Vector:
-    """Leave of a vector what is free: translation from 0 on, rotation from 3 on."""
+    """Free components of a vector: translation from 0 on, rotation from 3 on."""
     return free[i, first] * v[0], free[i, first + 1] * v[1], free[i, first + 2] * v[2]
 
 

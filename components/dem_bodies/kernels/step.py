@@ -1,4 +1,4 @@
-"""Loops over bodies: the stages of a velocity-Verlet step, and what is read off its end."""
+"""Loops over bodies: the stages of a velocity-Verlet step, and copies of its result."""
 
 from numba import njit
 
@@ -27,7 +27,7 @@ from quintet.components.shared.numba_options import EXACT
 
 # The stages of a step. Drift, balls and kick are shared out among threads.
 DRIFT, BALLS, OTHERS, KICK, REPORT, DONE = range(6)
-LIST = -1  # in place of a stage: pairs must be listed anew first
+LIST = -1  # in place of a stage: pairs must be listed again first
 
 
 @njit(**EXACT)
@@ -56,12 +56,12 @@ def step(
     loaded : bool
         Whether any body has a load.
     limit : float, m2
-        Square of the displacement of a sphere beyond which pairs are listed anew.
+        Square of the displacement of a sphere beyond which pairs are listed again.
 
     Returns
     -------
     int
-        The next stage, or LIST: nothing but the drift was done, for pairs must be listed anew.
+        The next stage, or LIST: only the drift was done; pairs must be listed again.
     """
     alone = others.key.shape[0] == 0
     if begin <= DRIFT < end:

@@ -1,4 +1,4 @@
-"""The bodies of a scene: each as it is described, and its copies, made only when asked for."""
+"""The bodies of a scene as described; their copies are made on request."""
 
 import math
 from bisect import bisect_right

@@ -16,7 +16,7 @@ def near_pairs(middle: Array, radius: Array) -> Iterator[tuple[Array, Array]]:
     """Pairs of spheres that overlap, each once, the first numbers and the second; (m,) twice.
 
     Spheres fall into classes of radii within a factor of two. Those of a class are put into cells
-    of twice its largest radius, and looked for by all that are not larger.
+    of twice its largest radius, and searched by all that are not larger.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ Quaternion = tuple[Number, Number, Number, Number]
 
 @parameters
 class Copies:
-    """A lattice of equal bodies; they count as bodies in its order, x slowest.
+    """A lattice of equal bodies, numbered in its order, x slowest.
 
     Parameters
     ----------
@@ -30,9 +30,9 @@ class Copies:
     spacing : m
         From one copy to the next.
     scatter : m
-        By which each copy at most is moved along each axis.
+        Largest displacement of each copy along each axis.
     seed : 1
-        Of the random numbers of the scatter.
+        Seed of the random numbers of the scatter.
     """
 
     number: tuple[Count, Count, Count]
@@ -68,9 +68,9 @@ class Plane:
     Parameters
     ----------
     point : m
-        Any of its surface.
+        Any point of its surface.
     normal : 1
-        To the free side; of any length.
+        Towards the free side; of any length.
     material
         One of the materials.
     """
@@ -82,7 +82,7 @@ class Plane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigidBody:
-    """One rigid body, or a lattice of equal ones; what other shapes have is None."""
+    """One rigid body, or a lattice of equal ones; fields of other shapes are None."""
 
     shape: str
     position: Vector  # m, of the centre of mass

@@ -67,7 +67,7 @@ class ParticleSpheres(Component):
         }
 
     def sample(self, request: Fields) -> Fields:
-        """Sample the surfaces of the spheres as a partner asks for it."""
+        """Sample the surfaces of the spheres as a partner requests."""
         diameters = (2.0 * self.spheres.radius).tolist()
         known = {diameter: partial(sphere, diameter) for diameter in set(diameters)}
         return rigid_answer("motion", request, [known[diameter] for diameter in diameters])

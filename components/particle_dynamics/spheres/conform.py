@@ -1,4 +1,4 @@
-"""What the laws of the contract are tried on: three spheres, free and on springs."""
+"""Cases for the laws of the contract: three spheres, free and on springs."""
 
 import numpy as np
 

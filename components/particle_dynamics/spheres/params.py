@@ -1,4 +1,4 @@
-"""What a scene says about spheres in free flight."""
+"""Parameters of spheres in free flight."""
 
 from typing import Annotated, ClassVar, Literal
 
@@ -18,7 +18,7 @@ from quintet.interfaces.params import (
 
 @parameters
 class Copies:
-    """A lattice of equal spheres; they count as spheres in its order, x slowest.
+    """A lattice of equal spheres, numbered in its order, x slowest.
 
     Parameters
     ----------

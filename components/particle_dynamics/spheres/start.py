@@ -1,4 +1,4 @@
-"""What spheres state before they are built: their diameters."""
+"""Fields that spheres state before they are built: their diameters."""
 
 import numpy as np
 

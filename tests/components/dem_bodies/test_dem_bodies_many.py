@@ -205,7 +205,7 @@ def test_restitution_follows_the_pair():
 @pytest.mark.parametrize(
     ("pairs", "sentence"),
     [
-        ([{"between": ["a", "a"]}], "pairs[0] must say friction, restitution or rolling_friction"),
+        ([{"between": ["a", "a"]}], "pairs[0] must set friction, restitution or rolling_friction"),
         (
             [
                 {"between": ["a", "b"], "rolling_friction": 0.1},

@@ -151,7 +151,7 @@ def test_the_infinite_lattice_has_the_highest_frequency_of_all():
         ({"envelope": "power", "exponent": 1.5}, "has no value where points are nearer"),
         ({"envelope": "ratio", "exponent": 2.5}, "has no value where points are nearer"),
         ({"unstable_roots": (1.2, 1.8, 1.9)}, "between 1"),
-        ({"top_frequency": None, "amplitude": None}, "must be said once"),
+        ({"top_frequency": None, "amplitude": None}, "must be given once"),
     ],
 )
 def test_exponents_and_roots_without_sense_are_refused_with_the_reason(given, reason):
