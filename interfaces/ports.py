@@ -16,7 +16,7 @@ ORIENTATION = Field("orientation", (4,), "1", rate="angular_velocity", kind="rot
 ANGULAR_VELOCITY = Field("angular_velocity", (3,), "rad/s")
 TEMPERATURE = Field("temperature", (), "K")
 HEAT_FLOW = Field("heat_flow", (), "W", "impulse")  # into the side that takes it
-# Of items that may die, as an eroded face: 1, and 0 for good from then on.
+# Of items that may die, as a face that erodes: 1 while the item exists, then 0, permanently.
 ACTIVE = Field("active", (), "1", kind="flag")
 
 # Moving surface samples, whoever moves them: taken by fluids, which push back with a force on each.
@@ -63,7 +63,7 @@ LOAD = Port("load", fields=(FORCE, TORQUE))
 # Into each body, from a flow around it.
 HEAT = Port("heat", fields=(HEAT_FLOW,))
 # Particles in a flow that is coarser than they are. One that stands for a number of equal ones is
-# told, loaded and heated as all of them together; its diameter is that of one.
+# described, loaded and heated as all of them together; its diameter is that of one.
 PARTICLES = Port(
     "particles",
     fields=(
@@ -105,7 +105,7 @@ GLUED_LOAD = Port(
 )
 
 # Of meshes whose faces may erode, and of the particles that hang on them: these are then free, and
-# the mesh is told anew how much mass hangs on its nodes.
+# the mesh gets the mass that is left on its nodes.
 FACE_ACTIVITY = Port("face_activity", fields=(ACTIVE,))
 GLUE_ACTIVITY = Port("glue_activity", fields=(ACTIVE,))
 NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))

@@ -87,12 +87,12 @@ class Exchange:
         """
         self._bindings, self.samples = [], []
         for link in self.links:
-            told = dict(described)
+            all_described = dict(described)
             for name, request in link.requests(described).items():
                 answer = sample(name, request)
-                told[name] = {**described[name], **answer}
+                all_described[name] = {**described[name], **answer}
                 self.samples.append((name, request, answer))
-            self._bindings.append(link.bind(told))
+            self._bindings.append(link.bind(all_described))
         self._maps = [maps for binding in self._bindings for maps in binding.maps]
         self._moment = [
             moment
@@ -111,12 +111,12 @@ class Exchange:
 
         Those of a mesh follow from its nodes and faces.
         """
-        answers = [(request, told) for owner, request, told in self.samples if owner == name]
+        answers = [(request, answer) for owner, request, answer in self.samples if owner == name]
         return {
             f"samples.{number}.{key}": array
-            for number, (request, told) in enumerate(answers)
-            if any(key.endswith(".arm") for key in told)
-            for key, array in {**request, **told}.items()
+            for number, (request, answer) in enumerate(answers)
+            if any(key.endswith(".arm") for key in answer)
+            for key, array in {**request, **answer}.items()
         }
 
     def _join(self, name: str, key: str, known: Array | None, array: Array) -> Array:

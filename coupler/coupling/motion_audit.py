@@ -1,8 +1,8 @@
 """What motion a component should have been given in its steps, from what it was sent.
 
-Found here anew, from sums over the items, and compared with the sums of what the serving
-loop given out: an input that is taken at the wrong time shows in the first step. Rotations,
-whose interpolation is no sum, are found from the items themselves.
+Computed here a second time, from sums over the items, and compared with the sums of what the
+serving loop handed out: an input that is taken at the wrong time shows in the first step.
+Rotations, whose interpolation is no sum, are computed from the items themselves.
 """
 
 from collections.abc import Collection, Mapping

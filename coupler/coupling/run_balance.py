@@ -18,7 +18,7 @@ Gap = tuple[str, str, set[int], Array, float]  # taker, field, transfers, differ
 
 
 @dataclass(slots=True)
-class Running:
+class RunningSum:
     """What one transfer's giver gave of one impulse."""
 
     total: Array = field(default_factory=lambda: np.zeros(1))  # since the start
@@ -38,12 +38,12 @@ class RunBalance:
     def __init__(self, exchange: Exchange) -> None:
         self.exchange = exchange
         # by taker and its field: number of the transfer, the giver's field, sums
-        self._given: dict[tuple[str, str], list[tuple[int, str, Running]]] = {}
+        self._given: dict[tuple[str, str], list[tuple[int, str, RunningSum]]] = {}
         self._applied: dict[tuple[str, str], Array] = {}
         for number, transfer in enumerate(exchange.transfers):
             for before, after in exchange.sums[number]:
                 place = transfer.taker, after
-                self._given.setdefault(place, []).append((number, before, Running()))
+                self._given.setdefault(place, []).append((number, before, RunningSum()))
 
     def book_given(self, number: int, outputs: Fields) -> None:
         """Add what the giver of a transfer gave in a window, as it arrived."""

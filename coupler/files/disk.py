@@ -61,8 +61,8 @@ def disk_of(path: Path) -> Path:
 
 
 @contextlib.contextmanager
-def told(path: Path) -> Iterator[None]:
-    """Turn an error of the system, while a file is written, into one that tells of its disk."""
+def reporting_disk(path: Path) -> Iterator[None]:
+    """Convert an OSError during writing into a DiskError."""
     try:
         yield
     except OSError as error:
@@ -73,7 +73,7 @@ def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file that is there whole, on the disk, or as it was before."""
     part = path.with_name(path.name + PART)
     data = content.encode() if isinstance(content, str) else content
-    with told(path), removed_on_failure(part):
+    with reporting_disk(path), removed_on_failure(part):
         part.write_bytes(data)
         put_in_place(part, path)
 
@@ -108,7 +108,7 @@ def sync(path: Path) -> None:
 def reserve(folder: Path, results: str) -> None:
     """Lay room aside for what a run must be able to write on a full disk: its results, and more."""
     for path, size in ((folder / RESERVE, RESERVED), (folder / (results + PART), OF_RESULTS)):
-        with told(path), removed_on_failure(path), open(path, "wb") as file:
+        with reporting_disk(path), removed_on_failure(path), open(path, "wb") as file:
             os.posix_fallocate(file.fileno(), 0, size)
 
 
@@ -125,7 +125,7 @@ def write_at_last(path: Path, content: str) -> Path:
     give_up_reserve(path.parent)
     part = path.with_name(path.name + PART)
     try:
-        with told(path), removed_on_failure(part):
+        with reporting_disk(path), removed_on_failure(part):
             with open(part, "r+b" if part.exists() else "wb") as file:
                 file.write(content.encode())
                 file.truncate()

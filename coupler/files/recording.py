@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Self
 import h5py
 import numpy as np
 
-from quintet.coupler.files.disk import told
+from quintet.coupler.files.disk import reporting_disk
 from quintet.coupler.files.hdf5 import OF_DATASET, OF_FILE, create, room
 from quintet.coupler.files.run_files import RECORDING as NAME
 from quintet.interfaces.component import Array, Fields, Port, fields_of
@@ -139,7 +139,7 @@ class Recorder(_Closed):
     def sync(self) -> None:
         """Write out all rows, and bring them from memory to the disk."""
         self.flush()
-        with told(Path(self._file.filename)):
+        with reporting_disk(Path(self._file.filename)):
             os.fsync(self._file.id.get_vfd_handle())
 
     def close(self) -> None:

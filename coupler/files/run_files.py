@@ -86,7 +86,7 @@ def _snapshots(folder: Path) -> list[Path]:
     return [*folder.glob(SNAPSHOTS), *folder.glob(SNAPSHOTS + PART)]
 
 
-def left(folder: Path, marker: Marker) -> list[Path]:
+def leftovers(folder: Path, marker: Marker) -> list[Path]:
     """Files of a run that are there, but for what its study logs; the marker's last."""
     paths = _within(folder, (name for name in marker.files if name != RUN_LOG))
     paths += _snapshots(folder) if marker.kind == "run" else []

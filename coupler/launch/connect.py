@@ -103,8 +103,8 @@ def _built(plan: ComponentPlan, header: dict[str, Any]) -> Component:
     except SceneError as error:
         raise SceneError(f"components.{plan.name}: {error}") from error
     except (Exception, SystemExit) as error:
-        told = failure(error)
-        raise ComponentFailed(plan.name, 0, told["text"], told["traceback"]) from error
+        report = failure(error)
+        raise ComponentFailed(plan.name, 0, report["text"], report["traceback"]) from error
 
 
 class OverZenoh:
@@ -261,8 +261,8 @@ def accept(
     probe.awaited = False
     if header.get("host") == socket.gethostname():
         probe.pid = int(header["pid"])
-        told = map(Path, map(str, header.get("shared", [])))
-        probe.shared = [str(path) for path in told if path.parent == Path("/dev/shm")]
+        paths = map(Path, map(str, header.get("shared", [])))
+        probe.shared = [str(path) for path in paths if path.parent == Path("/dev/shm")]
         probe.where = partial(
             stack.of_process, probe.pid, int(header["stack"]), log_of(folder, participant.name)
         )

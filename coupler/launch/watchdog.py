@@ -23,8 +23,8 @@ from quintet.coupler.launch.process_probe import IDLE, ProcessProbe
 
 INTERVAL = 0.05  # s between two rounds of all components
 LONGEST_ROUND = 1.0  # s; if more has passed, this process itself was stopped meanwhile
-USUAL, EXTRA = 3.0, 5.0  # told after 3 usual windows and 5 s
-DEAD = 0.3  # s until a death is told; before, whoever waits for the component knows more
+USUAL, EXTRA = 3.0, 5.0  # reported after 3 usual windows and 5 s
+DEAD = 0.3  # s until a death is reported; before, whoever waits for the component knows more
 ENDING, SAVING = 0.7, 1.1  # s to end a window, and to save, after an end was asked for
 OBEYING, AT_ONCE = 0.5, 0.15  # s for the thread that couples to carry out a verdict
 BUILDING = 30.0  # times its patience may a component compute while it is built
@@ -67,13 +67,13 @@ class Watched:
     idle: float = 0.0  # s in a row that its process did nothing while it was to be built
     tell_at: float = 0.0  # s of waiting
     end_at: float = 0.0  # s of waiting
-    told: bool = False
+    reported: bool = False
     dead_since: float = 0.0
     may_end: bool = False  # it was told to finish
 
     def begin(self, since: float) -> None:
         """Begin a new wait."""
-        self.since, self.waited, self.idle, self.told = since, 0.0, 0.0, False
+        self.since, self.waited, self.idle, self.reported = since, 0.0, 0.0, False
         self.probe.begin()
         usual = USUAL * self.participant.timing.usual
         if self.participant.built:
@@ -206,7 +206,7 @@ class Watchdog:
         participant, probe = component.participant, component.probe
         since = participant.keeping_others_waiting.since
         if since != component.since:
-            if component.told:
+            if component.reported:
                 say(f"{participant.name} goes on after {component.waited:.1f} s")
             component.begin(since)
             passed = min(passed, time.monotonic() - since)
@@ -233,7 +233,7 @@ class Watchdog:
             f"in window {place}" if participant.built else "to be built"
         )
         if component.probe.awaited:
-            component.told, component.tell_at = True, 2.0 * component.waited
+            component.reported, component.tell_at = True, 2.0 * component.waited
             say(f"the run waits for {participant.name}: {doing}")
             return
         usual = f", usually {participant.timing.usual:.2g} s" if participant.timing.usual else ""
@@ -246,7 +246,7 @@ class Watchdog:
             return
         if over:
             component.end_at, component.idle = component.end_at + component.patience, 0.0
-        component.told, component.tell_at = True, 2.0 * component.waited
+        component.reported, component.tell_at = True, 2.0 * component.waited
         wait = "keeps the others waiting for" if len(self._all) > 1 else "has taken"
         where = [] if stack.compiles(calls) else where  # calls of the compiler say nothing
         say(f"{participant.name} {wait} {what}{usual}: {doing}", where)

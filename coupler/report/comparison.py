@@ -207,8 +207,8 @@ def _label(ones: list[Expectation], recording: Recording) -> str:
         _field(expectation, recording),
         {expectation.unit for expectation in ones if expectation.measure in IN_UNIT},
     )
-    if told := next((other.quantity for other in ones if other.quantity), ""):
-        return f"{told} [{units.pop() if len(units) == 1 else field.unit}]"
+    if quantity := next((other.quantity for other in ones if other.quantity), ""):
+        return f"{quantity} [{units.pop() if len(units) == 1 else field.unit}]"
     port, _, what = expectation.field.replace("_", " ").partition(".")
     name = f"{expectation.component}: {what if port == 'motion' else f'{port} {what}'}"
     if expectation.axis is not None:

@@ -22,7 +22,7 @@ from quintet.coupler.files.run_files import (
     RUN_FILES,
     RUN_LOG,
     Marker,
-    left,
+    leftovers,
     may_write,
     new_marker,
     read_marker,
@@ -63,7 +63,7 @@ class RunFolder:
 
     def undo(self) -> None:
         """Leave the folder as it was found: nothing was started."""
-        for path in left(self.path, self.marker):
+        for path in leftovers(self.path, self.marker):
             path.unlink()
         if self.replaces:
             _restore(self.path)
@@ -176,7 +176,7 @@ def discard_former(folder: Path) -> None:
     """Remove the run that another has replaced."""
     former = folder / FORMER
     if marker := read_marker(former):
-        for path in left(former, marker):
+        for path in leftovers(former, marker):
             path.unlink()
         _remove_empty(former / "log", former)
 
@@ -239,7 +239,7 @@ def _locked(folder: Path) -> Iterator[None]:
 def _set_aside(folder: Path, marker: Marker) -> None:
     """Move a former run aside; one that lies there was to be replaced by one that never began."""
     if read_marker(folder / FORMER):
-        for path in left(folder, marker):
+        for path in leftovers(folder, marker):
             path.unlink()
         _restore(folder)
         marker = read_marker(folder) or marker
@@ -255,7 +255,7 @@ def _restore(folder: Path) -> None:
 
 def _move(source: Path, target: Path, marker: Marker) -> None:
     target.mkdir(exist_ok=True)
-    for path in left(source, marker):
+    for path in leftovers(source, marker):
         place = target / path.relative_to(source)
         place.parent.mkdir(exist_ok=True)
         path.replace(place)

@@ -23,8 +23,8 @@ from quintet.coupler.files.disk import (
     REASONS,
     disk_error,
     give_up_reserve,
+    reporting_disk,
     reserve,
-    told,
     write_whole,
 )
 from quintet.coupler.files.reached import NAME as REACHED
@@ -61,7 +61,7 @@ def simulate(
     """
     stop = StopRequest()
     watchdog = Watchdog(stop, in_main_thread=scene.transport == "memory")
-    run = Running(scene, folder, snapshot, stop, watchdog)
+    run = ActiveRun(scene, folder, snapshot, stop, watchdog)
     if own_process:
         stop.leave = run.leave
     try:
@@ -78,7 +78,7 @@ def simulate(
     return status
 
 
-class Running:
+class ActiveRun:
     """A run under way: its files, its components, and how it ends."""
 
     def __init__(
@@ -244,13 +244,13 @@ def log_files(scene: Scene, folder: Path) -> dict[str, Path]:
 
 def make_folder(scene: Scene, folder: Path) -> None:
     """Prepare the folder of a run: its logs, and the scene as it runs."""
-    with told(folder):
+    with reporting_disk(folder):
         (folder / "log").mkdir(parents=True, exist_ok=True)
     write_whole(folder / SCENE, tomli_w.dumps(scene.resolved))
     reserve(folder, RESULTS)
 
 
-def notes(run: Running) -> dict[str, list[str]]:
+def notes(run: ActiveRun) -> dict[str, list[str]]:
     """What the user should know of each component, and of the lines to them."""
     all_notes = {name: participant.notes for name, participant in run.participants.items()}
     all_notes["coupler"] = run.notes_of_lines()
@@ -320,7 +320,7 @@ def conclude_for_coupler(scene: Scene, folder: Path, status: int, cause: str) ->
     results.write(folder, content | how_to_resume(folder, outcome))
 
 
-def conclude(run: Running) -> int:
+def conclude(run: ActiveRun) -> int:
     """Evaluate the expectations, write the results, draw; return the exit status."""
     scene, folder, outcome = run.scene, run.folder, run.outcome
     ended = outcome["status"] in ("done", "interrupted")

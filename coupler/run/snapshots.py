@@ -22,7 +22,14 @@ from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.files.checksums import of_files, require_same
-from quintet.coupler.files.disk import PART, is_sound, put_in_place, removed_on_failure, seal, told
+from quintet.coupler.files.disk import (
+    PART,
+    is_sound,
+    put_in_place,
+    removed_on_failure,
+    reporting_disk,
+    seal,
+)
 from quintet.coupler.files.hdf5 import OF_DATASET, create, room
 from quintet.coupler.files.run_files import LEDGER, SNAPSHOTS
 from quintet.coupler.scene.read import load, parse
@@ -80,7 +87,7 @@ def save(
         "files": of_files(folder, (LEDGER, *map(log_file, logs))),
         "views": dict(views),
     }
-    with removed_on_failure(part), told(path):
+    with removed_on_failure(part), reporting_disk(path):
         with create(part) as file:
             for name, participant in participants.items():
                 _write(file, f"components/{name}", participant.save())
@@ -174,7 +181,7 @@ def check_same(scene: Scene, folder: Path) -> None:
     for key in (key for key in keys if before.get(key) != now.get(key)):
         raise SceneError(
             f"--resume {folder}: the scene must be the one that began; {key} has changed. Undo "
-            "the change, or run the scene anew."
+            "the change, or run the scene again."
         )
 
 

@@ -57,8 +57,10 @@ def drawing(scene: Scene) -> str:
         (place[e.giver, "gives", e.giving_port], place[e.taker, "takes", e.taking_port])
         for e in all_edges
     ]
-    told = [f"{e.link}: {e.giver}.{e.giving_port} → {e.taker}.{e.taking_port}" for e in all_edges]
-    return "\n".join([*_joined(rows, ends), *told])
+    lines_of_edges = [
+        f"{e.link}: {e.giver}.{e.giving_port} → {e.taker}.{e.taking_port}" for e in all_edges
+    ]
+    return "\n".join([*_joined(rows, ends), *lines_of_edges])
 
 
 def _joined(rows: list[str], ends: list[tuple[int, int]]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Why an endpoint cannot be used, found before zenoh connects: zenoh reports every cause alike."""
+"""Why an endpoint cannot be used, found before zenoh connects, which reports all causes alike."""
 
 import contextlib
 import socket

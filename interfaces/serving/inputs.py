@@ -152,7 +152,7 @@ def value_at(kind: str, ends: KnownEnds, time: float, window: float) -> Array:
     s = time / window
     straight = last - first
     if first_rate is not None and last_rate is not None:
-        straight += (1.0 - s) * _bow(straight, first_rate, last_rate, s, window)
+        straight += (1.0 - s) * _hermite_correction(straight, first_rate, last_rate, s, window)
     straight *= s  # in place: fields may be large
     straight += first
     return straight
@@ -171,11 +171,15 @@ def turn_at(ends: KnownEnds, time: float, window: float) -> Array:
     if first_rate is None or last_rate is None:
         return np.asarray(s * whole)
     end_rate = rotation.rate_of_vector(whole, last_rate)
-    return np.asarray(s * (whole + (1.0 - s) * _bow(whole, first_rate, end_rate, s, window)))
+    return np.asarray(
+        s * (whole + (1.0 - s) * _hermite_correction(whole, first_rate, end_rate, s, window))
+    )
 
 
-def _bow(straight: Array, first_rate: Array, last_rate: Array, s: float, window: float) -> Array:
+def _hermite_correction(
+    straight: Array, first_rate: Array, last_rate: Array, s: float, window: float
+) -> Array:
     """The Hermite basis, written as a correction of the straight line between the ends."""
-    bow = window * ((1.0 - s) * first_rate - s * last_rate)
-    bow -= (1.0 - 2.0 * s) * straight
-    return bow
+    correction = window * ((1.0 - s) * first_rate - s * last_rate)
+    correction -= (1.0 - 2.0 * s) * straight
+    return correction

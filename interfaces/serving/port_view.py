@@ -11,29 +11,30 @@ MESH_CORNER = next(field for field in MESH if field.name == "corner")
 
 def look_at(component: Component) -> tuple[Fields, dict[str, str]]:
     """View of a component, and the units of its fields."""
-    shown, told = component.view(), component.shows
+    shown, fields = component.view(), component.shows
     if not shown and (port := shown_port(component.gives)):
-        told = port_fields(component.gives)
+        fields = port_fields(component.gives)
         keys = {f"{port.name}.{field.name}" for field in port.fields if field.centring == "instant"}
         try:
             shown = port_view(port, component.give(frozenset(keys)), component.describe())
         except StepError:  # a recording between two of its rows: not shown at this time
             shown = {}
-    return shown, {field.name: field.unit for field in told if field.name in shown}
+    return shown, {field.name: field.unit for field in fields if field.name in shown}
 
 
 def shown_port(gives: tuple[Port, ...]) -> Port | None:
     """First port whose own items have a position."""
     for port in gives:
         for field in port.fields:
-            if (field.name, field.shape, field.unit) == (
-                POSITION.name,
-                POSITION.shape,
-                POSITION.unit,
-            ):
-                if port.items == "own" and field.centring == "instant":
-                    return port
+            if is_position(field) and port.items == "own" and field.centring == "instant":
+                return port
     return None
+
+
+def is_position(field: Field) -> bool:
+    """Whether a field is a position, whatever its rate."""
+    known = (POSITION.name, POSITION.shape, POSITION.unit)
+    return (field.name, field.shape, field.unit) == known
 
 
 def port_fields(gives: tuple[Port, ...]) -> tuple[Field, ...]:
@@ -50,13 +51,13 @@ def port_fields(gives: tuple[Port, ...]) -> tuple[Field, ...]:
 
 def port_view(port: Port, outputs: Fields, static: Fields) -> Fields:
     """Faces or points of a port, from its fields and what its component described."""
-    now, told = _of_port(port, outputs), _of_port(port, static)
+    now, described = _of_port(port, outputs), _of_port(port, static)
     fields = [field.name for field in port_fields((port,)) if field.name in now]
     view = {"points": now["position"], **{name: now[name] for name in fields}}
-    if RADIUS.name in told:
-        view[RADIUS.name] = told[RADIUS.name]
-    if MESH_CORNER in port.static and "corner" in told:
-        view["cells"] = np.asarray(told["corner"], np.int64)
+    if RADIUS.name in described:
+        view[RADIUS.name] = described[RADIUS.name]
+    if MESH_CORNER in port.static and "corner" in described:
+        view["cells"] = np.asarray(described["corner"], np.int64)
     return view
 
 

@@ -94,9 +94,9 @@ def run(manifest: Manifest, options: argparse.Namespace) -> int:
         say(f"{options.name}: the coupler: {error}")
         end_children()  # nobody else does
     except (Exception, SystemExit) as error:
-        told = failure(error)
-        say(str(told["traceback"]) or str(error))
-        line.send(told, {})
+        report = failure(error)
+        say(str(report["traceback"]) or str(error))
+        line.send(report, {})
     if status:
         linger(line)
     line.close()

@@ -57,7 +57,7 @@ class Server:
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
         self.input_audit = InputAudit(sorted(fields.keys() - self.inputs.impulses), rates)
         self._kept: dict[int, dict[str, Any]] = {}  # states, by depth of the coupling that repeats
-        self._told = 0  # notes
+        self._reported = 0  # notes
         self._prepared = 0.0  # s, spent on the outputs of the start
         self._stable: float | None = None  # s, as told at the end of the last window
         self._orders: dict[str, Callable[[Message], Answer]] = {
@@ -167,8 +167,8 @@ class Server:
     def _notes(self) -> list[str]:
         """Notes of the component that were not yet told."""
         notes = [str(note) for note in self.component.notes()]
-        told, self._told = self._told, len(notes)
-        return notes[told:]
+        reported, self._reported = self._reported, len(notes)
+        return notes[reported:]
 
     def _integral(self, key: str) -> bool:
         return key in self.inputs.impulses
@@ -348,12 +348,12 @@ def answer(server: Server, line: Line, message: Message) -> bool:
     except LineError:
         raise
     except (Exception, SystemExit) as error:
-        told = failure(error)
+        report = failure(error)
         if is_trial(message):  # it comes back to the state before, and the run goes on
-            line.send({**told, "order": "unable", "traceback": ""}, {})
+            line.send({**report, "order": "unable", "traceback": ""}, {})
             return True
-        print(told["traceback"], end="", file=sys.stderr, flush=True)  # into the component's log
-        line.send(told, {})
+        print(report["traceback"], end="", file=sys.stderr, flush=True)  # into the component's log
+        line.send(report, {})
         return False
     return message.order != "finish"
 

@@ -165,7 +165,7 @@ class StabilityWatch:
 def _foresees(coupling: Coupling, link: str) -> bool:
     """Whether the side that gives the force steps first, and only expects where the other moves.
 
-    The work that it counts is along the expected way, which begins anew in every window.
+    The work that it counts is along the expected way, which starts again in every window.
     """
     inner, exchange = coupling.carries(link) or coupling, coupling.exchange
     return any(

@@ -153,8 +153,8 @@ class Glue(Link):
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Hang the particles on the faces, and their mass on the nodes."""
         glued, mesh = described[self.particles], described[self.mesh]
-        told = answered(self.name, self.mesh, NODE_GLUE.name, mesh, OF_POINTS)
-        node, weight, face, gap, size, beyond = told
+        samples = answered(self.name, self.mesh, NODE_GLUE.name, mesh, OF_POINTS)
+        node, weight, face, gap, size, beyond = samples
         on = face.astype(np.int64)  # (particles,) face of each
         self._refuse_outside(glued["glued_load.position"], on, gap, size, beyond)
         shape = ShapeMap(node.astype(np.int64), weight, len(mesh["node_glue.start"]))

@@ -115,9 +115,9 @@ class Heat(Link):
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Share temperature and heat on the faces on which the points of the wall lie."""
         mesh = described[self.mesh]
-        told = answered(self.name, self.mesh, NODE_TEMPERATURE.name, mesh, OF_POINTS)
+        samples = answered(self.name, self.mesh, NODE_TEMPERATURE.name, mesh, OF_POINTS)
         nodes = len(mesh["node_temperature.start"])
-        shape = ShapeMap(told[0].astype(np.int64), told[1], nodes)
+        shape = ShapeMap(samples[0].astype(np.int64), samples[1], nodes)
 
         def hold(_: Ends, end: Ends) -> Mapped:
             temperature = end[self.mesh]["node_temperature.temperature"]

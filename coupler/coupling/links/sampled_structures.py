@@ -65,10 +65,10 @@ def request(of: Sampling, port: str, stated: Fields) -> dict[str, Array]:
 
 
 def answered(
-    link: str, name: str, port: str, told: Fields, shapes: Mapping[str, tuple[int, ...]]
+    link: str, name: str, port: str, answer: Fields, shapes: Mapping[str, tuple[int, ...]]
 ) -> list[Array]:
     """Fields of an answer to a request for samples, checked: a row for each sample."""
-    answers = [told.get(f"{port}.{field}") for field in shapes]
+    answers = [answer.get(f"{port}.{field}") for field in shapes]
     rows = -1 if answers[0] is None else len(answers[0])
     for (field, shape), array in zip(shapes.items(), answers, strict=True):
         if array is None or array.shape != (rows, *shape):
@@ -128,8 +128,8 @@ def _moment(body: str, start: Ends, end: Ends, mapped: Fields) -> Array:
 
 def _bind_faces(of: Sampling, mesh: Fields) -> Binding:
     """Let samples ride below the faces of a mesh."""
-    told = answered(of.link, of.body, "faces", mesh, OF_FACES)
-    node, *weights, depth, side, normal, volume = told
+    samples = answered(of.link, of.body, "faces", mesh, OF_FACES)
+    node, *weights, depth, side, normal, volume = samples
     nodes = len(mesh["faces.start"])
     surface, along, across = (ShapeMap(node.astype(np.int64), weight, nodes) for weight in weights)
     offset = OffsetMap(surface, along, across, depth, side)

@@ -38,7 +38,7 @@ def told(capsys):
         while not component.since and time.monotonic() < limit:
             time.sleep(0.01)
         component.tell_at = 0.0
-        while not component.told and time.monotonic() < limit:
+        while not component.reported and time.monotonic() < limit:
             time.sleep(0.01)
         watchdog.close()
         return capsys.readouterr().err
