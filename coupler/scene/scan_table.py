@@ -51,6 +51,9 @@ class ScanTable:
     scale : `unit` of the expectation
         By expectation: the size that its error is relative to; that of the exact answer if not
         given.
+    energy
+        Whether the energy that the run gains, over that turned over, is judged too: where energy
+        is conserved or lost, all of it is an error.
     source
         Of the exact answers.
     """
@@ -62,6 +65,7 @@ class ScanTable:
     expectation: tuple[str, ...] = ()
     exact: dict[str, tuple[Number, ...]] = pydantic.Field(default_factory=dict)
     scale: dict[str, Positive] = pydantic.Field(default_factory=dict)
+    energy: bool = False
     source: str = ""
 
     def __post_init__(self) -> None:

@@ -35,6 +35,7 @@ WRONG = 0.1  # relative error above which a result is wrong
 RIGHT = 0.03  # relative error below which a warning is a false alarm
 RIGHT_ROW, TOLD, FALSE_ALARM, SILENT = "right", "told", "false alarm", "SILENT"  # verdicts
 QUICK = "quick"  # preset
+ENERGY = "energy gained"  # name of its error, beside those of expectations
 STATES = {
     results.DONE: "sound",
     results.UNMET: "warned",
@@ -173,7 +174,7 @@ def summary(scan: Scan, rows: list[Row]) -> Row:
         "name": scan.name,
         "parameter": scan.table.parameter,
         "source": scan.table.source,
-        "judged": list(scan.judged),
+        "judged": [*scan.judged, *([ENERGY] if scan.table.energy else [])],
         "rows": rows,
     }
 
@@ -186,6 +187,8 @@ def row_of(scan: Scan, number: int, result: Row) -> Row:
         name: _error(scan, name, number, outcomes[name]) if name in outcomes else None
         for name in scan.judged
     }
+    if scan.table.energy:
+        errors[ENERGY] = _energy_gained(result)
     error = None if None in errors.values() else max(errors.values(), key=lambda e: e or 0.0)
     return {
         "value": scan.table.values[number],
@@ -224,6 +227,15 @@ def _error(scan: Scan, name: str, number: int, outcome: Row) -> float | None:
     exact = float(outcome["reference"] if answer is None else answer)
     error = abs(outcome["value"] - exact) / scan.scale.get(name, abs(exact))
     return error if math.isfinite(error) else None
+
+
+def _energy_gained(result: Row) -> float | None:
+    """Energy that the run gained, over that turned over; None where it was not measured."""
+    change = result.get("ledger", {}).get("energy_change")
+    if not change or not change["turned_over"]:
+        return None
+    share = change["gained"] / change["turned_over"]
+    return share if math.isfinite(share) else None
 
 
 def verdict(status: int, error: float | None) -> str:

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from spring_scene import command, found_by, write
 
-from quintet.coupler.study.scan import status_of, verdict
+from quintet.coupler.scene.scan_table import Scan, ScanTable
+from quintet.coupler.study.scan import row_of, status_of, verdict
 
 STEP = 'parameter = "components.spring.step"\n'
 COS = 'source = "cos(10)"\n'
@@ -80,6 +81,16 @@ def test_errors_are_relative_to_the_scale_that_is_given(tmp_path):
     table = STEP + "values = [0.01, 0.1]\nscale = { end = 100.0 }\n" + COS
     status, found = found_by("scan", write(tmp_path, scans(table)))
     assert status == 0 and rows(found)[1]["error"] == pytest.approx(0.348 * 0.839 / 100, rel=0.01)
+
+
+def test_energy_that_a_run_gains_is_an_error_where_a_scan_judges_it():
+    change = {"gained": 12.0, "lost": 0.0, "turned_over": 100.0, "times": 3}
+    result = {"status": "done", "expect": [], "ledger": {"energy_change": change}}
+    scan = Scan(ScanTable(parameter="step", values=(0.1, 1.0), energy=True), "step", (), {})
+    row = row_of(scan, 1, result)
+    assert row["errors"] == {"energy gained": 0.12} and row["verdict"] == "SILENT"
+    assert row_of(scan, 1, {**result, "warnings": [{"text": "it rose"}]})["verdict"] == "told"
+    assert row_of(scan, 1, {**result, "ledger": {}})["error"] is None
 
 
 def test_settings_of_a_scan_and_one_of_its_name(tmp_path):
