@@ -124,7 +124,7 @@ def begins_wrong(
             initial[name] = components[name].initial()
         except Exception as error:  # of any kind: what it does here is its author's
             said = f"{type(error).__name__}: {error}"
-            return [f"components.{name}: how it begins cannot be told ({said}). Correct it."]
+            return [f"components.{name}: its start cannot be computed ({said}). Correct it."]
     refused = [text for link in links for text in link.refusals(initial)]
     return [*refused, *lacking_items(expect, initial)]
 

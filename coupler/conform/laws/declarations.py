@@ -118,14 +118,14 @@ def describe_tells_what_its_ports_announce(trial: Trial) -> None:
     announced, described = static | requests, component.describe()
     for key in sorted(announced.keys() - described.keys()):
         raise LawBroken(
-            f"describe: every static field that a port announces must be told; {key} is missing. "
+            f"describe: every static field that a port announces must be given; {key} is missing. "
             "Tell it, or leave it out of the port."
         )
     for key, array in described.items():
         require(
             key in announced,
-            f"describe: only what ports announce may be told ({', '.join(announced) or 'nothing'});"
-            f" found {key}. Announce it as a static field of its port.",
+            f"describe: only what ports announce may be given ({', '.join(announced) or 'nothing'}"
+            f"); found {key}. Announce it as a static field of its port.",
         )
         shape = announced[key].shape
         require(
@@ -138,7 +138,9 @@ def describe_tells_what_its_ports_announce(trial: Trial) -> None:
             f"describe: {key} must be finite; found {array[~np.isfinite(array)][:1]}. Correct it.",
         )
     again = component.describe()
-    require_same_bits(again, described, "describe: told twice it must be the same", "Keep it so.")
+    require_same_bits(
+        again, described, "describe: called twice it must return the same", "Keep it so."
+    )
 
 
 def it_is_made_with_resources_or_without(trial: Trial) -> None:

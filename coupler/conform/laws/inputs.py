@@ -87,7 +87,7 @@ def ports_may_be_left_unjoined(trial: Trial) -> None:
             trial.move(component, wanted=frozenset(), without=port.name)
         except Exception as error:
             raise LawBroken(
-                f"a port without a partner must be told by bind, and then do without; left out "
+                "a component must do without ports that bind says have no partner; left out "
                 f"{port.name}, it failed with {raised(error)}. Read inputs with "
                 "fields.get, or refuse in bind with a PortError."
             ) from error
