@@ -11,7 +11,9 @@ SCENE = str(Path(__file__).parent / "body_on_floor.toml")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("shape", "mass"), [("sphere", 0.5236), ("box", 1.0)])
+@pytest.mark.parametrize(
+    ("shape", "mass"), [pytest.param("sphere", 0.5236, marks=pytest.mark.full), ("box", 1.0)]
+)
 def test_it_weighs_its_weight_less_its_buoyancy(run_scene: Run, shape: str, mass: float) -> None:
     found = run_scene(SCENE, *(["--preset", "box"] if shape == "box" else []))
     assert found["by_name"]["contact"]["met"], found["expect"]

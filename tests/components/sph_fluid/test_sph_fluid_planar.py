@@ -92,8 +92,14 @@ def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
     ("name", "given", "end", "within"),
     [
         ("square", {}, 0.5, 0.005),
-        ("disc", {}, 1.0, 0.01),
-        ("square", POTENTIAL | {"boundary.wall_viscosity_factor": 0.0}, 0.5, 0.005),
+        pytest.param("disc", {}, 1.0, 0.01, marks=pytest.mark.full),
+        pytest.param(
+            "square",
+            POTENTIAL | {"boundary.wall_viscosity_factor": 0.0},
+            0.5,
+            0.005,
+            marks=pytest.mark.full,
+        ),
     ],
     ids=["square", "disc", "square held by the potential"],
 )
@@ -120,10 +126,10 @@ def plate(fluid: SphFluid, y: float = 0.5) -> dict:
 
 @pytest.mark.parametrize(
     ("form", "method"),
-    [  # each once; the others are compiled for themselves
+    [  # each form once; the others are compiled for themselves
         ("laplacian", "dbc"),
         ("stress", "mdbc"),
-        ("laplacian", "potential"),
+        pytest.param("laplacian", "potential", marks=pytest.mark.full),
         pytest.param("stress", "dbc", marks=pytest.mark.full),
         pytest.param("laplacian", "mdbc", marks=pytest.mark.full),
         pytest.param("stress", "potential", marks=pytest.mark.full),

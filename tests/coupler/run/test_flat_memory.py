@@ -64,7 +64,9 @@ def test_a_recording_is_not_kept_in_memory(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("transport", ["memory", pytest.param("zenoh", marks=pytest.mark.zenoh)])
+@pytest.mark.parametrize(
+    "transport", ["memory", pytest.param("zenoh", marks=[pytest.mark.zenoh, pytest.mark.full])]
+)
 def test_a_run_holds_as_much_after_thousands_of_windows(tmp_path, transport):
     scene = write_scene(tmp_path, transport, 1e-3 * (1001 + WINDOWS))
     code = RUN.replace("WINDOWS", str(WINDOWS))
