@@ -1,0 +1,1 @@
+"""A hull from an STL file floats: scene, exact by Archimedes for its triangles."""

@@ -1,0 +1,41 @@
+"""A hull from an STL file floats: how deep it lies, and what its triangles displace."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import trimesh
+
+from quintet.coupler.scene.read import load
+from quintet.scenarios.floating_hull import hull
+
+Run = Callable[..., dict]
+
+
+@pytest.mark.slow
+def test_hull_comes_to_rest_where_it_displaces_its_mass_of_water(run_scene: Run) -> None:
+    found = run_scene("floating_hull", "--preset", "quick")
+    (link,) = found["ledger"]["links"]
+    assert link["momentum_residual"] < 1e-12
+    assert found["by_name"]["displaced"]["met"], found["by_name"]["displaced"]
+
+
+def test_displaced_volume_of_triangles_is_exact() -> None:
+    cube = np.asarray(trimesh.creation.box((2.0, 3.0, 4.0)).triangles)
+    assert hull.displaced(cube, -0.5) == pytest.approx((9.0, 6.0), rel=1e-12)
+    cone = trimesh.creation.cone(radius=1.0, height=2.0, sections=24)  # its tip above
+    whole, half = hull.displaced(np.asarray(cone.triangles), 2.0), cone.volume / 8.0
+    assert whole[0] == pytest.approx(cone.volume, rel=1e-12)
+    below = hull.displaced(np.asarray(cone.triangles), 1.0)[0]
+    assert cone.volume - below == pytest.approx(half, rel=1e-12)
+
+
+def test_the_file_and_the_expectation_are_what_the_script_writes() -> None:
+    corners = np.asarray(trimesh.load_mesh(hull.FILE).triangles, np.float64)
+    assert hull.displaced(corners, 0.0)[0] == pytest.approx(
+        hull.displaced(hull.triangles(), 0.0)[0], rel=1e-6
+    )
+    (expected,) = load("floating_hull").expect
+    _, volume, _ = hull.rest(corners, hull.DENSITY)
+    assert expected.value == pytest.approx(volume, rel=1e-4)
+    assert expected.within == pytest.approx(0.02 * volume, rel=0.01)
