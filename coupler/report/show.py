@@ -207,16 +207,8 @@ def _timing(run: Mapping[str, Any]) -> Table | None:
         ]
         for name, times in components.items()
     ]
-    names = [
-        "component",
-        "build [s]",
-        "compute [s]",
-        "CPU [s]",
-        "wait [s]",
-        "steps",
-        "items",
-        "item-steps/s",
-    ]
+    seconds = [f"{name} [s]" for name in ("build", "compute", "CPU", "wait")]
+    names = ["component", *seconds, "steps", "items", "item-steps/s"]
     return _table("Timing", names, 1, rows)
 
 

@@ -37,6 +37,14 @@ def _ports(keys: tuple[str, ...]) -> list[str]:
     return list(dict.fromkeys(key.partition(".")[0] for key in keys))
 
 
+def _box(title: str, lines: list[str]) -> list[str]:
+    """Rows of a box with a title in its upper edge."""
+    lines = lines or ["no ports"]
+    width = max(len(title) + 1, *map(len, lines)) + 1
+    within = [f"│ {line:<{width}}│" for line in lines]
+    return [f"┌ {title} ".ljust(width + 2, "─") + "┐", *within, f"└{'─' * (width + 1)}┘"]
+
+
 def drawing(scene: Scene) -> str:
     """Draw a box for each component, its ports in it, and a line from port to port."""
     rows: list[str] = []
@@ -44,14 +52,9 @@ def drawing(scene: Scene) -> str:
     for name, plan in scene.components.items():
         ports = [("takes", port.name) for port in plan.takes]
         ports += [("gives", port.name) for port in plan.gives]
-        lines = [f"{way} {port}" for way, port in ports] or ["no ports"]
-        width = max(len(f"{name}: {plan.kind}") + 1, *map(len, lines)) + 1
-        rows.append(f"┌ {name}: {plan.kind} ".ljust(width + 2, "─") + "┐")
-        for number, line in enumerate(lines):
-            if ports:
-                place[name, *ports[number]] = len(rows)
-            rows.append(f"│ {line:<{width}}│")
-        rows.append(f"└{'─' * (width + 1)}┘")
+        first = len(rows) + 1  # below the title
+        place |= {(name, *port): first + number for number, port in enumerate(ports)}
+        rows += _box(f"{name}: {plan.kind}", [f"{way} {port}" for way, port in ports])
     all_edges = list(edges(scene))
     ends = [
         (place[e.giver, "gives", e.giving_port], place[e.taker, "takes", e.taking_port])

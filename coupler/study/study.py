@@ -68,6 +68,18 @@ def _run_all(
     return status_of(summary, len(refinements))
 
 
+def _judged(outcomes: list[Row]) -> Row:
+    """What expectations gave, by their names."""
+    names = [outcome["name"] for outcome in outcomes]
+    columns = {
+        "errors": map(error_of, outcomes),
+        "values": (outcome["value"] for outcome in outcomes),
+        "within": (outcome["within"] for outcome in outcomes),
+        "units": (outcome["unit"] for outcome in outcomes),
+    }
+    return {key: dict(zip(names, column, strict=True)) for key, column in columns.items()}
+
+
 def row_of(refinement: Refinement, run: Row) -> Row:
     """Summarize the run of a refinement; times in s, memory in bytes."""
     timing = run.get("timing", {})
@@ -81,10 +93,7 @@ def row_of(refinement: Refinement, run: Row) -> Row:
         "status": run["status"],
         "met": bool(expected)
         and all(outcome["met"] or not outcome["required"] for outcome in expected),
-        "errors": {outcome["name"]: error_of(outcome) for outcome in expected},
-        "values": {outcome["name"]: outcome["value"] for outcome in expected},
-        "within": {outcome["name"]: outcome["within"] for outcome in expected},
-        "units": {outcome["name"]: outcome["unit"] for outcome in expected},
+        **_judged(expected),
         "wall": wall,
         "cpu": sum(times["cpu"] for times in components.values()),
         "memory": timing.get("memory"),
