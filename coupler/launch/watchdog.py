@@ -108,11 +108,14 @@ class Watchdog:
         Whether components run in the main thread of this process.
     acts : function
         Whether it is this watchdog's turn to tell and to end.
+    alone : bool
+        Whether the run has one component, which keeps nobody waiting.
     """
 
     stop: Request
     in_main_thread: bool = False
     acts: Callable[[], bool] = lambda: True
+    alone: bool = False
     substitute: Substitute | None = None
     mark: str = field(default_factory=lambda: secrets.token_hex(8))  # of all processes of the run
     news: Callable[[], str] = lambda: ""  # what else the user should know, in every round
@@ -247,7 +250,7 @@ class Watchdog:
         if over:
             component.end_at, component.idle = component.end_at + component.patience, 0.0
         component.reported, component.tell_at = True, 2.0 * component.waited
-        wait = "keeps the others waiting for" if len(self._all) > 1 else "has taken"
+        wait = "has taken" if self.alone else "keeps the others waiting for"
         where = [] if stack.compiles(calls) else where  # calls of the compiler say nothing
         say(f"{participant.name} {wait} {what}{usual}: {doing}", where)
 

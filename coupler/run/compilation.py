@@ -66,7 +66,8 @@ class OneWindow:
 
 def compile_scene(scene: Scene) -> None:
     """Build all components of a scene in this process and step through one window."""
-    watchdog, exchange = Watchdog(StopRequest(), in_main_thread=True), scene.exchange()
+    watchdog = Watchdog(StopRequest(), in_main_thread=True, alone=len(scene.components) == 1)
+    exchange = scene.exchange()
     with tempfile.TemporaryDirectory() as folder:
         connection = connect(scene, Path(folder), watchdog)
         try:

@@ -60,7 +60,7 @@ def simulate(
     Where the process is our own, it is left from a thread if its main thread does not come back.
     """
     stop = StopRequest()
-    watchdog = Watchdog(stop, in_main_thread=scene.transport == "memory")
+    watchdog = Watchdog(stop, scene.transport == "memory", alone=len(scene.components) == 1)
     run = ActiveRun(scene, folder, snapshot, stop, watchdog)
     if own_process:
         stop.leave = run.leave

@@ -117,7 +117,7 @@ class WatchdogProcess:
 
     def _watch(self, run: int) -> None:
         """Watch until the run ends, by itself or from here."""
-        watchdog = Watchdog(self.stop, in_main_thread=True, acts=self._is_silent)
+        watchdog = Watchdog(self.stop, True, self._is_silent, alone=len(self.patience) == 1)
         watched = [self._watched(name) for name in self.patience]
         last = time.monotonic()
         while os.getppid() == run:

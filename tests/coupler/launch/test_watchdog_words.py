@@ -25,7 +25,7 @@ COMPILING = "\n".join(
 def told(capsys):
     def wait(names, calls):
         """What is printed while the first component keeps the coupler waiting."""
-        watchdog = Watchdog(StopRequest(), in_main_thread=True)
+        watchdog = Watchdog(StopRequest(), in_main_thread=True, alone=len(names) == 1)
         for name in names:
             probe = ProcessProbe(name, os.getpid(), where=lambda: calls)
             participant = Participant(name, MemoryLine("", name))
