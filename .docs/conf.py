@@ -21,7 +21,7 @@ include_patterns = [
     ".github/*.md",
     "README.md",
     "*/README.md",
-    "components/**/README.md",
+    "components/**/*.md",
     "scenarios/**/README.md",
 ]
 exclude_patterns = [".venv", "build", "runs", ".pytest_cache", ".docs/templates"]
@@ -46,6 +46,18 @@ def unlink_headings(_: Any, __: str, source: list[str]) -> None:
     source[0] = HEADING_WITH_LINK.sub(r"\1\2\n\n[Read more](\3)", source[0])
 
 
+def show_formulas(_: Any, what: str, name: str, *rest: Any) -> None:
+    """Show indented blocks in the docstring of a kind, its equations, line by line."""
+    lines = rest[-1]
+    if what == "module" and name.startswith("quintet.components."):
+        text = re.sub(r"(?<!`)`(?!`)", "``", "\n".join(lines))
+        text = re.sub(r"\n\n(?= {4}\S)", "\n\n::\n\n", text)
+        parts = re.split(r"(``.+?``|^ {4}[^\n]*)", text, flags=re.MULTILINE | re.DOTALL)
+        parts[::2] = [part.replace("|", r"\|") for part in parts[::2]]
+        lines[:] = "".join(parts).split("\n")
+
+
 def setup(app: Any) -> None:
-    """Register the change of headings."""
+    """Register the changes of texts."""
     app.connect("source-read", unlink_headings)
+    app.connect("autodoc-process-docstring", show_formulas)

@@ -31,7 +31,9 @@ from quintet.interfaces.params import read
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("interfaces", "components", "coupler", "scenarios")
 TEXTS = [ROOT / "README.md", *(ROOT / folder / "README.md" for folder in FOLDERS)]
-TEXTS += sorted(ROOT.glob("scenarios/*/README.md")) + sorted(ROOT.glob(".github/*.md"))
+TEXTS += sorted(ROOT.glob("components/*/**/*.md")) + sorted(ROOT.glob("scenarios/*/README.md"))
+TEXTS += sorted(ROOT.glob(".github/*.md")) + sorted(ROOT.glob(".docs/*.md"))
+TABLES = re.compile(r"<!-- describe .+?<!-- described -->", re.DOTALL)
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"(?:[\w.-]+/)+[\w-]+\.(?:py|toml|md|csv|png)")
 NAMED = re.compile(r"((?:\w+/)+\w+\.py):([A-Za-z_]\w*(?:\.\w+)?)")
@@ -59,8 +61,8 @@ def test_links_lead_to_files(path):
 
 
 def test_lines_of_prose_are_short():
-    texts = [ROOT / "README.md", *sorted(ROOT.glob("scenarios/**/README.md"))]
-    prose = [(path, line) for path in texts for line in FENCE.sub("", path.read_text()).split("\n")]
+    running = {path: TABLES.sub("", FENCE.sub("", path.read_text())) for path in TEXTS}
+    prose = [(path, line) for path, text in running.items() for line in text.split("\n")]
     exempt = ("|", "(`quintet ")  # rows of tables, and commands that stand as they are pasted
     long = [(where(p), line) for p, line in prose if len(line) > 160]
     assert [(place, line) for place, line in long if not line.startswith(exempt)] == []
@@ -94,7 +96,7 @@ def bound(node):
         yield from (one.id for one in ast.walk(target or ast.Pass()) if isinstance(one, ast.Name))
 
 
-@pytest.mark.parametrize("path", [ROOT / "README.md", *(ROOT / f / "README.md" for f in FOLDERS)])
+@pytest.mark.parametrize("path", TEXTS, ids=where)
 def test_files_and_functions_that_are_named_are_there(path):
     for text in quoted(path):
         for file, name in NAMED.findall(text):
