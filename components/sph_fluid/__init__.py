@@ -46,7 +46,7 @@ removed, and `totals` shows its mass missing. Without walls none is.
 
 Particles of fluid weigh together what its boxes and `shapes` hold, whether or not the spacing
 divides these (`setup/mass.py`). Fluid starts at rest under hydrostatic pressure, or as `initial`
-says (`setup/initial_fields.py`). Fluid that joined bodies stand in is removed with
+says (`setup/initial.py`). Fluid that joined bodies stand in is removed with
 `remove_inside_bodies`, and refused without.
 
 `obstacles` are boxes of wall particles that stand still in the tank; a `wave` sets level water into
@@ -71,9 +71,8 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 """
 
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import SHOWS, ports
-from quintet.components.sph_fluid.setup.particle_count import plan
-from quintet.components.sph_fluid.setup.start import stated
+from quintet.components.sph_fluid.plan import plan
+from quintet.components.sph_fluid.ports import SHOWS, ports, requests
 from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "SphFluidParams"]
@@ -86,7 +85,7 @@ MANIFEST = Manifest(
     component="quintet.components.sph_fluid.component:SphFluid",
     ports=ports,
     plan=plan,
-    initial=stated,
+    initial=requests,
     bench="quintet.components.sph_fluid.bench:cases",
     conform="quintet.components.sph_fluid.conform:cases",
     shows=SHOWS,

@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 
-from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
+from quintet.components.shared.geometry.lattice import fill_box
+from quintet.components.shared.geometry.shapes import Bounds
 from quintet.components.sph_fluid.boundary.obstacles import obstacle_points
+from quintet.components.sph_fluid.boundary.walls import wall_points, wall_velocity
 from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import Box, cells, levels, tank
-from quintet.components.sph_fluid.setup.particle_count import layers_beyond
+from quintet.components.sph_fluid.setup.geometry import cells, levels
+from quintet.components.sph_fluid.setup.initial import InitialFields
 from quintet.components.sph_fluid.state import Array, State
 
 OFFSETS = np.array([0.0, 0.5 * (math.sqrt(5.0) - 1.0), math.sqrt(2.0) - 1.0])  # 1, per row in y, z
@@ -18,7 +20,7 @@ FADING = 10.0  # spacings from a wall within which the offsets of rows fade
 
 def state(params: SphFluidParams) -> State:
     """Initial state: each box under the hydrostatic pressure of the surface above it."""
-    boxes = [fill_box(box, params) for box in params.boxes]
+    boxes = [box_points(box, params) for box in params.boxes]
     wall = np.concatenate([wall_points(params), obstacle_points(params)])
     pairs = zip(boxes, params.boxes, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
@@ -33,7 +35,7 @@ def state(params: SphFluidParams) -> State:
         moves = params.wave.velocity(boxes[0], params.boxes[0], params.gravity)
         start.velocity_pressure[: len(moves), :3] = moves
     if params.initial is not None:
-        _write_initial(start, params)
+        _write_initial(start, params.initial, params.density)
     if params.acoustic_damper > 0.0:
         start.minus_rho_div_u = np.zeros(start.particles)
     start.largest_acceleration = math.hypot(*params.gravity)
@@ -58,34 +60,32 @@ def shape_density(points: list[Array], params: SphFluidParams) -> list[Array]:
     ]
 
 
-def _write_initial(state: State, params: SphFluidParams) -> None:
-    """Write velocity and density as a scene gives them."""
-    # Left out of scenes whose fluid starts at rest.
-    from quintet.components.sph_fluid.setup.initial_fields import initial_density, initial_velocity
-
+def _write_initial(state: State, initial: InitialFields, unpressed: float) -> None:
+    """Write velocity and density as a scene gives them; `unpressed` is ρ₀ [kg/m3]."""
     points = state.position_density[: state.fluid, :3]
-    velocity, density = initial_velocity(points, params), initial_density(points, params)
+    velocity, density = initial.velocity_at(points), initial.density_at(points, unpressed)
     if velocity is not None:
         state.velocity_pressure[: state.fluid, :3] = velocity
     if density is not None:
         state.position_density[: state.fluid, 3] = density
 
 
-def fill_box(box: Box, params: SphFluidParams) -> Array:
+def box_points(box: Bounds, params: SphFluidParams) -> Array:
     """Middles of the cells of a box; (n, 3) m, x fastest."""
-    points = _lattice(box, cells(box, params), [(0, 0)] * 3)
+    points = fill_box(box, cells(box, params.spacing, params.dimensions))
     if params.staggered:
         points[:, 0] += _offsets(points, box, params)
     return points
 
 
-def _offsets(points: Array, box: Box, params: SphFluidParams) -> Array:
+def _offsets(points: Array, box: Bounds, params: SphFluidParams) -> Array:
     """How far rows are moved along x, half a cell at most, none at the tank's own faces; (n,) m.
 
     By multiples of two irrational numbers, which no two rows nearby share: whole they are a lattice
     too, as much at rest as the cubic one, but none of its planes meets a face at once.
     """
-    low, high, counts = np.array(box[0]), np.array(box[1]), cells(box, params)
+    low, high = np.array(box)
+    counts = cells(box, params.spacing, params.dimensions)
     row = np.floor((points - low) / (high - low) * counts)
     offset = np.mod(0.5 + row @ OFFSETS, 1.0) - 0.5
     for end, side in enumerate(("x-", "x+") if params.boundary.tank else ()):
@@ -96,37 +96,7 @@ def _offsets(points: Array, box: Box, params: SphFluidParams) -> Array:
     return np.asarray(offset * (high[0] - low[0]) / counts[0])
 
 
-def wall_points(params: SphFluidParams) -> Array:
-    """Layers of particles, the first `wall_offset` spacings outside the tank's faces; (n, 3) m.
-
-    Half a spacing out, the lattice of a fluid that touches a wall goes on into it; but moving
-    fluid keeps off dynamic particles by more than that, the more so where the wall was dry.
-    """
-    outside = tank(params)
-    if outside is None:
-        return np.zeros((0, 3))
-    points = _lattice(outside, cells(outside, params), layers_beyond(params))
-    low, high = np.array(outside)
-    return points[((points < low) | (points > high)).any(axis=1)]
-
-
-def wall_velocity(wall: Array, params: SphFluidParams) -> Array:
-    """Velocity (n, 3) m/s of wall particles (n, 3) m, which stay where they are."""
-    velocities = np.zeros_like(wall)
-    for face, velocity in params.boundary.wall_velocity.items():
-        assert params.boundary.tank is not None
-        (low, high), axis = params.boundary.tank, "xyz".index(face[0])
-        beyond = wall[:, axis] > high[axis] if face[1] == "+" else wall[:, axis] < low[axis]
-        velocities[beyond] = velocity
-    return velocities
-
-
-def _lattice(box: Box, counts: tuple[int, int, int], beyond: list[tuple[int, int]]) -> Array:
-    edges = zip(*box, counts, beyond, strict=True)
-    return lattice_points([cell_centres(low, high, n, *more) for low, high, n, more in edges])
-
-
-def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
+def hydrostatic(points: Array, box: Bounds, params: SphFluidParams) -> Array:
     """Density (n,) kg/m3 at points (n, 3) m below the surface over a box of fluid at rest."""
     size = math.hypot(*params.hydrostatic_gravity)
     depth = _surface(box, params) + points @ np.array(params.hydrostatic_gravity) / (size or 1.0)
@@ -135,7 +105,7 @@ def hydrostatic(points: Array, box: Box, params: SphFluidParams) -> Array:
     return params.density * (1.0 + pressure / stiffness) ** (1.0 / TAIT)
 
 
-def _surface(box: Box, params: SphFluidParams) -> float:
+def _surface(box: Bounds, params: SphFluidParams) -> float:
     """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
     top, little = levels(box, params.hydrostatic_gravity)[1], 1e-6 * params.spacing
     level = top

@@ -7,21 +7,18 @@ import numpy as np
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import MANIFEST, build, diagnostics, features, judgement
-from quintet.components.sph_fluid.boundary.method import Films
+from quintet.components.sph_fluid.boundary.method import Films, NoFilms
 from quintet.components.sph_fluid.boundary.planar import in_plane, require_one_metre
 from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.integration.method import Moved, StepTask
 from quintet.components.sph_fluid.kernels import write_pressure
-from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ports import SHOWS
-from quintet.components.sph_fluid.setup.geometry import slab_thickness, wall_faces
-from quintet.components.sph_fluid.setup.mass import mass_notes
-from quintet.components.sph_fluid.setup.start import stated
-from quintet.components.sph_fluid.setup.viscosity_notes import viscosity_notes
+from quintet.components.sph_fluid.ports import SHOWS, requests
 from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.view import view, wall_faces
 from quintet.interfaces.component import (
     ONE_THREAD,
     Component,
@@ -52,7 +49,7 @@ class SphFluid(Component):
     def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.team, self.constants = Team(resources.threads), constants(params)
-        self._notes = [*mass_notes(params), *viscosity_notes(params)]
+        self._notes = list(params.notes)
         self.state, self.samples = build.state(params), Samples()
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)
@@ -64,13 +61,13 @@ class SphFluid(Component):
         self.pairs = Interaction(params, *joined, precision, self.samples)
         self.integration = features.integration(params)
         self.courant = features.courant_limit(params)
-        self.films: Films | None = None  # before there are surfaces
+        self.films: Films = NoFilms()  # before there are surfaces
         self.filter = features.shepard_filter(params)
         self.gauges = features.gauges(params, self.symmetry)
 
     def describe(self) -> Fields:
         """Request how surfaces are to be sampled."""
-        return stated(self.params)
+        return requests(self.params)
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""
@@ -80,8 +77,7 @@ class SphFluid(Component):
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
             self.films = features.lubrication_films(self.params, self.samples)
-            if self.films:
-                self.films.join(self.state, static)
+            self.films.join(self.state, static)
 
     def prime(self, fields: Fields) -> None:
         """Refuse bodies that begin out of place; remove fluid inside them, where a scene asks."""
@@ -137,8 +133,7 @@ class SphFluid(Component):
         self.lists.make(self.state, self.boundary, self.symmetry, self.team)
         self.boundary.resize(self.state, self.symmetry)
         self.pairs.resize(self.state)
-        if self.films:
-            self.films.resize(self.state, self.lists.arrays)
+        self.films.resize(self.state, self.lists.arrays)
 
     def _compute_rates(self) -> None:
         """Accelerations and rates of density, of the state as it is."""
@@ -151,8 +146,7 @@ class SphFluid(Component):
     def _apply_forces(self, dt: float) -> None:
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         self.pairs.push_samples(self.state, self.team)
-        if self.films:
-            self.films.advance(self.state, self.lists.arrays, dt)
+        self.films.advance(self.state, self.lists.arrays, dt)
         self.pairs.move_with_neighbours(self.state, dt, self.team)
 
     def _finish(self, moved: Moved, dt: float) -> None:
@@ -182,8 +176,7 @@ class SphFluid(Component):
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
         self.samples.find_rows(self.state)
         self.boundary.load(self.state)
-        if self.films:
-            self.films.load(self.state)
+        self.films.load(self.state)
         if len(self.state.reference):
             self._list()
 
@@ -196,15 +189,15 @@ class SphFluid(Component):
 
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
-        return diagnostics.view(self.state)
+        return view(self.state)
 
     def notes(self) -> tuple[str, ...]:
         """What was not as a scene may have meant it: masses, films that are missing."""
-        return (*self._notes, *(self.films.notes if self.films else ()))
+        return *self._notes, *self.films.notes
 
     def warnings(self) -> dict[str, str]:
         """Compression, fluid that leaves its tank, and energy from nowhere."""
-        mass = self.constants.mass * slab_thickness(self.params)
+        mass = self.constants.mass * self.params.slab_thickness
         return judgement.warnings(self.state, self.params, mass)
 
     def walls(self) -> Fields:

@@ -6,9 +6,8 @@ import numpy as np
 
 from quintet.components.sph_fluid.laws import TAIT, Constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import slab_thickness
 from quintet.components.sph_fluid.state import Array, State
-from quintet.interfaces.component import Fields, Totals
+from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
 
 MACH = 0.5  # of the speed of sound: what strikes the fluid faster is refused
@@ -17,7 +16,7 @@ FEW = 1e-3  # of the fluid: so many particles may be denser for no such reason
 
 def totals(state: State, params: SphFluidParams, constants: Constants) -> Totals:
     """Mass, momentum and energies of the fluid that is left."""
-    mass, rows = constants.mass * slab_thickness(params), slice(state.fluid)
+    mass, rows = constants.mass * params.slab_thickness, slice(state.fluid)
     points, velocity = state.position_density[rows, :3], state.velocity_pressure[rows, :3]
     return Totals(
         mass=mass * len(points),
@@ -94,15 +93,3 @@ def _met(state: State, worst: int) -> str:
         f"particle {state.identity[worst]} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {density:.4g} "
         f"kg/m3 and {speed:.3g} m/s, and the fastest of all, surfaces too, {fastest:.3g} m/s."
     )
-
-
-def view(state: State) -> Fields:
-    """Copy fluid particles in the order of their birth."""
-    rows = np.argsort(state.identity)
-    position, velocity = state.position_density[rows], state.velocity_pressure[rows]
-    return {
-        "points": position[:, :3],
-        "velocity": velocity[:, :3].astype(np.float32),
-        "density": position[:, 3].astype(np.float32),
-        "pressure": (velocity[:, 3] * position[:, 3] ** 2).astype(np.float32),
-    }

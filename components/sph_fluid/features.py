@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Protocol
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid.boundary.method import BoundaryMethod, Films
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod, Films, NoFilms
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
 from quintet.components.sph_fluid.integration.method import Integration
 from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precision
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import closed_faces
 from quintet.components.sph_fluid.state import Array, State
 
 if TYPE_CHECKING:
@@ -68,14 +67,14 @@ def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
     return Symmetry(params)
 
 
-def lubrication_films(params: SphFluidParams, samples: Samples) -> Films | None:
+def lubrication_films(params: SphFluidParams, samples: Samples) -> Films:
     """Films in narrow gaps: from the start, where they are needed, or never."""
     if params.boundary.lubrication_films == "auto":
         # Left out of scenes that say whether they want films.
         from quintet.components.sph_fluid.boundary.selective_films import SelectiveFilms
 
         return SelectiveFilms(params, samples, partial(make_films, params, samples))
-    return make_films(params, samples) if params.boundary.lubrication_films else None
+    return make_films(params, samples) if params.boundary.lubrication_films else NoFilms()
 
 
 def refuse_misplaced(params: SphFluidParams, body: Array, position: Array) -> None:
@@ -86,7 +85,7 @@ def refuse_misplaced(params: SphFluidParams, body: Array, position: Array) -> No
     edge = params.boundary
     room = Room(
         edge.tank,
-        (*closed_faces(params), *edge.symmetry),
+        (*params.closed_faces, *edge.symmetry),
         () if params.remove_inside_bodies else params.boxes,
         edge.solids,
         (0, 2) if params.dimensions == 2 else (0, 1, 2),

@@ -9,7 +9,6 @@ or of walls that do not hold it.
 import numpy as np
 
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import closed_faces, depth, fluid_boxes
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Totals
 
@@ -77,7 +76,7 @@ def _outside(state: State, params: SphFluidParams) -> int:
         return 0
     (low, high), points = params.boundary.tank, state.position_density[: state.fluid]
     beyond = np.zeros(state.fluid, bool)
-    for face in closed_faces(params):
+    for face in params.closed_faces:
         axis = "xyz".index(face[0])
         if face[1] == "-":
             beyond |= points[:, axis] < low[axis] - params.spacing
@@ -96,7 +95,7 @@ def _layers(params: SphFluidParams) -> float:
 
 def _extent(params: SphFluidParams) -> float:
     """Lesser of the depth and the longest level extent [m] of all the fluid."""
-    lows, highs = zip(*fluid_boxes(params), strict=True)
+    lows, highs = zip(*params.extents, strict=True)
     return _shorter(np.max(highs, axis=0) - np.min(lows, axis=0), params)
 
 
@@ -126,7 +125,7 @@ def _most_artificial(params: SphFluidParams, held: float, judged: Array, mass: f
     if params.wave is not None:
         # Lamb 1932, article 348: A falls as exp(-2νk²t).
         number, g = 2.0 * np.pi / params.wave.length, float(np.linalg.norm(params.gravity))
-        period = 2.0 * np.pi / params.wave.frequency(depth(params), g)
+        period = 2.0 * np.pi / params.wave.frequency(params.depth, g)
         most = MOST_DAMPED / (2.0 * number**2 * period)
         return most, f"a wave must lose less than {MOST_DAMPED:.0%} of its height in a period"
     speed = float(np.sqrt(2.0 * judged[SHEARED] / mass))
@@ -178,7 +177,7 @@ def warnings(state: State, params: SphFluidParams, mass: float) -> dict[str, str
             f"{params.courant:g}), refine the spacing, raise the walls, or open the faces through "
             "which it shall leave."
         )
-    held = mass * fluid * float(np.linalg.norm(params.gravity)) * depth(params)  # J
+    held = mass * fluid * float(np.linalg.norm(params.gravity)) * params.depth  # J
     texts |= _of_viscosity(params, held, judged, mass * fluid)
     layers = _layers(params)
     if layers < LEAST_LAYERS and judged[KINETIC] > FLOWING * held > 0.0:

@@ -1,183 +1,20 @@
 """What a scene may say of a weakly compressible fluid."""
 
-from dataclasses import field
 from typing import ClassVar, Literal
 
 from pydantic import NonNegativeInt
 
-from quintet.components.shared.geometry.shapes import Bounds, Box
-from quintet.components.sph_fluid.setup import geometry
-from quintet.components.sph_fluid.setup.checks import check
-from quintet.components.sph_fluid.setup.expressions import Expression
-from quintet.components.sph_fluid.setup.geometry import (
-    Axis,
-    Exponent,
-    Face,
-    Smoothing,
-    Spot,
-    UprightFace,
-)
+from quintet.components.shared.geometry.shapes import Bounds
+from quintet.components.sph_fluid.setup import checks
+from quintet.components.sph_fluid.setup.boundary import Boundary
+from quintet.components.sph_fluid.setup.gauge_places import Gauges
+from quintet.components.sph_fluid.setup.geometry import Face, Smoothing, levels
+from quintet.components.sph_fluid.setup.initial import InitialFields
+from quintet.components.sph_fluid.setup.mass import check_mass, mass_notes, particle_volume
 from quintet.components.sph_fluid.setup.shapes import FluidRegion
 from quintet.components.sph_fluid.setup.standing_wave import StandingWave
-from quintet.interfaces.params import (
-    DataFile,
-    Fraction,
-    NotNegative,
-    Positive,
-    Vector,
-    parameters,
-)
-
-USUAL_ALPHA = 0.1
-
-
-@parameters
-class Viscosity:
-    """How a fluid is viscous.
-
-    Parameters
-    ----------
-    artificial : 1
-        α of Monaghan's artificial viscosity (1992, eq. 4.2); without it 0.1, or 0 where
-        `kinematic` is given.
-    kinematic : m2/s
-        ν, the kinematic viscosity of the fluid itself.
-    form
-        How `kinematic` acts: as a Laplacian (Lo & Shao 2002), close beside walls; or along the
-        line between particles (Monaghan & Gingold 1983), without which a free surface is not free
-        of stress.
-    """
-
-    artificial: NotNegative | None = None
-    kinematic: NotNegative = 0.0
-    form: Literal["laplacian", "stress"] = "laplacian"
-
-    @property
-    def alpha(self) -> float:
-        """α of the artificial viscosity: none beside the fluid's own if it is not given."""
-        if self.artificial is None:
-            return 0.0 if self.kinematic else USUAL_ALPHA
-        return self.artificial
-
-
-@parameters
-class Boundary:
-    """Walls of a tank, what stands in it, and how they and moving surfaces act on the fluid.
-
-    Parameters
-    ----------
-    method
-        Dynamic boundary particles (Crespo et al. 2007; dbc), modified ones whose density is
-        mirrored (English et al. 2022; mdbc), or a contact potential in place of their pressure
-        (Vignjevic et al. 2006).
-    walls
-        The inside of a tank, a box.
-    open_faces
-        Faces that the tank lacks.
-    symmetry
-        Upright faces of the tank that are planes of symmetry, without walls.
-    wall_velocity : m/s
-        Velocities of faces that move in their own planes, like belts.
-    obstacles
-        Boxes that stand still in the tank.
-    wall_offset : 1
-        Spacings from a wall's face out to its first particles; 0.5 with mdbc.
-    sample_depth : 1
-        Spacings from a moving surface in to its outermost samples; 0.5 with mdbc.
-    wall_viscosity_factor : 1
-        Share of the viscosity that acts between the fluid and walls or samples: 0 lets it slip.
-    lubrication_films
-        Whether films press in gaps that are too narrow for particles alone; with mdbc, in three
-        dimensions. With auto from when a wet body comes near to a wall or to another.
-    roughness : m
-        Least width that a film has between faces that touch.
-    potential_stiffness : Pa
-        K Δpᵈ of the contact potential; without it, what holds the pressure of water at rest.
-    potential_exponent : 1
-        n, how much the contact potential steepens towards the wall.
-    """
-
-    RENAMED: ClassVar = {
-        "open": "open_faces",
-        "standoff": "wall_offset",
-        "inset": "sample_depth",
-        "grip": "wall_viscosity_factor",
-        "gaps": "lubrication_films",
-    }
-
-    method: Literal["dbc", "mdbc", "potential"] = "mdbc"
-    walls: Box | None = None
-    open_faces: tuple[Face, ...] = ("z+",)
-    symmetry: tuple[UprightFace, ...] = ()
-    wall_velocity: dict[Face, Vector] = field(default_factory=dict)
-    obstacles: tuple[Box, ...] = ()
-    wall_offset: Positive = 0.5
-    sample_depth: NotNegative = 0.5
-    wall_viscosity_factor: Fraction = 1.0
-    lubrication_films: bool | Literal["auto"] = "auto"
-    roughness: Positive = 5e-4
-    potential_stiffness: Positive | None = None
-    potential_exponent: Exponent = 1
-
-    @property
-    def tank(self) -> Bounds | None:
-        """Lowest and highest corner [m] of the walls."""
-        return None if self.walls is None else self.walls.bounds
-
-    @property
-    def solids(self) -> tuple[Bounds, ...]:
-        """Lowest and highest corners [m] of the obstacles."""
-        return tuple(box.bounds for box in self.obstacles)
-
-
-@parameters
-class Gauges:
-    """What is measured in a fluid; each gauge is a port of its own.
-
-    Parameters
-    ----------
-    pressure_gauges : m
-        Points at which the pressure is given [Pa].
-    level_gauges : m
-        x and y of the verticals on which the surface's height is given [m].
-    front_gauge
-        Axis along which the position of the furthest fluid is given [m].
-    motion_gauge
-        Whether the largest speed [m/s], energies [J] and the centre of mass [m] are given.
-    """
-
-    RENAMED: ClassVar = {"front": "front_gauge"}
-
-    pressure_gauges: tuple[Vector, ...] = ()
-    level_gauges: tuple[Spot, ...] = ()
-    front_gauge: Axis | None = None
-    motion_gauge: bool = False
-
-
-@parameters
-class InitialFields:
-    """How the fluid moves at the start, and how dense it is.
-
-    Expressions are of x, y and z [m], as "0.1 * sin(2 * pi * x)": numbers, pi, + - * / **, sin,
-    cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, atan2, hypot, min, max, where(a < b, c, d).
-    A table is a CSV file whose first line names its columns: of x, y, z [m] those that it depends
-    on, of u, v, w [m/s] and density [kg/m3] what it gives. Its rows are the points of a rectangular
-    grid; between them it is linear, beyond them as at its edge.
-
-    Parameters
-    ----------
-    velocity : m/s
-        Along x, y and z, each a number or an expression.
-    density : kg/m3
-        A number or an expression, within 10 % of ρ₀: pressure follows from it by Tait's equation,
-        the mass of particles does not. Without it pressure is hydrostatic.
-    table
-        Name of a table, beside the scene.
-    """
-
-    velocity: tuple[Expression, Expression, Expression] | None = None
-    density: Expression | None = None
-    table: DataFile | None = None
+from quintet.components.sph_fluid.setup.viscosity import Viscosity
+from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
 
 @parameters
@@ -291,8 +128,47 @@ class SphFluidParams:
     wave: StandingWave | None = None
 
     def __post_init__(self) -> None:
-        """Check what concerns several values at once."""
-        check(self)
+        """Refuse what cannot be computed."""
+        if not self.fluid:
+            raise ValueError("fluid must have at least one box; found none. Add a box.")
+        boundary, spacing, dimensions = self.boundary, self.spacing, self.dimensions
+        checks.check_boxes(self.fluid, spacing)
+        check_mass(self.fluid, spacing, dimensions)
+        checks.check_walls(boundary, self.fluid, spacing, dimensions)
+        checks.check_obstacles(boundary, self.fluid, spacing, dimensions)
+        checks.check_sound(self.sound_speed, self.hydrostatic_gravity, self.depth)
+        if dimensions == 2:
+            walls = () if boundary.tank is None else (boundary.tank,)
+            checks.check_slab([*self.extents, *walls, *boundary.solids], self.gravity)
+        apart = 3.0 * self.smoothing_length
+        checks.check_symmetry(boundary, dimensions, self.gravity, apart, spacing)
+        checks.check_method(boundary, dimensions)
+        self._check_methods()
+        self.gauges.check(boundary, spacing, dimensions)
+        if self.shapes:
+            # Left out of scenes whose fluid is in boxes.
+            from quintet.components.sph_fluid.setup.shape_checks import check_shapes
+
+            check_shapes(self.fluid, boundary.solids, spacing, dimensions)
+        if self.initial is not None:
+            self.initial.check(self.extents, self.density, self.wave is not None)
+        if self.wave is not None:
+            self.wave.check(self.boxes, self.gravity)
+            checks.check_wave_resolution(self.depth, spacing)
+
+    def _check_methods(self) -> None:
+        """Options are asked for with what they need."""
+        if self.remove_inside_bodies and not self.mirrored:
+            raise ValueError(
+                "remove_inside_bodies needs boundary.method mdbc, whose samples say where the "
+                f"surface is; found {self.boundary.method}. Set method, or cut the fluid."
+            )
+        if self.acoustic_damper > 0.0 and self.integration != "symplectic":
+            raise ValueError(
+                "acoustic_damper needs integration symplectic, whose step limit with it is known; "
+                f"found acoustic_damper {self.acoustic_damper} and integration "
+                f"{self.integration}. Set integration, or remove acoustic_damper."
+            )
 
     @property
     def boxes(self) -> tuple[Bounds, ...]:
@@ -303,6 +179,33 @@ class SphFluidParams:
     def shapes(self) -> tuple[FluidRegion, ...]:
         """Fluid in other shapes."""
         return tuple(region for region in self.fluid if region.shape != "box")
+
+    @property
+    def extents(self) -> tuple[Bounds, ...]:
+        """Boxes of fluid, and those around its other shapes."""
+        return *self.boxes, *(shape.bounds for shape in self.shapes)
+
+    @property
+    def closed_faces(self) -> tuple[Face, ...]:
+        """Faces at which the tank has wall particles."""
+        return self.boundary.closed_faces(self.dimensions)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user should read of the mass of particles and of viscosity."""
+        masses = mass_notes(self.fluid, self.spacing, self.dimensions)
+        return *masses, *self.viscosity.notes
+
+    @property
+    def particle_volume(self) -> float:
+        """Volume [m3] of a particle at rest; area [m2] in two dimensions."""
+        return particle_volume(self.fluid, self.spacing, self.dimensions)
+
+    @property
+    def slab_thickness(self) -> float:
+        """Of the slab [m] that a particle's mass is counted over; 1 in three dimensions."""
+        low, high = self.extents[0]
+        return high[1] - low[1] if self.dimensions == 2 else 1.0
 
     @property
     def smoothing_length(self) -> float:
@@ -317,4 +220,18 @@ class SphFluidParams:
     @property
     def hydrostatic_gravity(self) -> Vector:
         """Gravity [m/s2], but none along axes on which the tank is open below: fluid falls."""
-        return geometry.hydrostatic_gravity(self)
+        if self.boundary.tank is None:
+            return self.gravity
+        below = [f"{a}{'+' if g > 0.0 else '-'}" for a, g in zip("xyz", self.gravity, strict=True)]
+        pairs = zip(below, self.gravity, strict=True)
+        x, y, z = (g if face in self.closed_faces else 0.0 for face, g in pairs)
+        return x, y, z
+
+    @property
+    def depth(self) -> float:
+        """Extent of all the fluid along its gravity [m]; none without any."""
+        gravity = self.hydrostatic_gravity
+        if not any(gravity):
+            return 0.0
+        heights = [level for box in self.extents for level in levels(box, gravity)]
+        return max(heights) - min(heights)

@@ -1,10 +1,13 @@
 """The ports of a fluid: surfaces that move in it, the loads on them, and its gauges."""
 
+import math
 from dataclasses import replace
+
+import numpy as np
 
 from quintet.components.sph_fluid.boundary.planar import planar_surface
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.interfaces.component import Field, Port
+from quintet.interfaces.component import Array, Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
     MIRRORED_SURFACE,
@@ -58,3 +61,24 @@ def gauges(params: SphFluidParams) -> tuple[Port, ...]:
         (MOTION, params.gauges.motion_gauge),
     )
     return tuple(port for port, on in switched if on)
+
+
+def requests(params: SphFluidParams) -> dict[str, Array]:
+    """How the port `surface` is to be sampled: spacing, depth and inset of samples."""
+    values = {
+        "spacing": params.spacing,
+        "depth": sample_reach(params),
+        "inset": params.boundary.sample_depth * params.spacing,
+    }
+    if params.dimensions == 2:
+        values["dimensions"] = 2.0
+    return {f"surface.{name}": np.array([value]) for name, value in values.items()}
+
+
+def sample_reach(params: SphFluidParams) -> float:
+    """How far [m] samples reach below the outermost: as the kernel does, or all through a body."""
+    reach = 2.0 * params.smoothing_length
+    if not params.remove_inside_bodies:
+        return reach
+    # The volume of the samples says how much fluid the body displaces.
+    return max(reach, *(math.dist(low, high) for low, high in params.extents))

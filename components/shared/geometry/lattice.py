@@ -22,6 +22,31 @@ def cell_centres(low: float, high: float, count: int, before: int = 0, after: in
     return low + (np.arange(-before, count + after) + 0.5) * (high - low) / count
 
 
+def cells_between(low: float, high: float, spacing: float) -> int:
+    """Whole number of cells nearest to a spacing [m] from `low` to `high` [m], one or more."""
+    return max(1, round((high - low) / spacing))
+
+
+def fill_box(
+    box: tuple[Sequence[float], Sequence[float]],
+    counts: Sequence[int],
+    beyond: Sequence[tuple[int, int]] = ((0, 0),) * 3,
+) -> Array:
+    """Centres (n, 3) m of the cells of a box, x fastest, and of so many layers beyond its faces.
+
+    Parameters
+    ----------
+    box : two sequences of three floats, m
+        Lowest and highest corner.
+    counts : three ints
+        Cells along each edge.
+    beyond : three pairs of ints
+        Layers of cells below and above the box, along each axis.
+    """
+    edges = zip(*box, counts, beyond, strict=True)
+    return lattice_points([cell_centres(low, high, n, *more) for low, high, n, more in edges])
+
+
 def spread_evenly(low: float, high: float, count: int) -> Array:
     """Places (count,) m from `low` to `high` [m], both included; a single one in the middle."""
     return np.linspace(low, high, count) if count > 1 else np.array([0.5 * (low + high)])

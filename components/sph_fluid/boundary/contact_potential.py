@@ -32,15 +32,10 @@ from quintet.components.shared.smoothing import cubic_spline, wendland
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.kernels.contact_energy import stored_energy
+from quintet.components.sph_fluid.constants import constants, wall_repulsion
 from quintet.components.sph_fluid.laws import ContactPotential
-from quintet.components.sph_fluid.pairs.constants import constants, wall_repulsion
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import (
-    depth,
-    fluid_boxes,
-    levels,
-    slab_thickness,
-)
+from quintet.components.sph_fluid.setup.geometry import levels
 from quintet.components.sph_fluid.state import Array, State, Whole
 
 SAFE = 0.2  # of √(m/(∂F/∂d)): the step
@@ -93,7 +88,7 @@ class ContactStiffness:
         laws = (wall_repulsion(params), fluid)
         arrays = (state.position_density, stiff, lists, *numbers, *laws, found)
         team.run(stored_energy, state.fluid, *arrays)
-        return float(found.sum()) * fluid.mass**2 * slab_thickness(params)
+        return float(found.sum()) * fluid.mass**2 * params.slab_thickness
 
 
 def pressure_at_rest(points: Array, params: SphFluidParams, body: Array | None = None) -> Array:
@@ -104,13 +99,13 @@ def pressure_at_rest(points: Array, params: SphFluidParams, body: Array | None =
     """
     gravity = params.hydrostatic_gravity
     size = math.hypot(*gravity)
-    top = max(levels(box, gravity)[1] for box in fluid_boxes(params))  # m, against gravity
+    top = max(levels(box, gravity)[1] for box in params.extents)  # m, against gravity
     found = np.maximum(params.density * (size * top + points @ np.array(gravity)), 0.0)
     if body is None:
         return np.asarray(found)
     number = body.astype(np.int64)
     dry = np.bincount(number, found) == 0.0
-    mean = 0.5 * params.density * size * depth(params)
+    mean = 0.5 * params.density * size * params.depth
     return np.where(dry[number], mean, found)
 
 

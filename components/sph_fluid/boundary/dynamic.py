@@ -11,7 +11,7 @@ from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
-from quintet.components.sph_fluid.pairs.constants import NO_POTENTIAL
+from quintet.components.sph_fluid.constants import NO_POTENTIAL
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 

@@ -33,8 +33,8 @@ from quintet.components.sph_fluid.boundary.kernels.films import (
     write_fluid_share,
 )
 from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.laws import Constants
-from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
 from quintet.interfaces.component import Fields

@@ -1,5 +1,6 @@
 """What a boundary method must do: how walls and surface samples act on the fluid."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from quintet.components.shared.search.neighbours import Lists
@@ -55,9 +56,11 @@ class BoundaryMethod(Protocol):
 
 
 class Films(Protocol):
-    """Films in narrow gaps, from the start or from when a body needs one."""
+    """Films in narrow gaps: from the start, from when a body needs one, or never."""
 
-    notes: list[str]  # what the user should read
+    @property
+    def notes(self) -> Sequence[str]:
+        """What the user should read."""
 
     def join(self, state: State, static: Fields) -> None:
         """Make room for films at samples that links bring."""
@@ -70,3 +73,21 @@ class Films(Protocol):
 
     def advance(self, state: State, lists: Lists, dt: float) -> None:
         """Advance the films by a step [s], and add their push to the samples' force."""
+
+
+class NoFilms:
+    """A fluid without films, and one without surfaces."""
+
+    notes: Sequence[str] = ()
+
+    def join(self, state: State, static: Fields) -> None:
+        """Nothing to do: there are no films."""
+
+    def load(self, state: State) -> None:
+        """Nothing to do: there are no films."""
+
+    def resize(self, state: State, lists: Lists) -> None:
+        """Nothing to do: there are no films."""
+
+    def advance(self, state: State, lists: Lists, dt: float) -> None:
+        """Nothing to do: there are no films."""

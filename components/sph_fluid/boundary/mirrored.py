@@ -25,10 +25,9 @@ from quintet.components.sph_fluid.boundary.kernels.mirrored_density import (
 from quintet.components.sph_fluid.boundary.obstacles import obstacle_mirrors
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
-from quintet.components.sph_fluid.build import wall_points
-from quintet.components.sph_fluid.pairs.constants import NO_POTENTIAL, constants
+from quintet.components.sph_fluid.boundary.walls import wall_mirrors
+from quintet.components.sph_fluid.constants import NO_POTENTIAL, constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import FACES, closed_faces
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import PortError
@@ -55,7 +54,8 @@ class MirroredBoundary:
 
     def start(self, state: State) -> None:
         """Mirror the walls."""
-        state.mirror_point = wall_mirrors(self.params)
+        mirrors = [wall_mirrors(self.params), obstacle_mirrors(self.params)]
+        state.mirror_point = np.concatenate(mirrors)
 
     def join(self, state: State, static: Fields) -> None:
         """Make room for mirror points; find which samples the contact potential is chosen for."""
@@ -134,20 +134,6 @@ class MirroredBoundary:
         if not len(self.by_potential):
             return 0.0
         return self.stiffness.energy(state, lists, team, self.mask)
-
-
-def wall_mirrors(params: SphFluidParams) -> Array:
-    """Mirror points (n, 3) m of all wall particles, through the nearest point of their wall."""
-    points = wall_points(params)
-    if params.boundary.tank is None:
-        return obstacle_mirrors(params)
-    closed = closed_faces(params)
-    low, high = (np.array(corner) for corner in params.boundary.tank)
-    for axis in range(3):
-        low[axis] = low[axis] if FACES[2 * axis] in closed else -np.inf
-        high[axis] = high[axis] if FACES[2 * axis + 1] in closed else np.inf
-    images = 2.0 * np.clip(points, low, high) - points
-    return np.concatenate([images, obstacle_mirrors(params)])
 
 
 def samples_by_potential(static: Fields) -> Whole:

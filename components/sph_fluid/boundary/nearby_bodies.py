@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import closed_faces
 from quintet.components.sph_fluid.state import Array, Whole
 
 
@@ -37,7 +36,7 @@ def near_walls(bodies: Bounds, params: SphFluidParams, reach: float) -> NDArray[
     found = np.zeros(len(bodies.low), bool)
     if params.boundary.tank is not None:
         low, high = np.array(params.boundary.tank)
-        for face in closed_faces(params):
+        for face in params.closed_faces:
             axis = "xyz".index(face[0])
             if face[1] == "-":
                 found |= bodies.low[:, axis] < low[axis] + reach

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.geometry.lattice import lattice_points
+from quintet.components.shared.geometry.shapes import Bounds
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import Box, Face
+from quintet.components.sph_fluid.setup.geometry import ROUNDING, Face
 from quintet.components.sph_fluid.state import Array
 
 FELT = 2.0  # smoothing lengths, the radius of the kernel
-ROUNDING = 1e-6  # of a spacing
 MOST_ROWS = 1e6  # along an axis, that are looked at one by one
 
 
@@ -64,7 +64,7 @@ def obstacle_mirrors(params: SphFluidParams) -> Array:
     return np.concatenate(parts)
 
 
-def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
+def _points(box: Bounds, params: SphFluidParams) -> tuple[Array, Array]:
     """Particles (n, 3) m of one obstacle, and how deep below each wet face [m]; (2, n, 3)."""
     steps, low, high, _, wet = _rows(box, params)
     counts = steps.astype(int) + 1
@@ -76,7 +76,9 @@ def _points(box: Box, params: SphFluidParams) -> tuple[Array, Array]:
     return points[felt], depth[:, felt]
 
 
-def _rows(box: Box, params: SphFluidParams) -> tuple[Array, Array, Array, Array, NDArray[np.bool_]]:
+def _rows(
+    box: Bounds, params: SphFluidParams
+) -> tuple[Array, Array, Array, Array, NDArray[np.bool_]]:
     """Steps (3,) along each axis, first and last place and length of a step (3,) m; wet faces."""
     wet = _wet(box, params)  # (2, 3)
     plane = ~wet & _named(params.boundary.symmetry)
@@ -93,7 +95,7 @@ def _rows(box: Box, params: SphFluidParams) -> tuple[Array, Array, Array, Array,
     return steps, low + half[0] * step, high - half[1] * step, step, wet
 
 
-def _wet(box: Box, params: SphFluidParams) -> NDArray[np.bool_]:
+def _wet(box: Bounds, params: SphFluidParams) -> NDArray[np.bool_]:
     """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
     if params.boundary.tank is None:
         return _in_space(np.ones((2, 3), bool), params)

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import fluid_boxes, slab_thickness
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import DIMENSIONS
@@ -24,7 +23,7 @@ def planar_surface(port: Port) -> Port:
 
 def require_one_metre(params: SphFluidParams) -> None:
     """Refuse samples, which stand for 1 m along y, in a slab of another thickness."""
-    thickness = slab_thickness(params)
+    thickness = params.slab_thickness
     if abs(thickness - 1.0) > NEARLY:
         raise SceneError(
             "surface: in two dimensions samples stand for 1 m along y, and so must the fluid; its "
@@ -34,7 +33,7 @@ def require_one_metre(params: SphFluidParams) -> None:
 
 def in_plane(fields: Fields, params: SphFluidParams) -> dict[str, Array]:
     """Positions and velocities (n, 3) of samples in the fluid's own plane, wherever theirs is."""
-    (_, low, _), (_, high, _) = fluid_boxes(params)[0]
+    (_, low, _), (_, high, _) = params.extents[0]
     found = {key: np.array(array) for key, array in fields.items()}
     for key, array in found.items():
         array[:, 1] = 0.0 if key == "surface.velocity" else low + 0.5 * (high - low)

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.sph_fluid.boundary.samples import Samples
-from quintet.components.sph_fluid.pairs.constants import constants
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import slab_thickness
 from quintet.components.sph_fluid.state import Array, State
 
 
@@ -20,7 +19,7 @@ def remove(state: State, samples: Samples, position: Array, params: SphFluidPara
     axes = [0, 2] if params.dimensions == 2 else [0, 1, 2]
     points, position = state.position_density[: state.fluid, axes], position[:, axes]
     removed, notes = np.zeros(len(points), bool), []
-    mass = constants(params).mass * slab_thickness(params)
+    mass = constants(params).mass * params.slab_thickness
     for number in np.unique(samples.body):
         of_body = samples.body == number
         left = np.flatnonzero(~removed)

@@ -14,7 +14,6 @@ from quintet.components.sph_fluid.boundary.nearby_bodies import (
 )
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.films import why_no_films
 from quintet.components.sph_fluid.state import State
 from quintet.interfaces.component import Fields
 
@@ -30,7 +29,7 @@ class SelectiveFilms:
         self, params: SphFluidParams, samples: Samples, make_films: Callable[[], Films]
     ) -> None:
         self.params, self.samples, self._make_films = params, samples, make_films
-        self.lacking = why_no_films(params)
+        self.lacking = params.boundary.why_no_films(params.dimensions)
         self.films: Films | None = None
         self.notes: list[str] = []
 

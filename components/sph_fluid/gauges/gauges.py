@@ -25,10 +25,9 @@ from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.gauges.kernels import add_around, fill_columns, furthest
-from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import fluid_boxes, slab_thickness
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
 
@@ -48,13 +47,13 @@ class Gauges:
         self.spots = np.array(params.gauges.level_gauges).reshape(-1, 2)  # (m, 2) m
         if params.dimensions == 2:
             self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
-                corner[1] for corner in fluid_boxes(params)[0]
+                corner[1] for corner in params.extents[0]
             )
         # (k m, 3 or 2) m: these, and from where images see what these see in them.
         self.image_points = symmetry.all_images(self.points)
         self.above = symmetry.all_images(self.spots)
         walls = params.boundary.tank
-        boxes = [walls] if walls else fluid_boxes(params)
+        boxes = [walls] if walls else params.extents
         self.floor = min(box[0][2] for box in boxes)  # m
         volume = self.constants.mass / self.constants.density
         self.lone = volume * float(kernel(0.0, self.constants.smoothing))  # 1, V W(0)
@@ -132,7 +131,7 @@ class Gauges:
             state.velocity_pressure[: state.fluid, :3],
         )
         squares = np.einsum("nd,nd->n", velocity, velocity)
-        particle_mass = self.constants.mass * slab_thickness(self.params)  # kg
+        particle_mass = self.constants.mass * self.params.slab_thickness  # kg
         centre, mass = points.mean(axis=0), particle_mass * len(points)
         return {
             "motion_gauge.speed": np.sqrt(squares.max(keepdims=True)),

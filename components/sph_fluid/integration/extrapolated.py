@@ -6,9 +6,9 @@ from the last two: sound waves are then damped, not amplified.
 """
 
 from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.integration.kernels import Rows, advance
 from quintet.components.sph_fluid.integration.method import Moved, StepTask
-from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
 

@@ -11,9 +11,9 @@ sound is neither damped nor amplified. u' serves viscosity.
 """
 
 from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.integration.kernels import Rows, finish, half_step, kick
 from quintet.components.sph_fluid.integration.method import Moved, StepTask
-from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
 

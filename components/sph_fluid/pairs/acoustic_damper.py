@@ -19,7 +19,7 @@ import math
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod
-from quintet.components.sph_fluid.pairs.constants import constants
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.pairs.kernels import add_mirrored_damping, write_damped_pressure
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State

@@ -9,6 +9,8 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
+from quintet.components.sph_fluid.boundary.walls import wall_volume
+from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.kernels import (
     BoundaryRows,
     Rates,
@@ -16,11 +18,9 @@ from quintet.components.sph_fluid.kernels import (
     pair_rates,
     sample_forces,
 )
-from quintet.components.sph_fluid.pairs.constants import pair_law
 from quintet.components.sph_fluid.pairs.precision import Precision
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import cells, tank
-from quintet.components.sph_fluid.setup.mass import EVEN, particle_volume
+from quintet.components.sph_fluid.setup.mass import EVEN
 from quintet.components.sph_fluid.state import Array, State
 
 UNEVEN = 0.05  # of a particle's volume: what a particle of the walls may differ by
@@ -100,7 +100,7 @@ def relative_volume(samples: Samples, state: State, params: SphFluidParams) -> A
     fluid's particles; as heavy as those they would displace more, or less, than the body does.
     The same holds of the walls of a fluid whose own edges it divides so badly that it matters.
     """
-    particle = particle_volume(params)
+    particle = params.particle_volume
     share, wall = samples.volume / particle, wall_volume(params) / particle
     if abs(wall - 1.0) < UNEVEN or particle == params.spacing**params.dimensions:
         wall = 1.0
@@ -110,14 +110,3 @@ def relative_volume(samples: Samples, state: State, params: SphFluidParams) -> A
     volumes[state.fluid : state.particles] = wall
     volumes[samples.row] = share
     return volumes
-
-
-def wall_volume(params: SphFluidParams) -> float:
-    """Volume [m3] of a cell of the walls, area [m2] in two dimensions; spacing's without any."""
-    outside = tank(params)
-    if outside is None:
-        return float(params.spacing**params.dimensions)
-    edges = [(b - a) / n for a, b, n in zip(*outside, cells(outside, params), strict=True)]
-    if params.dimensions == 2:
-        edges[1] = 1.0
-    return math.prod(edges)

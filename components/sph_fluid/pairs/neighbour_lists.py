@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quintet.components.shared.geometry.shapes import Bounds
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import Lists, NeighbourLists
 from quintet.components.shared.search.verlet_list import VerletSkin, longest
@@ -11,7 +12,6 @@ from quintet.components.sph_fluid.boundary.method import BoundaryMethod
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import Box
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.errors import StepError
 
@@ -74,7 +74,7 @@ class FluidLists:
         self.near = symmetry.neighbours(state, reach, team, query_points, buffer)
 
 
-def in_domain(points: Array, walls: Box | None) -> Whole:
+def in_domain(points: Array, walls: Bounds | None) -> Whole:
     """Rows (k,) of points (n, 3 or more) m that are in the tank or not far outside of it."""
     inside = np.ones(len(points), bool)
     if walls is not None:

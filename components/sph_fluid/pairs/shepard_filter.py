@@ -4,8 +4,8 @@ import numpy as np
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.kernels import write_pressure
-from quintet.components.sph_fluid.pairs.constants import constants
 from quintet.components.sph_fluid.pairs.kernels import filter_density
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.sph_fluid.setup.geometry import FACES, Box
+from quintet.components.shared.geometry.shapes import Bounds
+from quintet.components.sph_fluid.setup.geometry import FACES
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
@@ -25,10 +26,10 @@ OUTSIDE_OBSTACLES = "must begin outside the obstacles", "Move one of them."
 class Room(NamedTuple):
     """Where a fluid begins, and what is around it; boxes are their lowest and highest corners."""
 
-    tank: Box | None
+    tank: Bounds | None
     closed: Sequence[str]  # faces of the tank
-    water: Sequence[Box]
-    obstacles: Sequence[Box]
+    water: Sequence[Bounds]
+    obstacles: Sequence[Bounds]
     axes: Sequence[int]  # of its dimensions
 
 
@@ -68,7 +69,7 @@ def _find_outside(
     body: Array,
     position: Array,
     slack: float,
-    tank: Box,
+    tank: Bounds,
     room: Room,
 ) -> None:
     """Find bodies beyond closed faces of the tank; not those that are to fall in, or have left."""

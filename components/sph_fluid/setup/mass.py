@@ -1,19 +1,17 @@
-"""The mass of a fluid: what its particles weigh together is what its boxes hold.
+"""The mass of a fluid: what its particles weigh together is what its regions hold.
 
 Edges are cut into whole numbers of cells, so that those of a box that is no multiple of the spacing
 are not as large as spacing³. All particles have one mass, that of the fluid asked for over their
-number. Where boxes are cut differently one of them then has too much and another too little: this
-is told above NOTED of the whole, and refused above MOST.
+number. Where boxes are cut differently, some then have too much mass and others too little: above
+NOTED of the whole a note says so, above MOST the scene is refused.
 """
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from quintet.components.sph_fluid.setup.geometry import cells, named_boxes, named_shapes
-
-if TYPE_CHECKING:
-    from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.geometry import cells
+from quintet.components.sph_fluid.setup.shapes import Fluid, FluidRegion, named_boxes, named_shapes
 
 NOTED, MOST = 0.005, 0.02  # of the mass of all the fluid
 EVEN = 1e-9  # of a volume: what differs from it by less is as large
@@ -28,36 +26,38 @@ class RegionMass(NamedTuple):
     particles: int
 
 
-def regions(params: "SphFluidParams") -> Iterator[RegionMass]:
+def region_masses(fluid: Fluid, spacing: float, dimensions: int) -> Iterator[RegionMass]:
     """All regions of a fluid."""
-    for name, box in named_boxes(params):
+    for name, box in named_boxes(fluid):
         edges = [b - a for a, b in zip(*box, strict=True)]
-        if params.dimensions == 2:
+        if dimensions == 2:
             edges[1] = 1.0
-        yield RegionMass(name, math.prod(edges), math.prod(cells(box, params)))
-    if params.shapes:
-        # Left out of scenes whose fluid is in boxes.
-        from quintet.components.sph_fluid.setup.shape_filling import particle_count
-
-        planar = params.dimensions == 2
-        for name, shape in named_shapes(params):
-            (_, low, _), (_, high, _) = shape.bounds
-            volume = shape.volume / (high - low if planar else 1.0)
-            count = particle_count(shape, params.spacing, planar)
-            yield RegionMass(name, volume, count)
+        yield RegionMass(name, math.prod(edges), math.prod(cells(box, spacing, dimensions)))
+    for name, shape in named_shapes(fluid):
+        yield _shape_mass(name, shape, spacing, dimensions == 2)
 
 
-def particle_volume(params: "SphFluidParams") -> float:
+def _shape_mass(name: str, shape: FluidRegion, spacing: float, planar: bool) -> RegionMass:
+    # Left out of scenes whose fluid is in boxes.
+    from quintet.components.sph_fluid.setup.shape_filling import particle_count
+
+    (_, low, _), (_, high, _) = shape.bounds
+    volume = shape.volume / (high - low if planar else 1.0)
+    return RegionMass(name, volume, particle_count(shape, spacing, planar))
+
+
+def particle_volume(fluid: Fluid, spacing: float, dimensions: int) -> float:
     """Volume [m3] of a particle at rest; area [m2] in two dimensions."""
-    nominal = params.spacing**params.dimensions
-    parts = list(regions(params))
-    share = sum(part.volume for part in parts) / (nominal * sum(part.particles for part in parts))
+    nominal = spacing**dimensions
+    regions = list(region_masses(fluid, spacing, dimensions))
+    volume = sum(region.volume for region in regions)
+    share = volume / (nominal * sum(region.particles for region in regions))
     return nominal if abs(share - 1.0) < EVEN else nominal * share
 
 
-def check_mass(params: "SphFluidParams") -> None:
+def check_mass(fluid: Fluid, spacing: float, dimensions: int) -> None:
     """Refuse fluid of which a region would not hold what it should."""
-    for region, excess in _excesses(params, MOST):
+    for region, excess in _excesses(fluid, spacing, dimensions, MOST):
         raise ValueError(
             f"{region.name} must hold its mass of fluid within {100.0 * MOST:g} % of that of all; "
             f"it would differ by {100.0 * excess / region.volume:+.2g} % of its own in "
@@ -66,30 +66,32 @@ def check_mass(params: "SphFluidParams") -> None:
         )
 
 
-def _excesses(params: "SphFluidParams", share: float) -> Iterator[tuple[RegionMass, float]]:
-    """Parts that hold more or less than they should [m3] by so much of all the fluid."""
-    volume, parts = particle_volume(params), list(regions(params))
-    whole = sum(region.volume for region in parts)
-    for region in parts:
+def _excesses(
+    fluid: Fluid, spacing: float, dimensions: int, share: float
+) -> Iterator[tuple[RegionMass, float]]:
+    """Regions that hold more or less than they should [m3] by so much of all the fluid."""
+    volume = particle_volume(fluid, spacing, dimensions)
+    regions = list(region_masses(fluid, spacing, dimensions))
+    whole = sum(region.volume for region in regions)
+    for region in regions:
         excess = region.particles * volume - region.volume
         if abs(excess) > share * whole:
             yield region, excess
 
 
-def mass_notes(params: "SphFluidParams") -> tuple[str, ...]:
+def mass_notes(fluid: Fluid, spacing: float, dimensions: int) -> tuple[str, ...]:
     """Say where particles do not hold what spacing³ would."""
-    nominal, volume = params.spacing**params.dimensions, particle_volume(params)
-    change = volume / nominal - 1.0
+    change = particle_volume(fluid, spacing, dimensions) / spacing**dimensions - 1.0
     uneven = tuple(
         f"{region.name} holds {100.0 * excess / region.volume:+.2g} % of its mass more or less "
         "than it should, and others the rest: their edges are cut differently"
-        for region, excess in _excesses(params, NOTED)
+        for region, excess in _excesses(fluid, spacing, dimensions, NOTED)
     )
     if abs(change) < TOLD:
         return uneven
     return (
-        f"edges of the fluid are no multiples of the spacing, {params.spacing:g} m: particles of "
-        f"density · spacing^{params.dimensions} would hold {-100.0 * change / (1.0 + change):+.2g} "
-        f"% of the mass asked for; so the mass of each is changed by {100.0 * change:+.2g} %",
+        f"edges of the fluid are no multiples of the spacing, {spacing:g} m: particles of density "
+        f"· spacing^{dimensions} would hold {-100.0 * change / (1.0 + change):+.2g} % of the mass "
+        f"asked for; so the mass of each is changed by {100.0 * change:+.2g} %",
         *uneven,
     )

@@ -127,3 +127,17 @@ class FluidRegion(
         if isinstance(shape, Mesh | Prism):
             return shape.volume
         return shape.share * math.prod(b - a for a, b in zip(*shape.bounds, strict=True))
+
+
+Fluid = tuple[FluidRegion, ...]
+
+
+def named_boxes(fluid: Fluid) -> list[tuple[str, Bounds]]:
+    """Boxes of fluid by their names in a scene."""
+    named = enumerate(fluid)
+    return [(f"fluid[{k}]", region.bounds) for k, region in named if region.shape == "box"]
+
+
+def named_shapes(fluid: Fluid) -> list[tuple[str, FluidRegion]]:
+    """Fluid in other shapes by its names in a scene."""
+    return [(f"fluid[{k}]", region) for k, region in enumerate(fluid) if region.shape != "box"]

@@ -13,7 +13,6 @@ from fluid_params import nested
 
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.setup.geometry import depth
 from quintet.interfaces.params import read
 
 LENGTH, SPEED, SPACING = 6.0, 0.2, 0.05
@@ -78,7 +77,7 @@ def test_fluid_that_nothing_bears_has_no_weight() -> None:
     """It falls along an open axis, and starts without a pressure that would burst it."""
     fluid = channel(gravity=[1.6, 0.0, -1.6], sound_speed=40.0)
     assert fluid.params.hydrostatic_gravity == (0.0, 0.0, -1.6)
-    assert depth(fluid.params) == 1.0
+    assert fluid.params.depth == 1.0
     pressure, below = fluid.view()["pressure"], 1.0 - fluid.view()["points"][:, 2]
     assert pressure == pytest.approx(1600.0 * below, rel=1e-3)
 

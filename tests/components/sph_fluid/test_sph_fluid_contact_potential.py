@@ -21,8 +21,8 @@ from quintet.components.sph_fluid.boundary.contact_potential import (
     wall_force,
 )
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.constants import NO_REPULSION, pair_law
 from quintet.components.sph_fluid.laws import PairLaw
-from quintet.components.sph_fluid.pairs.constants import NO_REPULSION, pair_law
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import CONTACT
 from quintet.interfaces.component import Fields, outputs_of

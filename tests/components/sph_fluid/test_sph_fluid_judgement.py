@@ -7,8 +7,8 @@ import pytest
 from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.judgement import EVERY
-from quintet.components.sph_fluid.pairs.constants import pair_law
 
 Make = Callable[..., SphFluid]
 

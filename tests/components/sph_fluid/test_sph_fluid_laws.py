@@ -10,9 +10,9 @@ from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import laws
+from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.kernels import write_pressure
 from quintet.components.sph_fluid.laws import PairLaw
-from quintet.components.sph_fluid.pairs.constants import pair_law
 from quintet.components.sph_fluid.pairs.shepard_filter import filter_density
 
 REACH = 3.3  # spacings

@@ -8,7 +8,7 @@ from fluid_params import fluid_params, nested
 
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.pairs.constants import constants
+from quintet.components.sph_fluid.constants import constants
 from quintet.interfaces.params import read
 
 SPACING = 0.02

@@ -14,7 +14,7 @@ from quintet.interfaces.component import outputs_of
 def test_staggered_rows_are_lattice_rows_that_end_at_walls_as_others_do() -> None:
     box = ((0.0, 0.0, 0.0), (0.6, 0.1, 0.1))
     params = fluid_params(spacing=0.02, sound_speed=20.0, fluid=(box,), staggered=True)
-    rows = build.fill_box(box, params).reshape(5, 5, 30, 3)
+    rows = build.box_points(box, params).reshape(5, 5, 30, 3)
     first = rows[..., 0, 0].ravel()  # of each row; none has a wall
     assert np.diff(rows[..., 0], axis=2) == pytest.approx(0.02, abs=1e-12)
     gaps = np.diff(np.sort(first))
@@ -26,7 +26,7 @@ def test_staggered_rows_are_lattice_rows_that_end_at_walls_as_others_do() -> Non
         staggered=True,
         boundary__walls=((0.0, 0.0, 0.0), (2.0, 0.1, 0.2)),
     )
-    rows = build.fill_box(box, walled).reshape(5, 5, 30, 3)
+    rows = build.box_points(box, walled).reshape(5, 5, 30, 3)
     assert np.ptp(rows[..., 0, 0]) < 0.06 * 0.02
     assert rows[..., -1, 0] == pytest.approx(first.reshape(5, 5) + 0.58, abs=1e-12)
 

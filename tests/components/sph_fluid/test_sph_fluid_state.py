@@ -52,8 +52,7 @@ fluid.step(fluid.stable_dt())
 loaded = {name.rpartition(".")[2] for name in sys.modules if "sph_fluid" in name}
 left_out = "shepard_filter contact_potential potential acoustic_damper mirrored mirrored_density"
 left_out += " single_precision position_verlet symmetry lubrication film_geometry gauges"
-left_out += " film_search selective_films nearby_bodies removal shape_filling initial_fields"
-left_out += " field_table"
+left_out += " film_search selective_films nearby_bodies removal shape_filling field_table"
 assert not loaded & set(left_out.split()), loaded
 assert not kernels.sample_forces.signatures
 (signature,) = kernels.pair_rates.signatures

@@ -6,7 +6,7 @@ from fluid_params import fluid_params
 
 from quintet.components.sph_fluid import build
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.setup.particle_count import particles
+from quintet.components.sph_fluid.plan import particles
 
 TANK = {
     "boundary.walls": ((0.0, 0.0, 0.0), (1.0, 0.5, 0.5)),

@@ -1,17 +1,9 @@
 """What a fluid will need: its particles, counted without making them, and time; numpy alone."""
 
-import math
-
 from quintet.components.sph_fluid.boundary.obstacles import count_obstacle_points
+from quintet.components.sph_fluid.boundary.walls import count_wall_points
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.geometry import (
-    FACES,
-    cells,
-    closed_faces,
-    tank,
-    wall_layers,
-)
-from quintet.components.sph_fluid.setup.mass import regions
+from quintet.components.sph_fluid.setup.mass import region_masses
 from quintet.interfaces.manifest import Plan
 
 
@@ -27,18 +19,6 @@ def plan(params: SphFluidParams) -> Plan:
 
 def particles(params: SphFluidParams) -> int:
     """Fluid and wall particles, counted without making any."""
-    fluid = sum(region.particles for region in regions(params))
-    fluid += count_obstacle_points(params)
-    box = tank(params)
-    if box is None:
-        return fluid
-    inside = cells(box, params)
-    outside = [n + sum(shut) for n, shut in zip(inside, layers_beyond(params), strict=True)]
-    return fluid + math.prod(outside) - math.prod(inside)
-
-
-def layers_beyond(params: SphFluidParams) -> list[tuple[int, int]]:
-    """Layers of wall particles beyond the lower and the upper face, along each axis."""
-    closed, layers = closed_faces(params), wall_layers(params)
-    beyond = {face: layers if face in closed else 0 for face in FACES}
-    return [(beyond[f"{x}-"], beyond[f"{x}+"]) for x in "xyz"]
+    regions = region_masses(params.fluid, params.spacing, params.dimensions)
+    fluid = sum(region.particles for region in regions)
+    return fluid + count_obstacle_points(params) + count_wall_points(params)

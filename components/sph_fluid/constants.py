@@ -15,7 +15,6 @@ from quintet.components.sph_fluid.laws import (
     WallRepulsion,
 )
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.setup.mass import particle_volume
 
 # All walls but dynamic ones press as still water does, and would let fast particles by. Within
 # NEAREST spacings, which a particle half a spacing off the face does not reach, their particles
@@ -32,7 +31,7 @@ def constants(params: SphFluidParams) -> Constants:
     """Numbers of every fluid."""
     h, dimensions = params.smoothing_length, params.dimensions
     return Constants(
-        mass=params.density * particle_volume(params),
+        mass=params.density * params.particle_volume,
         smoothing=smoothing(params.kernel, dimensions, h),
         softening=0.01 * h * h,
         density=params.density,
@@ -66,7 +65,7 @@ def wall_repulsion(params: SphFluidParams) -> WallRepulsion:
     """Numbers of the repulsion of walls; dynamic ones repel by themselves."""
     if params.boundary.method == "dbc":
         return NO_REPULSION
-    mass = params.density * particle_volume(params)
+    mass = params.density * params.particle_volume
     stiffness = REPULSION * (params.sound_speed / params.spacing) ** 2 / mass
     return WallRepulsion(True, stiffness, (NEAREST * params.spacing) ** 2)
 

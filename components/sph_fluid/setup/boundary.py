@@ -1,0 +1,93 @@
+"""Walls of a fluid's tank, what stands in it, and how both act on the fluid."""
+
+from dataclasses import field
+from typing import ClassVar, Literal
+
+from quintet.components.shared.geometry.shapes import Bounds, Box
+from quintet.components.sph_fluid.setup.geometry import FACES, Exponent, Face, UprightFace
+from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
+
+
+@parameters
+class Boundary:
+    """Walls of a tank, what stands in it, and how they and moving surfaces act on the fluid.
+
+    Parameters
+    ----------
+    method
+        Dynamic boundary particles (Crespo et al. 2007; dbc), modified ones whose density is
+        mirrored (English et al. 2022; mdbc), or a contact potential in place of their pressure
+        (Vignjevic et al. 2006).
+    walls
+        The inside of a tank, a box.
+    open_faces
+        Faces that the tank lacks.
+    symmetry
+        Upright faces of the tank that are planes of symmetry, without walls.
+    wall_velocity : m/s
+        Velocities of faces that move in their own planes, like belts.
+    obstacles
+        Boxes that stand still in the tank.
+    wall_offset : 1
+        Spacings from a wall's face out to its first particles; 0.5 with mdbc.
+    sample_depth : 1
+        Spacings from a moving surface in to its outermost samples; 0.5 with mdbc.
+    wall_viscosity_factor : 1
+        Share of the viscosity that acts between the fluid and walls or samples: 0 lets it slip.
+    lubrication_films
+        Whether films press in gaps that are too narrow for particles alone; with mdbc, in three
+        dimensions. With auto from when a wet body comes near to a wall or to another.
+    roughness : m
+        Least width that a film has between faces that touch.
+    potential_stiffness : Pa
+        K Δpᵈ of the contact potential; without it, what holds the pressure of water at rest.
+    potential_exponent : 1
+        n, how much the contact potential steepens towards the wall.
+    """
+
+    RENAMED: ClassVar = {
+        "open": "open_faces",
+        "standoff": "wall_offset",
+        "inset": "sample_depth",
+        "grip": "wall_viscosity_factor",
+        "gaps": "lubrication_films",
+    }
+
+    method: Literal["dbc", "mdbc", "potential"] = "mdbc"
+    walls: Box | None = None
+    open_faces: tuple[Face, ...] = ("z+",)
+    symmetry: tuple[UprightFace, ...] = ()
+    wall_velocity: dict[Face, Vector] = field(default_factory=dict)
+    obstacles: tuple[Box, ...] = ()
+    wall_offset: Positive = 0.5
+    sample_depth: NotNegative = 0.5
+    wall_viscosity_factor: Fraction = 1.0
+    lubrication_films: bool | Literal["auto"] = "auto"
+    roughness: Positive = 5e-4
+    potential_stiffness: Positive | None = None
+    potential_exponent: Exponent = 1
+
+    @property
+    def tank(self) -> Bounds | None:
+        """Lowest and highest corner [m] of the walls."""
+        return None if self.walls is None else self.walls.bounds
+
+    @property
+    def solids(self) -> tuple[Bounds, ...]:
+        """Lowest and highest corners [m] of the obstacles."""
+        return tuple(box.bounds for box in self.obstacles)
+
+    def closed_faces(self, dimensions: int) -> tuple[Face, ...]:
+        """Faces at which the tank has wall particles."""
+        sides = ("y-", "y+") if dimensions == 2 else ()
+        return tuple(f for f in FACES if f not in (*self.open_faces, *self.symmetry, *sides))
+
+    def why_no_films(self, dimensions: int) -> str:
+        """Why there can be no films in narrow gaps; "" if there can."""
+        if self.method != "mdbc":
+            return f"boundary.method {self.method} knows none"
+        if dimensions == 2:
+            return "in two dimensions water cannot flow in from the side"
+        if self.symmetry:
+            return "films know no planes of symmetry"
+        return ""

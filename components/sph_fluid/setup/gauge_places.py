@@ -1,0 +1,65 @@
+"""What is measured in a fluid: gauges lie where fluid can be, or they would measure nothing."""
+
+from collections.abc import Iterator
+from typing import ClassVar
+
+from quintet.components.sph_fluid.setup.boundary import Boundary
+from quintet.components.sph_fluid.setup.geometry import ROUNDING, Axis, Spot
+from quintet.interfaces.params import Vector, parameters
+
+
+@parameters
+class Gauges:
+    """What is measured in a fluid; each gauge is a port of its own.
+
+    Parameters
+    ----------
+    pressure_gauges : m
+        Points at which the pressure is given [Pa].
+    level_gauges : m
+        x and y of the verticals on which the surface's height is given [m].
+    front_gauge
+        Axis along which the position of the furthest fluid is given [m].
+    motion_gauge
+        Whether the largest speed [m/s], energies [J] and the centre of mass [m] are given.
+    """
+
+    RENAMED: ClassVar = {"front": "front_gauge"}
+
+    pressure_gauges: tuple[Vector, ...] = ()
+    level_gauges: tuple[Spot, ...] = ()
+    front_gauge: Axis | None = None
+    motion_gauge: bool = False
+
+    def check(self, boundary: Boundary, spacing: float, dimensions: int) -> None:
+        """Refuse gauges beyond a wall of the tank or inside an obstacle."""
+        tolerance = ROUNDING * spacing
+        for name, point in self._points():
+            for axis, value in enumerate(point) if boundary.tank else ():
+                if dimensions == 2 and axis == 1:
+                    continue
+                assert boundary.tank is not None
+                low, high = boundary.tank[0][axis], boundary.tank[1][axis]
+                closed = [f"{'xyz'[axis]}{side}" not in boundary.open_faces for side in "-+"]
+                below, above = value < low - tolerance, value > high + tolerance
+                if (below and closed[0]) or (above and closed[1]):
+                    raise ValueError(
+                        f"gauges.{name} must be inside the walls along {'xyz'[axis]}, {low:g} to "
+                        f"{high:g} m; found {value:g} m, where there is no fluid. Move the gauge."
+                    )
+            for number, (lowest, highest) in enumerate(boundary.solids):
+                inside = [
+                    low + tolerance < value < high - tolerance
+                    for low, value, high in zip(lowest, point, highest, strict=False)
+                ]
+                if len(point) == 3 and all(inside):
+                    raise ValueError(
+                        f"gauges.{name} must not be inside boundary.obstacles[{number}]; found "
+                        f"{tuple(point)} m. Move the gauge into the fluid."
+                    )
+
+    def _points(self) -> Iterator[tuple[str, tuple[float, ...]]]:
+        for number, point in enumerate(self.pressure_gauges):
+            yield f"pressure_gauges[{number}]", point
+        for number, spot in enumerate(self.level_gauges):
+            yield f"level_gauges[{number}]", spot
