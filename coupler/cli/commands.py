@@ -53,9 +53,9 @@ def _require_writable(path: Path) -> None:
 def parser() -> argparse.ArgumentParser:
     """All commands and their options."""
     top = argparse.ArgumentParser(
-        prog="quintet", description="Independent solvers, one interface, one coupler."
+        prog="quintet", description="Couple independent solvers that run as separate processes."
     )
-    top.add_argument("--version", action=Version, nargs=0, help="of quintet")
+    top.add_argument("--version", action=Version, nargs=0, help="print the version of quintet")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, action: Action, text: str) -> argparse.ArgumentParser:

@@ -11,8 +11,8 @@ PARAMS = "its parameters in TOML, in place of cases; a table conform in it has w
 
 def add_commands(command: Command) -> None:
     """Add what tries a kind of component by itself."""
-    speed = command("bench", bench, "throughput of one component, or of the exchange")
-    speed.add_argument("name", help="exchange, or a kind of component")
+    speed = command("bench", bench, "measure the throughput of a component, or of the exchange")
+    speed.add_argument("name", help="the word exchange, or a kind of component")
     speed.add_argument("--case", default="", help="one of the component's cases; all if not given")
     speed.add_argument("--threads", type=int, action="append", metavar="N", help=THREADS)
     speed.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)
@@ -20,12 +20,16 @@ def add_commands(command: Command) -> None:
         "--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given"
     )
     speed.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
-    laws = command("conform", conform, "try the laws of the contract on a kind of component")
+    laws = command("conform", conform, "check that a kind of component obeys the contract")
     laws.add_argument("kind", nargs="?", default="", help="an installed kind, or module:Class")
     laws.add_argument("--case", default="", help="one of the kind's cases; all if not given")
     laws.add_argument("--params", type=Path, metavar="FILE", help=PARAMS)
-    laws.add_argument("--scene", default="", help="a scene with such a component, not cases")
-    laws.add_argument("--component", default="", metavar="NAME", help="its name in the scene")
+    laws.add_argument(
+        "--scene", default="", help="take the parameters from this scene, in place of cases"
+    )
+    laws.add_argument(
+        "--component", default="", metavar="NAME", help="name of the component in that scene"
+    )
     laws.add_argument("--preset", default="", help=PRESET)
     add_settings(laws)
     laws.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)

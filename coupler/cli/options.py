@@ -16,10 +16,10 @@ Command = Callable[[str, Action, str], argparse.ArgumentParser]
 PRESET = "a preset of the scene"
 SET = "set a key of the scene, as in components.plate.thickness=0.002; may be repeated"
 SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME=module:Class"
-TRANSPORT = "what carries the messages (default: the key transport of the scene)"
-FORCE = "replace a former one in that folder: only the files that it wrote"
-IMPORT = "import kinds that are code of the scene's own, module:Class, and check them too"
-FOR_PROGRAMS = "what was found, for programs"
+TRANSPORT = "how messages travel (default: key transport of the scene)"
+FORCE = "replace a former run in that folder; only files that it wrote are removed"
+IMPORT = "also import and check kinds module:Class, which are code beside the scene"
+FOR_PROGRAMS = "write the results as JSON to this file"
 
 
 def add_scene(command: argparse.ArgumentParser, **more: Any) -> None:
@@ -42,7 +42,9 @@ def add_settings(command: argparse.ArgumentParser) -> None:
 def add_report(command: argparse.ArgumentParser, folder: str) -> None:
     """Add where a command that runs a scene many times writes."""
     command.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)
-    command.add_argument("--out", type=Path, metavar="DIR", help=f"of all runs (default: {folder})")
+    command.add_argument(
+        "--out", type=Path, metavar="DIR", help=f"folder of all runs (default: {folder})"
+    )
     command.add_argument("--force", action="store_true", help=FORCE)
 
 

@@ -6,29 +6,31 @@ from pathlib import Path
 from quintet.coupler.cli.options import IMPORT, Command, add_scene, load_scene
 
 GRAPH = "draw components, ports and links instead of the plan"
-MERMAID = "the same as a Mermaid flowchart, for texts that draw it"
+MERMAID = "print the graph as a Mermaid flowchart"
 SUBJECT = (
-    "scene, a kind, or link and its kind; then one table or key of it; a list if none is given"
+    "scene, a kind, or link and its kind; then a table or key of it (default: list all subjects)"
 )
-WRITE = "fill in the tables between <!-- describe SUBJECT --> and <!-- described --> of texts"
+WRITE = "write the tables between <!-- describe SUBJECT --> and <!-- described --> in files"
 
 
 def add_commands(command: Command) -> None:
     """Add what starts no solver."""
-    listing = command("list", list_scenes, "scenes: name, title, components, presets, run times")
-    listing.add_argument("--json", action="store_true", help="for programs")
-    plan = command("check", check, "read a scene, print its plan; start no solver")
+    listing = command("list", list_scenes, "list scenes with components, presets and run times")
+    listing.add_argument("--json", action="store_true", help="print JSON")
+    plan = command("check", check, "check a scene and print its plan, without a run")
     add_scene(plan)
     plan.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
     shape = plan.add_mutually_exclusive_group()
     shape.add_argument("--graph", action="store_true", help=GRAPH)
     shape.add_argument("--mermaid", action="store_true", help=MERMAID)
-    keys = command("describe", describe, "every key of a scene, a kind or a link, with its unit")
+    keys = command("describe", describe, "describe the keys of scenes, kinds and links, with units")
     keys.add_argument("subject", nargs="*", metavar="SUBJECT", help=SUBJECT)
-    keys.add_argument("--json", action="store_true", help="for programs")
+    keys.add_argument("--json", action="store_true", help="print JSON")
     keys.add_argument("--write", nargs="+", type=Path, default=[], metavar="FILE", help=WRITE)
-    editors = command("schema", schema, "keys of scene files as a JSON schema, for editors")
-    editors.add_argument("scene", nargs="?", help="whose module:Class kinds it is to know as well")
+    editors = command("schema", schema, "print a JSON schema of scene files, for editors")
+    editors.add_argument(
+        "scene", nargs="?", help="scene whose kinds module:Class the schema includes"
+    )
     editors.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
 
 

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from quintet.coupler.scene.scene import Scene
 
 OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"
-RESUME = "go on with an interrupted or failed run, from its last snapshot"
-ELSEWHERE = "do not start this component: it joins by hand, with quintet join"
-COMPILED = "scenes, and kinds: all scenes of quintet that use them; all if none is given"
+RESUME = "continue an interrupted or failed run from its last snapshot"
+ELSEWHERE = "do not start this component: quintet join starts it, here or on another host"
+COMPILED = "scenes, or kinds, which stand for all scenes that use them (default: all scenes)"
 
 
 def add_commands(command: Command) -> None:
     """Add what runs a scene, and what reads runs."""
-    running = command("run", run, "run a scene, compare it with what it must reproduce")
+    running = command("run", run, "run a scene and compare it with its expectations")
     add_scene(running, nargs="?")
     running.add_argument("--out", type=Path, help=OUT)
     running.add_argument("--force", action="store_true", help=FORCE)
@@ -36,16 +36,18 @@ def add_commands(command: Command) -> None:
     running.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
     joining = command("join", join, "start one component here and join it to a coupler elsewhere")
     add_scene(joining)
-    joining.add_argument("name", help="of the component in the scene")
-    joining.add_argument("--at", required=True, metavar="ENDPOINT", help="of the coupler")
-    compiling = command("compile", compile_kernels, "fill the caches of compiled kernels")
+    joining.add_argument("name", help="name of the component in the scene")
+    joining.add_argument("--at", required=True, metavar="ENDPOINT", help="endpoint of the coupler")
+    compiling = command("compile", compile_kernels, "compile kernels ahead of the first run")
     compiling.add_argument("names", nargs="*", metavar="SCENE|KIND", help=COMPILED)
     compiling.add_argument("--preset", default="", help="a preset of the scene (default: quick)")
     add_settings(compiling)
-    showing = command("show", show, "what happened in a run")
+    showing = command("show", show, "print the results of a run again")
     showing.add_argument("folder", type=Path)
-    showing.add_argument("--json", action="store_true", help="for programs")
-    comparing = command("diff", diff, "first difference between two runs; 0 if there is none")
+    showing.add_argument("--json", action="store_true", help="print JSON")
+    comparing = command(
+        "diff", diff, "print the first difference between two runs; exit status 0 if none"
+    )
     comparing.add_argument("folders", nargs=2, type=Path, metavar="DIR")
 
 

@@ -4,21 +4,23 @@ import argparse
 
 from quintet.coupler.cli.options import Command, add_report, add_scene
 
-KEEP = "keep runs that were completed in DIR before, of the same scene on the same machine"
+KEEP = "reuse completed runs in DIR, of the same scene on the same machine"
 ALL = "scan all scenes that come with quintet and have scans"
-QUICK = "with --all: the preset quick of scenes that have one"
+QUICK = "with --all: use the preset quick of scenes that have one"
 
 
 def add_commands(command: Command) -> None:
     """Add what runs a scene many times."""
-    study = command("study", series, "error against run time over the refinements of a scene")
+    study = command(
+        "study", series, "measure error against run time over the refinements of a scene"
+    )
     add_scene(study)
     add_report(study, "runs/SCENE-study")
     study.add_argument("--keep", action="store_true", help=KEEP)
-    stability = command("stability", series, "stability limits of a scene")
+    stability = command("stability", series, "find the stability limits of a scene")
     add_scene(stability)
     add_report(stability, "runs/SCENE-stability")
-    scan = command("scan", series, "whether wrong results of absurd settings are reported")
+    scan = command("scan", series, "check whether wrong results of absurd settings are reported")
     add_scene(scan, nargs="?")
     scan.add_argument("--all", action="store_true", help=ALL)
     scan.add_argument("--quick", action="store_true", help=QUICK)
