@@ -36,8 +36,6 @@ LACKING = {
 }
 VAGUE = {"one", "found", "given", "made", "kept", "own"}
 VAGUE_LOCALS = {
-    "components/shared",
-    "components/sph_fluid",
     "scenarios",
 }
 

@@ -21,10 +21,10 @@ REST = PAIRS - 1
 @njit(inline="always")
 def longest_list(first, last, begin, end):  # type: ignore[no-untyped-def]
     """Length of the longest of lists [first, last)."""
-    found = 0
+    longest = 0
     for i in range(first, last):
-        found = max(found, end[i] - begin[i])
-    return found
+        longest = max(longest, end[i] - begin[i])
+    return longest
 
 
 @njit(inline="always")

@@ -102,11 +102,11 @@ class SymmetryImages:
 
     def _images(self, rows: int) -> list[tuple[Plane, Whole, slice]]:
         """Each plane, the rows that have images in it, and where these stand."""
-        found = []
+        images = []
         for plane, origin in zip(self.planes, self.origin, strict=True):
-            found.append((plane, origin, slice(rows, rows + len(origin))))
+            images.append((plane, origin, slice(rows, rows + len(origin))))
             rows += len(origin)
-        return found
+        return images
 
     def reflect_crossed(self, positions: Array, *vectors: Array) -> None:
         """Let rows that passed a plane change places with their images, in their vectors too."""
@@ -172,16 +172,16 @@ def neighbours_and_images(
     grid = grid_around(points[first], reach)
     first, second = (group[sorted_into(points[group], grid)[2]] for group in (first, second))
     row = np.concatenate([first, second])
-    found = neighbours_within(reach, points[row], len(first), team, query_points, buffer)
+    lists = neighbours_within(reach, points[row], len(first), team, query_points, buffer)
     at = np.empty(len(row), np.int64)
     at[row] = np.arange(len(row))
     if query_points is None:
         wanted = at[:rows]
     else:
         wanted = np.concatenate([at[:split], len(first) + np.arange(len(query_points))])
-    begin, middle, end = (one[wanted] for one in (found.begin, found.middle, found.end))
-    team.run(rename, len(wanted), begin, end, row, found.list)
-    return NeighbourLists(found.list, begin, middle, end)
+    begin, middle, end = (places[wanted] for places in (lists.begin, lists.middle, lists.end))
+    team.run(rename, len(wanted), begin, end, row, lists.list)
+    return NeighbourLists(lists.list, begin, middle, end)
 
 
 @njit(**FAST)

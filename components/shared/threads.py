@@ -41,7 +41,7 @@ class Team:
         shares = len(ends) - 1
         if self._pool is None or shares < 2:
             return [kernel(0, rows, *arguments)]
-        found: list[Any] = [None] * shares
+        results: list[Any] = [None] * shares
         cuts = [shares * thread // self.size for thread in range(self.size + 1)]
         left = [deque(range(*pair)) for pair in pairwise(cuts)]
 
@@ -55,10 +55,10 @@ class Team:
                         share = take()
                     except IndexError:  # another was faster
                         break
-                    found[share] = kernel(ends[share], ends[share + 1], *arguments)
+                    results[share] = kernel(ends[share], ends[share + 1], *arguments)
 
         others = [self._pool.submit(work, thread) for thread in range(1, self.size)]
         work(0)
         for other in others:
             other.result()
-        return found
+        return results

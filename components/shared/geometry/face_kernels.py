@@ -48,7 +48,7 @@ def fill_cells(corner: Array, low: Array, size: float, count: Whole) -> tuple[Wh
     """Beginnings (cells + 1,) and faces of all cells."""
     cells, span = count[0] * count[1] * count[2], np.empty((2, 3), np.int64)
     begin = np.zeros(cells + 1, np.int64)
-    found = np.zeros(0, np.int64)
+    faces = np.zeros(0, np.int64)
     for writes in (False, True):
         for f in range(corner.shape[0]):
             cell_range(corner, low, size, count, f, span)
@@ -57,18 +57,18 @@ def fill_cells(corner: Array, low: Array, size: float, count: Whole) -> tuple[Wh
                     for k in range(span[0, 2], span[1, 2] + 1):
                         cell = (i * count[1] + j) * count[2] + k
                         if writes:
-                            found[begin[cell]] = f
+                            faces[begin[cell]] = f
                             begin[cell] += 1
                         else:
                             begin[cell + 1] += 1
         if not writes:
             for cell in range(cells):
                 begin[cell + 1] += begin[cell]
-            found = np.empty(begin[cells], np.int64)
+            faces = np.empty(begin[cells], np.int64)
     for cell in range(cells, 0, -1):  # each beginning has gone on to the next
         begin[cell] = begin[cell - 1]
     begin[0] = 0
-    return begin, found
+    return begin, faces
 
 
 @njit(**EXACT)
@@ -119,7 +119,7 @@ def foot(p, x, room):  # type: ignore[no-untyped-def]
 class Rivals(NamedTuple):
     """Which faces count: those that look another way than a point's own, and are near."""
 
-    own: Array  # (n, 3) normals of the points' own faces, or zero: all faces count
+    facing: Array  # (n, 3) normals of the points' own faces, or zero: all faces count
     normal: Array  # (m, 3) of all faces
     most: float  # cosine of the angle between the two below which a face counts
     reach: float  # m, further than which none is looked for
@@ -171,7 +171,7 @@ def nearest_faces(
                             f = cells.face[at]
                             alike = 0.0
                             for d in range(3):
-                                alike += rivals.own[n, d] * rivals.normal[f, d]
+                                alike += rivals.facing[n, d] * rivals.normal[f, d]
                             if alike >= rivals.most or outside(p, corner[f], best):
                                 continue
                             xi, eta, d2 = foot(p, corner[f], room)
@@ -195,7 +195,7 @@ def outside(p, x, d2):  # type: ignore[no-untyped-def]
 
 @njit(**EXACT)
 def opposite_faces(
-    start: Array, inward: Array, own: Whole, reach: float, cells: Cells, normal: Array, room: Array
+    start: Array, inward: Array, face: Whole, reach: float, cells: Cells, normal: Array, room: Array
 ) -> None:
     """Write how far behind points of faces the body ends: the first face turned the other way.
 
@@ -203,7 +203,7 @@ def opposite_faces(
     ----------
     start, inward : (n, 3) float arrays, m and 1
         Points on faces, and unit vectors into the body.
-    own : (n,) int array
+    face : (n,) int array
         Faces that they lie on.
     reach : float, m
         Further than which nothing is looked for.
@@ -217,7 +217,7 @@ def opposite_faces(
     steps, at = math.ceil(2.0 * reach / size) + 1, np.empty(3, np.int64)
     hit, space = np.empty(3), np.empty((3, 3))
     for n in range(start.shape[0]):
-        found = math.inf
+        nearest = math.inf
         for step in range(steps + 1):
             for d in range(3):
                 place = start[n, d] + min(0.5 * size * step, reach) * inward[n, d]
@@ -231,13 +231,13 @@ def opposite_faces(
                             turned = 0.0
                             for d in range(3):
                                 turned += normal[f, d] * inward[n, d]
-                            if f != own[n] and turned > 0.0:
+                            if f != face[n] and turned > 0.0:
                                 ray = start[n], inward[n]
                                 way = along_ray(ray, corner[f], normal[f], turned, hit, space)
-                                found = min(found, way)
-            if found <= 0.5 * size * step:
+                                nearest = min(nearest, way)
+            if nearest <= 0.5 * size * step:
                 break
-        room[n] = found if found <= reach else math.inf
+        room[n] = nearest if nearest <= reach else math.inf
 
 
 @njit(**EXACT)

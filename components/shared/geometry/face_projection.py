@@ -65,18 +65,18 @@ def project(points: Array, position: Array, face: Array) -> Projection:
     owner, local, gap = np.zeros(count, np.int64), np.zeros((count, 2)), np.zeros(count)
     every = Rivals(np.zeros((count, 3)), np.zeros((len(x), 3)), math.inf, math.inf)
     nearest_faces(np.ascontiguousarray(points), cells_of(x), every, owner, local, gap)
-    own = x[owner]
+    quads = x[owner]
     weight = bilinear(*local.T)
-    foot = at_points(weight, own)
-    side = np.linalg.norm(own - np.roll(own, 1, axis=1), axis=2).max(axis=1, initial=0.0)
-    along, across = (at_points(one, own) for one in derivatives(*local.T))
+    foot = at_points(weight, quads)
+    side = np.linalg.norm(quads - np.roll(quads, 1, axis=1), axis=2).max(axis=1, initial=0.0)
+    along, across = (at_points(slope, quads) for slope in derivatives(*local.T))
     beyond = _in_plane(points - foot, along, across)
     return Projection(corner[owner], weight, owner, gap, side, beyond)
 
 
 def _in_plane(away: Array, along: Array, across: Array) -> Array:
     """Size (n,) m of the part of vectors (n, 3) that lies in the plane of two tangents."""
-    length, width = (np.linalg.norm(one, axis=1)[:, None] for one in (along, across))
+    length, width = (np.linalg.norm(tangent, axis=1)[:, None] for tangent in (along, across))
     first = np.divide(along, length, out=np.zeros_like(along), where=length > 0.0)
     rest = across - (across * first).sum(axis=1)[:, None] * first
     size = np.linalg.norm(rest, axis=1)[:, None]

@@ -188,12 +188,12 @@ def nearest(points: Array, triangles: Array) -> Array:
 
     middle = triangles.mean(axis=1)
     radius = np.linalg.norm(triangles - middle[:, None], axis=2).max(axis=1)
-    found = np.empty_like(points)
+    feet = np.empty_like(points)
     for k, point in enumerate(points):
         distance = np.linalg.norm(middle - point, axis=1)
         near = triangles[
             distance - radius <= distance.min()
         ]  # no other can be nearer than a middle
         all_near = closest_point(near, np.broadcast_to(point, (len(near), 3)))
-        found[k] = all_near[np.argmin(((all_near - point) ** 2).sum(axis=1))]
-    return found
+        feet[k] = all_near[np.argmin(((all_near - point) ** 2).sum(axis=1))]
+    return feet

@@ -35,8 +35,8 @@ def area_moments(corner: Array) -> Area:
 
 def in_order(corners: Sequence[tuple[float, float]]) -> Array:
     """Corners of a polygon that may go round either way, from x to z."""
-    found = np.array(corners)
-    return found[::-1].copy() if turns(found).sum() < 0.0 else found
+    outline = np.array(corners)
+    return outline[::-1].copy() if turns(outline).sum() < 0.0 else outline
 
 
 def in_space(plane: Array) -> Array:
@@ -89,19 +89,19 @@ def require_simple(where: str, corners: Sequence[tuple[float, float]]) -> None:
         raise ValueError(
             f"{where}: corners of a prism must differ from the next. Remove one of two."
         )
-    one, other = np.triu_indices(count, 2)
-    keep = ~((one == 0) & (other == count - 1))  # neighbours
-    one, other = one[keep], other[keep]
-    across = _cross(along[one], along[other])
-    between = start[other] - start[one]
+    first, second = np.triu_indices(count, 2)
+    keep = ~((first == 0) & (second == count - 1))  # neighbours
+    first, second = first[keep], second[keep]
+    across = _cross(along[first], along[second])
+    between = start[second] - start[first]
     safe = np.where(across == 0.0, 1.0, across)
-    t, u = _cross(between, along[other]) / safe, _cross(between, along[one]) / safe
+    t, u = _cross(between, along[second]) / safe, _cross(between, along[first]) / safe
     met = (across != 0.0) & (t >= 0.0) & (t <= 1.0) & (u >= 0.0) & (u <= 1.0)
     if met.any():
         k = int(np.argmax(met))
         raise ValueError(
             f"{where}: corners of a prism must go once round a polygon that does not cross itself; "
-            f"the edges after corners {one[k]} and {other[k]} meet. Put them in order."
+            f"the edges after corners {first[k]} and {second[k]} meet. Put them in order."
         )
 
 
@@ -111,9 +111,9 @@ def _cross(a: Array, b: Array) -> Array:
 
 def inside_polygon(first: Array, second: Array, corners: Array) -> NDArray[np.bool_]:
     """Whether places (n,), (n,) m are inside a polygon (k, 2) m: by the edges that a ray meets."""
-    found = np.zeros(np.broadcast(first, second).shape, bool)
+    inside = np.zeros(np.broadcast(first, second).shape, bool)
     for (a, b), (c, d) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         passes = (b > second) != (d > second)
         if b != d:
-            found ^= passes & (first < a + (second - b) * (c - a) / (d - b))
-    return found
+            inside ^= passes & (first < a + (second - b) * (c - a) / (d - b))
+    return inside

@@ -170,8 +170,8 @@ class Cylinder:
     def contains(self, x: Array, y: Array, z: Array) -> Mask:
         """Whether places [m] are inside."""
         places, k = (x, y, z), self.axis
-        one, other = (axis for axis in range(3) if axis != k)
-        aside2 = (places[one] - self.base[one]) ** 2 + (places[other] - self.base[other]) ** 2
+        first, second = (axis for axis in range(3) if axis != k)
+        aside2 = (places[first] - self.base[first]) ** 2 + (places[second] - self.base[second]) ** 2
         within = (self.base[k] < places[k]) & (places[k] < self.top[k])
         return within & (aside2 < self.radius**2) & (aside2 >= (self.inner_radius or 0.0) ** 2)
 

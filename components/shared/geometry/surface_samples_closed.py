@@ -112,11 +112,11 @@ def _apart(points: Array, close: float) -> Array:
     # Left out of scenes without such bodies.
     from scipy.spatial import cKDTree
 
-    kept = np.ones(len(points), bool)
+    stays = np.ones(len(points), bool)
     for i, j in sorted(cKDTree(points).query_pairs(close)):
-        if kept[i] and kept[j]:
-            kept[j] = False
-    return np.flatnonzero(kept)
+        if stays[i] and stays[j]:
+            stays[j] = False
+    return np.flatnonzero(stays)
 
 
 def _most_apart(points: Array, most: int) -> Array:
@@ -124,15 +124,15 @@ def _most_apart(points: Array, most: int) -> Array:
     # Left out of scenes without such bodies.
     from scipy.spatial import cKDTree
 
-    surplus, kept = len(points) - most, np.ones(len(points), bool)
+    surplus, stays = len(points) - most, np.ones(len(points), bool)
     if surplus <= 0:
-        return np.flatnonzero(kept)
+        return np.flatnonzero(stays)
     distance, nearest = cKDTree(points).query(points, 2)
     for i in np.argsort(distance[:, 1], kind="stable"):
-        if surplus and kept[nearest[i, 1]]:
-            kept[i] = False
+        if surplus and stays[nearest[i, 1]]:
+            stays[i] = False
             surplus -= 1
-    return np.flatnonzero(kept)
+    return np.flatnonzero(stays)
 
 
 def depths_in_spheres(centres: Array, radii: Array) -> Depths:

@@ -90,7 +90,7 @@ class Columns:
     def places(self, position: Array) -> tuple[Array, Array]:
         """Middles (n, 3) m, and t × s (n, 3) m2 there."""
         weight, corner = bilinear(*self.local.T), position[self.node]
-        along, across = (at_points(one, corner) for one in derivatives(*self.local.T))
+        along, across = (at_points(slope, corner) for slope in derivatives(*self.local.T))
         return at_points(weight, corner), np.cross(along, across + self.side)
 
 
@@ -115,18 +115,18 @@ def sample_faces(position: Array, face: Array, asked: Sampling) -> FaceSamples:
     thick = thickness[rows]
     depth = np.maximum(_shift(asked) + (number + 0.5) * thick, 0.0)
     place = start[rows] - depth[:, None] * normal[rows]
-    kept = _own(place, normal[rows], columns.face[rows], depth, thick, outward, x)
+    below = _own(place, normal[rows], columns.face[rows], depth, thick, outward, x)
     volume = (columns.share * length)[rows] * thick
-    least, rows = int(np.argmin(room)), rows[kept]
+    least, rows = int(np.argmin(room)), rows[below]
     local = columns.local[rows].T
     return FaceSamples(
         columns.node[rows],
         bilinear(*local),
         *derivatives(*local),
-        depth[kept],
+        depth[below],
         np.tile(columns.side, (len(rows), 1)),
         normal[rows],
-        volume[kept],
+        volume[below],
         float(room[least]),
         int(columns.face[least]),
     )
@@ -159,14 +159,14 @@ def _face_normals(position: Array, face: Array, side: Array) -> Array:
 
 
 def _room(
-    start: Array, normal: Array, own: Array, outward: Array, x: Array, asked: Sampling
+    start: Array, normal: Array, face: Array, outward: Array, x: Array, asked: Sampling
 ) -> Array:
     """How far (n,) m it is from columns to where the body ends behind them; ∞ if that is far."""
     # Late as in `_columns`.
     from quintet.components.shared.geometry.face_kernels import opposite_faces
 
     room, reach = np.full(len(start), np.inf), 2.0 * (asked.inset + asked.depth)
-    opposite_faces(start, -normal, own, reach, cells_of(x), outward, room)
+    opposite_faces(start, -normal, face, reach, cells_of(x), outward, room)
     return room
 
 
@@ -186,7 +186,7 @@ def _layers(room: Array, asked: Sampling) -> tuple[Array, Array]:
 
 
 def _own(
-    place: Array, normal: Array, own: Array, depth: Array, thick: Array, outward: Array, x: Array
+    place: Array, normal: Array, face: Array, depth: Array, thick: Array, outward: Array, x: Array
 ) -> Array:
     """Numbers of the samples that lie below their own faces, and not rather below others."""
     # Late as in `_columns`.
@@ -198,4 +198,4 @@ def _own(
     nearest_faces(np.ascontiguousarray(place), cells_of(x), rivals, rival, local, gap)
     further = gap - depth > HALF * thick
     alike = np.abs(gap - depth) <= HALF * thick
-    return np.flatnonzero(further | (alike & (own < rival)))
+    return np.flatnonzero(further | (alike & (face < rival)))

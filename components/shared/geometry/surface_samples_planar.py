@@ -95,14 +95,14 @@ def offset_inward(corner: Array, distance: float) -> Array:
 
 def _clip(corner: Array, above: Array) -> Array:
     """Cut off what lies above a line, given how far above it each corner is (k,) m."""
-    kept = []
+    corners = []
     for k in range(len(corner)):
         a, b = above[k - 1], above[k]
         if (a < 0.0) != (b < 0.0):
-            kept.append(corner[k - 1] + a / (a - b) * (corner[k] - corner[k - 1]))
+            corners.append(corner[k - 1] + a / (a - b) * (corner[k] - corner[k - 1]))
         if b < 0.0:
-            kept.append(corner[k])
-    return np.array(kept).reshape(-1, 2)
+            corners.append(corner[k])
+    return np.array(corners).reshape(-1, 2)
 
 
 def inradius(corner: Array) -> float:
@@ -140,10 +140,10 @@ def _layers(corner: Array, spacing: float, depth: float) -> Samples:
             break
         outer, inner = (offset_inward(corner, (k + end) * thickness) for end in (0, 1))
         ring = area(outer) - (area(inner) if len(inner) and k + 1 < count else 0.0)
-        found, normal = _along_edges(offset_inward(corner, below), spacing)
-        points.append(found)
+        places, normal = _along_edges(offset_inward(corner, below), spacing)
+        points.append(places)
         normals.append(normal)
-        volumes.append(np.full(len(found), ring / len(found)))
+        volumes.append(np.full(len(places), ring / len(places)))
     place, normal = np.concatenate(points), np.concatenate(normals)
     return _in_space(place), _in_space(normal), np.concatenate(volumes)
 

@@ -40,7 +40,7 @@ def fill_sphere(
     radius, cubes = 0.5 * diameter, math.pi / 6 * (diameter / spacing) ** 3
     # Water finds the body as large as its samples' cubes together: their number must be right.
     tries = [_rings(radius, spacing, factor) for factor in SHELL_FACTORS]
-    rings = min(tries, key=lambda one: abs(sum(count for _, _, count in one) - cubes))
+    rings = min(tries, key=lambda shells: abs(sum(count for _, _, count in shells) - cubes))
     points = np.concatenate([_ring(*ring, 0.5 * (k % 2)) for k, ring in enumerate(rings)])
     distance = np.linalg.norm(points, axis=1)
     keep = radius - distance < depth
@@ -86,11 +86,11 @@ def _rings(radius: float, spacing: float, factor: float) -> list[tuple[float, fl
     lie at all depths down to a spacing, and the sphere be larger than it is.
     """
     edges = [*np.arange(radius, 0.0, -spacing).tolist(), 0.0]
-    found: list[tuple[float, float, int]] = []
+    rings: list[tuple[float, float, int]] = []
     for outer, inner in pairwise(edges):
         count = factor * 4.0 * math.pi / 3.0 * (outer**3 - inner**3) / spacing**3
         if count < 1.5:
-            found.append((0.0, 0.0, 1))
+            rings.append((0.0, 0.0, 1))
             continue
         middle = 0.5 * (outer + inner)
         bands = max(2, round(math.pi * middle / spacing))
@@ -98,8 +98,8 @@ def _rings(radius: float, spacing: float, factor: float) -> list[tuple[float, fl
             top, bottom = (math.cos(math.pi * (k + end) / bands) for end in (0, 1))
             angle = math.pi * (k + 0.5) / bands
             some = max(2, round(0.5 * (top - bottom) * count))
-            found.append((middle * math.sin(angle), middle * math.cos(angle), some))
-    return found
+            rings.append((middle * math.sin(angle), middle * math.cos(angle), some))
+    return rings
 
 
 def _ring(aside: float, height: float, count: int, turn: float) -> Array:

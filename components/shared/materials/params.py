@@ -225,11 +225,11 @@ def _material_name(name: str) -> str:
 MaterialName = Annotated[str, AfterValidator(_material_name)]
 
 
-def material(given: "Material | str") -> Material:
+def material(described: "Material | str") -> Material:
     """Return a material that a scene describes, or names from the library."""
-    if isinstance(given, Material):
-        return given
-    return _from_table(LIBRARY[given])
+    if isinstance(described, Material):
+        return described
+    return _from_table(LIBRARY[described])
 
 
 def _from_table(table: Table) -> Material:

@@ -12,10 +12,10 @@ PLACES = ((0, 3, 5), (3, 1, 4), (5, 4, 2))  # of the six numbers in a matrix
 
 
 @njit(**INNER)
-def positive_part(tensor, found):  # type: ignore[no-untyped-def]
+def positive_part(tensor, part):  # type: ignore[no-untyped-def]
     """Write the tensor Σ max(λ, 0) n nᵀ of the eigenvalues and eigenvectors of another.
 
-    By Jacobi's rotations. Both are six numbers, xx yy zz xy yz zx; `found` is an array.
+    By Jacobi's rotations. Both are six numbers, xx yy zz xy yz zx; `part` is an array.
     """
     a, e = np.empty((3, 3)), np.eye(3)
     for i in range(3):
@@ -36,9 +36,9 @@ def positive_part(tensor, found):  # type: ignore[no-untyped-def]
                 a[p, k], a[q, k] = c * a[p, k] - s * a[q, k], s * a[p, k] + c * a[q, k]
             a[p, q], a[q, p] = 0.0, 0.0
     for d in range(6):
-        found[d] = 0.0
+        part[d] = 0.0
     for k in range(3):
         pull = max(a[k, k], 0.0)
         for i in range(3):
             for j in range(i + 1):
-                found[PLACES[i][j]] += pull * e[i, k] * e[j, k]
+                part[PLACES[i][j]] += pull * e[i, k] * e[j, k]

@@ -53,7 +53,7 @@ def corners(points: Points) -> tuple[Points, Points]:
     """Lowest and highest x, y, z (3,) m of points (n, 3 or more) m."""
     # Column by column: numpy takes twenty times as long over all at once.
     axes = points[:, 0], points[:, 1], points[:, 2]
-    return np.array([one.min() for one in axes]), np.array([one.max() for one in axes])
+    return np.array([axis.min() for axis in axes]), np.array([axis.max() for axis in axes])
 
 
 def grid_around(points: Points, reach: float) -> Grid:

@@ -93,7 +93,7 @@ def search(
         Whether there was space.
     """
     points, split, start_one, start_two, grid = searched
-    begin_of, middle_of, end_of, found = lists
+    begin_of, middle_of, end_of, listed = lists
     nx, ny, nz = grid.nx, grid.ny, grid.nz
     k, limit = first * per_row, last * per_row
     for i in range(first, last):
@@ -116,7 +116,7 @@ def search(
                         for j in range(np.uint64(begin), np.uint64(end)):
                             dx, dy, dz = x - points[0, j], y - points[1, j], z - points[2, j]
                             # Always written, kept if near: no branch to mispredict.
-                            found[k] = np.int32(j)
+                            listed[k] = np.int32(j)
                             k += int(dx * dx + dy * dy + dz * dz < reach2)
                 if group == 0:
                     middle_of[i] = k

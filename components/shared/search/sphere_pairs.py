@@ -105,8 +105,8 @@ class NearPairs:
         keys = keys_of(position, np.arange(len(position)), self.width)
         order = np.argsort(keys, kind="stable")
         arguments = position, self.radius, order, keys[order], self.width, self.skin
-        found = list_pairs(*arguments, *self.pairs)
-        if found > len(self.pairs.other):
-            self.pairs = self.pairs._replace(other=np.zeros(GROWTH * found, np.int64))
+        count = list_pairs(*arguments, *self.pairs)
+        if count > len(self.pairs.other):
+            self.pairs = self.pairs._replace(other=np.zeros(GROWTH * count, np.int64))
             list_pairs(*arguments, *self.pairs)
         self.listed[:] = position

@@ -65,11 +65,11 @@ class ContactStiffness:
         Returns the largest step [s] that it allows there.
         """
         if self.params.boundary.potential_stiffness is not None:
-            found = np.full(len(rows), self.params.boundary.potential_stiffness)
+            stiffness = np.full(len(rows), self.params.boundary.potential_stiffness)
         else:
             places = state.position_density[rows, :3]
-            found = self.share * pressure_at_rest(places, self.params, body)
-        state.velocity_pressure[rows, 3] = found / self.params.density**2
+            stiffness = self.share * pressure_at_rest(places, self.params, body)
+        state.velocity_pressure[rows, 3] = stiffness / self.params.density**2
         return self.limit(state, rows)
 
     def limit(self, state: State, rows: Whole) -> float:
@@ -84,11 +84,11 @@ class ContactStiffness:
         stiff = state.velocity_pressure[:, 3] * mask
         exponent = params.boundary.potential_exponent
         numbers = (self.numbers.inverse, exponent, params.spacing**-params.dimensions)
-        found = np.zeros(state.fluid)
+        energies = np.zeros(state.fluid)
         laws = (wall_repulsion(params), fluid)
-        arrays = (state.position_density, stiff, lists, *numbers, *laws, found)
+        arrays = (state.position_density, stiff, lists, *numbers, *laws, energies)
         team.run(stored_energy, state.fluid, *arrays)
-        return float(found.sum()) * fluid.mass**2 * params.slab_thickness
+        return float(energies.sum()) * fluid.mass**2 * params.slab_thickness
 
 
 def pressure_at_rest(points: Array, params: SphFluidParams, body: Array | None = None) -> Array:
@@ -100,13 +100,13 @@ def pressure_at_rest(points: Array, params: SphFluidParams, body: Array | None =
     gravity = params.hydrostatic_gravity
     size = math.hypot(*gravity)
     top = max(levels(box, gravity)[1] for box in params.extents)  # m, against gravity
-    found = np.maximum(params.density * (size * top + points @ np.array(gravity)), 0.0)
+    pressures = np.maximum(params.density * (size * top + points @ np.array(gravity)), 0.0)
     if body is None:
-        return np.asarray(found)
+        return np.asarray(pressures)
     number = body.astype(np.int64)
-    dry = np.bincount(number, found) == 0.0
+    dry = np.bincount(number, pressures) == 0.0
     mean = 0.5 * params.density * size * params.depth
-    return np.where(dry[number], mean, found)
+    return np.where(dry[number], mean, pressures)
 
 
 def stiffness(pressures: Array, params: SphFluidParams) -> Array:
@@ -117,7 +117,7 @@ def stiffness(pressures: Array, params: SphFluidParams) -> Array:
 def step_limit(stiffest: float, params: SphFluidParams) -> float:
     """Largest step [s] where the greatest K Δpᵈ is `stiffest` [Pa]."""
     distance = np.linspace(0.0, SUPPORT * params.smoothing, 61)
-    force = [wall_force(one, params) for one in distance]
+    force = [wall_force(place, params) for place in distance]
     steepest = float(-np.gradient(force, distance).min())
     return SAFE * params.spacing * math.sqrt(params.density / (stiffest * steepest))
 
@@ -145,8 +145,8 @@ def wall_force(distance: float, params: SphFluidParams, exponent: int | None = N
     r, z = r[r > 0.0], z[r > 0.0]
     h, n = params.smoothing, exponent or params.boundary.potential_exponent
     width = shape(1.0 / h, params)  # W(Δp) over its scale
-    ratio = np.array([shape(one, params) for one in r / h]) / width
-    fall = np.array([slope(one, params) for one in r / h]) / h / width
+    ratio = np.array([shape(q, params) for q in r / h]) / width
+    fall = np.array([slope(q, params) for q in r / h]) / h / width
     return float((n * ratio ** (n - 1) * fall * z / r).sum())
 
 

@@ -34,7 +34,7 @@ class Films:
     row: Whole  # (m,) its row in the boundary
     across: Whole  # (m,) row in the boundary of what it faces
     area: Array  # (m,) m2, of its cell in the face
-    own: Array  # (m,) Σ V W of its own body's samples, around the middle of that cell
+    own_share: Array  # (m,) Σ V W of its own body's samples, around the middle of that cell
     rim: Array  # (m,) whether it is at the film's rim
     size: Array  # (m,) m, of the film that it belongs to
     begin: Whole  # (m + 1,) where its neighbours in the film stand in `near`
@@ -69,10 +69,10 @@ def find_films(state: State, samples: Samples, spacing: float, constants: Consta
     across = face_normals(normal[mine], normal[theirs])
     below = np.einsum("nd,nd->n", normal[mine], across)
     foot = position[mine] + 0.5 * below[:, None] * across
-    own = np.zeros(len(mine))
+    own_share = np.zeros(len(mine))
     felt = near(foot, position[rows], BEYOND * constants.smoothing.support)
     add_own_volume(
-        foot, owner[mine], position[rows], owner[rows], samples.volume, felt, constants, own
+        foot, owner[mine], position[rows], owner[rows], samples.volume, felt, constants, own_share
     )
     count = np.zeros(len(mine), np.int64)
     table = np.zeros((len(mine), MOST), np.int64)
@@ -89,7 +89,7 @@ def find_films(state: State, samples: Samples, spacing: float, constants: Consta
         row=mine,
         across=theirs,
         area=samples.volume[state.sample[mine]] / np.abs(below),
-        own=own,
+        own_share=own_share,
         rim=at_rim(position[mine], begin, listed, RIM * spacing),
         size=spacing * np.sqrt(members[which.reshape(-1)]),
         begin=begin,

@@ -80,7 +80,7 @@ def advance(
     position, mirror = state.position_density[state.fluid :], state.mirror_point
     off, back = (mirror[row] - position[row, :3] for row in (films.row, films.across))
     across = face_normals(off, back)
-    below, beyond = (np.einsum("nd,nd->n", one, across) for one in (off, back))
+    below, beyond = (np.einsum("nd,nd->n", vectors, across) for vectors in (off, back))
     foot = position[films.row, :3] + 0.5 * below[:, None] * across
     gap = np.einsum("nd,nd->n", foot - position[films.across, :3], across) - 0.5 * beyond
     width = np.maximum(gap, params.boundary.roughness)
@@ -104,7 +104,7 @@ def advance(
     state.film[films.sample] = np.stack([pressure, share, width], axis=1)
     wet = np.empty(len(gap))
     write_fluid_share(films.row, foot, state.fluid, state.position_density, lists, constants, wet)
-    left = 2.0 * np.maximum(1.0 - films.own - wet, 0.0)
+    left = 2.0 * np.maximum(1.0 - films.own_share - wet, 0.0)
     left *= np.clip((WIDEST - width / spacing) / FADING, 0.0, 1.0)
     force = (pressure * left * films.area)[:, None] * across
     np.add.at(state.force, films.sample, force)

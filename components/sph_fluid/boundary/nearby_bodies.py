@@ -33,19 +33,19 @@ def bounds(place: Array, body: Whole, count: int) -> Bounds:
 
 def near_walls(bodies: Bounds, params: SphFluidParams, reach: float) -> NDArray[np.bool_]:
     """Which bodies (bodies,) are nearer to a wall or an obstacle than `reach` [m]."""
-    found = np.zeros(len(bodies.low), bool)
+    near = np.zeros(len(bodies.low), bool)
     if params.boundary.tank is not None:
         low, high = np.array(params.boundary.tank)
         for face in params.closed_faces:
             axis = "xyz".index(face[0])
             if face[1] == "-":
-                found |= bodies.low[:, axis] < low[axis] + reach
+                near |= bodies.low[:, axis] < low[axis] + reach
             else:
-                found |= bodies.high[:, axis] > high[axis] - reach
+                near |= bodies.high[:, axis] > high[axis] - reach
     for box in params.boundary.solids:
         low, high = np.array(box)
-        found |= ((bodies.low < high + reach) & (bodies.high > low - reach)).all(axis=1)
-    return found
+        near |= ((bodies.low < high + reach) & (bodies.high > low - reach)).all(axis=1)
+    return near
 
 
 def near_each_other(bodies: Bounds, reach: float) -> NDArray[np.bool_]:
@@ -56,10 +56,10 @@ def near_each_other(bodies: Bounds, reach: float) -> NDArray[np.bool_]:
     first = np.arange(len(low))
     last = np.searchsorted(low[:, 0], high[:, 0] + reach)
     count = np.maximum(last - first - 1, 0)
-    one: Whole = np.repeat(first, count)
-    other = one + 1 + np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
-    apart = (low[other] > high[one] + reach) | (low[one] > high[other] + reach)
+    earlier: Whole = np.repeat(first, count)
+    later = earlier + 1 + np.arange(len(earlier)) - np.repeat(np.cumsum(count) - count, count)
+    apart = (low[later] > high[earlier] + reach) | (low[earlier] > high[later] + reach)
     near = ~apart.any(axis=1)
-    found = np.zeros(len(low), bool)
-    found[order[one[near]]] = found[order[other[near]]] = True
-    return found
+    has_neighbour = np.zeros(len(low), bool)
+    has_neighbour[order[earlier[near]]] = has_neighbour[order[later[near]]] = True
+    return has_neighbour

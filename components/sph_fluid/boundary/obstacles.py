@@ -33,23 +33,23 @@ def obstacle_points(params: SphFluidParams) -> Array:
 
 def count_obstacle_points(params: SphFluidParams) -> int:
     """Count them without making them: rows along the axes, less those that water does not feel."""
-    found = 0
+    count = 0
     for box in params.boundary.solids:
         steps, low, _, step, wet = _rows(box, params)
         if max(steps) > MOST_ROWS:  # no machine holds as many; all of them, then
-            found += math.prod(int(one) + 1 for one in steps)
+            count += math.prod(int(n) + 1 for n in steps)
             continue
         whole, deep = 1, 1
-        for axis, count in enumerate(steps):
-            row = low[axis] + np.arange(int(count) + 1) * step[axis]
+        for axis, rows in enumerate(steps):
+            row = low[axis] + np.arange(int(rows) + 1) * step[axis]
             away = [row - box[0][axis], box[1][axis] - row]
             nearest = np.min(
                 [np.where(wet[end, axis], away[end], np.inf) for end in (0, 1)], axis=0
             )
             whole *= len(row)
             deep *= int((nearest >= FELT * params.smoothing_length).sum())
-        found += whole - deep
-    return found
+        count += whole - deep
+    return count
 
 
 def obstacle_mirrors(params: SphFluidParams) -> Array:

@@ -34,7 +34,7 @@ def require_one_metre(params: SphFluidParams) -> None:
 def in_plane(fields: Fields, params: SphFluidParams) -> dict[str, Array]:
     """Positions and velocities (n, 3) of samples in the fluid's own plane, wherever theirs is."""
     (_, low, _), (_, high, _) = params.extents[0]
-    found = {key: np.array(array) for key, array in fields.items()}
-    for key, array in found.items():
+    planar = {key: np.array(array) for key, array in fields.items()}
+    for key, array in planar.items():
         array[:, 1] = 0.0 if key == "surface.velocity" else low + 0.5 * (high - low)
-    return found
+    return planar

@@ -36,16 +36,16 @@ class Edge(NamedTuple):
 
 def edges(shape: FluidRegion, spacing: float, planar: bool) -> list[Edge]:
     """Cells that a shape is cut into; `planar`: one along y."""
-    body, found = shape.geometry, []
+    body, cut = shape.geometry, []
     for axis, low, high in zip(range(3), *body.bounds, strict=True):
         if isinstance(body, Sphere) or (isinstance(body, Cylinder) and axis != body.axis):
             count = math.ceil((high - low) / spacing)
             middle, half = 0.5 * (low + high), 0.5 * count * spacing
-            found.append(Edge(middle - half, middle + half, count))
+            cut.append(Edge(middle - half, middle + half, count))
         else:
             count = 1 if planar and axis == 1 else max(1, round((high - low) / spacing))
-            found.append(Edge(low, high, count))
-    return found
+            cut.append(Edge(low, high, count))
+    return cut
 
 
 def particle_count(shape: FluidRegion, spacing: float, planar: bool) -> int:
@@ -61,8 +61,8 @@ def fill_shape(shape: FluidRegion, spacing: float, planar: bool) -> Array:
     axes = [cell_centres(*edge) for edge in cut]
     part = _parts(shape, cut, axes, planar)
     order = np.lexsort((np.mod(np.arange(part.size) * TURN, 1.0), -part))
-    kept = np.sort(order[: particle_count(shape, spacing, planar)])
-    return lattice_points(axes)[kept]
+    filled = np.sort(order[: particle_count(shape, spacing, planar)])
+    return lattice_points(axes)[filled]
 
 
 def _parts(shape: FluidRegion, cut: list[Edge], axes: list[Array], planar: bool) -> Array:
@@ -76,10 +76,10 @@ def _parts(shape: FluidRegion, cut: list[Edge], axes: list[Array], planar: bool)
         finer[1] = axes[1]
     shares = len(axes[0]), FINE, len(axes[1]), 1 if planar else FINE, FINE
     body, sizes = shape.geometry, (len(finer[0]), len(finer[1]), FINE)
-    found = []
+    parts = []
     for layer in range(cut[2].cells):
         z = finer[2][layer * FINE : (layer + 1) * FINE]
         places = np.meshgrid(finer[0], finer[1], z, indexing="ij", sparse=True)
         some = np.broadcast_to(body.contains(*places), sizes).reshape(shares)
-        found.append(some.mean(axis=(1, 3, 4)).T.ravel())
-    return np.concatenate(found)
+        parts.append(some.mean(axis=(1, 3, 4)).T.ravel())
+    return np.concatenate(parts)

@@ -121,7 +121,7 @@ def find_partners(
 @njit(**FAST)
 def add_own_volume(
     foot: Array, owner: Array, position: Array, owners: Array, volume: Array, felt: Near,
-    constants: Constants, own: Array,
+    constants: Constants, own_share: Array,
 ) -> None:  # fmt: skip
     """Add Σ V W of the samples of the same body around points (m, 3) m."""
     for i in range(foot.shape[0]):
@@ -130,7 +130,7 @@ def add_own_volume(
                 r2 = 0.0
                 for d in range(3):
                     r2 += (foot[i, d] - position[k, d]) ** 2
-                own[i] += kernel(r2, constants.smoothing) * volume[k]
+                own_share[i] += kernel(r2, constants.smoothing) * volume[k]
 
 
 @njit(**FAST)

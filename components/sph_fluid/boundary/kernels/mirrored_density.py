@@ -25,7 +25,7 @@ NOT_LISTED, BY_POTENTIAL = -1, -2  # in place of a row: lists have none, or a po
 
 @njit(**FAST)
 def extrapolate_density(
-    first: int, last: int, split: int, own: Whole, mirror_point: Array, position: Array,
+    first: int, last: int, split: int, listed: Whole, mirror_point: Array, position: Array,
     velocity: Array, lists: Lists, rest_gradient: float, constants: Constants,
 ) -> None:  # fmt: skip
     """Write density and p/ρ² of boundary rows.
@@ -38,7 +38,7 @@ def extrapolate_density(
     ----------
     first, last : int
         Rows of the boundary, which stand behind the first `split` rows of the state.
-    own : (boundary,) int array
+    listed : (boundary,) int array
         Row of the lists that has what is around the particle itself; NOT_LISTED, or BY_POTENTIAL.
     mirror_point : (boundary, 3) float array, m
     position, velocity : (n, 4) float arrays
@@ -55,19 +55,19 @@ def extrapolate_density(
     begin, _, end, _ = lists
     most = longest_list(split + first, split + last, begin, end)
     for b in range(first, last):
-        if own[b] >= 0:
-            most = max(most, end[own[b]] - begin[own[b]])
+        if listed[b] >= 0:
+            most = max(most, end[listed[b]] - begin[listed[b]])
     packed = empty_rows(most, 4, position.dtype)
     for b in range(first, last):
-        if own[b] == BY_POTENTIAL:
+        if listed[b] == BY_POTENTIAL:
             continue
         i = split + b
         to = position[i]
         x, y, z = mirror_point[b, 0], mirror_point[b, 1], mirror_point[b, 2]
         mean, rise, volume = fit_density(i, x, y, z, to, position, lists, constants, packed)
-        if volume < NO_FLUID and own[b] >= 0:
+        if volume < NO_FLUID and listed[b] >= 0:
             x, y, z = position[i, 0], position[i, 1], position[i, 2]
-            row = own[b]
+            row = listed[b]
             mean, rise, volume = fit_density(row, x, y, z, to, position, lists, constants, packed)
             rise = 0.0
         excess = mean + min(rise, max(mean, 0.0) + rest_gradient * distance(to, x, y, z))
