@@ -7,6 +7,8 @@ window late, and stays so on its way to rest, although every later window is rig
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
 from quintet.coupler.coupling.judgement.time_error import Key
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.interfaces.component import Array
@@ -22,21 +24,37 @@ class StartCheck:
     def __init__(self) -> None:
         self._changes: dict[Key, tuple[float, Array]] = {}  # window [s], change in the first one
         self._late: dict[Key, float] = {}  # norm of what the second one changed more
+        self._ranges: dict[Key, tuple[Array, Array]] = {}  # least and largest positions, of late
 
     def check(self, coupling: Coupling, moves: Iterable[Key]) -> None:
-        """Note what the first two windows of a run change of some positions."""
+        """Note what the first two windows of a run change of some positions, and their ranges."""
+        if coupling.windows.done > 2:
+            for key, (low, high) in self._ranges.items():
+                position = coupling.outputs[key[0]][key[1]]
+                self._ranges[key] = np.minimum(low, position), np.maximum(high, position)
+            return
         dt = coupling.last_dt
         for name, path in moves:
-            change = coupling.outputs[name][path] - coupling.previous[name][path]
+            position, former = coupling.outputs[name][path], coupling.previous[name][path]
+            change = position - former
             if coupling.windows.done == 1:
                 self._changes[name, path] = dt, change
             elif (name, path) in self._changes and _is_pushed_late(coupling, name):
-                former, first = self._changes.pop((name, path))
-                self._late[name, path] = norm(change - dt / former * first) * former / dt
+                length, first = self._changes.pop((name, path))
+                self._late[name, path] = norm(change - dt / length * first) * length / dt
+                places = np.array([former - first, former, position])
+                self._ranges[name, path] = places.min(axis=0), places.max(axis=0)
 
-    def warning(self, key: Key, extent: float, window: float) -> str:
-        """Warn of a position by its range in the run and the window [s]; "" if it is resolved."""
-        if not self._late.get(key, 0.0) > LATE_LIMIT * extent > 0.0:
+    def warning(self, key: Key, window: float) -> str:
+        """Warn of a position by its range in the run; "" if it is resolved in windows of so many s.
+
+        The range is that at the windows' ends.
+        """
+        if key not in self._late:
+            return ""
+        low, high = self._ranges[key]
+        extent = norm(high - low)
+        if not self._late[key] > LATE_LIMIT * extent > 0.0:
             return ""
         share = self._late[key] / extent
         return (
@@ -48,13 +66,21 @@ class StartCheck:
 
     def save(self) -> dict[str, Any]:
         """All of it, for a snapshot."""
-        return {"changes": dict(self._changes), "late": dict(self._late)}
+        ranges = {key: list(ends) for key, ends in self._ranges.items()}
+        return {"changes": dict(self._changes), "late": dict(self._late), "ranges": ranges}
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
         self._changes, self._late = dict(state["changes"]), dict(state["late"])
+        self._ranges = {key: (low, high) for key, (low, high) in state["ranges"].items()}
 
 
 def _is_pushed_late(coupling: Coupling, name: str) -> bool:
-    """Whether loads reach a component a window late."""
-    return any(coupling.exchange.transfers[number].taker == name for number in coupling.late)
+    """Whether loads of the first window reach a component in the second."""
+    gives = coupling.exchange.gives
+    for transfer in (coupling.exchange.transfers[number] for number in coupling.late):
+        given = coupling.previous[transfer.giver]
+        loads = [key for key in transfer.reads if gives[transfer.giver][key].centring == "impulse"]
+        if transfer.taker == name and any(given[key].any() for key in loads):
+            return True
+    return False

@@ -69,8 +69,7 @@ class TimeCheck:
     def check(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Compare the window with its pieces, if it was stepped so; warn early of large errors."""
         pieces, self._pieces = self._pieces, None
-        if coupling.windows.done <= 2:
-            self._beginning.check(coupling, _moves(coupling))
+        self._beginning.check(coupling, _moves(coupling) if coupling.windows.done <= 2 else ())
         if pieces is None:
             return {}
         samples = {}
@@ -83,10 +82,9 @@ class TimeCheck:
 
     def final_warnings(self, coupling: Coupling) -> dict[str, dict[str, str]]:
         """Warn of every link whose estimated error is above its limit, or whose start is late."""
-        texts, errors = self._coarse_windows(coupling), self.errors
+        texts = self._coarse_windows(coupling)
         for key, link in _moves(coupling).items():
-            extent = errors.fields[key].extent if key in errors.fields else 0.0
-            if text := self._beginning.warning(key, extent, coupling.last_dt):
+            if text := self._beginning.warning(key, coupling.last_dt):
                 texts.setdefault(link, {})["start"] = text
         return texts
 
