@@ -79,8 +79,8 @@ def _is_pushed_late(coupling: Coupling, name: str) -> bool:
     """Whether loads of the first window reach a component in the second."""
     gives = coupling.exchange.gives
     for transfer in (coupling.exchange.transfers[number] for number in coupling.late):
-        given = coupling.previous[transfer.giver]
+        outputs = coupling.previous[transfer.giver]
         loads = [key for key in transfer.reads if gives[transfer.giver][key].centring == "impulse"]
-        if transfer.taker == name and any(given[key].any() for key in loads):
+        if transfer.taker == name and any(outputs[key].any() for key in loads):
             return True
     return False

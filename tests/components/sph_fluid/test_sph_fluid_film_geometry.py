@@ -88,7 +88,7 @@ def test_body_water_and_what_lies_across_press_the_whole_face() -> None:
     apart = np.linalg.norm(foot[:, None] - place[left, :3], axis=2) / one.constants.smoothing.length
     shape = np.maximum(2.0 - apart, 0.0) ** 3 - 4.0 * np.maximum(1.0 - apart, 0.0) ** 3
     across = one.constants.smoothing.height * shape.sum(axis=1) * SPACING**3
-    np.testing.assert_allclose(film.own + wet + across, 1.0, atol=0.01)
+    np.testing.assert_allclose(film.own_share + wet + across, 1.0, atol=0.01)
 
 
 @pytest.mark.parametrize("width", [0.1, 0.5, 1.0, 1.25])
