@@ -74,12 +74,12 @@ def failed_layers(folder: Path) -> str:
 
 def main(pure: str, glued: str) -> None:
     """Draw the times that both have."""
-    one, other = Path(pure), Path(glued)
-    spacing = spacing_of(one)
+    unglued, other = Path(pure), Path(glued)
+    spacing = spacing_of(unglued)
     shown = [t for t in times(other / "impact.vtkhdf") if t > 0.0][-2:]
     figure, axes = plt.subplots(len(shown), 1, figsize=(11, 4 * len(shown)), squeeze=False)
     for axis, time in zip(axes[:, 0], shown, strict=True):
-        for folder, side in ((one, -1.0), (other, 1.0)):
+        for folder, side in ((unglued, -1.0), (other, 1.0)):
             file = folder / "impact.vtkhdf"
             row = int(np.argmin(np.abs(times(file) - time)))
             particles(axis, read_step(file, row)[1], side, spacing)
@@ -100,7 +100,7 @@ def main(pure: str, glued: str) -> None:
     )
     figure.savefig(other / "von_mises.png", dpi=90, bbox_inches="tight")
     print(other / "von_mises.png")
-    for folder in (one, other):
+    for folder in (unglued, other):
         print(f"{folder}, layers about the axis by depth [mm]: {failed_layers(folder)}")
 
 

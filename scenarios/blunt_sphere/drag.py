@@ -47,34 +47,33 @@ def drag(run: Path) -> Drag:
     mach = float(gas["boundaries"]["far"]["state"]["velocity"][0])
     radius = float(gas["sphere"]["radius"])
     with Recording(run / "recording.h5") as recording:
-        found = float(recording.field("gas", "body.drag_coefficient")[-1][0])
+        coefficient = float(recording.field("gas", "body.drag_coefficient")[-1][0])
         places = recording.field("gas", "wall.position")[-1] / radius
         friction = recording.field("gas", "wall.friction")[-1][:, 0]
     half = 0.5 * np.pi / len(places)  # rad, between rays
     angle = np.arctan2(np.hypot(places[:, 1], places[:, 2]), places[:, 0])
     rings = 2.0 * (np.cos(angle - half) - np.cos(angle + half))  # over the cross-section
     part = float((friction * rings).sum() / (0.5 * mach**2))
-    return Drag(mach, 2.0 * radius * mach / gas["gas"]["viscosity"], found, part)
+    return Drag(mach, 2.0 * radius * mach / gas["gas"]["viscosity"], coefficient, part)
 
 
 def of_study(folder: Path) -> list[Drag]:
     """All runs of a study, by Mach and Reynolds number."""
-    return sorted(drag(one.parent) for one in folder.glob("*/recording.h5"))
+    return sorted(drag(path.parent) for path in folder.glob("*/recording.h5"))
 
 
 def draw(panel: plt.Axes, mach: float, studies: dict[str, list[Drag]]) -> None:
     """Draw drags at a Mach number against the Reynolds number."""
     smooth = np.geomspace(75.0, 1400.0, 100)
-    law = np.array([loth(mach, one) for one in smooth])
+    law = np.array([loth(mach, reynolds) for reynolds in smooth])
     panel.plot(smooth, law, "k-", linewidth=0.8, label="Loth et al., ± 8 %")
     panel.fill_between(smooth, (1.0 - WITHIN) * law, (1.0 + WITHIN) * law, color="0.9")
-    for number, (name, found) in enumerate(studies.items()):
-        some = [one for one in found if one.mach == mach]
+    for number, (name, drags) in enumerate(studies.items()):
+        points = [point for point in drags if point.mach == mach]
         fill = "none" if number else "tab:blue"
-        panel.plot(
-            [one.reynolds for one in some], [one.drag for one in some], "o", color="tab:blue",
-            markerfacecolor=fill, label=name,
-        )  # fmt: skip
+        reynolds = [point.reynolds for point in points]
+        values = [point.drag for point in points]
+        panel.plot(reynolds, values, "o", color="tab:blue", markerfacecolor=fill, label=name)
     panel.set(xscale="log", title=f"M = {mach:g}", xlabel="Reynolds number by the diameter")
 
 
@@ -82,15 +81,15 @@ def main(folders: list[str]) -> None:
     """Print, and draw."""
     studies = {}
     for folder in map(Path, folders):
-        found = studies[folder.name] = of_study(folder)
+        drags = studies[folder.name] = of_study(folder)
         print(f"{folder}\n   M     Re   drag  by friction  over Loth")
-        for one in found:
-            over = one.drag / loth(one.mach, one.reynolds)
+        for point in drags:
+            over = point.drag / loth(point.mach, point.reynolds)
             print(
-                f"{one.mach:4g} {one.reynolds:6.0f} {one.drag:6.3f} {one.by_friction:12.3f}"
+                f"{point.mach:4g} {point.reynolds:6.0f} {point.drag:6.3f} {point.by_friction:12.3f}"
                 f" {over:10.3f}"
             )
-    numbers = sorted({one.mach for found in studies.values() for one in found})
+    numbers = sorted({point.mach for drags in studies.values() for point in drags})
     figure, panels = plt.subplots(
         1, len(numbers), figsize=(3.2 * len(numbers), 3.6), layout="constrained", sharey=True,
         squeeze=False,

@@ -77,7 +77,7 @@ def main(folders: list[str]) -> None:
         with Recording(run / "recording.h5") as recording:
             known = recording.fields("gas")
         fields = ("wall.pressure", "wall.heat_flux")
-        shown += [(run, one) for one in fields if one in known]
+        shown += [(run, field) for field in fields if field in known]
     figure, panels = plt.subplots(
         1, len(shown), figsize=(4.6 * len(shown), 3.8), layout="constrained", squeeze=False
     )

@@ -51,11 +51,11 @@ def main(folders: list[str]) -> None:
     """Print and draw."""
     figure, axis = plt.subplots(figsize=(7, 4))
     for name in folders:
-        found = read(Path(name))
-        layers = len(found.temperature)
-        print(f"{layers} layers: {found.conductivity:.3f} ± {found.error:.3f} k omega/a")
+        profile = read(Path(name))
+        layers = len(profile.temperature)
+        print(f"{layers} layers: {profile.conductivity:.3f} ± {profile.error:.3f} k omega/a")
         place = (np.arange(layers) + 0.5) / layers
-        axis.plot(place, found.temperature, "o", markersize=4, label=f"{layers} layers")
+        axis.plot(place, profile.temperature, "o", markersize=4, label=f"{layers} layers")
     axis.plot([0.0, 1.0], [390.0, 210.0], "k:", linewidth=0.8, label="between the baths")
     axis.set(xlabel="place over the length", ylabel="temperature [K]")
     axis.legend()

@@ -31,8 +31,8 @@ def rates(time: float, state: np.ndarray) -> list[float]:
     per = 18.0 * mu / (MATERIAL * SIZE**2)
     q = 12.0 * mu * GAMMA * cv / PRANDTL * (warm - heat) / (MATERIAL * SIZE**2)
     follow = per * (u - single) if time >= LAUNCH else 0.0
-    given = LOADING * (per * (u - v) ** 2 - q) / cv
-    return [-LOADING * per * (u - v), per * (u - v), given, q / CAPACITY, follow]
+    heating = LOADING * (per * (u - v) ** 2 - q) / cv
+    return [-LOADING * per * (u - v), per * (u - v), heating, q / CAPACITY, follow]
 
 
 def main() -> None:
@@ -40,14 +40,14 @@ def main() -> None:
     state, pieces = [STREAM, 0.0, COLD, HOT, 0.0], []
     for span in ((0.0, LAUNCH), (LAUNCH, END)):
         times = np.linspace(*span, 101)
-        found = solve_ivp(rates, span, state, t_eval=times, rtol=1e-10, atol=1e-10).y
-        pieces.append(np.vstack([times, found]))
-        state = found[:, -1].tolist()
+        states = solve_ivp(rates, span, state, t_eval=times, rtol=1e-10, atol=1e-10).y
+        pieces.append(np.vstack([times, states]))
+        state = states[:, -1].tolist()
     rows = np.hstack([pieces[0], pieces[1][:, 1:]])
     folder = Path(__file__).parent
     for name, k, begin in (("velocity", 2, 0.0), ("temperature", 4, 0.0), ("launched", 5, LAUNCH)):
-        kept = rows[:, rows[0] >= begin]
-        table = np.stack([kept[0], kept[k]], -1)
+        shown = rows[:, rows[0] >= begin]
+        table = np.stack([shown[0], shown[k]], -1)
         np.savetxt(folder / f"{name}.csv", table, "%.9g", ",", header=f"s,{name}", comments="")
     density = 1e5 / (GAS_CONSTANT * COLD)
     mass = MATERIAL * np.pi / 6.0 * SIZE**3

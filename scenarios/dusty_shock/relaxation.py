@@ -90,8 +90,8 @@ def relax(speed: float, end: float, count: int = 400) -> Shock:
 
     time = end * np.linspace(0.0, 1.0, count) ** 2
     start = [0.0, speed, TEMPERATURE]
-    found = solve_ivp(rates, (0.0, end), start, t_eval=time, method="LSODA", rtol=1e-9, atol=1e-9)
-    behind, v, heat = found.y
+    path = solve_ivp(rates, (0.0, end), start, t_eval=time, method="LSODA", rtol=1e-9, atol=1e-9)
+    behind, v, heat = path.y
     gas = np.array([gas_with(*pair, speed) for pair in zip(v, heat, strict=True)])
     gas[:, 0] = speed - gas[:, 0]
     return Shock(speed, time, behind, speed - v, heat, gas)

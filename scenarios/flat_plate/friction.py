@@ -30,21 +30,21 @@ def friction(run: Path) -> tuple[Array, Array, float]:
     """Places [m] along the plate, and the friction [Pa] there at the end; coefficient of drag."""
     with Recording(run) as recording:
         x = recording.field("gas", "wall.position")[-1, :, 0]
-        found = recording.field("gas", "wall.friction")[-1, :, 0]
+        stress = recording.field("gas", "wall.friction")[-1, :, 0]
         drag = float(recording.field("gas", "body.drag_coefficient")[-1, 0])
-    kept = x > 0.0
-    order = np.argsort(x[kept])
-    return x[kept][order], found[kept][order], drag
+    on_plate = x > 0.0
+    order = np.argsort(x[on_plate])
+    return x[on_plate][order], stress[on_plate][order], drag
 
 
 def main(folders: list[str]) -> None:
     """Draw, and print."""
     figure, panel = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
     for folder in map(Path, folders):
-        x, found, drag = friction(folder)
-        panel.plot(x, found / blasius(x), "o-", markersize=3, label=folder.name)
+        x, stress, drag = friction(folder)
+        panel.plot(x, stress / blasius(x), "o-", markersize=3, label=folder.name)
         near = [int(np.abs(x - place).argmin()) for place in PLACES]
-        told = ", ".join(f"{x[k]:.2f}: {found[k] / blasius(x[k]):.3f}" for k in near)
+        told = ", ".join(f"{x[k]:.2f}: {stress[k] / blasius(x[k]):.3f}" for k in near)
         print(f"{folder.name}: {told}, whole plate: {drag / DRAG:.3f}")
     panel.axhline(1.0, color="k", linewidth=0.8)
     panel.set(xlim=(0.0, 1.0), ylim=(0.85, 1.15), xlabel="x [m]", ylabel="friction over Blasius'")

@@ -30,7 +30,7 @@ PLANAR_DEPTH = 0.31  # m, of the water in two dimensions with the square at rest
 def added(tank: float, depth: float, width: float, steep: float, planar: bool = False) -> float:
     """Ca, on cells of a width [m]; steep: ω²/g [1/m], infinite for motion too fast for waves."""
     across, high, half, deep = (
-        round(one / width) for one in (0.5 * tank, depth, 0.5 * SIDE, DRAUGHT)
+        round(length / width) for length in (0.5 * tank, depth, 0.5 * SIDE, DRAUGHT)
     )
     wet = np.ones((across, 1 if planar else across, high), bool)
     wet[:half, :half, high - deep :] = False
@@ -39,8 +39,8 @@ def added(tank: float, depth: float, width: float, steep: float, planar: bool = 
     diagonal = np.zeros(count)
     rows, columns = [np.arange(count)], [np.arange(count)]
     for axis in range(3):
-        one = np.moveaxis(number, axis, 0)
-        i, j = one[:-1].ravel(), one[1:].ravel()
+        layers = np.moveaxis(number, axis, 0)
+        i, j = layers[:-1].ravel(), layers[1:].ravel()
         joined = (i >= 0) & (j >= 0)
         i, j = i[joined], j[joined]
         rows, columns = [*rows, i, j], [*columns, j, i]

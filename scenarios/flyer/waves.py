@@ -157,10 +157,10 @@ def struck(
     return Found(np.array(times), np.array(surface), failed[cells:], cell)
 
 
-def pulled_back(found: Found, begin: float, end: float) -> tuple[float, float]:
+def pulled_back(waves: Found, begin: float, end: float) -> tuple[float, float]:
     """Velocity [m/s] before the pull-back, the mean of a time [s], and least one after it."""
-    before = (found.time > begin) & (found.time < end)
-    return float(found.surface[before].mean()), float(found.surface[found.time > end].min())
+    before = (waves.time > begin) & (waves.time < end)
+    return float(waves.surface[before].mean()), float(waves.surface[waves.time > end].min())
 
 
 def draw(folders: list[str], cells: int) -> None:
@@ -203,20 +203,20 @@ def main() -> None:
     parser.add_argument("--end", type=float, default=2.2e-6, help="s")
     parser.add_argument("--cells", type=int, nargs="+", default=(50, 100, 200), help="in the flyer")
     parser.add_argument("--draw", nargs="+", metavar="RUN", help="folders of runs to draw")
-    given = parser.parse_args()
-    if given.draw:
-        draw(given.draw, max(given.cells))
+    options = parser.parse_args()
+    if options.draw:
+        draw(options.draw, max(options.cells))
         return
-    metal = METALS[given.material]
-    if given.fluid:
+    metal = METALS[options.material]
+    if options.fluid:
         metal = metal._replace(shear=1.0, a=1e-3, b=0.0)
     wave = np.sqrt(metal.sound**2 + 4.0 / 3.0 * metal.shear / metal.density)
     acoustic = metal.spall * (1.0 / metal.sound + 1.0 / wave) / metal.density
     print(f"s (1/c0 + 1/cL)/rho: {acoustic:.1f} m/s")
-    for cells in given.cells:
-        found = struck(metal, given.speed, given.flyer, given.target, given.end, cells)
-        high, low = pulled_back(found, *given.plateau)
-        torn = given.target - found.cell * (np.flatnonzero(found.failed) + 0.5)
+    for cells in options.cells:
+        waves = struck(metal, options.speed, options.flyer, options.target, options.end, cells)
+        high, low = pulled_back(waves, *options.plateau)
+        torn = options.target - waves.cell * (np.flatnonzero(waves.failed) + 0.5)
         where = f"{1e3 * torn.min():.2f} to {1e3 * torn.max():.2f}" if len(torn) else "nowhere"
         print(
             f"{cells} cells: free surface {high:.1f} m/s, least {low:.1f} m/s, pulled back by "

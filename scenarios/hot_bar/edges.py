@@ -44,15 +44,15 @@ def by_thirds(folder: Path) -> Array:
     with Recording(folder) as recording:
         mean = recording.field("bar", "points.hotness")  # (windows + 1, n) J, since the start
     rows = np.arange(4) * (len(mean) - 1) // 3
-    own = np.diff(rows[:, None] * mean[rows], axis=0) / np.diff(rows)[:, None]
-    return np.asarray(own[:, bulk.ravel()].mean(axis=1) / mean[-1].max())
+    each = np.diff(rows[:, None] * mean[rows], axis=0) / np.diff(rows)[:, None]
+    return np.asarray(each[:, bulk.ravel()].mean(axis=1) / mean[-1].max())
 
 
 def reference(points: int) -> tuple[Array, Array]:
     """Places (k,) m and temperatures (2, k) of finite elements for a lattice of so many points."""
     rows = np.loadtxt(Path(__file__).with_name("edges.csv"), delimiter=",", comments="#")
-    mine = [rows[(rows[:, 0] == points) & (rows[:, 1] == edge)] for edge in range(2)]
-    return mine[0][:, 2], np.stack([one[:, 3] for one in mine])
+    lines = [rows[(rows[:, 0] == points) & (rows[:, 1] == edge)] for edge in range(2)]
+    return lines[0][:, 2], np.stack([line[:, 3] for line in lines])
 
 
 class Ensemble(NamedTuple):
@@ -66,13 +66,13 @@ class Ensemble(NamedTuple):
 def compare(points: int, folders: list[Path], out: Path) -> Ensemble:
     """Print how the runs of one lattice differ from finite elements, and draw their edges."""
     place, exact = reference(points)
-    found = np.stack([hotness(one) for one in folders])
-    gap = found - exact
+    grids = np.stack([hotness(folder) for folder in folders])
+    gap = grids - exact
     each = np.sqrt((gap**2).mean(axis=(1, 2)))
-    for name, one, largest in zip(folders, each, np.abs(gap).max(axis=(1, 2)), strict=True):
-        print(f"{name}: L2 {one:.3f}, largest {largest:.3f}")
+    for name, error, largest in zip(folders, each, np.abs(gap).max(axis=(1, 2)), strict=True):
+        print(f"{name}: L2 {error:.3f}, largest {largest:.3f}")
     mean = np.sqrt((gap.mean(axis=0) ** 2).mean())
-    thirds = np.stack([by_thirds(one) for one in folders])
+    thirds = np.stack([by_thirds(folder) for folder in folders])
     level = thirds.mean(axis=1)
     print(f"level {level.mean():.3f} ± {level.std():.3f}; thirds {thirds.mean(axis=0).round(2)}")
     print(f"{points} points: L2 {each.mean():.3f} ± {each.std():.3f}; of their mean {mean:.3f}")
@@ -80,7 +80,7 @@ def compare(points: int, folders: list[Path], out: Path) -> Ensemble:
     for edge, axis in enumerate(axes):
         axis.plot(1e3 * place, exact[edge], "k-", label="finite elements, 0.208 mm")
         axis.errorbar(
-            1e3 * place, found[:, edge].mean(axis=0), found[:, edge].std(axis=0), fmt="o-",
+            1e3 * place, grids[:, edge].mean(axis=0), grids[:, edge].std(axis=0), fmt="o-",
             capsize=3, label=f"{points} points, {len(folders)} runs",
         )  # fmt: skip
         axis.set(title=EDGES[edge], xlabel="x [mm]")
@@ -88,23 +88,24 @@ def compare(points: int, folders: list[Path], out: Path) -> Ensemble:
     axes[0].legend()
     figure.tight_layout()
     figure.savefig(out / f"edges_{points}.png", dpi=90)
-    return Ensemble(points, each, np.array([timing(one)["cpu"] for one in folders]))
+    return Ensemble(points, each, np.array([timing(folder)["cpu"] for folder in folders]))
 
 
 def timing(folder: Path) -> dict[str, float]:
     """What the bar of a run took, and its number of points."""
     results = json.loads((folder / "results.json").read_text())
-    found: dict[str, float] = results["timing"]["components"]["bar"]
-    return found
+    times: dict[str, float] = results["timing"]["components"]["bar"]
+    return times
 
 
 def draw_sizes(ensembles: list[Ensemble], out: Path) -> None:
     """Draw error over the number of points and over processor time."""
-    means = [float(one.errors.mean()) for one in ensembles]
-    scatter = [float(one.errors.std()) for one in ensembles]
-    spent = [float(one.seconds.mean()) for one in ensembles]
+    means = [float(ensemble.errors.mean()) for ensemble in ensembles]
+    scatter = [float(ensemble.errors.std()) for ensemble in ensembles]
+    spent = [float(ensemble.seconds.mean()) for ensemble in ensembles]
     figure, axes = plt.subplots(1, 2, figsize=(10, 4), sharey=True)
-    labelled = (([one.points for one in ensembles], "points"), (spent, "processor time [s]"))
+    sizes = [ensemble.points for ensemble in ensembles]
+    labelled = ((sizes, "points"), (spent, "processor time [s]"))
     for axis, (places, label) in zip(axes, labelled, strict=True):
         axis.errorbar(places, means, scatter, fmt="o-", capsize=3)
         axis.set(xscale="log", xlabel=label, ylim=(0.0, None))
@@ -115,11 +116,11 @@ def draw_sizes(ensembles: list[Ensemble], out: Path) -> None:
 
 def main(folders: list[str]) -> None:
     """Print and draw."""
-    runs = [Path(one) for one in folders]
-    sizes = sorted({int(timing(one)["items"]) for one in runs})
+    runs = [Path(folder) for folder in folders]
+    sizes = sorted({int(timing(run)["items"]) for run in runs})
     out = runs[0].parent
     ensembles = [
-        compare(points, [one for one in runs if timing(one)["items"] == points], out)
+        compare(points, [run for run in runs if timing(run)["items"] == points], out)
         for points in sizes
     ]
     if len(sizes) > 1:

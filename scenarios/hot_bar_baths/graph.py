@@ -21,17 +21,18 @@ import matplotlib.pyplot as plt
 def laplace(temperature: Array, held: list[tuple[int, ...]]) -> Array:
     """Temperatures (nx, ny, nz) K on the graph of nearest points, with some held as they are."""
     number = np.arange(temperature.size).reshape(temperature.shape)
-    matrix, given = np.zeros((temperature.size,) * 2), np.zeros(temperature.size)
+    matrix, right_side = np.zeros((temperature.size,) * 2), np.zeros(temperature.size)
     for axis in range(3):
-        one = np.moveaxis(number, axis, 0)
-        for i, j in ((one[:-1].ravel(), one[1:].ravel()), (one[1:].ravel(), one[:-1].ravel())):
+        layers = np.moveaxis(number, axis, 0)
+        lower, upper = layers[:-1].ravel(), layers[1:].ravel()
+        for i, j in ((lower, upper), (upper, lower)):
             matrix[i, j] -= 1.0
             matrix[i, i] += 1.0
     for place in held:
         row = number[place]
-        matrix[row], given[row] = 0.0, temperature[place]
+        matrix[row], right_side[row] = 0.0, temperature[place]
         matrix[row, row] = 1.0
-    return np.asarray(np.linalg.solve(matrix, given).reshape(temperature.shape))
+    return np.asarray(np.linalg.solve(matrix, right_side).reshape(temperature.shape))
 
 
 def edges(grid: Array) -> Array:
@@ -46,15 +47,15 @@ def main(folders: list[str]) -> None:
         scene = tomllib.loads((Path(name) / "scene.toml").read_text())
         count = [cells + 1 for cells in scene["components"]["bar"]["lattice"]["cells"]]
         with Recording(Path(name)) as recording:
-            found = recording.field("bar", "points.temperature")[-1].reshape(count)
-        exact = laplace(found, [(0, -1, -1), (-1, 0, 0), (-1, 0, -1)])
-        gap = (edges(found) - edges(exact)) / 500.0
+            grid = recording.field("bar", "points.temperature")[-1].reshape(count)
+        exact = laplace(grid, [(0, -1, -1), (-1, 0, 0), (-1, 0, -1)])
+        gap = (edges(grid) - edges(exact)) / 500.0
         size = np.sqrt((gap**2).mean())
-        print(f"{name}: {found.size} points: L2 {size:.4f}, largest {np.abs(gap).max():.4f}")
+        print(f"{name}: {grid.size} points: L2 {size:.4f}, largest {np.abs(gap).max():.4f}")
         place = np.linspace(0.0, 30.0, count[0])
         for edge, axis in enumerate(axes):
-            (line,) = axis.plot(place, edges(exact)[edge], label=f"graph, {found.size} points")
-            axis.plot(place, edges(found)[edge], "o", color=line.get_color())
+            (line,) = axis.plot(place, edges(exact)[edge], label=f"graph, {grid.size} points")
+            axis.plot(place, edges(grid)[edge], "o", color=line.get_color())
             axis.set(title=("top front", "bottom back")[edge], xlabel="x [mm]")
     axes[0].set_ylabel("temperature [K]; circles: particle dynamics")
     axes[0].legend()

@@ -33,7 +33,7 @@ def read(folder: Path) -> tuple[float, float, float, float]:
 def main(study: str) -> None:
     """Print and draw."""
     folders = sorted(path.parent for path in Path(study).rglob("scene.toml"))
-    rows = np.array(sorted(read(one) for one in folders))
+    rows = np.array(sorted(read(folder) for folder in folders))
     print("elements [mm]  mean [K]  5 mm from the hot vertex [K]  heat [W]")
     for size, mean, beside, heat in rows[::-1].tolist():
         print(f"{size:13.3f} {mean:9.2f} {beside:29.2f} {heat:9.2f}")

@@ -43,14 +43,14 @@ def main(study: str) -> None:
         "integrator       step x frequency  error of places / a  energy audit  processor time [s]"
     )
     for integrator in LIMIT:
-        mine = [one for one in rows if one[0] == integrator]
-        for _, step, error, audit, seconds in mine:
+        runs = [row for row in rows if row[0] == integrator]
+        for _, step, error, audit, seconds in runs:
             print(f"{integrator:16} {step:16.3f} {error:20.2e} {audit:13.2e} {seconds:19.3f}")
-        spent = [one[4] for one in mine]
-        left.loglog(spent, [one[2] for one in mine], "o-", label=integrator)
-        right.loglog(spent, [one[3] for one in mine], "o-", label=integrator)
-        for one in mine:
-            left.annotate(f"{one[1]:.2g}", (one[4], one[2]), fontsize=7)
+        spent = [run[4] for run in runs]
+        left.loglog(spent, [run[2] for run in runs], "o-", label=integrator)
+        right.loglog(spent, [run[3] for run in runs], "o-", label=integrator)
+        for run in runs:
+            left.annotate(f"{run[1]:.2g}", (run[4], run[2]), fontsize=7)
     left.set(ylabel="error of places / a (labels: step x frequency)")
     right.set(ylabel="energy that is missing")
     for panel in (left, right):

@@ -68,22 +68,22 @@ def flight(run: Path) -> Flight:
     angle = angle - math.atan2(-along[2], along[0])
     angle = (angle + math.pi) % (2.0 * math.pi) - math.pi
     order = np.argsort(angle)
-    found = json.loads((run / "results.json").read_text())["timing"]["components"]["gas"]
-    cost = found["cpu"] / (found["steps"] * found["items"] * STAGES)
+    timing = json.loads((run / "results.json").read_text())["timing"]["components"]["gas"]
+    cost = timing["cpu"] / (timing["steps"] * timing["items"] * STAGES)
     return Flight(run.name, drag, angle[order], pressure[order], cost)
 
 
 def main(folders: list[str]) -> None:
     """Print a line of each run."""
-    flights = [flight(Path(one)) for one in folders]
+    flights = [flight(Path(folder)) for folder in folders]
     print(
         "run: drag ± standard error, off the first; pressure off ahead, behind; µs of a node-stage"
     )
-    for one in flights:
-        ahead, behind = one.pressure_off(flights[0])
-        error, off = one.error / one.mean, one.mean / flights[0].mean - 1.0
-        drag = f"{one.mean:.4f} ± {error:.2%}, {off:+.2%}"
-        print(f"{one.name}: {drag}; {ahead:.2%}, {behind:.2%}; {1e6 * one.cost:.2f}")
+    for moving in flights:
+        ahead, behind = moving.pressure_off(flights[0])
+        error, off = moving.error / moving.mean, moving.mean / flights[0].mean - 1.0
+        drag = f"{moving.mean:.4f} ± {error:.2%}, {off:+.2%}"
+        print(f"{moving.name}: {drag}; {ahead:.2%}, {behind:.2%}; {1e6 * moving.cost:.2f}")
 
 
 if __name__ == "__main__":

@@ -60,7 +60,7 @@ def write_mesh(path: Path, layers: int) -> None:
         number[0, :, :-1], turned[0, :, :-1], turned[0, :, 1:], number[0, :, 1:],
         number[1, :, :-1], turned[1, :, :-1], turned[1, :, 1:], number[1, :, 1:],
     ]  # fmt: skip
-    cells = np.stack([one.ravel() for one in corners], axis=1)
+    cells = np.stack([corner.ravel() for corner in corners], axis=1)
     a, b, c, d = (points[cells[0, k]] for k in (0, 1, 3, 4))
     if np.dot(np.cross(b - a, c - a), d - a) < 0.0:
         cells = cells[:, [4, 5, 6, 7, 0, 1, 2, 3]]

@@ -36,7 +36,8 @@ class Run:
         gas, bodies = scene["components"]["gas"], scene["components"]["gas"]["moving"]["bodies"]
         self.name = folder.name
         self.has_particles = len(bodies) > 1
-        launches = [one.get("launch", 0.0) for one in scene["components"]["particle"]["spheres"]]
+        spheres = scene["components"]["particle"]["spheres"]
+        launches = [sphere.get("launch", 0.0) for sphere in spheres]
         self.launch, self.last_launch = min(launches), max(launches)
         with Recording(folder) as recording:
             self.times = recording.times("gas")
@@ -80,28 +81,30 @@ def ring(angle: Array, values: Array) -> tuple[Array, Array]:
 
 def draw(runs: list[Run], alone: Run | None, path: Path) -> None:
     """Draw all panels."""
-    one = runs[0]
-    rows = 1 if one.heat is None else 2
+    first = runs[0]
+    rows = 1 if first.heat is None else 2
     figure, panels = plt.subplots(
         rows, 3, figsize=(16.0, 4.8 * rows), layout="constrained", squeeze=False
     )
     undisturbed = None if alone is None else alone.pressure[-1]
-    _along(panels[0, 0], one, one.pressure, undisturbed, "pressure over Rayleigh's pitot pressure")
-    _against_time(panels[0, 1], one, one.pressure, 1.0, "pressure", "Rayleigh's pitot pressure")
+    _along(
+        panels[0, 0], first, first.pressure, undisturbed, "pressure over Rayleigh's pitot pressure"
+    )
+    _against_time(panels[0, 1], first, first.pressure, 1.0, "pressure", "Rayleigh's pitot pressure")
     for run in runs:
         for k in range(run.places.shape[1]):
             panels[0, 2].plot(run.times, -run.places[:, k], label=f"{run.name}, particle {k}")
     panels[0, 2].set(xlabel="t [s]", ylabel="distance from the sphere's centre [R]")
     panels[0, 2].set(title="particles")
     panels[0, 2].legend(fontsize="small")
-    if one.heat is not None:
+    if first.heat is not None:
         known = None if alone is None or alone.heat is None else alone.heat[-1]
         rest = 1.0 if known is None else float(known[0])
         label = "heat flux over that of Fay and Riddell"
-        _along(panels[1, 0], one, one.heat, known, label)
+        _along(panels[1, 0], first, first.heat, known, label)
         text = "that of Fay and Riddell" if known is None else "that at the axis without a particle"
-        _against_time(panels[1, 1], one, one.heat, rest, "heat flux", text)
-        _map(panels[1, 2], one, one.heat, known)
+        _against_time(panels[1, 1], first, first.heat, rest, "heat flux", text)
+        _map(panels[1, 2], first, first.heat, known)
     figure.savefig(path, dpi=100)
 
 
@@ -186,9 +189,9 @@ def tell(run: Run, alone: Run | None) -> str:
 
 def main() -> None:
     """Draw, and print what the README says."""
-    given = [Run(Path(folder)) for folder in sys.argv[1:]]
-    runs = [run for run in given if run.has_particles]
-    alone = next((run for run in given if not run.has_particles), None)
+    all_runs = [Run(Path(folder)) for folder in sys.argv[1:]]
+    runs = [run for run in all_runs if run.has_particles]
+    alone = next((run for run in all_runs if not run.has_particles), None)
     for run in runs:
         print(tell(run, alone))
     if alone is not None:

@@ -18,8 +18,8 @@ WINDOWS = 200  # that are remembered
 
 def growth(window: float, ratio: float) -> float:
     """Greatest factor per window of a velocity; `window` in R/a."""
-    kept = np.arange(min(WINDOWS, int(12.0 / window) + 2))
-    whole = np.exp(RATE * window * kept) * np.expm1(RATE * window) / RATE
+    window_numbers = np.arange(min(WINDOWS, int(12.0 / window) + 2))
+    whole = np.exp(RATE * window * window_numbers) * np.expm1(RATE * window) / RATE
     shares = whole.real / window  # K_j
     # z^(J+1) + w Z/m Σ_j K_j z^(J-j) = 0, without the root z = 1 of a sphere that coasts.
     return float(np.abs(np.roots(np.concatenate([[1.0], window / ratio * shares]))).max())

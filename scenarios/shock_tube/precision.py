@@ -26,7 +26,7 @@ STANDOFF, UNSURE = 0.1465, 0.001
 
 def main(folders: list[str]) -> None:
     """Draw."""
-    studies = [json.loads((Path(one) / "study.json").read_text()) for one in folders]
+    studies = [json.loads((Path(folder) / "study.json").read_text()) for folder in folders]
     figure, panels = plt.subplots(
         1, len(studies), figsize=(5.6 * len(studies), 4.2), layout="constrained", squeeze=False
     )

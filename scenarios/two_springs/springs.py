@@ -48,8 +48,8 @@ class Mass(Component):
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion as it is now, and the pull on the foot over the last step."""
         motion = {"motion.position": self.position, "motion.velocity": self.velocity}
-        given = {**motion, "foot_load.force": self.pull}
-        return {key: given[key].copy() for key in wanted}
+        outputs = {**motion, "foot_load.force": self.pull}
+        return {key: outputs[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all that changes."""
