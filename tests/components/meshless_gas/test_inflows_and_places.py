@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 from gases import GAMMA, SOD, gas, given, run, state, tube
+from test_sidedness import ROUND
 
+from quintet.components.meshless_gas.blunt_bodies import normal_shock
+from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.exact.riemann import Side, star
+from quintet.components.meshless_gas.monitors import OUTGOING, shock_strength
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.params import read
 
@@ -32,6 +36,29 @@ def test_a_shock_that_reaches_a_supersonic_inflow_is_warned_of():
     assert run(made, 0.3).warnings() == {}
     warned = run(made, 4.0).warnings()["boundaries.x-"]
     assert "Move the boundary further away" in warned
+
+
+def test_a_shock_runs_out_against_a_stream_where_gas_beside_it_is_above_a_standing_shock():
+    stream = Side(1.0, 3.0, 1.0 / GAMMA)
+    density, pressure = normal_shock(3.0, GAMMA)
+    for factor, runs_out in ((0.5, False), (0.99, False), (1.1, True), (3.0, True)):
+        beside = Side(density, 3.0 / density, factor * pressure / GAMMA)
+        assert (shock_strength(stream, beside, GAMMA) > OUTGOING) is runs_out
+    at_rest = Side(density, 0.0, pressure / GAMMA)  # throttled: less leaves than comes in
+    assert shock_strength(stream, at_rest, GAMMA) > OUTGOING
+
+
+@pytest.mark.parametrize(("outer", "warned"), [(10.0, False), (1.12, True)])
+def test_a_bow_shock_in_the_last_layer_stands_and_one_beyond_it_is_warned_of(outer, warned):
+    layers = {"count": 24, "line_stencils": True}
+    cloud = {"radius": 1.0, "points_around": 24, "margin": 1.02, "layers": layers}
+    keys = ROUND | {"sphere": cloud | {"outer_radius": outer}, "limiter": "van_albada"}
+    params, mistakes = read(MeshlessGasParams, keys, "gas")
+    assert not mistakes
+    made = run(MeshlessGas(params), 1.0)
+    assert ("boundaries.far" in made.warnings()) is warned
+    drag = given(made, "body.drag_coefficient")[0]
+    assert (abs(drag / 0.875 - 1.0) < 0.02) is not warned  # that of 128 layers and margin 1.35
 
 
 @pytest.mark.parametrize(
