@@ -23,6 +23,7 @@ class ShockShape(NamedTuple):
 
 
 SPHERE = ShockShape(0.143, 3.24, 1.143, 0.54, 1.2)
+CYLINDER = ShockShape(0.386, 4.67, 1.386, 1.8, 0.75)
 
 
 def normal_shock(mach: float, gamma: float) -> tuple[float, float]:

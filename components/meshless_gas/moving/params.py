@@ -9,6 +9,8 @@ from quintet.components.meshless_gas.clouds.cap import ARC
 from quintet.interfaces.params import NotNegative, Number, Positive, Vector, parameters
 
 ROUND = 8  # fewest nodes round a body
+AT_SHOCK = 0.25  # of its height, on either side of a shock: where layers are finest
+WIDENING = 0.5  # of layers with the distance from there
 CLOSE = 1e-6  # rad, within which a sector is what it is meant to be
 
 
@@ -43,6 +45,11 @@ class Body:
         Height of the first layer; if not said, 0.8 of the distance between nodes of the wall.
     growth : 1
         Of one layer over the one below it.
+    shock_height : m
+        Of the bow shock over the wall where the stream meets it; layers there are `shock_spacing`
+        apart, from 0.75 to 1.25 times that height, and ever farther apart away from it.
+    shock_spacing : m
+        Of layers at the bow shock; if not said, as elsewhere.
     sector : rad
         Widest angle of its cloud from upstream, π for the whole. At π/2, of a body that stands
         still, the cloud ends in the plane across x through the centre, as the box must: gas leaves
@@ -77,6 +84,8 @@ class Body:
     spacing: Positive
     first_spacing: Positive | None = None
     growth: Annotated[float, Field(ge=1, le=2, allow_inf_nan=False)] = 1.08
+    shock_height: Positive | None = None
+    shock_spacing: Positive | None = None
     sector: Annotated[float, Field(gt=0, le=math.pi + 1e-9, allow_inf_nan=False)] = math.pi
     first_spacing_at_sector: Positive | None = None
     temperature: Positive | None = None
@@ -93,6 +102,16 @@ class Body:
             raise ValueError(
                 "angular_velocity is of a wall that holds the gas; found one that slips. Give a "
                 "temperature, or leave out angular_velocity."
+            )
+        if (self.shock_height is None) != (self.shock_spacing is None):
+            raise ValueError(
+                "shock_height and shock_spacing belong together; found one of them. Give both, or "
+                "neither."
+            )
+        if self.shock_spacing is not None and self.first_spacing_at_sector is not None:
+            raise ValueError(
+                "layers are as high at all angles where shock_spacing sets them; found "
+                "first_spacing_at_sector beside it. Leave out one of them."
             )
         if not self.is_cut:
             if self.first_spacing_at_sector is not None:
@@ -141,9 +160,16 @@ class Body:
         step = self.first_spacing or 0.8 * math.tau * self.radius / self.points_around
         heights = [0.0]
         while heights[-1] < self.thickness:
-            heights.append(heights[-1] + step)
+            heights.append(heights[-1] + min(step, self._spacing_near_shock(heights[-1])))
             step = min(step * self.growth, max(self.spacing, step))
         return heights
+
+    def _spacing_near_shock(self, height: float) -> float:
+        """Greatest spacing [m] of layers at a height that the bow shock allows."""
+        if self.shock_height is None or self.shock_spacing is None:
+            return math.inf
+        away = abs(height - self.shock_height) - AT_SHOCK * self.shock_height
+        return self.shock_spacing + WIDENING * max(away, 0.0)
 
 
 @parameters
@@ -225,6 +251,10 @@ class Moving:
     def finest_spacing(self) -> float:
         """Least distance [m] of nodes in bodies' clouds."""
         return min(
-            min(body.heights[1], math.tau * body.radius / body.points_around)
+            min(
+                body.heights[1],
+                body.shock_spacing or math.inf,
+                math.tau * body.radius / body.points_around,
+            )
             for body in self.bodies
         )

@@ -379,5 +379,10 @@ def test_scenes_without_bodies_import_no_seams():
 @pytest.mark.parametrize(("share", "wind"), [(0.0, None), (1.0, [0.0, 0.0, 0.0])])
 def test_the_accuracy_of_a_supersonic_body_is_told_by_its_resolution(share, wind):
     (note,) = accuracy_notes(params_of(scene(share, gas=wind)))
-    assert "4 nodes on its radius" in note and "too large by about 22 %" in note
+    assert "4 nodes on its radius" in note
+    assert "about 0.407 m" in note, "0.386 exp(4.67 / M²) radii of a cylinder"
+    assert "too large by about 15 %" in note, "half of a spacing of 0.125 m"
     assert accuracy_notes(params_of(scene(0.0, gas=[0.5, 0.0, 0.0]))) == (), "it is subsonic"
+    (note,) = accuracy_notes(params_of(in_a_stream(shock_height=0.12, shock_spacing=0.012)))
+    assert "about 0.12 m" in note, "0.143 exp(3.24 / M²) radii of a sphere"
+    assert "too large by about 10 %" in note
