@@ -28,7 +28,7 @@ from quintet.components.sph_fluid.laws import (
     inverses,
     pressure_term,
 )
-from quintet.components.sph_fluid.state import Array, Whole
+from quintet.components.sph_fluid.state import Array
 
 Numbers = NDArray[np.floating]
 
@@ -97,43 +97,35 @@ def pair_rates(
         outside = out_of_reach(position_i[0], constants.smoothing.length)
         padding = outside, position_i[1], position_i[2], position_i[3]
         if i < split:
-            count = pack_rows(begin[i], middle[i], neighbour, position, padding, near_position)
-            pack_rows(begin[i], middle[i], neighbour, velocity, velocity_i, near_velocity)
+            count = pack_pairs(
+                begin[i], middle[i], neighbour, position, velocity, padding, velocity_i,
+                near_position, near_velocity,
+            )  # fmt: skip
             force, density_rate, compression, xsph, fastest = sum_pairs(
                 count, position_i, velocity_i, near_position, near_velocity, near_velocity,
                 near_volume, near_mask, law.fluid, constants, fastest,
             )  # fmt: skip
-            ax, ay, az = force
             if law.fluid.xsph is not None:
                 for d in range(3):
                     xsph_velocity[i, d] = 2.0 * constants.mass * xsph[d]
             if middle[i] < end[i]:
-                count = pack_rows(middle[i], end[i], neighbour, position, padding, near_position)
-                pack_rows(middle[i], end[i], neighbour, velocity, velocity_i, near_velocity)
-                if law.boundary.viscosity.on is not None:
-                    pack_rows(
-                        middle[i], end[i], neighbour, boundary_velocity, velocity_i, near_apparent
-                    )
-                if law.boundary.volume is not None:
-                    pack_values(middle[i], end[i], neighbour, volume, near_volume)
-                if law.boundary.contact.partial is not None:
-                    pack_values(middle[i], end[i], neighbour, mask, near_mask)
-                force, more, other, _, fastest = sum_pairs(
-                    count, position_i, velocity_i, near_position, near_velocity, near_apparent,
-                    near_volume, near_mask, law.boundary, constants, fastest,
+                push, more, other, fastest = sum_boundary(
+                    middle[i], end[i], neighbour, position, velocity, boundary_velocity, volume,
+                    mask, position_i, velocity_i, padding, near_position, near_velocity,
+                    near_apparent, near_volume, near_mask, law.boundary, constants, fastest,
                 )  # fmt: skip
-                ax, ay, az = ax + force[0], ay + force[1], az + force[2]
+                force = force[0] + push[0], force[1] + push[1], force[2] + push[2]
                 density_rate, compression = density_rate + more, compression + other
-            fx = constants.mass * ax + gravity[0]
-            fy = constants.mass * ay + gravity[1]
-            fz = constants.mass * az + gravity[2]
-            greatest = max(greatest, fx * fx + fy * fy + fz * fz)
-            rate[i, 0] = fx
-            rate[i, 1] = fy
-            rate[i, 2] = fz
+            square = 0.0
+            for d in range(3):
+                rate[i, d] = constants.mass * force[d] + gravity[d]
+                square += rate[i, d] * rate[i, d]
+            greatest = max(greatest, square)
         else:
-            count = pack_rows(begin[i], end[i], neighbour, position, padding, near_position)
-            pack_rows(begin[i], end[i], neighbour, velocity, velocity_i, near_velocity)
+            count = pack_pairs(
+                begin[i], end[i], neighbour, position, velocity, padding, velocity_i,
+                near_position, near_velocity,
+            )  # fmt: skip
             density_rate = sum_continuity(
                 count, position_i, velocity_i, near_position, near_velocity, constants
             )
@@ -142,6 +134,38 @@ def pair_rates(
         if law.damper is not None:
             minus_rho_div_u[i] = constants.mass * compression
     return greatest, number_of(fastest)
+
+
+@njit(inline="always")
+def pack_pairs(  # type: ignore[no-untyped-def]
+    begin, end, neighbour, position, velocity, padding, velocity_i, near_position, near_velocity
+):
+    """Copy neighbours [begin, end) side by side; return how many they are, filled up."""
+    pack_rows(begin, end, neighbour, velocity, velocity_i, near_velocity)
+    return pack_rows(begin, end, neighbour, position, padding, near_position)
+
+
+@njit(inline="always")
+def sum_boundary(  # type: ignore[no-untyped-def]
+    begin, end, neighbour, position, velocity, apparent, volume, mask, position_i, velocity_i,
+    padding, near_position, near_velocity, near_apparent, near_volume, near_mask, terms, constants,
+    fastest,
+):  # fmt: skip
+    """Sums over boundary rows around a particle of the fluid, and what these have beside others."""
+    count = pack_pairs(
+        begin, end, neighbour, position, velocity, padding, velocity_i, near_position, near_velocity
+    )
+    if terms.viscosity.on is not None:
+        pack_rows(begin, end, neighbour, apparent, velocity_i, near_apparent)
+    if terms.volume is not None:
+        pack_values(begin, end, neighbour, volume, near_volume)
+    if terms.contact.partial is not None:
+        pack_values(begin, end, neighbour, mask, near_mask)
+    force, density_rate, compression, _, fastest = sum_pairs(
+        count, position_i, velocity_i, near_position, near_velocity, near_apparent,
+        near_volume, near_mask, terms, constants, fastest,
+    )  # fmt: skip
+    return force, density_rate, compression, fastest
 
 
 @njit(inline="always")
@@ -223,70 +247,6 @@ def sum_pairs(  # type: ignore[no-untyped-def]
             my -= weight * dv
             mz -= weight * dw
     return force, density_rate, compression, (mx, my, mz), fastest
-
-
-@njit(**FAST)
-def sample_forces(
-    first: int, last: int, row: Whole, listed: Whole, particles: Particles,
-    boundary: BoundaryRows, lists: Lists, law: PairLaw, force: Array,
-) -> None:  # fmt: skip
-    """Write the force on surface samples: pair by pair, minus that on the fluid.
-
-    Parameters
-    ----------
-    first, last : int
-        Samples to write.
-    row, listed : (samples,) int array
-        Where they stand among the particles, and where the lists have what is around them.
-    particles, boundary, lists, law
-    force : (samples, 3) float array, N
-        Written.
-    """
-    begin, _, end, neighbour = lists
-    position, velocity = particles
-    apparent, volume, mask = boundary
-    constants, terms = law.constants, law.boundary
-    zero = position.dtype.type(0)
-    for s in range(first, last):
-        i = row[s]
-        x, y, z, density = position[i, 0], position[i, 1], position[i, 2], position[i, 3]
-        u, v, w, pressure = velocity[i, 0], velocity[i, 1], velocity[i, 2], velocity[i, 3]
-        on_sample = zero, zero, zero
-        for k in range(np.uint64(begin[listed[s]]), np.uint64(end[listed[s]])):
-            j = np.uint64(neighbour[k])
-            dx, dy, dz = x - position[j, 0], y - position[j, 1], z - position[j, 2]
-            r2 = dx * dx + dy * dy + dz * dz
-            du, dv, dw = u - velocity[j, 0], v - velocity[j, 1], w - velocity[j, 2]
-            dot = dx * du + dy * dv + dz * dw
-            density_sum = density + position[j, 3] + constants.base + constants.base
-            per_r, per_r2, per_density = inverses(r2, density_sum, constants)
-            slope = gradient(r2, per_r, constants.smoothing)
-            if terms.volume is not None:
-                slope *= volume[i]
-            pressure_i = pressure
-            if terms.contact.on is not None:
-                acts = zero
-                if terms.contact.partial is not None:
-                    acts = mask[i]
-                pressure_i = pressure * contact_factor(r2, acts, terms.contact, constants.smoothing)
-            apparent_i = u, v, w
-            if terms.viscosity.on is not None:
-                apparent_i = apparent[i, 0], apparent[i, 1], apparent[i, 2]
-            velocity_j = velocity[j, 0], velocity[j, 1], velocity[j, 2]
-            on_sample = add_pair_force(
-                on_sample, (dx, dy, dz), apparent_i, velocity_j, r2, pressure_i + velocity[j, 3],
-                dot * per_r2, slope, per_r2, per_density, terms,
-            )  # fmt: skip
-        for d in range(3):
-            force[s, d] = constants.mass * constants.mass * on_sample[d]
-
-
-@njit(**FAST)
-def move_by(first: int, last: int, time: float, velocity: Array, position: Array) -> None:
-    """Move rows [first, last) with velocities (fluid, 3) m/s for a time [s]."""
-    for i in range(first, last):
-        for d in range(3):
-            position[i, d] += time * velocity[i, d]
 
 
 # Not `FAST`: that would take every number for finite, and densities may not be.

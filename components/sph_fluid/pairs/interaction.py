@@ -14,10 +14,9 @@ from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.kernels import (
     BoundaryRows,
     Rates,
-    move_by,
     pair_rates,
-    sample_forces,
 )
+from quintet.components.sph_fluid.pairs.kernels import move_by, sample_forces
 from quintet.components.sph_fluid.pairs.precision import Precision
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.mass import EVEN

@@ -1,13 +1,21 @@
-"""Loops of the acoustic damper and of the Shepard filter."""
+"""Loops over pairs beside that of the fluid: forces on samples, XSPH, damper and filter."""
 
 import numpy as np
 from numba import njit
 
 from quintet.components.shared.numba_options import FAST
 from quintet.components.shared.search.neighbours import Lists
-from quintet.components.shared.smoothing.smoothing import kernel
-from quintet.components.sph_fluid.laws import Constants, pressure_term
-from quintet.components.sph_fluid.state import Array
+from quintet.components.shared.smoothing.smoothing import gradient, kernel
+from quintet.components.sph_fluid.kernels import BoundaryRows, Particles
+from quintet.components.sph_fluid.laws import (
+    Constants,
+    PairLaw,
+    add_pair_force,
+    contact_factor,
+    inverses,
+    pressure_term,
+)
+from quintet.components.sph_fluid.state import Array, Whole
 
 NO_FLUID = 1e-2  # Σ V W below which there is no fluid around a mirror point
 
@@ -72,3 +80,67 @@ def filter_density(
             weights += weight
             volumes += weight / position[j, 3]
         density[i] = weights / volumes
+
+
+@njit(**FAST)
+def sample_forces(
+    first: int, last: int, row: Whole, listed: Whole, particles: Particles,
+    boundary: BoundaryRows, lists: Lists, law: PairLaw, force: Array,
+) -> None:  # fmt: skip
+    """Write the force on surface samples: pair by pair, minus that on the fluid.
+
+    Parameters
+    ----------
+    first, last : int
+        Samples to write.
+    row, listed : (samples,) int array
+        Where they stand among the particles, and where the lists have what is around them.
+    particles, boundary, lists, law
+    force : (samples, 3) float array, N
+        Written.
+    """
+    begin, _, end, neighbour = lists
+    position, velocity = particles
+    apparent, volume, mask = boundary
+    constants, terms = law.constants, law.boundary
+    zero = position.dtype.type(0)
+    for s in range(first, last):
+        i = row[s]
+        x, y, z, density = position[i, 0], position[i, 1], position[i, 2], position[i, 3]
+        u, v, w, pressure = velocity[i, 0], velocity[i, 1], velocity[i, 2], velocity[i, 3]
+        on_sample = zero, zero, zero
+        for k in range(np.uint64(begin[listed[s]]), np.uint64(end[listed[s]])):
+            j = np.uint64(neighbour[k])
+            dx, dy, dz = x - position[j, 0], y - position[j, 1], z - position[j, 2]
+            r2 = dx * dx + dy * dy + dz * dz
+            du, dv, dw = u - velocity[j, 0], v - velocity[j, 1], w - velocity[j, 2]
+            dot = dx * du + dy * dv + dz * dw
+            density_sum = density + position[j, 3] + constants.base + constants.base
+            per_r, per_r2, per_density = inverses(r2, density_sum, constants)
+            slope = gradient(r2, per_r, constants.smoothing)
+            if terms.volume is not None:
+                slope *= volume[i]
+            pressure_i = pressure
+            if terms.contact.on is not None:
+                acts = zero
+                if terms.contact.partial is not None:
+                    acts = mask[i]
+                pressure_i = pressure * contact_factor(r2, acts, terms.contact, constants.smoothing)
+            apparent_i = u, v, w
+            if terms.viscosity.on is not None:
+                apparent_i = apparent[i, 0], apparent[i, 1], apparent[i, 2]
+            velocity_j = velocity[j, 0], velocity[j, 1], velocity[j, 2]
+            on_sample = add_pair_force(
+                on_sample, (dx, dy, dz), apparent_i, velocity_j, r2, pressure_i + velocity[j, 3],
+                dot * per_r2, slope, per_r2, per_density, terms,
+            )  # fmt: skip
+        for d in range(3):
+            force[s, d] = constants.mass * constants.mass * on_sample[d]
+
+
+@njit(**FAST)
+def move_by(first: int, last: int, time: float, velocity: Array, position: Array) -> None:
+    """Move rows [first, last) with velocities (fluid, 3) m/s for a time [s]."""
+    for i in range(first, last):
+        for d in range(3):
+            position[i, d] += time * velocity[i, d]

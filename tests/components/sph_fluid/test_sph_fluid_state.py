@@ -43,6 +43,7 @@ import sys, numpy as np
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid import kernels
+from quintet.components.sph_fluid.pairs import kernels as pair_kernels
 from quintet.components.sph_fluid.params import Boundary
 from quintet.components.sph_fluid.setup.shapes import FluidRegion
 region = FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.12, 0.12, 0.12))
@@ -54,7 +55,7 @@ left_out = "shepard_filter contact_potential potential acoustic_damper mirrored 
 left_out += " single_precision position_verlet symmetry lubrication film_geometry gauges"
 left_out += " film_search selective_films nearby_bodies removal shape_filling field_table"
 assert not loaded & set(left_out.split()), loaded
-assert not kernels.sample_forces.signatures
+assert not pair_kernels.sample_forces.signatures
 (signature,) = kernels.pair_rates.signatures
 law = dict(zip(signature[6].fields, signature[6].types))
 assert str(law["damper"]) == "none"
@@ -72,6 +73,7 @@ import sys, numpy as np
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid import kernels
+from quintet.components.sph_fluid.pairs import kernels as pair_kernels
 from quintet.components.sph_fluid.params import Boundary
 from quintet.components.sph_fluid.setup.shapes import FluidRegion
 region = FluidRegion(lowest=(0.0, 0.0, 0.0), highest=(0.12, 0.12, 0.12))
@@ -84,7 +86,7 @@ moved = {"position": one, "velocity": 0.0 * one, "mirror": one + (0.0, 0.0, 0.02
 fluid.take({f"surface.{key}": array for key, array in moved.items()})
 fluid.step(fluid.stable_dt())
 assert not [name for name in sys.modules if name.endswith(".contact_potential")]
-(signature,) = kernels.sample_forces.signatures
+(signature,) = pair_kernels.sample_forces.signatures
 law = dict(zip(signature[7].fields, signature[7].types))
 terms = dict(zip(law["boundary"].fields, law["boundary"].types))
 assert str(terms["contact"].types[0]) == "none", terms
