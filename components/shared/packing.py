@@ -4,14 +4,16 @@ Processors load vectors of what stands in a row many times faster than they gath
 all over memory: with whole rows copied first, and rows of a length that the compiler knows, pairs
 take four fifths of the time, and two thirds in single precision. A list is filled up to whole
 vectors with a row that is out of reach, so that no pairs are left over for a loop without them.
-All is inlined: the length of a row is not known beyond a call. Rows have any number of columns,
-best a multiple of four; how many is taken from the filling.
+Rooms are made inline: the length of a row is not known beyond a call. Rows are copied by a
+function of its own, compiled once for all loops. They have any number of columns, best a multiple
+of four; how many is taken from the filling.
 """
 
 import numpy as np
 from numba import njit, types
 from numba.extending import overload
 
+from quintet.components.shared.numba_options import LANEWISE
 from quintet.components.shared.smoothing.cubic_spline import FOUR
 
 PAIRS = 8  # that a processor computes at once: numbers in its longest vectors
@@ -39,7 +41,7 @@ def out_of_reach(x, smoothing_length):  # type: ignore[no-untyped-def]
     return x + FOUR * smoothing_length
 
 
-@njit(inline="always")
+@njit(**LANEWISE)
 def pack_rows(begin, end, neighbour, source, filling, target):  # type: ignore[no-untyped-def]
     """Copy rows (n, width) of neighbours [begin, end); return how many they are, filled up.
 
