@@ -132,9 +132,9 @@ class DemBodies(Component):
 
     def _advance(self, stage: int, dt: float) -> int:
         """Run all stages from one on; with several threads, that one. Return the next one."""
-        lists, limit = self.lists, 0.25 * self.lists.skin**2
+        lists = self.lists
         pairs = lists.balls, lists.bodies
-        arguments = (self.model, self.state, *pairs, self.sums, dt, self.loaded, limit)
+        arguments = (self.model, self.state, *pairs, self.sums, dt, self.loaded, lists.skin)
         blocks, several = len(self.sums), self.team.size > 1
         stages = stage, stage + 1 if several else kernels.DONE
         if several and stage in SHARED:

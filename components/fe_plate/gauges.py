@@ -17,6 +17,7 @@ from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, elements_of
 from quintet.components.fe_plate.params import Faces, Gauges
 from quintet.components.fe_plate.state import Array, Places, State, Whole
 from quintet.components.fe_plate.view import von_mises
+from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Keys
 from quintet.interfaces.errors import SceneError
 
@@ -52,17 +53,11 @@ def measured(mesh: Mesh, gauges: Gauges) -> Measured:
                 "another set."
             )
     return Measured(
-        nearest(mesh.node, gauges.node_gauges),
-        nearest(middle, gauges.element_gauges),
+        nearest_rows(mesh.node, gauges.node_gauges),
+        nearest_rows(middle, gauges.element_gauges),
         nodes,
         elements,
     )
-
-
-def nearest(points: Array, wanted: tuple[tuple[float, float, float], ...]) -> Whole:
-    """Which of points (n, 3) m is nearest to each wanted one; the first of several."""
-    rows = [int(np.argmin(((points - place) ** 2).sum(axis=1))) for place in wanted]
-    return np.array(rows, np.int64)
 
 
 def at_nodes(state: State, node: Whole) -> dict[str, Array]:

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import Cloud
-from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import Part, Reader
 from quintet.components.meshless_gas.readings import Front
+from quintet.components.shared.search.nearest import nearest, nearest_rows
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
@@ -41,9 +41,9 @@ class Gauges(Part):
 
     def __init__(self, params: MeshlessGasParams, domain: Domain, team: Team) -> None:
         ends = [end for front in params.fronts for end in (front.begin, front.end)]
-        refuse_far(domain, (*params.probes, *ends), team)
+        refuse_far(domain, (*params.probes, *ends))
         self.gas, self.cloud = params.gas, domain.cloud
-        self.probed = nearest_nodes(domain.cloud, params.probes, team)
+        self.probed = nearest_rows(domain.cloud.positions[: domain.cloud.nodes], params.probes)
         self.lines = [line(domain.cloud, front, team) for front in params.fronts]
 
     def readers(self, primitive: Array) -> Mapping[str, Reader]:
@@ -54,18 +54,10 @@ class Gauges(Part):
         }
 
 
-def nearest_nodes(cloud: Cloud, places: Sequence[Sequence[float]], team: Team) -> Rows:
-    """Nodes (m,) that are nearest to some places (m, 3) m."""
-    if not places:
-        return np.zeros(0, np.int64)
-    among = np.arange(cloud.nodes)
-    return nearest(cloud.positions, among, np.array(places, np.float64), 1, team)[0][:, 0]
-
-
-def refuse_far(domain: Domain, places: Sequence[Sequence[float]], team: Team) -> None:
+def refuse_far(domain: Domain, places: Sequence[Sequence[float]]) -> None:
     """Refuse places that lie farther from the nodes than these from each other."""
     cloud, near = domain.cloud, domain.stencils.neighbours
-    rows = nearest_nodes(cloud, places, team)
+    rows = nearest_rows(cloud.positions[: cloud.nodes], places)
     for place, row in zip(places, rows, strict=True):
         arms = cloud.positions[near[row]] - cloud.positions[row]
         arm = cloud.positions[row] - np.array(place)

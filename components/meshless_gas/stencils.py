@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud, Whole
-from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.stencils import write_coefficients
+from quintet.components.shared.search.nearest import nearest
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError

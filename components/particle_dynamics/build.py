@@ -17,6 +17,7 @@ from quintet.components.particle_dynamics.potential import (
     stiffness,
 )
 from quintet.components.particle_dynamics.state import Model, State, Whole
+from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
@@ -49,7 +50,7 @@ def build(params: ParticleLatticeParams) -> Built:
     lattice = params.lattice
     start = lattice_points(lattice)
     period = _period(lattice)
-    frozen = np.array(sorted({nearest_point(start, place) for place in params.frozen}), np.int64)
+    frozen = np.unique(nearest_rows(start, params.frozen))
     law, frequency = _law(params, start, period, frozen)
     bonds = _bonds(start, 1.1 * lattice.spacing, np.array(lattice.lowest), period)
     return Built(start, period, law, frequency, bonds, frozen)
@@ -85,11 +86,6 @@ def _period(lattice: Lattice) -> Array | None:
     sides = zip("xyz", lattice.cells, strict=True)
     length = [n * lattice.spacing if axis in lattice.periodic else 0.0 for axis, n in sides]
     return np.array([*length, *(1.0 / side if side else 0.0 for side in length)])
-
-
-def nearest_point(start: Array, place: tuple[float, float, float]) -> int:
-    """Number of the point that is nearest to a place [m]."""
-    return int(((start - place) ** 2).sum(axis=1).argmin())
 
 
 def _bonds(start: Array, reach: float, lowest: Array, period: Array | None) -> Whole:

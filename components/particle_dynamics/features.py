@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
-from quintet.components.particle_dynamics.build import Built, nearest_point
+from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.integrators import STAGES
 from quintet.components.particle_dynamics.params import Bath, Drive, Lattice, ParticleLatticeParams
 from quintet.components.particle_dynamics.state import Bathed, Driven, Model, Whole
+from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
@@ -39,11 +40,11 @@ def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
 
 
 def _driven(start: Array, lattice: Lattice, drive: Drive) -> Driven:
-    first, axis = nearest_point(start, drive.point), "xyz".index(drive.partner[1])
+    (first,), axis = nearest_rows(start, [drive.point]), "xyz".index(drive.partner[1])
     towards = 1.0 if drive.partner[0] == "+" else -1.0
     place = start[first].copy()
     place[axis] += towards * lattice.spacing
-    second = nearest_point(start, tuple(place.tolist()))
+    (second,) = nearest_rows(start, [place])
     if np.abs(start[second] - place).max() > 0.5 * lattice.spacing:
         raise SceneError(
             f"drive: partner must be a point of the lattice; towards {drive.partner} of "

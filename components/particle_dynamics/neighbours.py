@@ -10,7 +10,7 @@ from quintet.components.particle_dynamics.kernels.pair_lists import write_pairs
 from quintet.components.particle_dynamics.state import Whole
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import neighbours_within
-from quintet.components.shared.search.verlet_list import furthest
+from quintet.components.shared.search.verlet_list import furthest, slack
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 
@@ -42,7 +42,7 @@ class Neighbours:
 
     def needs_rebuild(self, position: Array, listed: Array) -> bool:
         """Whether unlisted points may interact soon; `listed` are positions of the last rebuild."""
-        return 2.0 * furthest(position, listed) > EARLY * self.skin
+        return slack(EARLY * self.skin, furthest(position, listed)) < 0.0
 
 
 def pairs_within(reach: float, position: Array, lowest: Array, period: Array | None) -> Pairs:

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from quintet.components.shared.materials.params import Material, material
 from quintet.components.shared.materials.solid import Solid, solid
+from quintet.components.shared.search.nearest import nearest_rows
 from quintet.components.shared.smoothing.smoothing import kernel, smoothing
 from quintet.components.sph_solid.filling import filling, starting_velocity
 from quintet.components.sph_solid.laws import PairLaw
@@ -117,12 +118,12 @@ def _is_glued(position: Array, params: SphSolidParams) -> Mask:
     return is_glued
 
 
-def nearest(points: Array, params: SphSolidParams) -> Whole:
+def gauged(points: Array, params: SphSolidParams) -> Whole:
     """Numbers (gauges,) of the points (n, 3) m that are nearest to gauges at the start."""
     places = [np.array(gauge) for gauge in params.gauges]
     if params.dimensions == 2:
         places = [place * (1.0, 0.0, 1.0) for place in places]
-    return np.array([((points - place) ** 2).sum(axis=1).argmin() for place in places], np.int64)
+    return nearest_rows(points, places)
 
 
 def inside(points: Array, lowest: Vector, highest: Vector, params: SphSolidParams) -> Mask:

@@ -7,7 +7,7 @@ import numpy as np
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
-from quintet.components.sph_solid.build import initial_state, materials, nearest, pair_law
+from quintet.components.sph_solid.build import gauged, initial_state, materials, pair_law
 from quintet.components.sph_solid.diagnostics import failure, totals
 from quintet.components.sph_solid.features import pair_sums
 from quintet.components.sph_solid.gauges import bodies, gauges, levels
@@ -59,7 +59,7 @@ class SphSolid(Component):
         self.materials = Materials(laws, self.team)
         self.state = initial_state(params, laws, numbers)
         self.judge = Judge(self.state, laws, params)
-        self.gauged = nearest(self.state.position, params)
+        self.gauged = gauged(self.state.position, params)
         self.lists = SolidLists(params, self.team)
         self.sums = pair_sums(params, self.team)
         self.is_carried = False  # whether a mesh carries the glued particles

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
+from quintet.components.shared.search.verlet_list import furthest, slack
 from quintet.components.sph_solid.kernels.pairs import Forces
 from quintet.components.sph_solid.kernels.touching import push_apart, push_off_plane
 from quintet.components.sph_solid.neighbours import SolidLists
@@ -35,8 +36,7 @@ class Touching:
     def add(self, rows: Rows, density: Array, forces: Forces) -> None:
         """Add forces of contact, of densities (n + images,) kg/m3 at the start."""
         place = rows.place[: len(self.start), :3]
-        moved = place - self.listed
-        if not (moved * moved).sum(axis=1).max(initial=0.0) <= (0.5 * SKIN * self.spacing) ** 2:
+        if not slack(SKIN * self.spacing, furthest(place, self.listed)) >= 0.0:
             self._list(place)
         push_apart(self.pairs, rows.place, rows.motion, density, self.spacing, forces)
         for plane, mine in self.planes:

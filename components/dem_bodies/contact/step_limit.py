@@ -18,6 +18,7 @@ from quintet.components.dem_bodies.state import (
     Model,
     State,
 )
+from quintet.components.shared.search.verlet_list import slack
 
 SHARE = 0.75  # of the limits: the sums leave out how neighbours move
 TURN = 0.05  # rad in a step of a free body that is no sphere: its energy is then kept to 1e-4
@@ -53,7 +54,7 @@ class StepLimit:
             touching = lists.count_contacts()
             contact = min(contact, many_contacts_step(touching, stiffest, self.damping))
         # Pairs that are not listed were further apart than the skin, and may have come nearer.
-        gap = min(report[SMALLEST_GAP], lists.skin - 2.0 * math.sqrt(report[TRAVEL]))
+        gap = min(report[SMALLEST_GAP], slack(lists.skin, math.sqrt(report[TRAVEL])))
         if len(model.bounding_radius) == 1:  # it turns within its bounding sphere
             gap = max(gap, clearance(model, state))
             longest = min(longest, turning_step(model, state))

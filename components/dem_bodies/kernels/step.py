@@ -1,5 +1,7 @@
 """Loops over bodies: the stages of a velocity-Verlet step, and copies of its result."""
 
+import math
+
 from numba import njit
 
 from quintet.components.dem_bodies.kernels.ball_contacts import ball_loads, begin_block
@@ -24,6 +26,7 @@ from quintet.components.dem_bodies.state import (
     Whole,
 )
 from quintet.components.shared.numba_options import EXACT
+from quintet.components.shared.search.verlet_list import slack
 
 # The stages of a step. Drift, balls and kick are shared out among threads.
 DRIFT, BALLS, OTHERS, KICK, REPORT, DONE = range(6)
@@ -34,7 +37,7 @@ LIST = -1  # in place of a stage: pairs must be listed again first
 def step(
     first: int, last: int, begin: int, end: int, model: Model, state: State,
     balls: BallPairs | None, others: BodyPairs, sums: Numbers, dt: float, loaded: bool,
-    limit: float,
+    skin: float,
 ) -> int:  # fmt: skip
     """Run the stages [begin, end) of a velocity-Verlet step for the blocks [first, last).
 
@@ -55,8 +58,8 @@ def step(
     dt : float, s
     loaded : bool
         Whether any body has a load.
-    limit : float, m2
-        Square of the displacement of a sphere beyond which pairs are listed again.
+    skin : float, m
+        Distance within which pairs are listed.
 
     Returns
     -------
@@ -67,7 +70,7 @@ def step(
     if begin <= DRIFT < end:
         drift(first, last, model, state, balls, sums, dt, loaded)
     if begin <= BALLS < end:
-        if not sums[:, TRAVEL].max() <= limit:
+        if not slack(skin, math.sqrt(sums[:, TRAVEL].max())) >= 0.0:
             return LIST
         if balls is None:
             for block in range(first, last):

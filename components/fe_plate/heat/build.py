@@ -9,6 +9,7 @@ from quintet.components.fe_plate.heat.state import Model, State
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, incident, mesh
 from quintet.components.fe_plate.params import Faces
+from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.errors import SceneError
 
 
@@ -54,8 +55,7 @@ def _held_by(fixed: FixedTemperature, grid: Mesh, where: str) -> Array:
     if fixed.point is None:
         box = Faces(lowest=fixed.lowest, highest=fixed.highest, node_set=fixed.node_set)
         return np.asarray(chosen(grid, box, where))
-    nearest = ((grid.node - fixed.point) ** 2).sum(axis=1)
-    return np.asarray(np.arange(len(nearest)) == np.argmin(nearest))
+    return np.asarray(np.arange(len(grid.node)) == nearest_rows(grid.node, [fixed.point]))
 
 
 def _require_held(params: FeHeatParams, part: Whole, holder: Whole) -> None:

@@ -14,6 +14,7 @@ from quintet.components.fe_plate.heat.view import view
 from quintet.components.fe_plate.meshes.arrays import Array
 from quintet.components.fe_plate.meshes.mesh import faces_in
 from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
+from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Component, Fields, Keys, Totals
 from quintet.interfaces.errors import SceneError, StepError
 
@@ -49,9 +50,7 @@ class FeHeat(Component):
         faces = mesh.side[coupled]
         self.surface = np.unique(faces)  # nodes
         self.corner = np.searchsorted(self.surface, faces)  # (f, 4) among these
-        self.gauges = [
-            int(np.argmin(((mesh.node - place) ** 2).sum(axis=1))) for place in params.node_gauges
-        ]
+        self.gauges = nearest_rows(mesh.node, params.node_gauges)
         self.state = initial_state(params, self.model, len(self.surface))
         self.start = self.state.temperature.copy()  # K
         self.times = transient_times(params, self.model)  # s

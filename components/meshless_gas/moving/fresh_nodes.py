@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud
-from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.moving.kernels.fresh_nodes import (
     write_fresh,
     write_fresh_in_space,
 )
 from quintet.components.meshless_gas.moving.layout import CloudLayout
+from quintet.components.shared.search.nearest import nearest
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 

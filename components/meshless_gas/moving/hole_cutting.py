@@ -5,13 +5,13 @@ from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, Cloud
-from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.outflows import Outflows, clear_of_holes
 from quintet.components.meshless_gas.moving.kernels.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
 from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.refusals import refuse_places
 from quintet.components.meshless_gas.moving.volumes import partitioned
+from quintet.components.shared.search.nearest import nearest
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import QuintetError, SceneError, StepError

@@ -9,13 +9,13 @@ from quintet.components.meshless_gas.clouds.cloud import (
     NO_SLIP_KINDS,
     Cloud,
 )
-from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
 from quintet.components.meshless_gas.kernels.stencils import write_coefficients
 from quintet.components.meshless_gas.moving.kernels.fringe import choose
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving.refusals import too_few
 from quintet.components.meshless_gas.stencils import SOUND
+from quintet.components.shared.search.nearest import nearest
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud
-from quintet.components.meshless_gas.clouds.kernels import build, search
 from quintet.components.meshless_gas.laws.transport import Transport
 from quintet.components.meshless_gas.point_particles.kernels import (
     exchange,
@@ -16,6 +15,7 @@ from quintet.components.meshless_gas.point_particles.kernels import (
 from quintet.components.meshless_gas.point_particles.laws import DRAG, HEAT
 from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.components.meshless_gas.point_particles.particles import Laws, Loads, Particles
+from quintet.components.shared.search.nearest import build, search
 from quintet.interfaces.component import Array
 
 NODES = {2: 16, 3: 32}  # by dimensions

@@ -22,7 +22,7 @@ from quintet.components.particle_dynamics.state import (
     State,
 )
 from quintet.components.shared.numba_options import EXACT
-from quintet.components.shared.search.verlet_list import furthest
+from quintet.components.shared.search.verlet_list import furthest, slack
 from quintet.interfaces.component import Array
 
 EARLY = 0.6  # of the skin: distance at which lists are rebuilt; the rest covers the next step
@@ -260,8 +260,8 @@ def advance(
         weight = dt if state.energies[TIME] > averaged_from else 0.0
         squares = average(weight, model.mass, state.velocity, state.kinetic)
         moved = furthest(state.position, state.listed)
-        if not (math.isfinite(squares) and 2.0 * moved < skin):
+        if not (math.isfinite(squares) and slack(skin, moved) > 0.0):
             return -1
-        if 2.0 * moved > EARLY * skin:
+        if slack(EARLY * skin, moved) < 0.0:
             return step + 1
     return steps

@@ -20,7 +20,7 @@ from quintet.components.shared.search.cells import (
     number_along,
     row_of_keys,
 )
-from quintet.components.shared.search.verlet_list import furthest
+from quintet.components.shared.search.verlet_list import furthest, slack
 from quintet.interfaces.component import Array
 
 SKIN = 0.5  # of the largest diameter
@@ -97,7 +97,7 @@ class NearPairs:
 
     def at(self, position: Array) -> Pairs:
         """All pairs that overlap at positions (n, 3) m, and some that do not."""
-        if not 2.0 * furthest(position, self.listed) < self.skin:
+        if not slack(self.skin, furthest(position, self.listed)) > 0.0:
             self._list(position)
         return self.pairs
 

@@ -1,11 +1,10 @@
-"""When a Verlet list must be made anew: cutoff, skin, and how far particles have moved.
+"""When a Verlet list must be made again: how far points have moved, and what that leaves.
 
 A list that holds what was nearer than cutoff + skin lacks no pair that is nearer than the cutoff
-until two particles have moved by more than the skin together (Verlet, Phys. Rev. 159 (1967) 98).
+until two points have moved by more than the skin together (Verlet, Phys. Rev. 159 (1967) 98).
 """
 
 import math
-from dataclasses import dataclass
 
 from numba import njit
 
@@ -13,31 +12,20 @@ from quintet.components.shared.numba_options import EXACT
 from quintet.interfaces.component import Array
 
 
-@dataclass(frozen=True, slots=True)
-class VerletSkin:
-    """How far pairs act, and how much further the list reaches."""
+@njit(**EXACT)
+def slack(skin: float, moved: float, others: float = 0.0) -> float:
+    """How much nearer [m] two points may still come; a list holds while this is above 0.
 
-    cutoff: float  # m, beyond which pairs do not act
-    share: float  # 1, skin over cutoff
-
-    @property
-    def reach(self) -> float:
-        """Distance [m] within which the list holds all pairs."""
-        return (1.0 + self.share) * self.cutoff
-
-    def is_outworn(self, moved: float, others: float = 0.0, coming: float = 0.0) -> bool:
-        """Whether pairs may act that the list lacks.
-
-        Parameters
-        ----------
-        moved : float, m
-            Furthest that a particle is from where it was listed.
-        others : float, m
-            The same of those that pair with these only, as walls and surfaces.
-        coming : float, m
-            How much nearer two particles may come to each other before pairs are next computed.
-        """
-        return moved + max(moved, others) > self.reach - self.cutoff - coming
+    Parameters
+    ----------
+    skin : float, m
+        By which the list reaches beyond the cutoff.
+    moved : float, m
+        Furthest that a point is from where it was listed.
+    others : float, m
+        The same of those that pair with these only, as walls and surfaces.
+    """
+    return skin - (moved + max(moved, others))
 
 
 def longest(vectors: Array) -> float:

@@ -5,7 +5,7 @@ import numpy as np
 from quintet.components.shared.geometry.shapes import Bounds
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import Lists, NeighbourLists
-from quintet.components.shared.search.verlet_list import VerletSkin, longest
+from quintet.components.shared.search.verlet_list import longest, slack
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod
@@ -26,7 +26,8 @@ class FluidLists:
     def __init__(self, params: SphFluidParams, samples: Samples) -> None:
         self.samples = samples
         self.walls = params.boundary.tank
-        self.skin = VerletSkin(SUPPORT * params.smoothing_length, SKIN[params.integration])
+        self.cutoff = SUPPORT * params.smoothing_length  # m
+        self.reach = (1.0 + SKIN[params.integration]) * self.cutoff  # m
         # In the middle of a step of position Verlet pairs meet too.
         self.middle = params.integration == "symplectic"
         self.near = NeighbourLists()
@@ -48,7 +49,7 @@ class FluidLists:
             moved = max(moved, boundary.displacement(state))
         # Each of two goes to the middle of the step at its speed.
         coming = dt * longest(state.velocity_pressure[: state.fluid]) if self.middle else 0.0
-        return self.skin.is_outworn(state.moved, moved, coming)
+        return slack(self.reach - self.cutoff - coming, state.moved, moved) < 0.0
 
     def sort(self, state: State) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
@@ -58,7 +59,7 @@ class FluidLists:
             raise StepError("step: all fluid has left the domain. Check the walls and gravity.")
         fluid = state.position_density.take(inside, axis=0)
         boundary = state.position_density[split : state.particles]
-        grid = grid_around(fluid, self.skin.reach)
+        grid = grid_around(fluid, self.reach)
         state.lost += split - len(inside)
         state.keep(inside[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         places = [state.position_density[:, :3], state.mirror_point]
@@ -70,8 +71,7 @@ class FluidLists:
     ) -> None:
         """List what is near, from where all was when it was sorted."""
         query_points, self.samples.listed = boundary.query_points(state)
-        reach, buffer = self.skin.reach, self.near.list
-        self.near = symmetry.neighbours(state, reach, team, query_points, buffer)
+        self.near = symmetry.neighbours(state, self.reach, team, query_points, self.near.list)
 
 
 def in_domain(points: Array, walls: Bounds | None) -> Whole:

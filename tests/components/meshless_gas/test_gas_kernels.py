@@ -7,12 +7,12 @@ import pytest
 from gases import GAMMA, gas, given, run
 from scipy.spatial import cKDTree
 
-from quintet.components.meshless_gas.clouds.nearest import nearest
 from quintet.components.meshless_gas.kernels.boundaries import GATE
 from quintet.components.meshless_gas.kernels.ghosts import write_ghost_gradients
 from quintet.components.meshless_gas.laws import fluxes as laws
 from quintet.components.meshless_gas.laws import limiters
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.shared.search.nearest import nearest
 from quintet.components.shared.threads import Team
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read

@@ -1,16 +1,58 @@
-"""The k nearest points, by a tree that halves them along the axis of their widest spread."""
+"""The nearest points of places: of a few by all distances, of many by a tree.
 
+The tree halves points along the axis of their widest spread: spacings differ by a thousand within
+a cloud, so cells of one width do not serve. Ties go to the smaller number: which points are found
+does not depend on the tree.
+"""
+
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.shared.threads import Team
+from quintet.interfaces.component import Array
 
 LEAF = 8  # points that are compared one by one
-
-
 DEEPEST = 128  # ranges that wait
+
+
+def nearest_rows(points: Array, places: Iterable[Sequence[float] | Array]) -> NDArray[np.int64]:
+    """Rows (m,) of the points (n, 3) m nearest to places (m, 3) m; of equals the first."""
+    rows = [int(((points - place) ** 2).sum(axis=1).argmin()) for place in places]
+    return np.array(rows, np.int64)
+
+
+def nearest(
+    points: Array, among: NDArray[np.int64], targets: Array, count: int, team: Team
+) -> tuple[NDArray[np.int64], Array]:
+    """Find the nearest points of some targets; a point at the very place of a target is one too.
+
+    Parameters
+    ----------
+    points : (n, 3) m
+    among : (m,)
+        Rows that may be found; at least `count`.
+    targets : (t, 3) m
+    count : int
+    team : Team
+        Threads.
+
+    Returns
+    -------
+    (t, count) : rows, the nearest first
+    (t, count) m2 : squares of the distances
+    """
+    order = among.astype(np.int64)
+    axis, parted = np.zeros(len(order), np.int8), np.zeros(len(order))
+    build(points, order, axis, parted)
+    near = np.empty((len(targets), count), np.int64)
+    squares = np.empty((len(targets), count))
+    team.run(search, len(targets), points, order, axis, parted, targets, near, squares)
+    return near, squares
 
 
 @njit(**EXACT)
@@ -68,16 +110,9 @@ def part(points: Any, order: Any, first: int, last: int, middle: int, d: int) ->
 
 @njit(**EXACT)
 def search(
-    first: int,
-    last: int,
-    points: Any,
-    order: Any,
-    axis: Any,
-    parted: Any,
-    targets: Any,
-    near: Any,
-    squares: Any,
-) -> None:
+    first: int, last: int, points: Any, order: Any, axis: Any, parted: Any, targets: Any,
+    near: Any, squares: Any,
+) -> None:  # fmt: skip
     """Write the nearest points of targets."""
     low, high = np.empty(DEEPEST, np.int64), np.empty(DEEPEST, np.int64)
     bound = np.empty(DEEPEST)
