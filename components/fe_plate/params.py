@@ -4,6 +4,7 @@ import math
 from typing import Literal
 
 from quintet.components.fe_plate.meshes.params import Direction, Part
+from quintet.components.shared.geometry.selections import ByBox, ByBoxOrSet
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -16,99 +17,53 @@ LEAST_HOURGLASS = 1e-3
 Erosion = Literal["plastic_strain", "damage", "spall"]
 
 
-def _box_or_set(where: str, box: tuple[Vector | None, Vector | None], name: str) -> None:
-    corners = sum(corner is not None for corner in box)
-    if corners != (0 if name else 2):
-        raise ValueError(
-            f"{where}: a box has lowest and highest, and no node_set; found {corners} of them"
-            f"{' and a node_set' if name else ''}."
-        )
-
-
 @parameters
-class NodeSet:
-    """Nodes by a name, as files of meshes have them.
+class NodeSet(ByBox):
+    """Nodes by a name, as files of meshes have them: those that are in a box at the start.
 
     Parameters
     ----------
     name
         By which `fixed`, `coupled_faces` and `pressures` choose them.
-    lowest, highest : m
-        A box; nodes within it at the start belong to the set.
     """
 
     name: str
-    lowest: Vector
-    highest: Vector
 
 
 @parameters
-class Fixed:
-    """Nodes that are held.
+class Fixed(ByBoxOrSet):
+    """Nodes that are held: those that are in a box at the start, or in a set.
 
     Parameters
     ----------
-    lowest, highest : m
-        A box; nodes within it at the start are held.
-    node_set
-        In place of the box: a set of `node_sets`, or of a mesh's file.
     directions
         Along which they keep their places; all for clamped ones, the normal for a symmetry plane.
     """
 
-    lowest: Vector | None = None
-    highest: Vector | None = None
-    node_set: str = ""
     directions: tuple[Direction, ...] = ("x", "y", "z")
 
-    def __post_init__(self) -> None:
-        _box_or_set("fixed", (self.lowest, self.highest), self.node_set)
+
+@parameters
+class Faces(ByBoxOrSet):
+    """Outer faces: those all of whose corners are in a box at the start, or in a set of nodes."""
 
 
 @parameters
-class Faces:
-    """Outer faces, by a box or a set of nodes.
+class Elements(ByBoxOrSet):
+    """Elements: those all of whose corners are in a box at the start, or in a set of nodes.
 
     Parameters
     ----------
-    lowest, highest : m
-        Faces all of whose corners lie in this box at the start.
-    node_set
-        In place of the box: faces all of whose corners belong to this set.
-    """
-
-    lowest: Vector | None = None
-    highest: Vector | None = None
-    node_set: str = ""
-
-    def __post_init__(self) -> None:
-        _box_or_set("faces", (self.lowest, self.highest), self.node_set)
-
-
-@parameters
-class Elements:
-    """Elements, by a box, a set of nodes or a set of elements.
-
-    Parameters
-    ----------
-    lowest, highest : m
-        Elements all of whose corners lie in this box at the start.
-    node_set
-        In place of the box: elements all of whose corners belong to this set.
     element_set
         In place of both: a set of elements of a mesh's file.
     """
 
-    lowest: Vector | None = None
-    highest: Vector | None = None
-    node_set: str = ""
     element_set: str = ""
 
     def __post_init__(self) -> None:
         if self.node_set and self.element_set:
             raise ValueError("elements: a node_set or an element_set, not both; found both.")
-        name = self.node_set or self.element_set
-        _box_or_set("elements", (self.lowest, self.highest), name)
+        self.require_one(self.node_set or self.element_set)
 
 
 @parameters

@@ -8,6 +8,7 @@ from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.integrators import STAGES
 from quintet.components.particle_dynamics.params import Bath, Drive, Lattice, ParticleLatticeParams
 from quintet.components.particle_dynamics.state import Bathed, Driven, Model, Whole
+from quintet.components.shared.geometry.selections import in_box
 from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
@@ -73,8 +74,7 @@ def bathed(start: Array, baths: tuple[Bath, ...]) -> Bathed:
     slack = 1e-9 * float(np.abs(start).max() + 1e-300)
     bath_of = np.full(len(start), -1)
     for number, bath in enumerate(baths):
-        low, high = np.array(bath.lowest) - slack, np.array(bath.highest) + slack
-        inside = ((start >= low) & (start <= high)).all(axis=1)
+        inside = in_box(start, bath, slack)
         if not inside.any() or (bath_of[inside] >= 0).any():
             mistake = "holds none" if not inside.any() else "shares one with another bath"
             raise SceneError(

@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
+from quintet.components.shared.geometry.selections import ByBox
 from quintet.interfaces.params import (
     Count,
     DataFile,
@@ -179,13 +180,11 @@ class Drive:
 
 
 @parameters
-class Bath:
-    """Langevin's bath of points: friction and random kicks that keep a temperature.
+class Bath(ByBox):
+    """Langevin's bath of the points in a box: friction and random kicks that keep a temperature.
 
     Parameters
     ----------
-    lowest, highest : m
-        A box; points within it at the start are in the bath.
     temperature : K
         Of the bath, until a partner sets another.
     rate : 1/s
@@ -196,8 +195,6 @@ class Bath:
         Whether its points are the wall of a link `heat`; of one bath.
     """
 
-    lowest: Vector
-    highest: Vector
     temperature: NotNegative
     rate: Positive
     tether: NotNegative = 0.0

@@ -9,6 +9,7 @@ from quintet.components.shared.geometry.shape_keys import (
     CylinderKeys,
     MeshKeys,
     RoundKeys,
+    TubeKeys,
     shape_of,
 )
 from quintet.components.shared.geometry.shapes import Bounds, Mesh, Shape
@@ -20,7 +21,7 @@ Gradient = tuple[Vector, Vector, Vector]
 
 
 @parameters
-class Body(BoxKeys, CylinderKeys, RoundKeys, MeshKeys):
+class Body(BoxKeys, CylinderKeys, TubeKeys, RoundKeys, MeshKeys):
     """A body, filled with particles: a lattice of them, or layers of circles in a tube.
 
     Parameters

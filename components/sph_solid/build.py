@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.shared.geometry.selections import ByBox, in_box
 from quintet.components.shared.materials.params import Material, material
 from quintet.components.shared.materials.solid import Solid, solid
 from quintet.components.shared.search.nearest import nearest_rows
@@ -13,7 +14,6 @@ from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import Vector
 
 Mask = NDArray[np.bool_]
 
@@ -101,7 +101,7 @@ def _fixed_axes(position: Array, params: SphSolidParams) -> Whole:
     """Axes along which particles keep their places, 1 2 4 added up (n,)."""
     axes: Whole = np.zeros(len(position), np.int64)
     for number, support in enumerate(params.fixed):
-        rows = inside(position, support.lowest, support.highest, params)
+        rows = inside(position, support, params)
         _require(rows.any(), f"fixed.{number}: its box must hold a particle; it holds none.")
         for axis in support.directions:
             axes[rows] |= 1 << "xyz".index(axis)
@@ -112,7 +112,7 @@ def _is_glued(position: Array, params: SphSolidParams) -> Mask:
     """Which particles (n,) are glued to a partner's mesh."""
     is_glued = np.zeros(len(position), bool)
     for number, region in enumerate(params.glued):
-        rows = inside(position, region.lowest, region.highest, params)
+        rows = inside(position, region, params)
         _require(rows.any(), f"glued.{number}: its box must hold a particle; it holds none.")
         is_glued |= rows
     return is_glued
@@ -126,12 +126,9 @@ def gauged(points: Array, params: SphSolidParams) -> Whole:
     return nearest_rows(points, places)
 
 
-def inside(points: Array, lowest: Vector, highest: Vector, params: SphSolidParams) -> Mask:
+def inside(points: Array, box: ByBox, params: SphSolidParams) -> Mask:
     """Which of points (n, 3) m are in a box; in two dimensions wherever it is along y."""
-    within = (points >= np.array(lowest)) & (points <= np.array(highest))
-    if params.dimensions == 2:
-        within[:, 1] = True
-    return np.asarray(within.all(axis=1))
+    return in_box(points, box, axes=(0, 2) if params.dimensions == 2 else (0, 1, 2))
 
 
 def _require(rule: object, sentence: str) -> None:

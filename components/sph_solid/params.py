@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from quintet.components.shared.geometry.selections import ByBox
 from quintet.components.shared.geometry.shapes import Cylinder
 from quintet.components.sph_solid.body import Axis, Body
 from quintet.interfaces.params import (
@@ -40,33 +41,20 @@ class SymmetryPlane:
 
 
 @parameters
-class Region:
-    """A box.
-
-    Parameters
-    ----------
-    lowest, highest : m
-        Its corners; what is in it at the start is meant.
-    """
-
-    lowest: Vector
-    highest: Vector
+class Region(ByBox):
+    """Particles that are in a box at the start."""
 
 
 @parameters
-class Fixed:
-    """Particles that are held.
+class Fixed(ByBox):
+    """Particles that are held: those that are in a box at the start.
 
     Parameters
     ----------
-    lowest, highest : m
-        A box; particles in it at the start are held.
     directions
         Along which they keep their places; all for clamped ones.
     """
 
-    lowest: Vector
-    highest: Vector
     directions: tuple[Axis, ...] = ("x", "y", "z")
 
 

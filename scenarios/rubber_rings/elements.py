@@ -34,7 +34,8 @@ fixed = [{ lowest = [-1.0, -1.0, -1.0], highest = [1.0, 1.0, 1.0], directions = 
 rigid_walls = [{ point = [0.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }]
 
 [[components.ring.parts]]
-mesh = { file = "ring.vtk" }
+shape = "mesh"
+file = "ring.vtk"
 velocity = [-50.268, 0.0, 0.0]
 material = { density = 1010.0, youngs_modulus = 4.5083e8, poissons_ratio = 0.39752 }
 

@@ -1,6 +1,7 @@
 """A conducting body as its parameters describe it: mesh, conductances, fixed temperatures."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.fe_plate.heat.kernels import Matrix, pattern, write_matrix
 from quintet.components.fe_plate.heat.laws import face_shares
@@ -8,7 +9,6 @@ from quintet.components.fe_plate.heat.params import FeHeatParams, FixedTemperatu
 from quintet.components.fe_plate.heat.state import Model, State
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, incident, mesh
-from quintet.components.fe_plate.params import Faces
 from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.errors import SceneError
 
@@ -51,10 +51,9 @@ def _holders(params: FeHeatParams, grid: Mesh) -> Whole:
     return holder
 
 
-def _held_by(fixed: FixedTemperature, grid: Mesh, where: str) -> Array:
+def _held_by(fixed: FixedTemperature, grid: Mesh, where: str) -> NDArray[np.bool_]:
     if fixed.point is None:
-        box = Faces(lowest=fixed.lowest, highest=fixed.highest, node_set=fixed.node_set)
-        return np.asarray(chosen(grid, box, where))
+        return chosen(grid, fixed, where)
     return np.asarray(np.arange(len(grid.node)) == nearest_rows(grid.node, [fixed.point]))
 
 

@@ -4,16 +4,10 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from quintet.components.fe_plate.meshes.params import (
-    Cutout,
-    Cylinder,
-    MeshFile,
-    count_elements,
-    require_shape,
-)
+from quintet.components.fe_plate.meshes.params import MeshedPart
 from quintet.components.fe_plate.params import Faces, NodeSet
+from quintet.components.shared.geometry.selections import ByBoxOrSet
 from quintet.interfaces.params import (
-    Count,
     NotNegative,
     Number,
     Positive,
@@ -25,19 +19,11 @@ Tolerance = Annotated[float, Field(gt=0.0, le=1e-3)]
 
 
 @parameters
-class ConductingPart:
-    """A box of equal elements, a cylinder, or a mesh from a file, of one material.
+class ConductingPart(MeshedPart):
+    """A box of equal elements, a cylinder of them, or a mesh of 8-node solids from a file.
 
     Parameters
     ----------
-    lowest, highest : m
-        Corners of a box.
-    elements : 1
-        How many along x, y and z.
-    cutout
-        What is left out of a box.
-    cylinder, mesh
-        In place of the box.
     conductivity : W/(m K)
         k.
     density : kg/m3
@@ -48,24 +34,10 @@ class ConductingPart:
         At the start.
     """
 
-    lowest: Vector | None = None
-    highest: Vector | None = None
-    elements: tuple[Count, Count, Count] | None = None
-    cutout: Cutout | None = None
-    cylinder: Cylinder | None = None
-    mesh: MeshFile | None = None
     conductivity: Positive
     density: Positive | None = None
     specific_heat: Positive | None = None
     temperature: NotNegative = 298.0
-
-    def __post_init__(self) -> None:
-        require_shape(self)
-
-    @property
-    def count(self) -> int:
-        """Number of its elements."""
-        return count_elements(self)
 
     @property
     def capacity(self) -> float:
@@ -74,25 +46,18 @@ class ConductingPart:
 
 
 @parameters
-class FixedTemperature:
+class FixedTemperature(ByBoxOrSet):
     """Nodes that are held at a temperature, whatever heat that takes.
 
     Parameters
     ----------
     point : m
-        The node nearest to here.
-    lowest, highest : m
-        In place of the point, a box: nodes within it.
-    node_set
-        In place of these, a set of `node_sets`, or of a mesh's file.
+        In place of a box and a set: the node nearest to here.
     temperature : K
         At which they are held.
     """
 
     point: Vector | None = None
-    lowest: Vector | None = None
-    highest: Vector | None = None
-    node_set: str = ""
     temperature: NotNegative
 
     def __post_init__(self) -> None:
@@ -101,8 +66,7 @@ class FixedTemperature:
         if sum(ways) != 1 or box == 1:
             raise ValueError(
                 "fixed_temperatures: nodes are chosen by a point, by lowest and highest of a "
-                "box, or by a "
-                f"node_set; found {sum(ways)} of these. Give one."
+                f"box, or by a node_set; found {sum(ways)} of these. Give one."
             )
 
 

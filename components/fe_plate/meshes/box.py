@@ -3,14 +3,13 @@
 import numpy as np
 
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
-from quintet.components.fe_plate.meshes.params import Shape, cut_out
+from quintet.components.fe_plate.meshes.params import MeshedPart
 
 
-def box(part: Shape) -> tuple[Array, Whole]:
+def box(part: MeshedPart) -> tuple[Array, Whole]:
     """Nodes (n, 3) m and corners (e, 8) of a box of equal elements, less what is cut out."""
-    assert part.elements is not None and part.lowest is not None and part.highest is not None
-    nx, ny, nz = part.elements
-    ends = zip(part.lowest, part.highest, part.elements, strict=True)
+    nx, ny, nz = part.counts
+    ends = zip(*part.geometry.bounds, part.counts, strict=True)
     lines = [np.linspace(a, b, n + 1) for a, b, n in ends]
     node = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
     number = np.arange(len(node)).reshape(nx + 1, ny + 1, nz + 1)
@@ -19,21 +18,20 @@ def box(part: Shape) -> tuple[Array, Whole]:
     corner = np.stack([number[x, y, z].ravel() for z in (low, high) for x, y in around], axis=1)
     if part.cutout is None:
         return node, corner
-    x, y, z = cut_out(part)
+    x, y, z = part.cut_out()
     left = ~(x[:, None, None] & y[None, :, None] & z[None, None, :])
     used, numbers = np.unique(corner[left.ravel()], return_inverse=True)
     return node[used], numbers.reshape(-1, 8)
 
 
-def rectangle(part: Shape) -> tuple[Array, Whole]:
+def rectangle(part: MeshedPart) -> tuple[Array, Whole]:
     """Nodes (n, 3) m at y = 0 and corners (e, 8) of a rectangle; far corners are the same nodes.
 
     Around each element from z to x, as seen from within a solid that extends along y.
     """
-    assert part.elements is not None and part.lowest is not None and part.highest is not None
-    nx, _, nz = part.elements
-    x = np.linspace(part.lowest[0], part.highest[0], nx + 1)
-    z = np.linspace(part.lowest[2], part.highest[2], nz + 1)
+    (west, _, bottom), (east, _, top) = part.geometry.bounds
+    nx, _, nz = part.counts
+    x, z = np.linspace(west, east, nx + 1), np.linspace(bottom, top, nz + 1)
     across, up = np.meshgrid(x, z, indexing="ij")
     node = np.stack([across, np.zeros_like(across), up], axis=-1).reshape(-1, 3)
     number = np.arange(len(node)).reshape(nx + 1, nz + 1)

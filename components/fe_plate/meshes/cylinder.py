@@ -3,18 +3,20 @@
 import numpy as np
 
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
-from quintet.components.fe_plate.meshes.params import Cylinder
+from quintet.components.fe_plate.meshes.params import MeshedPart
+from quintet.components.shared.geometry.shapes import Cylinder
 
 CORE = 0.5  # half the width of the square, as a share of the radius
 ROUND = 0.5  # how far its rim goes from a square (0) to a circle (1)
-ALONG = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}  # places of the disc's axes and of its own
+ALONG = ((1, 2, 0), (2, 0, 1), (0, 1, 2))  # places of the disc's axes and of the cylinder's
 
 
-def cylinder(shape: Cylinder) -> tuple[Array, Whole]:
+def cylinder(part: MeshedPart) -> tuple[Array, Whole]:
     """Nodes (n, 3) m and corners (e, 8) of a cylinder, or of its quarter."""
-    core, rings, layers = shape.elements
+    shape, (core, rings, layers) = part.geometry, part.counts
+    assert isinstance(shape, Cylinder)
     flat, quad = quarter_disc(core, rings)
-    if not shape.quarter:
+    if not part.quarter:
         flat, quad = whole_disc(flat, quad)
     flat = shape.radius * flat
     height = np.linspace(0.0, shape.length, layers + 1)

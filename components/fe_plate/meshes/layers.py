@@ -8,7 +8,8 @@ import numpy as np
 
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.mesh import SIDES
-from quintet.components.fe_plate.meshes.params import MeshFile, Part, cut_out
+from quintet.components.fe_plate.meshes.params import MeshedPart
+from quintet.components.shared.geometry.shapes import Cylinder
 
 ENOUGH = 8  # layers: 1.6 % too soft
 SLENDER = 0.5  # of a part's longest extent: what is thinner than this bends
@@ -16,25 +17,26 @@ MANY = 10**9
 OPPOSITE = np.array([1, 0, 4, 5, 2, 3])  # the side opposite to each
 
 
-def fewest_layers(part: Part, dimensions: int = 3) -> int:
+def fewest_layers(part: MeshedPart, dimensions: int = 3) -> int:
     """Fewest elements through an extent in which a part is slender; `MANY` if it is in none."""
-    if part.mesh is not None:
-        return _of_mesh(part.mesh)
-    if part.cylinder is not None:
-        shape, (core, rings, layers) = part.cylinder, part.cylinder.elements
+    if part.shape == "mesh":
+        return _of_mesh(part)
+    shape = part.geometry
+    if isinstance(shape, Cylinder):
+        core, rings, layers = part.counts
         across = (2 * (core + rings), 2.0 * shape.radius)
         return _fewest([across, (layers, shape.length)])
-    assert part.lowest is not None and part.highest is not None and part.elements is not None
+    low, high = shape.bounds
     extents = []
-    for along, cut in enumerate(cut_out(part)):
+    for along, cut in enumerate(part.cut_out()):
         if dimensions == 2 and along == 1:
             continue
-        extent = part.highest[along] - part.lowest[along]
-        extents.append((part.elements[along], extent))
+        extent, count = high[along] - low[along], part.counts[along]
+        extents.append((count, extent))
         # Beside a cutout the part is as thin as what is left there.
         for left in (int(np.argmax(cut)), int(np.argmax(cut[::-1]))) if cut.any() else ():
             if left:
-                extents.append((left, extent * left / part.elements[along]))
+                extents.append((left, extent * left / count))
     return _fewest(extents)
 
 
@@ -43,9 +45,9 @@ def _fewest(extents: list[tuple[int, float]]) -> int:
     return min((n for n, length in extents if length < SLENDER * longest), default=MANY)
 
 
-def _of_mesh(shape: MeshFile) -> int:
+def _of_mesh(part: MeshedPart) -> int:
     """Fewest elements from an outer side through to the one opposite."""
-    mesh = shape.placed()
+    mesh = part.placed()
     longest = float(np.ptp(mesh.node, axis=0).max())
     twin = twins(mesh.corner)
     outer = np.flatnonzero(twin < 0)

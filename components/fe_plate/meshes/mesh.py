@@ -14,8 +14,9 @@ from quintet.components.fe_plate.meshes.box import box, rectangle
 from quintet.components.fe_plate.meshes.coincidence import first_at_place
 from quintet.components.fe_plate.meshes.cylinder import cylinder
 from quintet.components.fe_plate.meshes.files import least_edge
-from quintet.components.fe_plate.meshes.params import Shape
-from quintet.components.fe_plate.params import Elements, Faces, Fixed, NodeSet
+from quintet.components.fe_plate.meshes.params import MeshedPart
+from quintet.components.fe_plate.params import Elements, Faces, NodeSet
+from quintet.components.shared.geometry.selections import ByBox, ByBoxOrSet, in_box
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
 
@@ -41,7 +42,7 @@ class Mesh(NamedTuple):
     notes: tuple[str, ...] = ()  # of meshes from files
 
 
-def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
+def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
     """Make the mesh of some parts."""
     nodes, corners, first, count = [], [], 0, 0
     named: dict[str, Whole] = {}
@@ -50,10 +51,10 @@ def mesh(parts: Sequence[Shape], dimensions: int = 3, sets: Sequence[NodeSet] = 
     for part in parts:
         if dimensions == 2:
             node, corner = rectangle(part)
-        elif part.cylinder is not None:
-            node, corner = cylinder(part.cylinder)
-        elif part.mesh is not None:
-            loaded = part.mesh.placed()
+        elif part.shape == "cylinder":
+            node, corner = cylinder(part)
+        elif part.shape == "mesh":
+            loaded = part.placed()
             node, corner = loaded.node, loaded.corner
             notes += loaded.notes
             for name, rows in loaded.sets.items():
@@ -124,7 +125,7 @@ def outer_edges(corner: Whole) -> tuple[Whole, Whole]:
     return np.pad(edge[outer], ((0, 0), (0, 2)), constant_values=-1), owner[outer]
 
 
-def chosen(mesh: Mesh, by: Faces | Fixed, where: str) -> NDArray[np.bool_]:
+def chosen(mesh: Mesh, by: ByBoxOrSet, where: str) -> NDArray[np.bool_]:
     """Which nodes lie in a box, or belong to a set."""
     if not by.node_set:
         return inside(mesh.node, by)
@@ -138,20 +139,16 @@ def chosen(mesh: Mesh, by: Faces | Fixed, where: str) -> NDArray[np.bool_]:
 def elements_of(mesh: Mesh, by: Elements, where: str) -> Whole:
     """Numbers of the elements all of whose corners lie in a box, or belong to a set."""
     if not by.element_set:
-        nodes = Faces(lowest=by.lowest, highest=by.highest, node_set=by.node_set)
-        return np.flatnonzero(chosen(mesh, nodes, where)[mesh.corner].all(axis=1))
+        return np.flatnonzero(chosen(mesh, by, where)[mesh.corner].all(axis=1))
     if by.element_set not in mesh.groups:
         wrong = f"{where}: element_set {by.element_set}"
         raise SceneError(unknown(wrong, by.element_set, mesh.groups))
     return mesh.groups[by.element_set]
 
 
-def inside(points: Array, box: Faces | Fixed | NodeSet) -> NDArray[np.bool_]:
+def inside(points: Array, box: ByBox | ByBoxOrSet) -> NDArray[np.bool_]:
     """Whether points (n, 3) m lie in a box, its edges included."""
-    assert box.lowest is not None and box.highest is not None
-    near = CLOSE * np.ptp(points, axis=0).max()
-    low, high = np.array(box.lowest) - near, np.array(box.highest) + near
-    return np.asarray(((points >= low) & (points <= high)).all(axis=1))
+    return in_box(points, box, CLOSE * float(np.ptp(points, axis=0).max()))
 
 
 def faces_in(mesh: Mesh, boxes: Sequence[Faces], where: str) -> Whole:

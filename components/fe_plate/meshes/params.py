@@ -3,15 +3,23 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.fe_plate.meshes.elements import require_sound
 from quintet.components.fe_plate.meshes.files import FileMesh, least_edge, read
+from quintet.components.shared.geometry.selections import ByBox
+from quintet.components.shared.geometry.shape_keys import (
+    BoxKeys,
+    CylinderKeys,
+    MeshKeys,
+    shape_of,
+)
+from quintet.components.shared.geometry.shapes import Box, Cylinder, Mesh, Shape
 from quintet.components.shared.materials.params import Material, MaterialName, material
-from quintet.interfaces.params import Count, DataFile, Positive, Vector, parameters
+from quintet.interfaces.params import Count, Vector, parameters
 
 Flags = NDArray[np.bool_]
 SMALL, LARGE = 1e-4, 5.0  # m: meshes beyond are asked whether their unit is right
@@ -19,93 +27,113 @@ Direction = Literal["x", "y", "z"]
 
 
 @parameters
-class Cylinder:
-    """A cylinder of elements: a rounded square in the middle, and rings around it.
-
-    Parameters
-    ----------
-    base : m
-        Middle of the disc with which it begins.
-    axis
-        Along which it extends from there.
-    radius, length : m
-        Of the cylinder.
-    elements : 1
-        Along half the width of the square in the middle, across the rings around it, and along
-        the axis.
-    quarter
-        Only where both coordinates across the axis are beyond those of the base.
-    """
-
-    base: Vector = (0.0, 0.0, 0.0)
-    axis: Direction = "z"
-    radius: Positive
-    length: Positive
-    elements: tuple[Count, Count, Count]
-    quarter: bool = False
-
-    @property
-    def count(self) -> int:
-        """Number of its elements."""
-        core, rings, layers = self.elements
-        return (1 if self.quarter else 4) * core * (core + 2 * rings) * layers
-
-    @property
-    def edges(self) -> tuple[float, float, float]:
-        """Edges [m] of its smallest elements, about."""
-        core, rings, layers = self.elements
-        half = 0.4 * self.radius
-        return half / core, half / rings, self.length / layers
+class Cutout(ByBox):
+    """A box that is cut out of another: elements whose middle lies in it are left out."""
 
 
 @parameters
-class Cutout:
-    """A box that is cut out of another.
+class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
+    """A box of equal elements, a cylinder of them, or a mesh of 8-node solids from a file.
 
     Parameters
     ----------
-    lowest, highest : m
-        Its corners; elements whose middle lies in it are left out.
-    """
-
-    lowest: Vector
-    highest: Vector
-
-
-@parameters
-class MeshFile:
-    """A mesh of 8-node solids from a file; other solids, shells and beams are refused.
-
-    Parameters
-    ----------
+    shape
+        What it is; only a box in two dimensions.
+    radius : m
+        Of a cylinder: a rounded square in the middle, and rings around it.
     file
-        Beside the scene, in a format that meshio reads (Abaqus, Gmsh, Nastran, VTK, Exodus ...).
+        A mesh beside the scene, in a format that meshio reads (Abaqus, Gmsh, Nastran, VTK, Exodus
+        ...); shells, beams and other solids in it are refused.
     scale : m
-        That one unit of length in the file stands for.
-    move : m
-        By which the mesh is then moved.
+        What one unit of length in the file stands for; 1 if not given.
+    elements : 1
+        Of a box along x, y and z; of a cylinder along half the width of the square, across the
+        rings, and along the axis.
+    cutout
+        What is left out of a box.
+    quarter
+        Whether a cylinder is only where both coordinates across the axis are beyond the base's.
     coincident_nodes
-        Nodes of different elements at the same place: "refuse" them, "join" them to one, or "keep"
-        them apart, as at a crack.
+        Nodes of different elements of a mesh at the same place: "refuse" them, "join" them to one,
+        or "keep" them apart, as at a crack.
     """
 
-    file: DataFile
-    scale: Positive = 1.0
-    move: Vector = (0.0, 0.0, 0.0)
+    RENAMED: ClassVar = {
+        "cylinder": 'shape = "cylinder", with base, top, radius, elements and quarter beside it',
+        "mesh": 'shape = "mesh", with file, scale, coincident_nodes and origin, once move, beside',
+    }
+    shape: Literal["box", "cylinder", "mesh"] = "box"
+    elements: tuple[Count, Count, Count] | None = None
+    cutout: Cutout | None = None
+    quarter: bool = False
     coincident_nodes: Literal["refuse", "join", "keep"] = "refuse"
 
+    def __post_init__(self) -> None:
+        shape = self.geometry
+        if (self.elements is None) != isinstance(shape, Mesh):
+            raise ValueError(
+                f"part: a {self.shape} has {'no' if self.elements else 'its number of'} elements; "
+                f"found {self.elements or 'none'}. Correct them."
+            )
+        if self.cutout is not None and not isinstance(shape, Box):
+            raise ValueError(f"part: cutout is of a box; found a {self.shape}. Leave it out.")
+        if isinstance(shape, Box) and self.count == 0:
+            raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
+
+    @property
+    def geometry(self) -> Shape:
+        """The shape that the keys describe."""
+        return shape_of(self, "part")
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Its elements, as `elements` gives them; of a mesh none."""
+        return self.elements or (0, 0, 0)
+
     @property
     def count(self) -> int:
-        """Number of its elements, which are checked."""
-        return len(self.placed().corner)
+        """Number of its elements; those of a mesh are checked."""
+        a, b, c = self.counts
+        if self.shape == "cylinder":
+            return (1 if self.quarter else 4) * a * (a + 2 * b) * c
+        if self.shape == "mesh":
+            return len(self.placed().corner)
+        return a * b * c - math.prod(int(inside.sum()) for inside in self.cut_out())
 
     def placed(self) -> FileMesh:
         """Nodes where they are [m], and elements, which are checked; with notes of both."""
-        loaded, name = read(self.file, self.coincident_nodes), Path(self.file).name
-        node = self.scale * loaded.node + self.move
-        notes = [_size(name, node, len(loaded.corner), self.scale), *loaded.notes]
+        shape = self.geometry
+        assert isinstance(shape, Mesh)
+        loaded, name = read(shape.file, self.coincident_nodes), Path(shape.file).name
+        node = shape.scale * loaded.node + shape.origin
+        notes = [_size(name, node, len(loaded.corner), shape.scale), *loaded.notes]
         notes += require_sound(f"mesh {name}", node, loaded.corner)
         return loaded._replace(node=node, notes=tuple(notes))
+
+    def cut_out(self) -> tuple[Flags, Flags, Flags]:
+        """Which elements of a box have a middle within its cutout, along each of x, y and z."""
+        low, high = self.geometry.bounds
+        inside_along = []
+        for along, count in enumerate(self.counts):
+            middle = low[along] + (high[along] - low[along]) * (np.arange(count) + 0.5) / count
+            inside = np.zeros(count, bool)
+            if self.cutout is not None:
+                inside = self.cutout.lowest[along] <= middle
+                inside &= middle <= self.cutout.highest[along]
+            inside_along.append(inside)
+        return inside_along[0], inside_along[1], inside_along[2]
+
+    def edges(self) -> tuple[float, ...]:
+        """Edges [m] of its smallest elements; of a cylinder about."""
+        shape = self.geometry
+        if isinstance(shape, Mesh):
+            loaded = self.placed()
+            return (least_edge(loaded.node, loaded.corner),) * 3
+        if isinstance(shape, Cylinder):
+            lengths = 0.4 * shape.radius, 0.4 * shape.radius, shape.length
+            return tuple(length / n for length, n in zip(lengths, self.counts, strict=True))
+        sides = zip(*shape.bounds, self.counts, strict=True)
+        return tuple((b - a) / n for a, b, n in sides)
 
 
 def _size(name: str, node: NDArray[np.float64], elements: int, scale: float) -> str:
@@ -121,159 +149,52 @@ def _size(name: str, node: NDArray[np.float64], elements: int, scale: float) -> 
     return text
 
 
-class Shape(Protocol):
-    """What a mesh is made of: the keys that parts of any physics have."""
-
-    @property
-    def lowest(self) -> Vector | None:
-        """Lowest corner [m] of a box."""
-
-    @property
-    def highest(self) -> Vector | None:
-        """Highest corner [m] of a box."""
-
-    @property
-    def elements(self) -> tuple[int, int, int] | None:
-        """How many elements a box has along x, y and z."""
-
-    @property
-    def cutout(self) -> Cutout | None:
-        """What is left out of a box."""
-
-    @property
-    def cylinder(self) -> Cylinder | None:
-        """In place of the box."""
-
-    @property
-    def mesh(self) -> MeshFile | None:
-        """In place of the box."""
-
-
-def require_shape(part: Shape) -> None:
-    """Refuse a part that is not one of a box, a cylinder and a mesh."""
-    box = (part.lowest, part.highest, part.elements)
-    keys = sum(value is not None for value in box)
-    others = sum(value is not None for value in (part.cylinder, part.mesh))
-    if (keys, others) not in ((3, 0), (0, 1)):
-        raise ValueError(
-            "part: it must be a box, with lowest, highest and elements, a cylinder or a mesh; "
-            f"found {keys} keys of a box and {others} of the others. Give one."
-        )
-    if part.lowest is None or part.highest is None:
-        if part.cutout is not None:
-            raise ValueError("part: cutout is of a box; found none. Leave it out.")
-        return
-    if not all(a < b for a, b in zip(part.lowest, part.highest, strict=True)):
-        raise ValueError(
-            f"part: highest must be beyond lowest along every axis; found {part.lowest} and "
-            f"{part.highest} m."
-        )
-    if count_elements(part) == 0:
-        raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
-
-
-def mesh_notes(parts: Sequence[Shape]) -> tuple[str, ...]:
+def mesh_notes(parts: Sequence[MeshedPart]) -> tuple[str, ...]:
     """Sizes of meshes from files, and what of them is left out."""
-    meshes = [part.mesh.placed() for part in parts if part.mesh is not None]
+    meshes = [part.placed() for part in parts if part.shape == "mesh"]
     return tuple(note for mesh in meshes for note in mesh.notes)
 
 
-def cut_out(part: Shape) -> tuple[Flags, Flags, Flags]:
-    """Which elements of a box have a middle within its cutout, along each of x, y and z."""
-    assert part.elements is not None and part.lowest is not None and part.highest is not None
-    inside_along = []
-    for along, count in enumerate(part.elements):
-        low, high = part.lowest[along], part.highest[along]
-        middle = low + (high - low) * (np.arange(count) + 0.5) / count
-        inside = np.zeros(count, bool)
-        if part.cutout is not None:
-            inside = (part.cutout.lowest[along] <= middle) & (middle <= part.cutout.highest[along])
-        inside_along.append(inside)
-    return inside_along[0], inside_along[1], inside_along[2]
-
-
-def count_elements(part: Shape) -> int:
-    """Number of a part's elements."""
-    if part.cylinder is not None:
-        return part.cylinder.count
-    if part.mesh is not None:
-        return part.mesh.count
-    left_out = [int(inside.sum()) for inside in cut_out(part)]
-    return math.prod(part.elements or ()) - math.prod(left_out)
-
-
 @parameters
-class Part:
-    """A box of equal elements, a cylinder, or a mesh from a file.
+class Part(MeshedPart):
+    """A box of equal elements, a cylinder of them, or a mesh of 8-node solids from a file.
 
     Parameters
     ----------
-    lowest, highest : m
-        Corners of a box.
-    elements : 1
-        How many along x, y and z.
-    cutout
-        What is left out of a box.
-    cylinder, mesh
-        In place of the box.
     material
         Name of a material of the library, or its table.
     velocity : m/s
         At the start.
     """
 
-    lowest: Vector | None = None
-    highest: Vector | None = None
-    elements: tuple[Count, Count, Count] | None = None
-    cutout: Cutout | None = None
-    cylinder: Cylinder | None = None
-    mesh: MeshFile | None = None
     material: MaterialName | Material
     velocity: Vector = (0.0, 0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        require_shape(self)
-
-    @property
-    def count(self) -> int:
-        """Number of its elements."""
-        return count_elements(self)
 
     @property
     def expected_step(self) -> float:
         """Step [s] that its shortest edge bears."""
         law = material(self.material)
-        bound = sum((1.0 / edge**2 for edge in self._edges()), 0.0)
+        bound = sum((1.0 / edge**2 for edge in self.edges()), 0.0)
         speed = math.sqrt((law.bulk + 4.0 / 3.0 * law.shear) / law.density)
         return 1.0 / (speed * math.sqrt(bound))
 
     def require_planar(self, where: str) -> None:
         """Refuse a part that is no slab of one element, 1 m deep along y."""
-        if self.lowest is None or self.highest is None or self.elements is None:
-            kind = "mesh of 8-node solids" if self.cylinder is None else "cylinder"
+        if self.shape != "box":
+            kind = "cylinder" if self.shape == "cylinder" else "mesh of 8-node solids"
             raise ValueError(
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
                 f"found a {kind}, which has three. Make it a box, or set dimensions = 3."
             )
-        deep, along = self.highest[1] - self.lowest[1], self.elements[1]
+        (_, low, _), (_, high, _) = self.geometry.bounds
+        deep, along = high - low, self.counts[1]
         if abs(deep - 1.0) > 1e-9 or along != 1:
             raise ValueError(
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
                 f"found {deep:g} m and {along} elements. Set both, or dimensions = 3."
             )
-
         if self.cutout is not None:
             raise ValueError(
                 f"{where}: in two dimensions nothing is cut out; found a cutout. Leave it out, or "
                 "set dimensions = 3."
             )
-
-    def _edges(self) -> tuple[float, ...]:
-        if self.cylinder is not None:
-            return self.cylinder.edges
-        if self.mesh is not None:
-            loaded = self.mesh.placed()
-            return (least_edge(loaded.node, loaded.corner),) * 3
-        assert self.lowest is not None and self.highest is not None and self.elements is not None
-        sides = zip(self.lowest, self.highest, self.elements, strict=True)
-        return tuple((b - a) / n for a, b, n in sides)

@@ -74,13 +74,23 @@ class CylinderKeys:
         Centres of a cylinder's ends, which lie along x, y or z from each other.
     radius : m
         Of a sphere or cylinder.
-    inner_radius : m
-        Of a cylinder that is a tube.
     """
 
     base: Vector | None = None
     top: Vector | None = None
     radius: Positive | None = None
+
+
+@parameters
+class TubeKeys:
+    """Keys of a cylinder that may be hollow, beside the others of a cylinder.
+
+    Parameters
+    ----------
+    inner_radius : m
+        Of a cylinder that is a tube.
+    """
+
     inner_radius: Positive | None = None
 
 
@@ -124,7 +134,8 @@ def shape_of(table: Any, where: str) -> Shape:
     """Return the shape that a table describes; refuse one that lacks a key or has one too many."""
     require_keys(table, where, NEEDS, MAY)
     names = (*NEEDS[table.shape], *MAY.get(table.shape, ()))
-    values = {name: getattr(table, name) for name in names if getattr(table, name) is not None}
+    values = {name: getattr(table, name, None) for name in names}
+    values = {name: value for name, value in values.items() if value is not None}
     try:
         shape: Shape = CLASSES[table.shape](**values)
     except ValidationError as error:

@@ -155,6 +155,11 @@ class Cylinder:
         return max(range(3), key=lambda axis: self.top[axis] - self.base[axis])
 
     @property
+    def length(self) -> float:
+        """From end to end [m]."""
+        return self.top[self.axis] - self.base[self.axis]
+
+    @property
     def bounds(self) -> Bounds:
         """Lowest and highest corner [m]."""
         low, high = [x - self.radius for x in self.base], [x + self.radius for x in self.base]

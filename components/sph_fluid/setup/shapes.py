@@ -57,7 +57,11 @@ class Prism:
 
 @parameters
 class FluidRegion(
-    shape_keys.BoxKeys, shape_keys.CylinderKeys, shape_keys.RoundKeys, shape_keys.MeshKeys
+    shape_keys.BoxKeys,
+    shape_keys.CylinderKeys,
+    shape_keys.TubeKeys,
+    shape_keys.RoundKeys,
+    shape_keys.MeshKeys,
 ):
     """A body of fluid.
 

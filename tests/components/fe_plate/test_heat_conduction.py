@@ -17,7 +17,6 @@ from quintet.components.fe_plate.heat.params import (
     FixedTemperature,
     Flux,
 )
-from quintet.components.fe_plate.meshes.params import Cylinder
 from quintet.components.fe_plate.params import Faces
 from quintet.interfaces.errors import SceneError
 
@@ -78,7 +77,12 @@ def test_temperatures_are_those_of_another_code():
 def test_a_linear_temperature_is_exact_in_any_mesh():
     """Along a cylinder, whose elements are squares that were made round."""
     part = ConductingPart(
-        cylinder=Cylinder(radius=0.5, length=2.0, elements=(2, 2, 3)), conductivity=K
+        shape="cylinder",
+        base=(0.0, 0.0, 0.0),
+        top=(0.0, 0.0, 2.0),
+        radius=0.5,
+        elements=(2, 2, 3),
+        conductivity=K,
     )
     ends = [
         FixedTemperature(lowest=(-1, -1, z), highest=(1, 1, z), temperature=t)

@@ -9,7 +9,7 @@ import pytest
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.judgement import EVERY
 from quintet.components.fe_plate.meshes.layers import MANY, fewest_layers
-from quintet.components.fe_plate.meshes.params import Cutout, Cylinder, MeshFile, Part
+from quintet.components.fe_plate.meshes.params import Cutout, Part
 from quintet.components.fe_plate.params import FePlateParams, Fixed
 from quintet.components.fe_plate.plan import plan
 from quintet.components.shared.materials.params import (
@@ -64,11 +64,17 @@ def test_layers_are_counted_in_boxes_cylinders_and_cutouts():
     assert fewest_layers(block) == MANY
     web = Cutout(lowest=(0.3, 0.0, 0.0), highest=(1.0, 1.0, 1.0))
     assert fewest_layers(dataclasses.replace(block, cutout=web)) == 3
-    shape = Cylinder(radius=0.1, length=1.0, elements=(2, 1, 20))
-    rod = Part(cylinder=shape, material=ELASTIC)
+    rod = Part(
+        shape="cylinder",
+        base=(0.0, 0.0, 0.0),
+        top=(0.0, 0.0, 1.0),
+        radius=0.1,
+        elements=(2, 1, 20),
+        material=ELASTIC,
+    )
     assert fewest_layers(rod) == 6
-    flat = dataclasses.replace(shape, length=0.05, elements=(9, 9, 2))
-    assert fewest_layers(dataclasses.replace(rod, cylinder=flat)) == 2
+    flat = dataclasses.replace(rod, top=(0.0, 0.0, 0.05), elements=(9, 9, 2))
+    assert fewest_layers(flat) == 2
 
 
 @pytest.mark.parametrize("layers", [1, 3, 9])
@@ -76,7 +82,7 @@ def test_layers_of_a_mesh_are_counted_from_side_to_side(tmp_path, layers):
     made = FePlate(FePlateParams(parts=(beam((12, layers, 10)),), integration="reduced"))
     cells = [("hexahedron", made.mesh.corner)]
     meshio.Mesh(made.mesh.node, cells).write(tmp_path / "beam.vtk")
-    part = Part(mesh=MeshFile(file=str(tmp_path / "beam.vtk")), material=ELASTIC)
+    part = Part(shape="mesh", file=str(tmp_path / "beam.vtk"), material=ELASTIC)
     assert fewest_layers(part) == (layers if layers < 8 else MANY)
 
 

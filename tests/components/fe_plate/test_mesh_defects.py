@@ -8,9 +8,10 @@ from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.heat.component import FeHeat
 from quintet.components.fe_plate.heat.params import ConductingPart, FeHeatParams
 from quintet.components.fe_plate.meshes.files import read
-from quintet.components.fe_plate.meshes.params import MeshFile, Part
+from quintet.components.fe_plate.meshes.params import Part
 from quintet.components.fe_plate.params import FePlateParams, NodeSet
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import read as read_params
 
 CUBE = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float
@@ -23,8 +24,12 @@ def write(tmp_path, node, cells, name="block.vtk", **given):
     return str(tmp_path / name)
 
 
-def count(file, **given):
-    return MeshFile(file=file, **given).count
+def meshed(file, **keys):
+    return Part(shape="mesh", file=file, material="steel", **keys)
+
+
+def count(file, **keys):
+    return meshed(file, **keys).count
 
 
 @pytest.mark.parametrize(
@@ -37,7 +42,7 @@ def test_a_mesh_of_mixed_solids_is_refused(tmp_path, kind, nodes):
     file = write(tmp_path, node, cells)
     with pytest.raises(SceneError, match=f"found 1 {kind} beside 1 hexahedron"):
         count(file)
-    part = ConductingPart(mesh=MeshFile(file=file), conductivity=1.0)
+    part = ConductingPart(shape="mesh", file=file, conductivity=1.0)
     with pytest.raises(SceneError, match=f"found 1 {kind} beside 1 hexahedron"):
         FeHeat(FeHeatParams(parts=(part,), steady=True))
 
@@ -58,14 +63,14 @@ def test_shells_and_beams_beside_solids_are_refused(tmp_path):
 
 def test_faces_that_mark_solids_are_left_out_with_a_note(tmp_path):
     file = write(tmp_path, CUBE, [("hexahedron", ONE), ("quad", ONE[:, :4])])
-    made = FePlate(FePlateParams(parts=(Part(mesh=MeshFile(file=file), material="steel"),)))
+    made = FePlate(FePlateParams(parts=(meshed(file),)))
     assert any("1 quad are left out" in note for note in made.notes())
 
 
 def test_all_blocks_of_solids_are_read(tmp_path):
     node = np.concatenate([CUBE, CUBE + np.array([5.0, 0.0, 0.0]), CUBE - 5.0])
     cells = [("hexahedron", ONE), ("hexahedron", ONE + 8), ("hexahedron", ONE + 16)]
-    found = MeshFile(file=write(tmp_path, node, cells, "block.inp")).placed()
+    found = meshed(write(tmp_path, node, cells, "block.inp")).placed()
     assert len(found.corner) == 3
     assert any("3 pieces" in note for note in found.notes)
 
@@ -107,7 +112,7 @@ def test_elements_that_are_collapsed_or_turned_at_a_corner_are_refused(tmp_path)
 
 def test_badly_shaped_elements_are_noted(tmp_path):
     sheared = CUBE + CUBE[:, 2:] * (10.0, 0.0, 0.0)
-    found = MeshFile(file=write(tmp_path, sheared, [("hexahedron", ONE)])).placed()
+    found = meshed(write(tmp_path, sheared, [("hexahedron", ONE)])).placed()
     assert any("1 of 1 elements are badly shaped" in note for note in found.notes)
 
 
@@ -120,9 +125,9 @@ def test_coordinates_that_are_not_finite_are_refused(tmp_path):
 
 def test_a_mesh_in_millimetres_is_asked_for_its_unit(tmp_path):
     file = write(tmp_path, 20.0 * CUBE, [("hexahedron", ONE)])
-    (note,) = MeshFile(file=file).placed().notes
+    (note,) = meshed(file).placed().notes
     assert "20 x 20 x 20 m. Is that meant?" in note
-    (note,) = MeshFile(file=file, scale=1e-3).placed().notes
+    (note,) = meshed(file, scale=1e-3).placed().notes
     assert note.endswith("1 elements, 8 nodes, 0.02 x 0.02 x 0.02 m.")
 
 
@@ -138,7 +143,7 @@ def test_a_set_that_a_file_names_already_is_refused(tmp_path):
         tmp_path, CUBE, [("hexahedron", ONE)], "a.inp", point_sets={"end": np.array([0, 1])}
     )
     twice = NodeSet(name="end", lowest=(0.0,) * 3, highest=(0.0, 1.0, 1.0))
-    part = Part(mesh=MeshFile(file=file), material="steel")
+    part = meshed(file)
     with pytest.raises(SceneError, match=r"node_sets\.0: names must differ; end"):
         FePlate(FePlateParams(parts=(part,), node_sets=(twice,)))
 
@@ -164,3 +169,16 @@ def test_abaqus_files_that_the_reader_would_misread_are_refused(tmp_path, text, 
         end.write(text)
     with pytest.raises(SceneError, match=reason):
         count(file)
+
+
+@pytest.mark.parametrize(
+    ("key", "table", "now"),
+    [
+        ("cylinder", {"radius": 0.1, "length": 1.0, "elements": [1, 1, 1]}, "base, top, radius"),
+        ("mesh", {"file": "block.inp"}, "file, scale"),
+    ],
+)
+def test_old_keys_of_shapes_are_refused_with_the_new_ones(key, table, now):
+    part = {key: table, "material": "steel"}
+    _, (mistake,) = read_params(FePlateParams, {"parts": [part]}, "bar")
+    assert f'parts.0.{key} is now shape = "{key}", with {now}' in mistake

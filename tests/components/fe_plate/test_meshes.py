@@ -9,7 +9,7 @@ import pytest
 
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.kernels.blocks import STRAIN
-from quintet.components.fe_plate.meshes.params import Cutout, Cylinder, MeshFile, Part
+from quintet.components.fe_plate.meshes.params import Cutout, Part
 from quintet.components.fe_plate.params import (
     Elements,
     Faces,
@@ -33,15 +33,17 @@ ELASTIC = Material(density=2700.0, youngs_modulus=7e10, poissons_ratio=0.3)
 
 
 def bar(axis="z", quarter=False, elements=(3, 3, 8), **given):
-    shape = Cylinder(
-        base=(0.1, 0.2, 0.3),
-        axis=axis,
+    base = (0.1, 0.2, 0.3)
+    top = tuple(x + 0.05 * (along == axis) for x, along in zip(base, "xyz", strict=True))
+    part = Part(
+        shape="cylinder",
+        base=base,
+        top=top,
         radius=0.01,
-        length=0.05,
         elements=elements,
         quarter=quarter,
+        material=ELASTIC,
     )
-    part = Part(cylinder=shape, material=ELASTIC)
     return FePlate(FePlateParams(parts=(part,), **given))
 
 
@@ -158,7 +160,7 @@ def test_sets_of_elements_are_read_from_a_file(tmp_path):
     cells = [("triangle", corner[:1, :3]), ("hexahedron", corner)]
     sets = {"right": [np.zeros(0, int), np.array([1])]}
     meshio.Mesh(node, cells, cell_sets=sets).write(tmp_path / "block.inp")
-    part = Part(mesh=MeshFile(file=str(tmp_path / "block.inp"), scale=1e-3), material=ELASTIC)
+    part = Part(shape="mesh", file=str(tmp_path / "block.inp"), scale=1e-3, material=ELASTIC)
     gauges = Gauges(element_set_gauges=(Elements(element_set="right"),))
     made = FePlate(FePlateParams(parts=(part,), gauges=gauges))
     assert [one.tolist() for one in made.measured.element_sets] == [[1]]
@@ -182,11 +184,12 @@ def test_a_mesh_is_read_from_a_file(tmp_path, name):
     sets = {"left": left} if name.endswith("inp") else {}
     cells = [("triangle", corner[:1, :3]), ("hexahedron", corner)]
     meshio.Mesh(node, cells, point_sets=sets).write(file)
-    shape = MeshFile(file=str(file), scale=1e-3, move=(0.0, 0.0, 1.0))
+    origin = (0.0, 0.0, 1.0)
+    part = Part(shape="mesh", file=str(file), scale=1e-3, origin=origin, material=ELASTIC)
     held = (
         Fixed(node_set="left") if sets else Fixed(lowest=(0.0, 0.0, 0.0), highest=(0.0, 1.0, 2.0))
     )
-    params = FePlateParams(parts=(Part(mesh=shape, material=ELASTIC),), fixed=(held,))
+    params = FePlateParams(parts=(part,), fixed=(held,))
     made = FePlate(params)
     assert made.items() == params.parts[0].count == 2
     assert made.built.volume == pytest.approx([1e-6, 1e-6])
@@ -199,7 +202,7 @@ def test_elements_that_are_inside_out_are_named(tmp_path):
     node, corner = _hexahedra()
     corner[1] = corner[1][[4, 5, 6, 7, 0, 1, 2, 3]]
     meshio.Mesh(node, [("hexahedron", corner)]).write(tmp_path / "block.vtk")
-    part = Part(mesh=MeshFile(file=str(tmp_path / "block.vtk")), material=ELASTIC)
+    part = Part(shape="mesh", file=str(tmp_path / "block.vtk"), material=ELASTIC)
     with pytest.raises(SceneError, match=r"element 1 at .* found -1e\+03 m3: it is inside out"):
         FePlate(FePlateParams(parts=(part,)))
 
@@ -207,11 +210,11 @@ def test_elements_that_are_inside_out_are_named(tmp_path):
 def test_files_without_solids_are_refused(tmp_path):
     node, corner = _hexahedra()
     meshio.Mesh(node, [("triangle", corner[:, :3])]).write(tmp_path / "flat.vtk")
-    part = Part(mesh=MeshFile(file=str(tmp_path / "flat.vtk")), material=ELASTIC)
+    part = Part(shape="mesh", file=str(tmp_path / "flat.vtk"), material=ELASTIC)
     with pytest.raises(SceneError, match="elements of kind hexahedron; found 2 triangle"):
         FePlate(FePlateParams(parts=(part,)))
     (tmp_path / "none.vtk").write_text("nothing")
-    part = Part(mesh=MeshFile(file=str(tmp_path / "none.vtk")), material=ELASTIC)
+    part = Part(shape="mesh", file=str(tmp_path / "none.vtk"), material=ELASTIC)
     with pytest.raises(SceneError, match="must be a mesh that meshio reads"):
         FePlate(FePlateParams(parts=(part,)))
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from quintet.components.fe_plate.component import FePlate
-from quintet.components.fe_plate.meshes.params import Cylinder, MeshFile, Part
+from quintet.components.fe_plate.meshes.params import Part
 from quintet.components.fe_plate.params import Faces, FePlateParams, Fixed, Pressure, RigidWall
 from quintet.components.shared.materials.params import Material
 
@@ -116,9 +116,14 @@ def test_cylinders_and_meshes_of_files_are_refused(tmp_path):
     file = tmp_path / "bar.inp"
     file.touch()
     round_bar = Part(
-        cylinder=Cylinder(radius=0.1, length=1.0, elements=(2, 2, 1)), material="steel"
+        shape="cylinder",
+        base=(0.0, 0.0, 0.0),
+        top=(0.0, 0.0, 1.0),
+        radius=0.1,
+        elements=(2, 2, 1),
+        material="steel",
     )
-    meshed = Part(mesh=MeshFile(file=str(file)), material="steel")
+    meshed = Part(shape="mesh", file=str(file), material="steel")
     for part, said in ((round_bar, "cylinder"), (meshed, "mesh of 8-node solids")):
         with pytest.raises(ValueError, match=f"it must be a box, .* found a {said}, which has"):
             FePlateParams(parts=(part,), dimensions=2)
