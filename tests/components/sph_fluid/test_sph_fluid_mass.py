@@ -73,7 +73,6 @@ def test_water_whose_edges_the_spacing_does_not_divide_stays_at_rest():
             boundary__method="mdbc",
             boundary__walls=((0.0,) * 3, (0.209, 0.2, 0.3)),
             density_diffusion=0.1,
-            kernel="wendland",
             gauges__level_gauges=((0.1, 0.1),),
             gauges__motion_gauge=True,
         )

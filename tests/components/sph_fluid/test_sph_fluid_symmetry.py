@@ -214,6 +214,7 @@ def cut(half: bool) -> SphFluid:
         params(
             dimensions=3,
             boundary__method="dbc",
+            density_diffusion=0.0,
             gravity=(0.0,) * 3,
             boundary__symmetry=("x-",) if half else (),
             fluid=(((low, 0.0, 0.0), (3 * SPACING, edge, edge)),),

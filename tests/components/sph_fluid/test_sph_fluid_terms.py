@@ -63,7 +63,7 @@ def test_viscous_step_limit_is_stated():
 
 
 def test_viscosity_and_diffusion_keep_momentum():
-    fluid = drop(viscosity__kinematic=0.1, density_diffusion=0.1)
+    fluid = drop(viscosity__kinematic=0.1, density_diffusion=0.1, boundary__method="mdbc")
     fluid.state.velocity_pressure[:, :3] = np.random.default_rng(2).normal(
         0.0, 0.1, (fluid.state.fluid, 3)
     )

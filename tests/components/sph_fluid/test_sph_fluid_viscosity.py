@@ -24,7 +24,8 @@ def rubbed(points: np.ndarray, velocity: np.ndarray, viscosity: KinematicViscosi
     place = np.column_stack([points, np.full(count, 1000.0)])
     motion = np.column_stack([velocity, np.zeros(count)])
     lists = near(points, SPACING).arrays
-    rubbing = fluid._replace(fluid=fluid.fluid._replace(viscosity=viscosity))
+    terms = fluid.fluid._replace(viscosity=viscosity)
+    rubbing = fluid._replace(fluid=terms, boundary=terms)  # compiled for other tests too
     return summed(rubbing, place, motion, lists, count)[:, :3]
 
 
