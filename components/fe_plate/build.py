@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.fe_plate.kernels.blocks import LANES, TEMPERATURE
 from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, mesh
 from quintet.components.fe_plate.params import FePlateParams, RigidWall
 from quintet.components.fe_plate.points import points_of
 from quintet.components.fe_plate.state import (
+    LANES,
+    TEMPERATURE,
     Array,
     Index,
     Model,

@@ -3,8 +3,7 @@
 import numpy as np
 
 from quintet.components.fe_plate.build import Structure
-from quintet.components.fe_plate.kernels.blocks import ENERGY
-from quintet.components.fe_plate.state import Array, State
+from quintet.components.fe_plate.state import ENERGY, Array, State
 from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
 

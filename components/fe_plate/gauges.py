@@ -6,16 +6,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from quintet.components.fe_plate.build import Structure
-from quintet.components.fe_plate.kernels.blocks import (
+from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, elements_of
+from quintet.components.fe_plate.meshes.selections import Faces
+from quintet.components.fe_plate.params import Gauges
+from quintet.components.fe_plate.state import (
     DAMAGE,
     ENERGY,
     PRESSURE,
     STRAIN,
     TEMPERATURE,
+    Array,
+    Places,
+    State,
+    Whole,
 )
-from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, elements_of
-from quintet.components.fe_plate.params import Faces, Gauges
-from quintet.components.fe_plate.state import Array, Places, State, Whole
 from quintet.components.fe_plate.view import von_mises
 from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Keys

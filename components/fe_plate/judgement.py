@@ -18,10 +18,9 @@ lacks in stiffness is |E/r - E|, over its internal energy. Of material that flow
 import numpy as np
 
 from quintet.components.fe_plate.build import Structure
-from quintet.components.fe_plate.kernels.blocks import DEVIATOR, ENERGY, POINT_ROWS, PRESSURE
 from quintet.components.fe_plate.meshes.mesh import Mesh
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.state import Array, State
+from quintet.components.fe_plate.state import DEVIATOR, ENERGY, POINT_ROWS, PRESSURE, Array, State
 from quintet.components.shared.materials.solid import NEVER, Solid
 
 EVERY = 64  # steps

@@ -6,17 +6,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.fe_plate.kernels.blocks import (
-    ACTIVE,
-    LANES,
-    POINT_ROWS,
-    SPRING_ENERGY,
-    SPRING_ROWS,
-)
-
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Index = NDArray[np.uint32]  # half the bytes of others, and no number from the end
+
+LANES = 16  # points of a block, which kernels advance side by side
+# Rows of the state at quadrature points.
+DEVIATOR = 0  # to 5: xx yy zz xy yz zx, Pa
+PRESSURE, VISCOUS = 6, 7  # Pa; that of the bulk viscosity
+ENERGY, STRAIN, TEMPERATURE, DAMAGE = 8, 9, 10, 11  # J/kg; plastic; K; 1
+ACTIVE = 12  # 1, and 0 once it has failed
+DILATION = 13  # of eight points: how much its volume has grown beyond that of its element
+POINT_ROWS = 14
+# Rows of the springs that hold the hourglass patterns of elements with one point.
+SPRING, SPRING_ENERGY = 0, 12  # 12 rows N, J
+SPRING_ROWS = 13
 
 
 class Model(NamedTuple):
@@ -54,7 +58,7 @@ class Resistance(NamedTuple):
 
 
 class State(NamedTuple):
-    """What moves. Rows of points and springs, and their units, stand in `kernels.blocks`."""
+    """What moves. Rows of points and springs, and their units, stand above."""
 
     position: Array  # (n, 3) m
     velocity: Array  # (n, 3) m/s

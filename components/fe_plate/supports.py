@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen
-from quintet.components.fe_plate.params import FePlateParams, Fixed, RigidWall
+from quintet.components.fe_plate.meshes.selections import Fixed
+from quintet.components.fe_plate.params import FePlateParams, RigidWall
 from quintet.components.fe_plate.state import Array, Whole
 from quintet.interfaces.component import Fields
 from quintet.interfaces.faces import CLAMPED, SYMMETRY, WALL, polygons

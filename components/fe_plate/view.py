@@ -2,15 +2,17 @@
 
 import numpy as np
 
-from quintet.components.fe_plate.kernels.blocks import (
+from quintet.components.fe_plate.meshes.mesh import Mesh, outer_sides
+from quintet.components.fe_plate.state import (
     DAMAGE,
     DEVIATOR,
     PRESSURE,
     STRAIN,
     TEMPERATURE,
+    Array,
+    Places,
+    State,
 )
-from quintet.components.fe_plate.meshes.mesh import Mesh, outer_sides
-from quintet.components.fe_plate.state import Array, Places, State
 from quintet.interfaces.component import Fields
 
 

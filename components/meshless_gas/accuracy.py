@@ -8,7 +8,7 @@ pressure where the stream meets the body is 1 to 4 % too low. Finer layers at th
 import math
 
 from quintet.components.meshless_gas.blunt_bodies import CYLINDER, SPHERE, standoff
-from quintet.components.meshless_gas.moving.params import Body
+from quintet.components.meshless_gas.moving_bodies import Body
 from quintet.components.meshless_gas.params import MeshlessGasParams
 
 TOO_FAR = 0.5  # spacings that a captured shock stands too far away

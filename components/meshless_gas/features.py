@@ -46,12 +46,12 @@ def axis_terms(params: MeshlessGasParams, viscous: WallFriction, team: Team) -> 
     if params.moving is None or not params.moving.axisymmetric:
         return []
     # Left out of scenes without such an axis.
-    from quintet.components.meshless_gas.moving.axis import AxisTerms
+    from quintet.components.meshless_gas.axis.inviscid import AxisTerms
 
     terms: list[Part] = [AxisTerms(params.gas.gamma, team)]
     if params.viscous:
         # Left out of scenes without friction.
-        from quintet.components.meshless_gas.viscous.axis import AxisStresses
+        from quintet.components.meshless_gas.axis.viscous import AxisStresses
         from quintet.components.meshless_gas.viscous.terms import Viscous
 
         assert isinstance(viscous, Viscous)

@@ -9,8 +9,8 @@ from pydantic import Field
 from quintet.components.meshless_gas.boundaries import NO_SLIP, Boundary, Gas, GasState
 from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, SphereCloud
 from quintet.components.meshless_gas.clouds.refinement import wrong_part
-from quintet.components.meshless_gas.moving.params import Moving
-from quintet.components.meshless_gas.point_particles.params import PointParticles
+from quintet.components.meshless_gas.moving_bodies import Moving
+from quintet.components.meshless_gas.particle_coupling import PointParticles
 from quintet.components.meshless_gas.readings import Front, Steady
 from quintet.components.meshless_gas.starts import Riemann, Vortex, Zone
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters

@@ -18,3 +18,4 @@ INNER = EXACT | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 FAST_INNER = INNER | {"fastmath": True}
 # Of laws that loops over lanes call: always part of the loop, so that vectors are made of it.
 LANEWISE = INNER | {"forceinline": True}
+FAST_LANEWISE = LANEWISE | {"fastmath": True}

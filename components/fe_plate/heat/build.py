@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.fe_plate.heat.kernels import Matrix, pattern, write_matrix
+from quintet.components.fe_plate.heat.kernels import pattern, write_matrix
 from quintet.components.fe_plate.heat.laws import face_shares
 from quintet.components.fe_plate.heat.params import FeHeatParams, FixedTemperature
-from quintet.components.fe_plate.heat.state import Model, State
+from quintet.components.fe_plate.heat.state import Matrix, Model, State
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, incident, mesh
 from quintet.components.shared.search.nearest import nearest_rows

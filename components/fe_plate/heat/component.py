@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from quintet.components.fe_plate.heat import MANIFEST
+from quintet.components.fe_plate.heat import MANIFEST, diagnostics, features
 from quintet.components.fe_plate.heat.build import build, initial_state
-from quintet.components.fe_plate.heat.judgement import note, transient_times, warnings
 from quintet.components.fe_plate.heat.kernels import conduct, solve
 from quintet.components.fe_plate.heat.params import FeHeatParams
 from quintet.components.fe_plate.heat.ports import SHOWS
@@ -16,11 +15,7 @@ from quintet.components.fe_plate.meshes.mesh import faces_in
 from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Component, Fields, Keys, Totals
-from quintet.interfaces.errors import SceneError, StepError
-
-# Share of the step that each stage is implicit by (Alexander 1977, theorem 5).
-STAGE = 1.0 - 1.0 / math.sqrt(2.0)
-MOST = 20_000  # iterations
+from quintet.interfaces.errors import SceneError
 
 
 class FeHeat(Component):
@@ -52,8 +47,9 @@ class FeHeat(Component):
         self.corner = np.searchsorted(self.surface, faces)  # (f, 4) among these
         self.gauges = nearest_rows(mesh.node, params.node_gauges)
         self.state = initial_state(params, self.model, len(self.surface))
-        self.start = self.state.temperature.copy()  # K
-        self.times = transient_times(params, self.model)  # s
+        self.times = diagnostics.transient_times(params, self.model)  # s
+        start = self.state.temperature.copy()
+        self.conduction = features.conduction(params, self.model, start, self.times)
         self.is_compiled = False
 
     def describe(self) -> Fields:
@@ -90,64 +86,11 @@ class FeHeat(Component):
         """Advance by exactly dt [s], or find what is steady."""
         load = self.model.source.copy()
         load[self.surface] += self.state.heat
-        if self.params.steady:
-            none = np.zeros_like(load)
-            gained = self._net_flow(self._solved(none, load, self.state.temperature), load)
-        else:
-            before = self.state.temperature.copy()
-            gained = self._advance(dt, load)
-            now, part = self.state.temperature, self.model.part
-            note(self.state.judged, self.start, before, now, dt, part, self.times)
+        gained = self.conduction.advance(self.state, dt, load)
         held = self.model.holder >= 0
         flow = np.bincount(self.model.holder[held], -gained[held], len(self.state.held))
         self.state.held[:] = flow
         self.state.outside[0] += dt * float(flow.sum() + self.model.source.sum())
-
-    def _advance(self, dt: float, load: Array) -> Array:
-        """Step the temperatures [K]; return the mean net heat (n,) W that came to each node."""
-        temperature, model = self.state.temperature, self.model
-        before = temperature.copy()
-        shift = model.capacity / (STAGE * dt)
-        first = self._net_flow(self._solved(shift, load + shift * before, before.copy()), load)
-        carried = load + shift * before + (1.0 - STAGE) / STAGE * first
-        second = self._net_flow(self._solved(shift, carried, temperature), load)
-        mean = (1.0 - STAGE) * first + STAGE * second
-        stored = model.capacity * (temperature - before) / dt
-        return self._balanced(dt, load, np.where(model.free > 0.0, stored, mean))
-
-    def _balanced(self, dt: float, load: Array, gained: Array) -> Array:
-        """Close the balance of each part, which lacks what the tolerance of the solution leaves.
-
-        What holds a part gives the rest; a part that nothing holds is warmed evenly by it.
-        """
-        model, parts = self.model, len(self.params.parts)
-        held = model.free == 0.0
-        missing = np.bincount(model.part, load - gained, parts)  # W
-        holders = np.bincount(model.part, held, parts)
-        gained += np.where(held, missing[model.part] / np.maximum(holders, 1.0)[model.part], 0.0)
-        capacity = np.bincount(model.part, model.capacity, parts)  # J/K
-        warmed = np.where(holders > 0.0, 0.0, missing * dt / capacity)  # K
-        self.state.temperature[:] += warmed[model.part]
-        return gained
-
-    def _net_flow(self, temperature: Array, load: Array) -> Array:
-        """Heat (n,) W that comes to each node: load, and what others conduct to it."""
-        flow = np.empty_like(temperature)
-        conduct(self.model.conductance, temperature, flow)
-        return flow + load
-
-    def _solved(self, shift: Array, load: Array, guess: Array) -> Array:
-        model = self.model
-        iterations, residual = solve(
-            model.conductance, shift, model.free, load, guess, self.params.tolerance, MOST
-        )
-        if not residual <= self.params.tolerance:
-            raise StepError(
-                f"temperatures: {iterations} iterations must bring the residual below "
-                f"{self.params.tolerance:g}; it is {residual:.3g}. Raise the tolerance, or make "
-                "elements of more equal shape."
-            )
-        return guess
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out temperatures and heat flows."""
@@ -175,14 +118,11 @@ class FeHeat(Component):
 
     def totals(self) -> Totals:
         """Mass, heat above 0 K, and heat of sources and held nodes; steady parts store none."""
-        parts = np.bincount(self.model.part, self.model.volume)  # m3
-        mass = float(parts @ [part.density or 0.0 for part in self.params.parts])
-        stored = 0.0 if self.params.steady else float(self.model.capacity @ self.state.temperature)
-        return Totals(mass=mass, internal=stored, work=float(self.state.outside[0]))
+        return diagnostics.totals(self.params, self.model, self.state)
 
     def warnings(self) -> dict[str, str]:
         """Steps too long to resolve the transient of a part."""
-        return warnings(self.state.judged, self.times)
+        return diagnostics.warnings(self.state.judged, self.times)
 
     def notes(self) -> tuple[str, ...]:
         """Sizes of meshes from files, and what of them is left out."""

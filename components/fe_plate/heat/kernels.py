@@ -1,22 +1,12 @@
 """Loops of conduction: the matrix of conductances, and conjugate gradients."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
 from quintet.components.fe_plate.heat.laws import ETA, GAUSS, XI, ZETA, shapes_at
+from quintet.components.fe_plate.heat.state import Matrix
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.shared.numba_options import EXACT, INNER
-
-
-class Matrix(NamedTuple):
-    """Conductances between nodes, row by row, columns in rising order."""
-
-    first: Whole  # (n + 1,) entries of row i: first[i] ... first[i + 1] - 1
-    column: Array  # (entries,) 4-byte whole numbers
-    value: Array  # (entries,) W/K, negative between nodes that conduct to each other
-    diagonal: Array  # (n,) W/K
 
 
 @njit(**EXACT)

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from quintet.components.fe_plate.meshes.params import MeshedPart
-from quintet.components.fe_plate.params import Faces, NodeSet
+from quintet.components.fe_plate.meshes.selections import Faces, NodeSet
 from quintet.components.shared.geometry.selections import ByBoxOrSet
 from quintet.interfaces.params import (
     NotNegative,

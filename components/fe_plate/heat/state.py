@@ -2,9 +2,17 @@
 
 from typing import NamedTuple
 
-from quintet.components.fe_plate.heat.kernels import Matrix
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.mesh import Mesh
+
+
+class Matrix(NamedTuple):
+    """Conductances between nodes, row by row, columns in rising order."""
+
+    first: Whole  # (n + 1,) entries of row i: first[i] ... first[i + 1] - 1
+    column: Array  # (entries,) 4-byte whole numbers
+    value: Array  # (entries,) W/K, negative between nodes that conduct to each other
+    diagonal: Array  # (n,) W/K
 
 
 class Model(NamedTuple):

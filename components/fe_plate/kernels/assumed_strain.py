@@ -9,10 +9,7 @@ from numba import njit
 from quintet.components.fe_plate.kernels.blocks import (
     FRAME,
     GRADIENT,
-    INLINED,
-    LANES,
     LOCAL,
-    STRAIN,
     STRESS,
     VOLUME,
     nine,
@@ -20,18 +17,20 @@ from quintet.components.fe_plate.kernels.blocks import (
     put_six,
     six,
 )
+from quintet.components.fe_plate.state import LANES, STRAIN
+from quintet.components.shared.numba_options import FAST_LANEWISE
 
 POINTS = 8  # of an element; bits 0 to 2 of a point's number are its signs of ξ, η and ζ
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def applied(s, x, y, z):  # type: ignore[no-untyped-def]
     """Symmetric tensor xx yy zz xy yz zx on a vector."""
     xx, yy, zz, xy, yz, zx = s
     return xx * x + xy * y + zx * z, xy * x + yy * y + yz * z, zx * x + yz * y + zz * z
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def turned(s, r):  # type: ignore[no-untyped-def]
     """R s Rᵀ of a symmetric tensor xx yy zz xy yz zx; R by rows."""
     a0, a1, a2, b0, b1, b2, c0, c1, c2 = r
@@ -48,13 +47,13 @@ def turned(s, r):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def transposed(r):  # type: ignore[no-untyped-def]
     """Transpose of a matrix by rows."""
     return r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def assume_strains(points, work, law):  # type: ignore[no-untyped-def]
     """Replace the rates of strain within the velocity gradients by the assumed ones."""
     for k in range(LANES):
@@ -72,7 +71,7 @@ def assume_strains(points, work, law):  # type: ignore[no-untyped-def]
         put_nine(work, GRADIENT, k, assumed)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def spread_stresses(points, work, law):  # type: ignore[no-untyped-def]
     """Replace stresses by those that do the same work on the gradients of the displacements."""
     for k in range(LANES):
@@ -85,7 +84,7 @@ def spread_stresses(points, work, law):  # type: ignore[no-untyped-def]
         put_six(work, STRESS * LANES + k, back)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def lateral(points, first, law):  # type: ignore[no-untyped-def]
     """Lateral strain over that of bending: ν/(1 - ν) = (3K - 2G)/(3K + 4G); 1 after yielding."""
     most = 0.0
@@ -96,7 +95,7 @@ def lateral(points, first, law):  # type: ignore[no-untyped-def]
     return (3.0 * law.bulk - 2.0 * law.shear) / (3.0 * law.bulk + 4.0 * law.shear)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def mix(work, first, share, forward):  # type: ignore[no-untyped-def]
     """Assume strains of an element's points, from lane `first` on; or do the transpose."""
     whole = 0.0
@@ -129,13 +128,13 @@ def mix(work, first, share, forward):  # type: ignore[no-untyped-def]
         average_shear(work, LOCAL + 3 + other, first, axis)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def sign(k, axis):  # type: ignore[no-untyped-def]
     """Sign of a point's ξ, η or ζ."""
     return 1.0 if (k >> axis) & 1 else -1.0
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def average_shear(work, row, first, axis):  # type: ignore[no-untyped-def]
     """Average a shear over the points that differ along its own two axes."""
     for side in range(2):

@@ -6,21 +6,8 @@ read and write rows whose distances the compiler knows, and become vectors.
 
 from numba import njit
 
-from quintet.components.shared.numba_options import FAST
-
-LANES = 16
-INLINED = FAST | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
-
-# Rows of the state at quadrature points.
-DEVIATOR = 0  # to 5: xx yy zz xy yz zx, Pa
-PRESSURE, VISCOUS = 6, 7  # Pa; that of the bulk viscosity
-ENERGY, STRAIN, TEMPERATURE, DAMAGE = 8, 9, 10, 11  # J/kg; plastic; K; 1
-ACTIVE = 12  # 1, and 0 once it has failed
-DILATION = 13  # of eight points: how much its volume has grown beyond that of its element
-POINT_ROWS = 14
-# Rows of the springs that hold the hourglass patterns of elements with one point.
-SPRING, SPRING_ENERGY = 0, 12  # 12 rows N, J
-SPRING_ROWS = 13
+from quintet.components.fe_plate.state import LANES
+from quintet.components.shared.numba_options import FAST_LANEWISE
 
 # Rows of what a block needs within a step.
 X, V = 0, 24  # corners, 3a + d: m, m/s
@@ -44,7 +31,7 @@ SCRATCH = 146
 ROWS = 148
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def load_corners(values, corner, first, count, beyond, row, out):  # type: ignore[no-untyped-def]
     """Take values (n, 3) of the corners of `count` elements from a first one on.
 
@@ -63,7 +50,7 @@ def load_corners(values, corner, first, count, beyond, row, out):  # type: ignor
                 out[(row + 3 * a + 1) * LANES + lane] += beyond
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def take_from_corners(row, work, first, count, target, out):  # type: ignore[no-untyped-def]
     """Take rows of corner values from those (rows, 3) that they act on, element by element.
 
@@ -78,7 +65,7 @@ def take_from_corners(row, work, first, count, target, out):  # type: ignore[no-
             out[node, 2] -= work[at + 2 * LANES]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def patterns_of(values, row, lane):  # type: ignore[no-untyped-def]
     """Means of corner values along one axis times 1, ξ, η, ζ, ηζ, ζξ, ξη and ξηζ of the corners.
 
@@ -112,7 +99,7 @@ def patterns_of(values, row, lane):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def corners_from(p, out, row, lane):  # type: ignore[no-untyped-def]
     """Write the sums of seven numbers with the signs ξ, η, ζ, ηζ, ζξ, ξη and ξηζ of the corners."""
     low = -p[2], p[0] - p[4], p[1] - p[3], p[5] - p[6]
@@ -128,21 +115,21 @@ def corners_from(p, out, row, lane):  # type: ignore[no-untyped-def]
     out[at + 21 * LANES] = high[0] - high[1] + high[2] - high[3]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def three(work, row, k):  # type: ignore[no-untyped-def]
     """Vector that stands in three rows."""
     at = row * LANES + k
     return work[at], work[at + LANES], work[at + 2 * LANES]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def put_three(work, row, k, values):  # type: ignore[no-untyped-def]
     """Write a vector into three rows."""
     at = row * LANES + k
     work[at], work[at + LANES], work[at + 2 * LANES] = values
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def six(work, at):  # type: ignore[no-untyped-def]
     """Symmetric tensor that stands in six rows, the first number at a place."""
     return (
@@ -155,7 +142,7 @@ def six(work, at):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def put_six(work, at, values):  # type: ignore[no-untyped-def]
     """Write a symmetric tensor into six rows."""
     work[at], work[at + LANES], work[at + 2 * LANES] = values[0], values[1], values[2]
@@ -166,14 +153,14 @@ def put_six(work, at, values):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def nine(work, row, k):  # type: ignore[no-untyped-def]
     """Tensor that stands in nine rows."""
     a, b, c = three(work, row, k), three(work, row + 3, k), three(work, row + 6, k)
     return a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def put_nine(work, row, k, values):  # type: ignore[no-untyped-def]
     """Write a tensor into nine rows."""
     put_three(work, row, k, (values[0], values[1], values[2]))
@@ -181,7 +168,7 @@ def put_nine(work, row, k, values):  # type: ignore[no-untyped-def]
     put_three(work, row + 6, k, (values[6], values[7], values[8]))
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def greatest(work, row):  # type: ignore[no-untyped-def]
     """Greatest number of a row; within another loop it would keep that from becoming vectors."""
     largest = work[row * LANES]
@@ -190,7 +177,7 @@ def greatest(work, row):  # type: ignore[no-untyped-def]
     return largest
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def least(work, row):  # type: ignore[no-untyped-def]
     """Least number of a row."""
     smallest = work[row * LANES]

@@ -22,18 +22,11 @@ from quintet.components.fe_plate.kernels.assumed_strain import (
     spread_stresses,
 )
 from quintet.components.fe_plate.kernels.blocks import (
-    ACTIVE,
     COFACTOR,
-    DEVIATOR,
-    DILATION,
     EDGE,
     FRAME,
     GRADIENT,
-    INLINED,
-    LANES,
     LENGTH,
-    POINT_ROWS,
-    PRESSURE,
     RATIO,
     ROWS,
     SPECIFIC,
@@ -52,12 +45,25 @@ from quintet.components.fe_plate.kernels.blocks import (
     three,
 )
 from quintet.components.fe_plate.kernels.flow import HUGE
-from quintet.components.fe_plate.kernels.geometry import cross, dot, to_middle
+from quintet.components.fe_plate.kernels.geometry import cross, dot
 from quintet.components.fe_plate.kernels.material import advance_material
-from quintet.components.fe_plate.state import Array, Model, Resistance, State, Whole
+from quintet.components.fe_plate.laws import to_middle
+from quintet.components.fe_plate.state import (
+    ACTIVE,
+    DEVIATOR,
+    DILATION,
+    LANES,
+    POINT_ROWS,
+    PRESSURE,
+    Array,
+    Model,
+    Resistance,
+    State,
+    Whole,
+)
 from quintet.components.shared.elementary import exponential
 from quintet.components.shared.materials.solid import Solid
-from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.numba_options import FAST, FAST_LANEWISE
 
 PER = LANES // POINTS  # elements in a block
 OFF = 1.0 / math.sqrt(3.0)  # of the points from the middle, in ξ, η and ζ
@@ -103,7 +109,7 @@ def step_eight_points(
     return step, smallest, worst
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def erode(points):  # type: ignore[no-untyped-def]
     """Let all points of an element fail of which one has."""
     for first in range(0, LANES, POINTS):
@@ -117,7 +123,7 @@ def erode(points):  # type: ignore[no-untyped-def]
                 put_six(points, DEVIATOR * LANES + k, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def broadcast(work):  # type: ignore[no-untyped-def]
     """Give each point the corners of its element, which stand in the first lanes."""
     for row in range(X * LANES, (X + 24) * LANES, LANES):
@@ -128,7 +134,7 @@ def broadcast(work):  # type: ignore[no-untyped-def]
                 work[row + (V - X) * LANES + k] = rate
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def combined(a, p, b, q, c, r):  # type: ignore[no-untyped-def]
     """Sum p a + q b + r c of vectors."""
     return (
@@ -138,7 +144,7 @@ def combined(a, p, b, q, c, r):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def slopes(x, y, z, xi, eta, zeta):  # type: ignore[no-untyped-def]
     """Slopes in ξ, η and ζ of a vector field with these patterns along each axis."""
     j1, j2, j3 = (x[1], y[1], z[1]), (x[2], y[2], z[2]), (x[3], y[3], z[3])
@@ -154,7 +160,7 @@ def slopes(x, y, z, xi, eta, zeta):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def point_geometry(work, dt):  # type: ignore[no-untyped-def]
     """Write volumes, lengths, V∇ξ, V∇η, V∇ζ, velocity gradients and axes of the points.
 
@@ -196,7 +202,7 @@ def point_geometry(work, dt):  # type: ignore[no-untyped-def]
         put_three(work, FRAME + 6, k, e3)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def compare_volumes(points, start, work, law, dt):  # type: ignore[no-untyped-def]
     """Write ρ₀/ρ: that of the element, times what the assumed strains have made of each point."""
     for first in range(0, LANES, POINTS):
@@ -219,14 +225,14 @@ def compare_volumes(points, start, work, law, dt):  # type: ignore[no-untyped-de
                 work[row + k] = work[row + k] if live else 0.0
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def trace_at(work, k):  # type: ignore[no-untyped-def]
     """Trace [1/s] of the velocity gradient of a lane."""
     at = GRADIENT * LANES + k
     return work[at] + work[at + 4 * LANES] + work[at + 8 * LANES]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def sum_forces(points, work):  # type: ignore[no-untyped-def]
     """Write the forces on corners in the first lanes of X: Σ V σ ∇N over an element's points."""
     for k in range(LANES):
@@ -250,7 +256,7 @@ def sum_forces(points, work):  # type: ignore[no-untyped-def]
         corners_from((p[14], p[15], p[16], p[17], p[18], p[19], p[20]), work, X + 2, element)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def put_patterns(work, row, k, share, stress, a, b, c):  # type: ignore[no-untyped-def]
     """Write forces along one axis with the signs ξ, η, ζ, ηζ, ζξ, ξη and ξηζ of the corners."""
     xi, eta, zeta = XI[k], ETA[k], ZETA[k]

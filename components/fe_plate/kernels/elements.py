@@ -9,20 +9,14 @@ import numpy as np
 from numba import njit
 
 from quintet.components.fe_plate.kernels.blocks import (
-    ACTIVE,
     COEFFICIENT,
     GRADIENT,
-    INLINED,
-    LANES,
     LENGTH,
     PATTERN,
-    POINT_ROWS,
     RATE,
     RATIO,
     ROWS,
     SPECIFIC,
-    SPRING_ENERGY,
-    SPRING_ROWS,
     STRESS,
     VOLUME,
     V,
@@ -38,9 +32,18 @@ from quintet.components.fe_plate.kernels.blocks import (
 from quintet.components.fe_plate.kernels.flow import HUGE
 from quintet.components.fe_plate.kernels.geometry import mean_geometry
 from quintet.components.fe_plate.kernels.material import advance_material
-from quintet.components.fe_plate.state import Model, Resistance, State
+from quintet.components.fe_plate.state import (
+    ACTIVE,
+    LANES,
+    POINT_ROWS,
+    SPRING_ENERGY,
+    SPRING_ROWS,
+    Model,
+    Resistance,
+    State,
+)
 from quintet.components.shared.materials.solid import Solid
-from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.numba_options import FAST, FAST_LANEWISE
 
 
 @njit(**FAST)
@@ -88,7 +91,7 @@ def step_elements(
     return step, smallest, worst
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def compare_volumes(points, start, work, law):  # type: ignore[no-untyped-def]
     """Write volumes over those at the start; return the least. Eroded elements are at rest."""
     for k in range(LANES):
@@ -102,7 +105,7 @@ def compare_volumes(points, start, work, law):  # type: ignore[no-untyped-def]
     return least(work, RATIO)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def smallest_of(work, begin):  # type: ignore[no-untyped-def]
     """Place of the element whose volume is the least of its block."""
     worst = 0
@@ -112,7 +115,7 @@ def smallest_of(work, begin):  # type: ignore[no-untyped-def]
     return begin + worst
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def hold_patterns(points, springs, work, stiff, dt):  # type: ignore[no-untyped-def]
     """Load and turn the springs of the patterns; write the forces on the corners in place of X.
 
@@ -165,7 +168,7 @@ def hold_patterns(points, springs, work, stiff, dt):  # type: ignore[no-untyped-
         corners_from(along_z, work, X + 2, k)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def loaded(old, rate, turn, loads):  # type: ignore[no-untyped-def]
     """Force of a spring after it has been turned and loaded, and twice its mean power [W]."""
     xy, yz, zx = turn
@@ -176,13 +179,13 @@ def loaded(old, rate, turn, loads):  # type: ignore[no-untyped-def]
     return (n0, n1, n2), power
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def masked(force, live):  # type: ignore[no-untyped-def]
     """Give a force, none of an eroded element."""
     return force[0] if live else 0.0, force[1] if live else 0.0, force[2] if live else 0.0
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def tensor_row(x, y, z, per, q, p1, p2, p3, p4):  # type: ignore[no-untyped-def]
     """Row of the stress, less what the springs bear of a linear field."""
     return (
@@ -192,7 +195,7 @@ def tensor_row(x, y, z, per, q, p1, p2, p3, p4):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def along(t, a1, a2, a3, c1, c2, c3, q, live):  # type: ignore[no-untyped-def]
     """Forces along one axis on the corners, by their seven patterns."""
     f1 = t[0] * a1[0] + t[1] * a1[1] + t[2] * a1[2]

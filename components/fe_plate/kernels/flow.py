@@ -5,24 +5,20 @@ hardening and by the rate, with Halley's method: each iteration leaves about the
 The first ones take logarithms and exponentials of few digits.
 """
 
-import math
-
 from numba import njit
 
 from quintet.components.fe_plate.kernels.blocks import (
     DELTA,
     GRADIENT,
-    INLINED,
-    LANES,
     LOGARITHM,
     SCRATCH,
     SOFT,
-    STRAIN,
-    TEMPERATURE,
     TRIAL,
     greatest,
     nine,
 )
+from quintet.components.fe_plate.laws import strain_rate
+from quintet.components.fe_plate.state import LANES, STRAIN, TEMPERATURE
 from quintet.components.shared.elementary import (
     exponential,
     exponential_of_few_digits,
@@ -30,6 +26,7 @@ from quintet.components.shared.elementary import (
     logarithm_of_few_digits,
 )
 from quintet.components.shared.materials.strength import plastic_increment, softening
+from quintet.components.shared.numba_options import FAST_LANEWISE
 
 HUGE = 1e300  # these kernels take every number to be finite
 ROUGH = 2  # iterations with few digits
@@ -40,7 +37,7 @@ STRIDE = 2.0  # greatest change of ln Δ
 LEAST = 1e-300  # plastic strain by which none is divided
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def return_to_flow_stress(points, work, law, dt):  # type: ignore[no-untyped-def]
     """Write plastic strains of the step; whether any point yields."""
     if law.hard >= HUGE:
@@ -74,7 +71,7 @@ def return_to_flow_stress(points, work, law, dt):  # type: ignore[no-untyped-def
     return True
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def guess(points, work, law, slowest):  # type: ignore[no-untyped-def]
     """Write softening, guesses of plastic strains, 0 of points that do not yield, and their ln."""
     stiff = 3.0 * law.shear
@@ -99,7 +96,7 @@ def guess(points, work, law, slowest):  # type: ignore[no-untyped-def]
         work[DELTA * LANES + k] = exponential_of_few_digits(y) if beyond > 0.0 else 0.0
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def improve(points, work, law, slowest, log, exp):  # type: ignore[no-untyped-def]
     """Change ln Δ of points that yield by a step of Halley's method; write how far."""
     stiff = 3.0 * law.shear
@@ -122,12 +119,3 @@ def improve(points, work, law, slowest, log, exp):  # type: ignore[no-untyped-de
         work[SCRATCH * LANES + k] = abs(moved)
         work[LOGARITHM * LANES + k] = y + moved
         work[DELTA * LANES + k] = delta * exp(moved)
-
-
-@njit(**INLINED)
-def strain_rate(gradient):  # type: ignore[no-untyped-def]
-    """Equivalent rate √(2/3 D':D') [1/s] of the deviator of a velocity gradient."""
-    l00, l01, l02, l10, l11, l12, l20, l21, l22 = gradient
-    trace, xy, yz, zx = l00 + l11 + l22, l01 + l10, l12 + l21, l20 + l02
-    squares = l00 * l00 + l11 * l11 + l22 * l22 - trace * trace / 3.0
-    return math.sqrt(max(2.0 / 3.0 * squares + (xy * xy + yz * yz + zx * zx) / 3.0, 0.0))

@@ -19,8 +19,6 @@ from quintet.components.fe_plate.kernels.blocks import (
     COEFFICIENT,
     EDGE,
     GRADIENT,
-    INLINED,
-    LANES,
     LENGTH,
     PATTERN,
     RATE,
@@ -35,39 +33,41 @@ from quintet.components.fe_plate.kernels.blocks import (
     put_three,
     three,
 )
-from quintet.components.shared.numba_options import FAST
+from quintet.components.fe_plate.laws import to_middle
+from quintet.components.fe_plate.state import LANES
+from quintet.components.shared.numba_options import FAST, FAST_LANEWISE
 
 CUBE = math.sqrt(3.0)  # edge of a cube over the length of its bound
 THIRD = 1.0 / 3.0
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def cross(a, b):  # type: ignore[no-untyped-def]
     """Cross product a x b of vectors as tuples."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def dot(a, b):  # type: ignore[no-untyped-def]
     """Product a·b of vectors as tuples."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def mixed(a, b, c, d):  # type: ignore[no-untyped-def]
     """Third (a x b + c x d)/3."""
     p, q = cross(a, b), cross(c, d)
     return THIRD * (p[0] + q[0]), THIRD * (p[1] + q[1]), THIRD * (p[2] + q[2])
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def with_third(a, b, c, d):  # type: ignore[no-untyped-def]
     """Sum a x b + c x d/3."""
     p, q = cross(a, b), cross(c, d)
     return p[0] + THIRD * q[0], p[1] + THIRD * q[1], p[2] + THIRD * q[2]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def mean_coefficients(x, y, z):  # type: ignore[no-untyped-def]
     """Vectors A₁, A₂, A₃ of ξ, η, ζ and C₁, C₂, C₃ of ηζ, ζξ, ξη [m2], and the volume [m3].
 
@@ -83,42 +83,14 @@ def mean_coefficients(x, y, z):  # type: ignore[no-untyped-def]
     return a1, a2, a3, c1, c2, c3, 8.0 * THIRD * volume
 
 
-@njit(**INLINED)
-def to_middle(gradient, half):  # type: ignore[no-untyped-def]
-    """Velocity gradient at the middle of a step of twice `half` [s], from that at its end.
-
-    Corners are where they are at the end: with x = x_end - ½ dt v the gradient in the middle is
-    L (I - ½ dt L)⁻¹, so that a rotation strains nothing.
-    """
-    l00, l01, l02, l10, l11, l12, l20, l21, l22 = gradient
-    m00, m01, m02 = 1.0 - half * l00, -half * l01, -half * l02
-    m10, m11, m12 = -half * l10, 1.0 - half * l11, -half * l12
-    m20, m21, m22 = -half * l20, -half * l21, 1.0 - half * l22
-    c00, c01, c02 = m11 * m22 - m12 * m21, m02 * m21 - m01 * m22, m01 * m12 - m02 * m11
-    c10, c11, c12 = m12 * m20 - m10 * m22, m00 * m22 - m02 * m20, m02 * m10 - m00 * m12
-    c20, c21, c22 = m10 * m21 - m11 * m20, m01 * m20 - m00 * m21, m00 * m11 - m01 * m10
-    per = 1.0 / (m00 * c00 + m01 * c10 + m02 * c20)
-    return (
-        per * (l00 * c00 + l01 * c10 + l02 * c20),
-        per * (l00 * c01 + l01 * c11 + l02 * c21),
-        per * (l00 * c02 + l01 * c12 + l02 * c22),
-        per * (l10 * c00 + l11 * c10 + l12 * c20),
-        per * (l10 * c01 + l11 * c11 + l12 * c21),
-        per * (l10 * c02 + l11 * c12 + l12 * c22),
-        per * (l20 * c00 + l21 * c10 + l22 * c20),
-        per * (l20 * c01 + l21 * c11 + l22 * c21),
-        per * (l20 * c02 + l21 * c12 + l22 * c22),
-    )
-
-
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def row_of(v, a1, a2, a3, c1, c2, c3, d, scale):  # type: ignore[no-untyped-def]
     """∂v/∂x_d of a velocity's patterns along one axis."""
     linear = v[1] * a1[d] + v[2] * a2[d] + v[3] * a3[d]
     return scale * (linear + v[4] * c1[d] + v[5] * c2[d] + v[6] * c3[d])
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def mean_geometry(work, dt):  # type: ignore[no-untyped-def]
     """Write volumes, lengths, gradients, hourglass patterns and their rates from the corners.
 
@@ -152,7 +124,7 @@ def mean_geometry(work, dt):  # type: ignore[no-untyped-def]
         put_nine(work, GRADIENT, k, to_middle(nine(work, GRADIENT, k), half))
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def put_rates(work, k, axis):  # type: ignore[no-untyped-def]
     """Write the gradient of the velocity along an axis, and what of h·v [m/s] it does not explain.
 

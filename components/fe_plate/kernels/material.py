@@ -9,30 +9,20 @@ import math
 from numba import njit
 
 from quintet.components.fe_plate.kernels.blocks import (
-    ACTIVE,
     CHANGE,
-    DAMAGE,
     DELTA,
-    DEVIATOR,
     EDGE,
     ENDS,
-    ENERGY,
     GRADIENT,
-    INLINED,
-    LANES,
     LENGTH,
     OLD,
     PLACE,
-    PRESSURE,
     RATIO,
     SCRATCH,
     SPECIFIC,
     SPEED,
-    STRAIN,
     STRESS,
-    TEMPERATURE,
     TRIAL,
-    VISCOUS,
     WORK,
     greatest,
     least,
@@ -41,6 +31,18 @@ from quintet.components.fe_plate.kernels.blocks import (
     six,
 )
 from quintet.components.fe_plate.kernels.flow import HUGE, return_to_flow_stress
+from quintet.components.fe_plate.laws import damping_power, deviatoric_power
+from quintet.components.fe_plate.state import (
+    ACTIVE,
+    DAMAGE,
+    DEVIATOR,
+    ENERGY,
+    LANES,
+    PRESSURE,
+    STRAIN,
+    TEMPERATURE,
+    VISCOUS,
+)
 from quintet.components.shared.materials.equation_of_state import (
     place_on_isentrope,
     pressure_and_energy,
@@ -52,9 +54,10 @@ from quintet.components.shared.materials.strength import (
     equivalent,
     turned_and_strained,
 )
+from quintet.components.shared.numba_options import FAST_LANEWISE
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def advance_material(points, work, law, resistance, dt):  # type: ignore[no-untyped-def]
     """Advance a block of points; return the least stable step [s].
 
@@ -71,7 +74,7 @@ def advance_material(points, work, law, resistance, dt):  # type: ignore[no-unty
     return resist(points, work, law, resistance, dt)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def strain_elastically(points, work, law, dt):  # type: ignore[no-untyped-def]
     """Write trial deviators and their equivalent stresses; advance the temperature's softening."""
     for k in range(LANES):
@@ -86,7 +89,7 @@ def strain_elastically(points, work, law, dt):  # type: ignore[no-untyped-def]
         work[WORK * LANES + k] = 0.0
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def yield_plastically(points, work, law, dt):  # type: ignore[no-untyped-def]
     """Scale the deviators back, advance plastic strains, and write the plastic work [J/m3]."""
     for k in range(LANES):
@@ -100,7 +103,7 @@ def yield_plastically(points, work, law, dt):  # type: ignore[no-untyped-def]
         work[WORK * LANES + k] = scale * trial * delta
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def update_pressure(points, work, law, dt):  # type: ignore[no-untyped-def]
     """Advance pressures, energies and temperatures, and the deviators of points that bear any."""
     for k in range(LANES):
@@ -143,7 +146,7 @@ def update_pressure(points, work, law, dt):  # type: ignore[no-untyped-def]
             )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def heat(points, work, law):  # type: ignore[no-untyped-def]
     """Advance temperatures: by the energy of shocked materials, by the plastic work of others.
 
@@ -174,14 +177,14 @@ def heat(points, work, law):  # type: ignore[no-untyped-def]
         points[at] = warm if live else points[at]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def take_stresses(points, work):  # type: ignore[no-untyped-def]
     """Take the stresses as they are, for a step of none."""
     for k in range(LANES):
         work[CHANGE * LANES + k] = 0.0
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def fracture(points, work, law):  # type: ignore[no-untyped-def]
     """Let points fail by strain, damage or the greatest principal stress: they bear no more."""
     for k in range(LANES):
@@ -205,7 +208,7 @@ def fracture(points, work, law):  # type: ignore[no-untyped-def]
             put_six(points, at + DEVIATOR * LANES, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def resist(points, work, law, resistance, dt):  # type: ignore[no-untyped-def]
     """Write stresses with those of bulk viscosity and damping; return the least stable step [s]."""
     linear, quadratic, damp = resistance.linear, resistance.quadratic, resistance.damping
@@ -243,27 +246,3 @@ def resist(points, work, law, resistance, dt):  # type: ignore[no-untyped-def]
         step = length / (slower + math.sqrt(slower * slower + sound * sound))
         work[SCRATCH * LANES + k] = step if live else HUGE
     return least(work, SCRATCH)
-
-
-@njit(**INLINED)
-def deviatoric_power(before, after, gradient):  # type: ignore[no-untyped-def]
-    """(s + s'):D [W/m3], of the deviators at the step's ends."""
-    l00, l01, l02, l10, l11, l12, l20, l21, l22 = gradient
-    return (
-        (before[0] + after[0]) * l00
-        + (before[1] + after[1]) * l11
-        + (before[2] + after[2]) * l22
-        + (before[3] + after[3]) * (l01 + l10)
-        + (before[4] + after[4]) * (l12 + l21)
-        + (before[5] + after[5]) * (l20 + l02)
-    )
-
-
-@njit(**INLINED)
-def damping_power(gradient, law):  # type: ignore[no-untyped-def]
-    """2G dev D:D + K (tr D)² [Pa/s2] of a velocity gradient."""
-    l00, l01, l02, l10, l11, l12, l20, l21, l22 = gradient
-    trace, xy, yz, zx = l00 + l11 + l22, l01 + l10, l12 + l21, l20 + l02
-    squares = l00 * l00 + l11 * l11 + l22 * l22 - trace * trace / 3.0
-    squares += 0.5 * (xy * xy + yz * yz + zx * zx)
-    return 2.0 * law.shear * squares + law.bulk * trace * trace

@@ -15,7 +15,7 @@ from quintet.components.fe_plate.meshes.coincidence import first_at_place
 from quintet.components.fe_plate.meshes.cylinder import cylinder
 from quintet.components.fe_plate.meshes.files import least_edge
 from quintet.components.fe_plate.meshes.params import MeshedPart
-from quintet.components.fe_plate.params import Elements, Faces, NodeSet
+from quintet.components.fe_plate.meshes.selections import Elements, Faces, NodeSet
 from quintet.components.shared.geometry.selections import ByBox, ByBoxOrSet, in_box
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown

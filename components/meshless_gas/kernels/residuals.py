@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from quintet.components.meshless_gas.laws.fluxes import (
-    INLINED,
+    FAST_LANEWISE,
     LEAST,
     ausmpw,
     smoothness,
@@ -81,7 +81,7 @@ def write_residuals(
         store(rows, begin, count, frame, work, residual)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def load_nodes(  # type: ignore[no-untyped-def]
     rows, begin, count, primitive, gradients, lowest, frame, planar, sloped, work
 ):
@@ -101,7 +101,7 @@ def load_nodes(  # type: ignore[no-untyped-def]
                     work[(OWN_SLOPE + 3 * q + d) * LANES + lane] = 2.0 * gradients[i, q, d]
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def has_pairs(rows, begin, count, k, neighbours):  # type: ignore[no-untyped-def]
     """Whether any node of a block has a k-th neighbour; rows are padded with the node itself."""
     for lane in range(count):
@@ -111,7 +111,7 @@ def has_pairs(rows, begin, count, k, neighbours):  # type: ignore[no-untyped-def
     return False
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def load_pairs(  # type: ignore[no-untyped-def]
     rows, begin, count, k, positions, primitive, gradients, lowest, neighbours, coefficients,
     frame, planar, sloped, work,
@@ -150,7 +150,7 @@ def load_pairs(  # type: ignore[no-untyped-def]
                     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def change(work, q, lane, across, limiter, threshold, planar):  # type: ignore[no-untyped-def]
     """Changes of a variable from both nodes to the middle of their pair."""
     at = (OWN_SLOPE + 3 * q) * LANES + lane
@@ -165,7 +165,7 @@ def change(work, q, lane, across, limiter, threshold, planar):  # type: ignore[n
     )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped-def]
     """Add what the k-th neighbours give to their nodes."""
     heat = gamma / (gamma - 1.0)
@@ -232,7 +232,7 @@ def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped
             )
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def store(rows, begin, count, frame, work, residual):  # type: ignore[no-untyped-def]
     """Write the sums of a block's nodes, in the laboratory's frame."""
     for lane in range(count):

@@ -7,14 +7,14 @@ import math
 
 from numba import njit
 
-from quintet.components.meshless_gas.laws.limiters import INLINED
+from quintet.components.meshless_gas.laws.limiters import FAST_LANEWISE
 
 SENSED, WIDTH = 0.2, 0.3  # pressure ratio below which slopes vanish, and over which they grow
 COLLIDING = 4.0  # ram pressure over pressure above which streams collide
 LEAST = 0.05  # of the smaller of two densities or pressures: below it slopes are left out
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def smoothness(lowest_i, lowest_j, pressure_i, pressure_j, ram):  # type: ignore[no-untyped-def]
     """Share of the slopes that is kept: 0 where the least pressure near is far below the pair's.
 
@@ -27,7 +27,7 @@ def smoothness(lowest_i, lowest_j, pressure_i, pressure_j, ram):  # type: ignore
     return min(max((ratio - SENSED) / WIDTH, 0.0), 1.0)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def ausmpw(  # type: ignore[no-untyped-def]
     density_l, normal_l, pressure_l, density_r, normal_r, pressure_r, lowest, gamma
 ):
@@ -84,7 +84,7 @@ def ausmpw(  # type: ignore[no-untyped-def]
     return carried_l * density_l / per_speed, carried_r * density_r / per_speed, pressure
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def wall_pressure(pressure, mach, gamma):  # type: ignore[no-untyped-def]
     """Pressure [Pa] at a wall that gas runs into at a Mach number: behind the shock that stops it.
 

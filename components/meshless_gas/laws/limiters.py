@@ -10,10 +10,8 @@ from typing import NamedTuple
 from numba import njit
 from numba.extending import overload
 
-from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.numba_options import FAST_LANEWISE
 
-# Always part of the loop that calls it, so that vectors are made of it.
-INLINED = FAST | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
 THRESHOLD = 1e-6  # of van Albada's limiter, where the scene says none
 
 
@@ -50,7 +48,7 @@ class Superbee(Limiter):
     """See `superbee`."""
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def van_albada(upwind, across, threshold):  # type: ignore[no-untyped-def]
     """κ scheme of third order, κ = 1/3, with limiter 2 of van Albada.
 
@@ -70,7 +68,7 @@ def van_albada(upwind, across, threshold):  # type: ignore[no-untyped-def]
     return s * ((0.25 - s / 12.0) * upwind + (0.25 + s / 12.0) * across)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def minmod(upwind, across, threshold):  # type: ignore[no-untyped-def]
     """Half of the smaller difference.
 
@@ -81,7 +79,7 @@ def minmod(upwind, across, threshold):  # type: ignore[no-untyped-def]
     return 0.5 * (max(min(upwind, across), 0.0) + min(max(upwind, across), 0.0))
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def van_leer(upwind, across, threshold):  # type: ignore[no-untyped-def]
     """Half of the harmonic mean of the differences.
 
@@ -93,7 +91,7 @@ def van_leer(upwind, across, threshold):  # type: ignore[no-untyped-def]
     return max(upwind * across, 0.0) * both / max(both * both, 1e-300)
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def koren(upwind, across, threshold):  # type: ignore[no-untyped-def]
     """κ scheme of third order, κ = 1/3, within the bounds of what lets no total variation grow.
 
@@ -107,7 +105,7 @@ def koren(upwind, across, threshold):  # type: ignore[no-untyped-def]
     return 0.5 * (max(least, 0.0) + min(most, 0.0))
 
 
-@njit(**INLINED)
+@njit(**FAST_LANEWISE)
 def superbee(upwind, across, threshold):  # type: ignore[no-untyped-def]
     """Steepest change that lets no total variation grow: it keeps contacts from spreading.
 
@@ -146,7 +144,7 @@ def half_step(limiter: Limiter, upwind: float, across: float, threshold: float) 
     raise NotImplementedError("it is called by compiled functions only")
 
 
-@overload(half_step, jit_options=INLINED)
+@overload(half_step, jit_options=FAST_LANEWISE)
 def _half_step(limiter, upwind, across, threshold):  # type: ignore[no-untyped-def]
     law = LAWS[limiter.instance_class]
 

@@ -8,8 +8,8 @@ from quintet.components.meshless_gas.kernels.stencils import write_coefficients
 from quintet.components.meshless_gas.moving.clouds import MovingClouds
 from quintet.components.meshless_gas.moving.friction import BodyFriction, SlipBodies
 from quintet.components.meshless_gas.moving.layout import CloudLayout, layout, with_bodies
-from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.refusals import refuse_scene
+from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.stencils import Stencils
 from quintet.components.shared.threads import Team

@@ -8,9 +8,9 @@ from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, Cloud
 from quintet.components.meshless_gas.kernels.outflows import Outflows, clear_of_holes
 from quintet.components.meshless_gas.moving.kernels.holes import cut, part
 from quintet.components.meshless_gas.moving.layout import CloudLayout, write_plane_areas
-from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.refusals import refuse_places
 from quintet.components.meshless_gas.moving.volumes import partitioned
+from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.shared.search.nearest import nearest
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array

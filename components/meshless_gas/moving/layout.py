@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud, Whole, joined
-from quintet.components.meshless_gas.moving.params import Moving
 from quintet.components.meshless_gas.moving.rings import Ring, ring
 from quintet.components.meshless_gas.moving.shells import shell
+from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.interfaces.component import Array
 
 Rows = NDArray[np.int64]

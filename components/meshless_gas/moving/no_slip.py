@@ -7,7 +7,7 @@ from quintet.components.meshless_gas.laws.transport import Transport, sutherland
 from quintet.components.meshless_gas.moving.friction import BodyFriction
 from quintet.components.meshless_gas.moving.kernels.walls import FORCE, HEAT, POWER, TORQUE
 from quintet.components.meshless_gas.moving.layout import CloudLayout
-from quintet.components.meshless_gas.moving.params import Moving
+from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.meshless_gas.viscous.kernels.walls import write_tractions
 from quintet.interfaces.component import Array
 

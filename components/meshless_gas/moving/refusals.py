@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.moving.layout import CloudLayout
-from quintet.components.meshless_gas.moving.params import Moving
+from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import QuintetError, SceneError, StepError

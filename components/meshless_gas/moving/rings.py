@@ -15,7 +15,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
     with_ghosts,
 )
 from quintet.components.meshless_gas.clouds.grading import capped
-from quintet.components.meshless_gas.moving.params import Body
+from quintet.components.meshless_gas.moving_bodies import Body
 from quintet.interfaces.component import Array
 
 CLOSE = 3.0  # spacings from the axis within which nodes have mirror images

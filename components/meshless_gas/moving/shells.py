@@ -14,8 +14,8 @@ from quintet.components.meshless_gas.clouds.cap import (
 )
 from quintet.components.meshless_gas.clouds.cloud import INNER, OUTFLOW, SLIP
 from quintet.components.meshless_gas.clouds.layers import Bounds, SurfaceGrid, layered
-from quintet.components.meshless_gas.moving.params import Body
 from quintet.components.meshless_gas.moving.rings import Ring, heights_over
+from quintet.components.meshless_gas.moving_bodies import Body
 from quintet.interfaces.component import Array
 
 BEYOND = 0.35  # of an edge of a triangle: how far beyond a sector a point still is moved to its end

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.laws.transport import Transport
+from quintet.components.meshless_gas.particle_coupling import PointParticles
 from quintet.components.meshless_gas.point_particles.kernels import (
     exchange,
     fastest,
     write_weights,
 )
 from quintet.components.meshless_gas.point_particles.laws import DRAG, HEAT
-from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.components.meshless_gas.point_particles.particles import Laws, Loads, Particles
 from quintet.components.shared.search.nearest import build, search
 from quintet.interfaces.component import Array

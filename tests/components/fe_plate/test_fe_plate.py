@@ -7,17 +7,11 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from quintet.components.fe_plate.component import FePlate
-from quintet.components.fe_plate.kernels.blocks import DEVIATOR, POINT_ROWS, PRESSURE, STRAIN
 from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
-from quintet.components.fe_plate.params import (
-    Faces,
-    FePlateParams,
-    Fixed,
-    Part,
-    Pressure,
-    RigidWall,
-)
+from quintet.components.fe_plate.meshes.selections import Faces, Fixed
+from quintet.components.fe_plate.params import FePlateParams, Part, Pressure, RigidWall
+from quintet.components.fe_plate.state import DEVIATOR, POINT_ROWS, PRESSURE, STRAIN
 from quintet.components.shared.materials.params import JohnsonCook, Material
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError

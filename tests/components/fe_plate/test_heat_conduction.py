@@ -17,7 +17,7 @@ from quintet.components.fe_plate.heat.params import (
     FixedTemperature,
     Flux,
 )
-from quintet.components.fe_plate.params import Faces
+from quintet.components.fe_plate.meshes.selections import Faces
 from quintet.interfaces.errors import SceneError
 
 K, RHO_C = 2.0, 3.0  # W/(m K), J/(m3 K)

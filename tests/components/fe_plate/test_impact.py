@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from quintet.components.fe_plate.component import FePlate
-from quintet.components.fe_plate.kernels.blocks import STRAIN
 from quintet.components.fe_plate.meshes.params import Part
 from quintet.components.fe_plate.params import (
     FePlateParams,
     RigidWall,
 )
+from quintet.components.fe_plate.state import STRAIN
 from quintet.components.fe_plate.view import von_mises
 from quintet.components.shared.materials.params import JohnsonCook, Material, material
 

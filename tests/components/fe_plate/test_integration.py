@@ -10,7 +10,8 @@ from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.judgement import EVERY
 from quintet.components.fe_plate.meshes.layers import MANY, fewest_layers
 from quintet.components.fe_plate.meshes.params import Cutout, Part
-from quintet.components.fe_plate.params import FePlateParams, Fixed
+from quintet.components.fe_plate.meshes.selections import Fixed
+from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.plan import plan
 from quintet.components.shared.materials.params import (
     JohnsonCook,

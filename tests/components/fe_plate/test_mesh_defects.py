@@ -9,7 +9,8 @@ from quintet.components.fe_plate.heat.component import FeHeat
 from quintet.components.fe_plate.heat.params import ConductingPart, FeHeatParams
 from quintet.components.fe_plate.meshes.files import read
 from quintet.components.fe_plate.meshes.params import Part
-from quintet.components.fe_plate.params import FePlateParams, NodeSet
+from quintet.components.fe_plate.meshes.selections import NodeSet
+from quintet.components.fe_plate.params import FePlateParams
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read as read_params
 

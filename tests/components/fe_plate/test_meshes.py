@@ -8,18 +8,10 @@ import numpy as np
 import pytest
 
 from quintet.components.fe_plate.component import FePlate
-from quintet.components.fe_plate.kernels.blocks import STRAIN
 from quintet.components.fe_plate.meshes.params import Cutout, Part
-from quintet.components.fe_plate.params import (
-    Elements,
-    Faces,
-    FePlateParams,
-    Fixed,
-    Gauges,
-    NodeSet,
-    Pressure,
-    RigidWall,
-)
+from quintet.components.fe_plate.meshes.selections import Elements, Faces, Fixed, NodeSet
+from quintet.components.fe_plate.params import FePlateParams, Gauges, Pressure, RigidWall
+from quintet.components.fe_plate.state import STRAIN
 from quintet.components.fe_plate.view import von_mises
 from quintet.components.shared.materials.params import (
     JohnsonCook,

@@ -5,7 +5,8 @@ import pytest
 
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.meshes.params import Part
-from quintet.components.fe_plate.params import FePlateParams, Fixed
+from quintet.components.fe_plate.meshes.selections import Fixed
+from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.shared.materials.params import Material
 
 E, RHO = 7e10, 2700.0

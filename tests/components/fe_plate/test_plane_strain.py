@@ -5,7 +5,8 @@ import pytest
 
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.meshes.params import Part
-from quintet.components.fe_plate.params import Faces, FePlateParams, Fixed, Pressure, RigidWall
+from quintet.components.fe_plate.meshes.selections import Faces, Fixed
+from quintet.components.fe_plate.params import FePlateParams, Pressure, RigidWall
 from quintet.components.shared.materials.params import Material
 
 INTEGRATIONS = pytest.mark.parametrize("integration", ["reduced", "full"])

@@ -7,8 +7,8 @@ import pytest
 
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.moving.kernels.fresh_nodes import write_fresh_in_space
-from quintet.components.meshless_gas.moving.params import Body
 from quintet.components.meshless_gas.moving.shells import shell
+from quintet.components.meshless_gas.moving_bodies import Body
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read

@@ -8,7 +8,7 @@ import sys
 from quintet.components.meshless_gas.component import MeshlessGas, MeshlessGasParams
 from quintet.components.meshless_gas.clouds.params import BoxCloud
 from quintet.components.meshless_gas.boundaries import GasState
-from quintet.components.meshless_gas.point_particles.params import PointParticles
+from quintet.components.meshless_gas.particle_coupling import PointParticles
 box = BoxCloud(lowest=(0.0, 0.0, 0.0), highest=(1.0, 0.0, 1.0), spacing=0.2)
 air = GasState(temperature=300.0, pressure=1e5)
 loaded = "quintet.components.meshless_gas.point_particles.kernels"

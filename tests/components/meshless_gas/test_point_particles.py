@@ -10,9 +10,9 @@ from quintet.components.meshless_gas.clouds.box import box
 from quintet.components.meshless_gas.kernels.ghosts import write_ghost_states
 from quintet.components.meshless_gas.kernels.motion import STAGES, advance, write_conservative
 from quintet.components.meshless_gas.laws.transport import Transport
+from quintet.components.meshless_gas.particle_coupling import PointParticles
 from quintet.components.meshless_gas.point_particles import laws
 from quintet.components.meshless_gas.point_particles.interphase import InterphaseExchange
-from quintet.components.meshless_gas.point_particles.params import PointParticles
 from quintet.components.meshless_gas.point_particles.particles import Particles
 
 GAMMA, GAS_CONSTANT, PRANDTL = 1.4, 287.05, 0.72

@@ -1,4 +1,4 @@
-"""Whether steps resolve how a body warms: a step is stable at any length, but not right.
+"""Totals, and whether steps resolve how a body warms: any step is stable, but not right.
 
 A part of length L and diffusivity a = k/(ρ c) comes to its steady temperature as exp(-t π² a/L²)
 (Carslaw & Jaeger 1959, section 3.3). A step longer than L²/(π² a) that changes temperatures by
@@ -8,8 +8,9 @@ more than half of all that they have changed by passes over the transient.
 import numpy as np
 
 from quintet.components.fe_plate.heat.params import FeHeatParams
-from quintet.components.fe_plate.heat.state import Model
+from quintet.components.fe_plate.heat.state import Model, State
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.interfaces.component import Totals
 
 MOST = 0.5  # of the largest change of temperature so far, in one step
 
@@ -58,3 +59,11 @@ def warnings(judged: Array, times: Array) -> dict[str, str]:
         "times that. Shorten the window or longest_step, or set steady = true if its end alone "
         "counts."
     }
+
+
+def totals(params: FeHeatParams, model: Model, state: State) -> Totals:
+    """Mass, heat above 0 K, and heat of sources and held nodes; steady parts store none."""
+    parts = np.bincount(model.part, model.volume)  # m3
+    mass = float(parts @ [part.density or 0.0 for part in params.parts])
+    stored = 0.0 if params.steady else float(model.capacity @ state.temperature)
+    return Totals(mass=mass, internal=stored, work=float(state.outside[0]))

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.moving.kernels.axis import (
+from quintet.components.meshless_gas.axis.kernels import (
     add_axis_stresses,
     write_swelling,
 )
+from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.parts import Part, Stage
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.viscous.terms import Viscous

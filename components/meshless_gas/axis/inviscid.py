@@ -1,9 +1,9 @@
 """Terms of an axis of symmetry: circles of nodes grow with their distance from it."""
 
-from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.moving.kernels.axis import (
+from quintet.components.meshless_gas.axis.kernels import (
     add_axis,
 )
+from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.parts import Part, Stage
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.shared.threads import Team

@@ -1,0 +1,17 @@
+"""Optional physics as an object: steady conduction, or heat that is stored."""
+
+from quintet.components.fe_plate.heat.conduction import (
+    Conduction,
+    SteadyConduction,
+    TransientConduction,
+)
+from quintet.components.fe_plate.heat.params import FeHeatParams
+from quintet.components.fe_plate.heat.state import Model
+from quintet.components.fe_plate.meshes.arrays import Array
+
+
+def conduction(params: FeHeatParams, model: Model, start: Array, times: Array) -> Conduction:
+    """How temperatures are stepped from those at the start (n,) K; times (p,) s of the parts."""
+    if params.steady:
+        return SteadyConduction(model, params.tolerance)
+    return TransientConduction(model, params.tolerance, start, times)

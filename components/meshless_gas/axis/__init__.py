@@ -1,0 +1,1 @@
+"""Axis of symmetry of clouds that bodies carry: circles of nodes grow with their radius."""
