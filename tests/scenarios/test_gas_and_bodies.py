@@ -1,9 +1,10 @@
 """Bodies that fly through a gas with clouds of their own."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 
+from quintet.coupler.scene.read import library, load, parse
 from quintet.scenarios.moving_sphere.compare import Flight, flight
 
 Run = Callable[..., dict]
@@ -30,6 +31,35 @@ def fly(run_scene: Run) -> Fly:
         return known[preset]
 
     return made
+
+
+def driven_bodies() -> Iterator[tuple[str, list[dict], list[dict]]]:
+    """Scenes and presets with driven bodies: these bodies, and the spheres of the partner."""
+    for name, path in library().items():
+        if "is_driven" not in path.read_text():
+            continue
+        for preset in ("", *parse(path)["presets"]):
+            tables = load(name, preset).resolved["components"]
+            bodies = [
+                body
+                for table in tables.values()
+                for body in table.get("moving", {}).get("bodies", ())
+                if body.get("is_driven")
+            ]
+            if bodies:
+                spheres = [s for table in tables.values() for s in table.get("spheres", ())]
+                yield f"{name} {preset}".strip(), bodies, spheres
+
+
+def test_driven_bodies_of_scenes_stand_where_their_partner_has_them() -> None:
+    """A run refuses other places, smaller bodies and another number of them, too."""
+    scenes = list(driven_bodies())
+    assert len(scenes) >= 4
+    for name, bodies, spheres in scenes:
+        assert [b["centre"] for b in bodies] == [s["centre"] for s in spheres], name
+        # Larger spheres keep bodies apart where they strike each other.
+        pairs = zip(bodies, spheres, strict=True)
+        assert all(b["radius"] == s["radius"] or len(bodies) > 1 for b, s in pairs), name
 
 
 @pytest.mark.full

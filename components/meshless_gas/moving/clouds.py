@@ -26,6 +26,7 @@ from quintet.components.meshless_gas.moving.layout import CloudLayout, Pose
 from quintet.components.meshless_gas.moving.outputs import BodyOutputs
 from quintet.components.meshless_gas.moving.overset import FringeStencils
 from quintet.components.meshless_gas.moving.refusals import (
+    refuse_elsewhere,
     refuse_jump,
     refuse_off_axis,
     refuse_off_plane,
@@ -86,6 +87,12 @@ class MovingClouds(NodeMotion):
         """Check the sizes of a partner's bodies; learn whether it takes the heat of driven ones."""
         refuse_partner(static, self.layout.radii, self.driven)
         self.heat_is_joined = "heat" in joined
+
+    def prime(self, fields: Fields, primitive: Array) -> None:
+        """Check where a partner's bodies begin."""
+        if "motion.position" in fields:
+            radii, centre = self.layout.radii[self.driven], self.pose.centre[self.driven]
+            refuse_elsewhere(fields["motion.position"], centre, radii, self.driven)
 
     def soften_start(self, state: State) -> None:
         """Start gas near a body with the body's velocity, which fades over one radius."""

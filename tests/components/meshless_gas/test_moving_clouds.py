@@ -336,6 +336,14 @@ def test_partners_whose_bodies_are_smaller_or_fewer_are_refused():
         gas.bind({"motion.radius": np.full(2, 0.25)}, frozenset())
 
 
+def test_partners_whose_bodies_begin_elsewhere_are_refused():
+    gas = made(scene(bodies=[two(0.5)[0] | {"is_driven": True}], gas=[0.0, 0.0, 0.0]))
+    centre = gas.motion.pose.centre.copy()
+    gas.prime({"motion.position": centre})
+    with pytest.raises(SceneError, match=r"moving.bodies.0: .* must begin where the gas has it"):
+        gas.prime({"motion.position": centre + np.array([1e-6, 0.0, 0.0])})
+
+
 @pytest.mark.parametrize(("position", "velocity"), [(0.01, 0.0), (0.0, 0.3)])
 def test_driven_bodies_that_leave_the_plane_are_refused(position, velocity):
     bodies = [two(0.5)[0] | {"is_driven": True}]
