@@ -26,6 +26,10 @@ class NoSlipBodies(BodyFriction):
         self.insulating = np.flatnonzero(insulating[self.held])  # of those that are held
         self.rows = layout.walls[self.held].astype(np.int32)
         self.above = layout.above[self.held].astype(np.int32)
+        # Of nodes of bodies' clouds, from the body's centre: slopes at walls are then the same to
+        # the bit wherever the body is.
+        self.offsets = np.zeros((len(layout.height), 3))  # m
+        self.offsets[layout.carried] = layout.offsets
 
     def write_walls(self, velocity: Array, primitive: Array) -> None:
         """Write the states of no-slip walls: their velocity and temperature, at their pressure."""
@@ -55,7 +59,7 @@ class NoSlipBodies(BodyFriction):
         layout, held = self.layout, self.held
         friction, heat = np.empty((len(held), 3)), np.empty(len(held))
         write_tractions(
-            self.rows, self.above, cloud.positions, cloud.normals, velocity[held], primitive,
+            self.rows, self.above, self.offsets, cloud.normals, velocity[held], primitive,
             self.law, friction, heat,
         )  # fmt: skip
         if spin.any():

@@ -90,6 +90,21 @@ def test_a_partner_turns_a_cylinder_and_is_told_its_torque():
 
 
 @pytest.mark.full
+@pytest.mark.parametrize("wall", [{"temperature": 0.9}, {"temperature": None, "is_adiabatic": True}])
+def test_friction_and_heat_on_a_flying_body_are_the_same_bits_after_a_restart(wall):
+    gas = turning(rays=20, velocity=[0.3, 0.0, 0.1], **wall)[0]
+    keys = frozenset({"surface.friction", "surface.heat_flux", "surface.pressure"})
+    for _ in range(3):
+        gas.step(gas.stable_dt())
+    saved, before = gas.save(), gas.give(keys)
+    gas.step(gas.stable_dt())
+    gas.load(saved)
+    after = gas.give(keys)
+    assert all(np.array_equal(before[key], after[key]) for key in keys)
+    assert np.abs(after["surface.friction"]).max() > 0.0
+
+
+@pytest.mark.full
 def test_an_adiabatic_wall_takes_no_heat_and_is_warmed_by_friction():
     cooled = turning(angular_velocity=0.0, temperature=0.9)[0]
     still, fast = (
