@@ -3,12 +3,10 @@
 import math
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field
 
 from quintet.components.meshless_gas.boundaries import NO_SLIP, Boundary, Gas, GasState
 from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, SphereCloud
-from quintet.components.meshless_gas.clouds.refinement import wrong_part
 from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.meshless_gas.particle_coupling import PointParticles
 from quintet.components.meshless_gas.readings import Front, Steady
@@ -109,76 +107,79 @@ class MeshlessGasParams:
     particles: PointParticles | None = None
 
     def __post_init__(self) -> None:
-        for sentence in (*self._wrong_clouds(), *self._wrong_states(), *self._wrong_walls()):
-            raise ValueError(sentence)
-        for sentence in self._wrong_faces() if self.box is not None else self._wrong_names():
-            raise ValueError(sentence)
-        for sentence in self._wrong_places():
-            raise ValueError(sentence)
+        checks = [self._wrong_clouds, self._wrong_limiter, self._wrong_states, self._wrong_walls]
+        checks.append(self._wrong_names if self.box is None else self._wrong_faces)
+        for check in (*checks, self._wrong_places):
+            for sentence in check():
+                raise ValueError(sentence)
 
     def _wrong_clouds(self) -> list[str]:
         """What does not fit between the cloud and the dimensions."""
-        mistakes = []
-        said = [name for name in ("box", "sphere", "plate") if getattr(self, name) is not None]
-        if len(said) != 1:
-            mistakes.append(
-                f"a gas needs a box, a sphere or a plate of nodes, one of them; found "
-                f"{' and '.join(said) or 'none'}. Correct it."
-            )
-        if self.particles is not None and self.moving is not None:
-            mistakes.append(
-                "particles that nodes do not resolve go with nodes that stand still; found moving. "
-                "Leave out particles, or moving."
-            )
-        if (self.particles is not None or self.moving is not None) and (
-            self.local_steps or self.steady is not None
-        ):
-            mistakes.append(
-                "local_steps and steady are for a flow round what stands still; found particles "
-                "or moving. Leave out local_steps and steady."
-            )
-        if self.moving is not None and self.planar and self.moving.is_cut:
-            mistakes.append(
-                "moving: clouds that end at a sector are those of spheres: on an axis of symmetry, "
-                "or in 3 dimensions. Say axisymmetric = true or dimensions = 3, or leave it out."
-            )
-        if self.moving is not None and (self.probes or self.fronts):
-            mistakes.append(
-                "probes and fronts are read at nodes that stand still; found moving. Leave out "
-                "probes and fronts."
-            )
+        clouds = [name for name in ("box", "sphere", "plate") if getattr(self, name) is not None]
+        rules = [
+            (
+                len(clouds) != 1,
+                "a gas needs a box, a sphere or a plate of nodes, one of them; found "
+                f"{' and '.join(clouds) or 'none'}. Correct it.",
+            ),
+            *self._rules_of_bodies(),
+            (
+                self.axisymmetric and (self.dimensions == 3 or self.sphere is None),
+                "axisymmetric is for a sphere in 2 dimensions. Leave it out.",
+            ),
+            (
+                self.sphere is not None and self.dimensions == 2 and not self.axisymmetric,
+                "a sphere in 2 dimensions must be axisymmetric. Say axisymmetric = true.",
+            ),
+            (
+                self.vortex is not None and self.box is None,
+                "a vortex drifts through a periodic box. Give a box.",
+            ),
+            (
+                self.plate is not None and self.dimensions == 3,
+                "a plate is of 2 dimensions. Leave dimensions out.",
+            ),
+        ]
+        mistakes = [sentence for is_wrong, sentence in rules if is_wrong]
         layered = self.plate or self.sphere
-        if layered is not None and layered.layers.jitter > 0.0 and not self.axisymmetric:
-            mistakes.append(
-                f"layers: jitter is for an axisymmetric sphere; found {layered.layers.jitter:g}. "
-                "Leave it out."
-            )
-        if layered is not None and layered.layers.jitter > 0.0 and layered.layers.line_stencils:
-            mistakes.append(
-                "layers: jitter moves nodes off the lines along which line_stencils takes "
-                f"derivatives; found {layered.layers.jitter:g}. Leave it out, or say "
-                "line_stencils = false."
-            )
-        if self.axisymmetric and (self.dimensions == 3 or self.sphere is None):
-            mistakes.append("axisymmetric is for a sphere in 2 dimensions. Leave it out.")
-        if self.sphere is not None and self.dimensions == 2 and not self.axisymmetric:
-            mistakes.append(
-                "a sphere in 2 dimensions must be axisymmetric. Say axisymmetric = true."
-            )
-        if self.vortex is not None and self.box is None:
-            mistakes.append("a vortex drifts through a periodic box. Give a box.")
+        return mistakes + ([] if layered is None else layered.layers.wrong(self.axisymmetric))
+
+    def _rules_of_bodies(self) -> list[tuple[bool, str]]:
+        """What goes neither with bodies that carry clouds nor with point particles."""
+        is_steady = self.local_steps or self.steady is not None
+        return [
+            (
+                self.particles is not None and self.moving is not None,
+                "particles that nodes do not resolve go with nodes that stand still; found moving. "
+                "Leave out particles, or moving.",
+            ),
+            (
+                (self.particles is not None or self.moving is not None) and is_steady,
+                "local_steps and steady are for a flow round what stands still; found particles "
+                "or moving. Leave out local_steps and steady.",
+            ),
+            (
+                self.moving is not None and self.planar and self.moving.is_cut,
+                "moving: clouds that end at a sector are those of spheres: on an axis of symmetry, "
+                "or in 3 dimensions. Say axisymmetric = true or dimensions = 3, or leave it out.",
+            ),
+            (
+                self.moving is not None and bool(self.probes or self.fronts),
+                "probes and fronts are read at nodes that stand still; found moving. Leave out "
+                "probes and fronts.",
+            ),
+        ]
+
+    def _wrong_limiter(self) -> list[str]:
+        """What does not fit between the limiter and its threshold."""
         if self.limiter == "van_albada" and self.limiter_threshold == 0.0:
-            mistakes.append(
-                "limiter_threshold must be above 0 with van Albada's limiter. Raise it."
-            )
+            return ["limiter_threshold must be above 0 with van Albada's limiter. Raise it."]
         if self.limiter != "van_albada" and self.limiter_threshold:
-            mistakes.append(
+            return [
                 f"limiter_threshold is of van Albada's limiter; found {self.limiter}. Leave it "
                 'out, or say limiter = "van_albada".'
-            )
-        if self.plate is not None and self.dimensions == 3:
-            mistakes.append("a plate is of 2 dimensions. Leave dimensions out.")
-        return mistakes
+            ]
+        return []
 
     def _wrong_walls(self) -> list[str]:
         """What does not fit between walls and friction."""
@@ -232,44 +233,20 @@ class MeshlessGasParams:
                 "mean nothing. Leave it out."
             )
         if self.vortex is not None and self.initial is not None:
-            share = (self.gas.gamma - 1.0) / (2.0 * self.gas.gamma) * math.e
             density, *_, pressure = self.initial.primitive(self.gas)
-            coldest = 1.0 - share * density / pressure * (self.vortex.strength / math.tau) ** 2
-            if coldest <= 0.0:
-                mistakes.append(
-                    f"vortex: strength must leave gas in its middle; found "
-                    f"{self.vortex.strength:g} m/s. Make it weaker, or the pressure higher."
-                )
+            mistakes += self.vortex.wrong(self.gas.gamma, pressure / density)
         return mistakes
 
     def _wrong_faces(self) -> list[str]:
         """What does not fit among the faces of the box."""
         assert self.box is not None
-        mistakes, axes = [], ("xz" if self.dimensions == 2 else "xyz")
-        names = [axis + side for axis in axes for side in "-+"]
-        for name in self.boundaries:
-            if name not in names:
-                mistakes.append(f"boundaries.{name} is not known. Known here: {', '.join(names)}.")
-        for axis in axes:
-            ends = [self.kind_of(axis + side) for side in "-+"]
-            if ends.count("periodic") == 1:
-                mistakes.append(
-                    f"boundaries: both faces across {axis} must be periodic or none; found "
-                    f"{' and '.join(ends)}. Say the other."
-                )
-            k = "xyz".index(axis)
-            length = self.box.highest[k] - self.box.lowest[k]
-            if length < 2.0 * self.box.spacing:
-                mistakes.append(
-                    f"box: along {axis} it must be two spacings long at least; found "
-                    f"{length:g} m. Correct lowest and highest, or spacing."
-                )
-        corners = np.array(self.box.lowest), np.array(self.box.highest)
-        kinds = {name: self.kind_of(name) for name in names}
-        for part in self.box.refinements:
-            wrong = wrong_part(part.part, corners, self.box.spacing, kinds)
-            mistakes += [f"box.refinements: {wrong}"] if wrong else []
-        return mistakes
+        names = [axis + side for axis in ("xz" if self.dimensions == 2 else "xyz") for side in "-+"]
+        unknown = [
+            f"boundaries.{name} is not known. Known here: {', '.join(names)}."
+            for name in self.boundaries
+            if name not in names
+        ]
+        return unknown + self.box.wrong({name: self.kind_of(name) for name in names})
 
     def _wrong_places(self) -> list[str]:
         """Which places of probes and ends of fronts lie outside the nodes."""

@@ -1,5 +1,7 @@
 """What a scene says about the gas at the start."""
 
+import math
+
 from quintet.components.meshless_gas.boundaries import GasState
 from quintet.interfaces.params import Number, Positive, Vector, parameters
 
@@ -59,3 +61,13 @@ class Vortex:
     centre: Vector
     strength: Positive
     radius: Positive = 1.0
+
+    def wrong(self, gamma: float, warmth: float) -> list[str]:
+        """Whether no gas is left in its middle; `warmth` m2/s2 is pressure over density around."""
+        share = (gamma - 1.0) / (2.0 * gamma) * math.e
+        if share / warmth * (self.strength / math.tau) ** 2 < 1.0:
+            return []
+        return [
+            f"vortex: strength must leave gas in its middle; found {self.strength:g} m/s. Make it "
+            "weaker, or the pressure higher."
+        ]

@@ -102,27 +102,18 @@ def box(
         else Lattice(np.zeros(1), np.ones(1), (False, False))
         for d in range(3)
     ]
-    grids = np.meshgrid(*(lattice.places for lattice in lattices), indexing="ij")
-    positions = np.stack([grid.ravel() for grid in grids], axis=1)
-    widths = np.stack(
-        [
-            grid.ravel()
-            for grid in np.meshgrid(*(lattice.widths for lattice in lattices), indexing="ij")
-        ],
-        axis=1,
-    )
+    positions = _crossed([lattice.places for lattice in lattices])
+    widths = _crossed([lattice.widths for lattice in lattices])
     kind, patch, normals, areas = _faces(lattices, widths, axes, faces, patches)
     step = np.array([lattice.widths.max() for lattice in lattices])
     spacing = max(step[d] for d in axes)
     cells = halved(positions, widths, kind == INNER, spacing, parts, axes)
-    positions, count, rows = cells.positions, len(cells.positions), cells.origin
-    finer = 0.5**cells.level
+    count, rows, finer = len(cells.positions), cells.origin, 0.5**cells.level
     if jitter > 0.0:
-        moves = np.random.default_rng(seed).uniform(-0.5, 0.5, (count, 3)) * jitter * step
-        moves *= finer[:, None]
-        positions[:, axes] += np.where(kind[rows, None] == INNER, moves, 0.0)[:, axes]
+        moves = _moves(seed, jitter, step, finer)
+        cells.positions[:, axes] += np.where(kind[rows, None] == INNER, moves, 0.0)[:, axes]
     cloud = Cloud(
-        positions=positions,
+        positions=cells.positions,
         kind=kind[rows],
         normals=normals[rows],
         spacing=spacing * finer,
@@ -138,6 +129,17 @@ def box(
     for d in axes:
         cloud = with_images(cloud, d, (lowest[d], highest[d]), ends[d], reach * step[d])
     return cloud
+
+
+def _crossed(numbers: Sequence[Array]) -> Array:
+    """Numbers (n, 3) of all nodes of a lattice from those along each axis."""
+    return np.stack([grid.ravel() for grid in np.meshgrid(*numbers, indexing="ij")], axis=1)
+
+
+def _moves(seed: int, jitter: float, step: Array, finer: Array) -> Array:
+    """Random moves (n, 3) m over a share of the widths of cells (3,) m, times a share (n,)."""
+    moves = np.random.default_rng(seed).uniform(-0.5, 0.5, (len(finer), 3)) * jitter * step
+    return np.asarray(moves * finer[:, None])
 
 
 def _faces(

@@ -1,12 +1,13 @@
 """What a scene says about clouds of nodes."""
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
 
-from quintet.components.meshless_gas.clouds.refinement import FinePart, transition
+from quintet.components.meshless_gas.clouds.refinement import FinePart, transition, wrong_part
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
@@ -89,6 +90,29 @@ class BoxCloud:
         axes, slack = (0, 2) if dimensions == 2 else (0, 1, 2), 1e-9 * self.spacing
         return all(self.lowest[d] - slack <= place[d] <= self.highest[d] + slack for d in axes)
 
+    def wrong(self, kinds: Mapping[str, str]) -> list[str]:
+        """What does not fit between the box and the kinds of its faces, ``x-`` to ``z+``."""
+        mistakes = []
+        for axis in dict.fromkeys(face[0] for face in kinds):
+            ends = [kinds[axis + side] for side in "-+"]
+            if ends.count("periodic") == 1:
+                mistakes.append(
+                    f"boundaries: both faces across {axis} must be periodic or none; found "
+                    f"{' and '.join(ends)}. Say the other."
+                )
+            k = "xyz".index(axis)
+            length = self.highest[k] - self.lowest[k]
+            if length < 2.0 * self.spacing:
+                mistakes.append(
+                    f"box: along {axis} it must be two spacings long at least; found "
+                    f"{length:g} m. Correct lowest and highest, or spacing."
+                )
+        corners = np.array(self.lowest), np.array(self.highest)
+        for part in self.refinements:
+            if wrong := wrong_part(part.part, corners, self.spacing, kinds):
+                mistakes.append(f"box.refinements: {wrong}")
+        return mistakes
+
     @staticmethod
     def _count(low: Array, high: Array, spacing: float, axes: tuple[int, ...]) -> float:
         return float(np.prod([max(1.0, (high[d] - low[d]) / spacing) for d in axes]))
@@ -124,6 +148,21 @@ class Layers:
     line_stencils: bool = True
     jitter: Annotated[float, Field(ge=0, le=0.9, allow_inf_nan=False)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 1
+
+    def wrong(self, axisymmetric: bool) -> list[str]:
+        """What nodes that are moved at random do not go with."""
+        mistakes = []
+        if self.jitter > 0.0 and not axisymmetric:
+            mistakes.append(
+                f"layers: jitter is for an axisymmetric sphere; found {self.jitter:g}. Leave it "
+                "out."
+            )
+        if self.jitter > 0.0 and self.line_stencils:
+            mistakes.append(
+                "layers: jitter moves nodes off the lines along which line_stencils takes "
+                f"derivatives; found {self.jitter:g}. Leave it out, or say line_stencils = false."
+            )
+        return mistakes
 
 
 @parameters

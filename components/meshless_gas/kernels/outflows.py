@@ -90,38 +90,13 @@ def continue_outflows(
     more, low, high = np.empty(5), np.empty(5), np.empty(5)
     for row in range(rows.shape[0]):
         i = rows[row]
-        density, pressure = primitive[i, 0], primitive[i, 4]
-        sound = math.sqrt(gamma * pressure / density)
-        out = 0.0
-        for d in range(3):
-            out -= primitive[i, 1 + d] * normals[i, d]
+        sound = math.sqrt(gamma * primitive[i, 4] / primitive[i, 0])
+        out = outward_speed(primitive[i], normals[i])
         if patches[patch[i], BACK_PRESSURE] > 0.0 and abs(out) < sound:
             continue
-        for q in range(5):
-            more[q] = -primitive[i, q]
-        low[:], high[:] = math.inf, -math.inf
-        for k in range(near.shape[1]):
-            j = near[row, k]
-            if j == i:
-                continue
-            for q in range(5):
-                more[q] += weights[row, 0, k] * primitive[j, q]
-                low[q], high[q] = min(low[q], primitive[j, q]), max(high[q], primitive[j, q])
+        write_plane(i, near[row], weights[row], primitive, more, low, high)
         smooth = 1.0 - roughness(positions, i, near[row], weights[row], primitive) / ROUGH
-        outward = 0.0
-        for d in range(3):
-            outward -= more[1 + d] * normals[i, d]
-        # Waves: what is carried along leaves with the gas; what runs against it if that is faster.
-        carried = min(max(out / (CROSSING * sound), 0.0), 1.0)
-        against = min(max((out / sound - 1.0) / CROSSING, 0.0), 1.0)
-        ahead = 0.5 * (more[4] + density * sound * outward)
-        behind = 0.5 * against * (more[4] - density * sound * outward)
-        push, speed = ahead + behind, (ahead - behind) / (density * sound)
-        more[0] = carried * (more[0] - more[4] / (sound * sound)) + push / (sound * sound)
-        more[4] = push
-        for d in range(3):
-            along = more[1 + d] + outward * normals[i, d]
-            more[1 + d] = carried * along - speed * normals[i, d]
+        let_waves_out(out, sound, primitive[i, 0], normals[i], more)
         # Smooth flow may go on beyond what is near; where a shock is there is nothing beyond it.
         for q in range(5):
             beyond = max(smooth, 0.0) * (high[q] - low[q])
@@ -129,12 +104,52 @@ def continue_outflows(
             if q == 0 or q == 4:
                 least = max(least, LEAST * low[q])
             primitive[i, q] = min(max(primitive[i, q] + more[q], least), most)
-        back = 0.0
-        for d in range(3):
-            back += primitive[i, 1 + d] * normals[i, d]
+        back = -outward_speed(primitive[i], normals[i])
         if back > 0.0 and out > 0.0:  # what leaves nearby does not come back here
             for d in range(3):
                 primitive[i, 1 + d] -= back * normals[i, d]
+
+
+@njit(**INNER)
+def outward_speed(state: Any, normal: Any) -> float:
+    """Speed [m/s] against a normal into the gas of a state, or of a change of it."""
+    speed = 0.0
+    for d in range(3):
+        speed -= state[1 + d] * normal[d]
+    return speed
+
+
+@njit(**INNER)
+def write_plane(
+    i: int, near: Any, weights: Any, primitive: Any, more: Any, low: Any, high: Any
+) -> None:
+    """Write what the plane has more than the node (5,), and the least and most of nodes near."""
+    for q in range(5):
+        more[q] = -primitive[i, q]
+    low[:], high[:] = math.inf, -math.inf
+    for k in range(near.shape[0]):
+        j = near[k]
+        if j == i:
+            continue
+        for q in range(5):
+            more[q] += weights[0, k] * primitive[j, q]
+            low[q], high[q] = min(low[q], primitive[j, q]), max(high[q], primitive[j, q])
+
+
+@njit(**INNER)
+def let_waves_out(out: float, sound: float, density: float, normal: Any, more: Any) -> None:
+    """Keep of a change (5,) what is carried along, if gas leaves, and what runs against it."""
+    outward = outward_speed(more, normal)
+    carried = min(max(out / (CROSSING * sound), 0.0), 1.0)
+    against = min(max((out / sound - 1.0) / CROSSING, 0.0), 1.0)  # if the gas is faster
+    ahead = 0.5 * (more[4] + density * sound * outward)
+    behind = 0.5 * against * (more[4] - density * sound * outward)
+    push, speed = ahead + behind, (ahead - behind) / (density * sound)
+    more[0] = carried * (more[0] - more[4] / (sound * sound)) + push / (sound * sound)
+    more[4] = push
+    for d in range(3):
+        along = more[1 + d] + outward * normal[d]
+        more[1 + d] = carried * along - speed * normal[d]
 
 
 @njit(**INNER)

@@ -1,7 +1,7 @@
 """How the clouds of bodies are put together with their background."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,37 +111,18 @@ def layout(
     count = cloud.nodes
     sizes = [body_cloud.cloud.nodes for body_cloud in rings]
     imaged = [len(body_cloud.cloud.owner) for body_cloud in rings]
-    firsts = background + np.cumsum([0, *sizes[:-1]])  # rows of each body's cloud begin here
+    first = background + np.cumsum([0, *sizes[:-1]])  # rows of each body's cloud begin here
     beyond = count + len(cloud.owner) - sum(imaged) + np.cumsum([0, *imaged[:-1]])  # its images
-    height = np.full(count, np.inf)
-    for body_cloud, first, image in zip(rings, firsts, beyond, strict=True):
-        place = np.arange(first, first + body_cloud.cloud.nodes)
-        home = body_cloud.home
-        home = np.where(home < len(place), home + first, home - len(place) + image)
-        neighbours[place] = place[:, None]
-        neighbours[place, : home.shape[1]] = home
-        height[place] = body_cloud.height
-    walls = [
-        first + np.arange(body_cloud.rays) for body_cloud, first in zip(rings, firsts, strict=True)
-    ]
-    rays = [body_cloud.rays for body_cloud in rings]
-    levels = [body_cloud.height.reshape(-1, body_cloud.rays) for body_cloud in rings]
-    leaving = [body_cloud.leaving + first for body_cloud, first in zip(rings, firsts, strict=True)]
-    before = [body_cloud.before + first for body_cloud, first in zip(rings, firsts, strict=True)]
-    images = [image + np.arange(size) for image, size in zip(beyond, imaged, strict=True)]
-    above = [
-        np.stack([wall + body_cloud.rays, wall + 2 * body_cloud.rays], axis=1)
-        for body_cloud, wall in zip(rings, walls, strict=True)
-    ]
-    all_images = np.concatenate(images)
-    sides = [(0, -1), (0, 1), (2, 1)]
-    if not params.axisymmetric:
-        sides.append((2, -1))
-    if not planar:
-        sides += [(1, -1), (1, 1)]
+    _write_home(rings, first, beyond, neighbours)
+    images = np.concatenate(
+        [row + np.arange(size) for row, size in zip(beyond, imaged, strict=True)]
+    )
+    leaving = _rows_of([body_cloud.leaving for body_cloud in rings], first)
     return CloudLayout(
         home=neighbours[:count].copy(),
-        height=height,
+        height=np.concatenate(
+            [np.full(background, np.inf), *(body_cloud.height for body_cloud in rings)]
+        ),
         volumes=cloud.volumes[:count].copy(),
         areas=cloud.areas[:count].copy(),
         carried=np.arange(background, background + sum(sizes)),
@@ -149,28 +130,70 @@ def layout(
         offsets=np.concatenate(
             [body_cloud.cloud.positions[: body_cloud.cloud.nodes] for body_cloud in rings]
         ),
-        images=all_images,
-        imaged=cloud.owner[all_images - count].astype(np.int64),
-        walls=np.concatenate(walls),
-        body=np.repeat(np.arange(len(rings)), rays),
-        above=np.concatenate(above),
-        heights=np.concatenate([level[1:3].T for level in levels]),
-        leaving=np.concatenate(leaving),
-        before=np.concatenate(before),
-        plane=_plane(cloud, background, np.concatenate(leaving)),
-        arms=np.concatenate(
-            [body_cloud.cloud.positions[: body_cloud.rays] for body_cloud in rings]
-        ),
-        radii=np.array([body.radius for body in params.bodies]),
-        thickness=np.array([body.heights[-1] for body in params.bodies]),
-        spacing=np.array([body.spacing for body in params.bodies]),
-        second=np.array([level[2].min() for level in levels]),
-        is_cut=np.array([body.is_cut for body in params.bodies]),
+        images=images,
+        imaged=cloud.owner[images - count].astype(np.int64),
+        leaving=leaving,
+        before=_rows_of([body_cloud.before for body_cloud in rings], first),
+        plane=_plane(cloud, background, leaving),
+        **_walls(rings, first),
+        **_bodies(params, rings),
         box=box,
-        open_sides=sides,
+        open_sides=_open_sides(params.axisymmetric, planar),
         fringe_count=fringe_count,
         planar=planar,
     )
+
+
+def _write_home(rings: list[Ring], first: Rows, beyond: Rows, neighbours: Whole) -> None:
+    """Write the neighbours of bodies' nodes in their own cloud, whose images lie beyond."""
+    for body_cloud, row, image in zip(rings, first, beyond, strict=True):
+        place = np.arange(row, row + body_cloud.cloud.nodes)
+        home = body_cloud.home
+        home = np.where(home < len(place), home + row, home - len(place) + image)
+        neighbours[place] = place[:, None]
+        neighbours[place, : home.shape[1]] = home
+
+
+def _rows_of(nodes: list[Rows], first: Rows) -> Rows:
+    """Rows of nodes of each body's cloud, which begins at a first row."""
+    return np.concatenate([rows + row for rows, row in zip(nodes, first, strict=True)])
+
+
+def _walls(rings: list[Ring], first: Rows) -> dict[str, Any]:
+    """Fields of the layout about nodes of walls."""
+    rays = [body_cloud.rays for body_cloud in rings]
+    walls = _rows_of([np.arange(many) for many in rays], first)
+    many = np.repeat(rays, rays)
+    levels = [body_cloud.height.reshape(-1, body_cloud.rays) for body_cloud in rings]
+    return {
+        "walls": walls,
+        "body": np.repeat(np.arange(len(rings)), rays),
+        "above": np.stack([walls + many, walls + 2 * many], axis=1),
+        "heights": np.concatenate([level[1:3].T for level in levels]),
+        "arms": np.concatenate(
+            [body_cloud.cloud.positions[: body_cloud.rays] for body_cloud in rings]
+        ),
+    }
+
+
+def _bodies(params: Moving, rings: list[Ring]) -> dict[str, Any]:
+    """Fields of the layout about bodies."""
+    levels = [body_cloud.height.reshape(-1, body_cloud.rays) for body_cloud in rings]
+    return {
+        "radii": np.array([body.radius for body in params.bodies]),
+        "thickness": np.array([body.heights[-1] for body in params.bodies]),
+        "spacing": np.array([body.spacing for body in params.bodies]),
+        "second": np.array([level[2].min() for level in levels]),
+        "is_cut": np.array([body.is_cut for body in params.bodies]),
+    }
+
+
+def _open_sides(axisymmetric: bool, planar: bool) -> list[tuple[int, int]]:
+    """Axis and side of faces that clouds must not reach."""
+    sides = [(0, -1), (0, 1), (2, 1)]
+    if not axisymmetric:
+        sides.append((2, -1))
+    return sides if planar else [*sides, (1, -1), (1, 1)]
 
 
 def _plane(cloud: Cloud, background: int, leaving: Rows) -> Rows:

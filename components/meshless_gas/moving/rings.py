@@ -86,13 +86,19 @@ def ring(body: Body, region: int, patch: int, axisymmetric: bool) -> Ring:
     )
     images = np.full(nodes, -1)
     if axisymmetric:
-        owner = np.flatnonzero(positions[:, 2] < CLOSE * max(body.spacing, length[-1, 0]))
-        mirror = np.diag([1.0, 1.0, -1.0])
-        turns = np.repeat(mirror[None], len(owner), axis=0)
-        cloud = with_ghosts(cloud, owner, positions[owner] @ mirror, turns)
-        images[owner] = nodes + np.arange(len(owner))
+        cloud, images = _mirrored(cloud, CLOSE * max(body.spacing, length[-1, 0]))
     home = _home(len(heights), count, images, body.is_cut)
     return Ring(cloud, home, heights.ravel(), count, leaving, leaving - 1)
+
+
+def _mirrored(cloud: Cloud, reach: float) -> tuple[Cloud, NDArray[np.int64]]:
+    """Add mirror images of nodes within reach [m] of the axis; return each node's image or -1."""
+    owner = np.flatnonzero(cloud.positions[:, 2] < reach)
+    mirror = np.diag([1.0, 1.0, -1.0])
+    turns = np.repeat(mirror[None], len(owner), axis=0)
+    images = np.full(len(cloud.positions), -1)
+    images[owner] = len(images) + np.arange(len(owner))
+    return with_ghosts(cloud, owner, cloud.positions[owner] @ mirror, turns), images
 
 
 def _angles(body: Body, axisymmetric: bool) -> tuple[Array, Array]:

@@ -90,7 +90,9 @@ def test_a_partner_turns_a_cylinder_and_is_told_its_torque():
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("wall", [{"temperature": 0.9}, {"temperature": None, "is_adiabatic": True}])
+@pytest.mark.parametrize(
+    "wall", [{"temperature": 0.9}, {"temperature": None, "is_adiabatic": True}]
+)
 def test_friction_and_heat_on_a_flying_body_are_the_same_bits_after_a_restart(wall):
     gas = turning(rays=20, velocity=[0.3, 0.0, 0.1], **wall)[0]
     keys = frozenset({"surface.friction", "surface.heat_flux", "surface.pressure"})
