@@ -58,15 +58,12 @@ def structure(
     laws = [eroding(solid(material(part.material)), params.erosion) for part in params.parts]
     volume = _volumes(grid, depth)
     element_mass = np.array([law.density for law in laws])[grid.part] * volume
-    nodes = len(grid.node)
+    nodes, points = len(grid.node), points_of(params)
     share = np.repeat(element_mass / 8.0, 8)
     mass = np.bincount(grid.corner.ravel(), share, nodes).astype(np.float64)
-    points = points_of(params)
     place, element, first = in_blocks(grid.part, len(laws), LANES // points)
-    corner, point_volume = grid.corner[element].astype(np.uint32), volume[element]
-    if points == 8:
-        point_volume = np.empty(8 * len(corner))
-        write_point_volumes(grid.node, corner, depth, point_volume)
+    corner = grid.corner[element].astype(np.uint32)
+    point_volume = _point_volumes(grid, corner, volume[element], points, depth)
     target, filled, parted = targets(corner, place, first, ends, nodes)
     model = Model(
         corner=corner,
@@ -79,21 +76,37 @@ def structure(
         gravity=np.array(params.gravity),
         walls=_walls(params.rigid_walls),
     )
+    coupled, pressed = _loaded_faces(grid, params)
+    shortest = float(volume.min() ** (1.0 / params.dimensions))
+    return Structure(
+        grid, model, parted, _places(place, point_volume, points), laws, first, volume, mass,
+        coupled, pressed, element_mass, _resistance(params), shortest,
+    )  # fmt: skip
+
+
+def _point_volumes(grid: Mesh, corner: Index, volume: Array, points: int, depth: float) -> Array:
+    """Volumes [m3] of the points of all places, from those (places,) of their elements."""
+    if points == 1:
+        return volume
+    volumes = np.empty(points * len(corner))
+    write_point_volumes(grid.node, corner, depth, volumes)
+    return volumes
+
+
+def _places(place: Whole, point_volume: Array, points: int) -> Places:
+    """Points of each element, and their shares of its mass."""
     point = points * place[:, None] + np.arange(points)
     volumes = point_volume[point]
-    places = Places(point, volumes / volumes.sum(axis=1, keepdims=True))
-    resistance = Resistance(
+    return Places(point, volumes / volumes.sum(axis=1, keepdims=True))
+
+
+def _resistance(params: FePlateParams) -> Resistance:
+    return Resistance(
         params.hourglass,
         params.viscosity_linear,
         params.viscosity_quadratic,
         params.stiffness_damping,
     )
-    coupled, pressed = _loaded_faces(grid, params)
-    shortest = float(volume.min() ** (1.0 / params.dimensions))
-    return Structure(
-        grid, model, parted, places, laws, first, volume, mass, coupled, pressed, element_mass,
-        resistance, shortest,
-    )  # fmt: skip
 
 
 def _volumes(grid: Mesh, depth: float) -> Array:

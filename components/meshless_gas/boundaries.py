@@ -1,6 +1,7 @@
 """What a scene says about a gas, its states, and what is at its boundaries."""
 
 import math
+from collections.abc import Collection, Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -179,3 +180,30 @@ class Boundary:
                 f"a boundary of kind {self.kind} takes {need.get(self.kind, 'nothing')}; found "
                 f"{' and '.join(said) or 'nothing'}. Correct it."
             )
+
+
+def unknown_boundaries(boundaries: Collection[str], names: Collection[str]) -> list[str]:
+    """Which boundaries are none of those that a cloud has."""
+    return [
+        f"boundaries.{name} is not known. Known here: {', '.join(names)}."
+        for name in boundaries
+        if name not in names
+    ]
+
+
+def wrong_round_layers(
+    boundaries: Mapping[str, Boundary], names: Collection[str], is_sphere: bool
+) -> list[str]:
+    """What does not fit among the boundaries of a cloud in layers, which has all of some names."""
+    lacking = [
+        f"boundaries.{name} must be given. Say what is there."
+        for name in names
+        if name not in boundaries
+    ]
+    unfit = [
+        f"boundaries.{name} of a cloud in layers cannot be {boundary.kind}. Take a wall or a flow."
+        for name, boundary in boundaries.items()
+        if boundary.kind == "periodic"
+        or (boundary.kind == "symmetry" and (name != "wall" or not is_sphere))
+    ]
+    return unknown_boundaries(boundaries, names) + lacking + unfit

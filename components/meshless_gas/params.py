@@ -5,7 +5,14 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from quintet.components.meshless_gas.boundaries import NO_SLIP, Boundary, Gas, GasState
+from quintet.components.meshless_gas.boundaries import (
+    NO_SLIP,
+    Boundary,
+    Gas,
+    GasState,
+    unknown_boundaries,
+    wrong_round_layers,
+)
 from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, SphereCloud
 from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.meshless_gas.particle_coupling import PointParticles
@@ -108,7 +115,7 @@ class MeshlessGasParams:
 
     def __post_init__(self) -> None:
         checks = [self._wrong_clouds, self._wrong_limiter, self._wrong_states, self._wrong_walls]
-        checks.append(self._wrong_names if self.box is None else self._wrong_faces)
+        checks.append(self._wrong_layers if self.box is None else self._wrong_faces)
         for check in (*checks, self._wrong_places):
             for sentence in check():
                 raise ValueError(sentence)
@@ -193,32 +200,16 @@ class MeshlessGasParams:
             return [f"boundaries.{no_slip[0]} holds the gas by friction. Say viscous = true."]
         return []
 
-    def _wrong_names(self) -> list[str]:
+    def _wrong_layers(self) -> list[str]:
         """What does not fit among the boundaries of a cloud in layers."""
         names = NAMES["sphere" if self.sphere is not None else "plate"]
-        mistakes = [
-            f"boundaries.{name} is not known. Known here: {', '.join(names)}."
-            for name in self.boundaries
-            if name not in names
-        ]
-        mistakes += [
-            f"boundaries.{name} must be given. Say what is there."
-            for name in names
-            if name not in self.boundaries
-        ]
-        mistakes += [
-            f"boundaries.{name} of a cloud in layers cannot be {boundary.kind}. "
-            "Take a wall or a flow."
-            for name, boundary in self.boundaries.items()
-            if boundary.kind == "periodic"
-            or (boundary.kind == "symmetry" and (name != "wall" or self.sphere is None))
-        ]
-        if not mistakes and self.sphere is not None:
-            far = self.boundaries["far"].state
-            if far is None:
-                return ["boundaries.far must be an inflow of a given state round a sphere."]
-            return self.sphere.wrong(far.velocity, self.axisymmetric)
-        return mistakes
+        mistakes = wrong_round_layers(self.boundaries, names, self.sphere is not None)
+        if mistakes or self.sphere is None:
+            return mistakes
+        far = self.boundaries["far"].state
+        if far is None:
+            return ["boundaries.far must be an inflow of a given state round a sphere."]
+        return self.sphere.wrong(far.velocity, self.axisymmetric)
 
     def _wrong_states(self) -> list[str]:
         """What does not fit among the states at the start."""
@@ -241,12 +232,8 @@ class MeshlessGasParams:
         """What does not fit among the faces of the box."""
         assert self.box is not None
         names = [axis + side for axis in ("xz" if self.dimensions == 2 else "xyz") for side in "-+"]
-        unknown = [
-            f"boundaries.{name} is not known. Known here: {', '.join(names)}."
-            for name in self.boundaries
-            if name not in names
-        ]
-        return unknown + self.box.wrong({name: self.kind_of(name) for name in names})
+        kinds = {name: self.kind_of(name) for name in names}
+        return unknown_boundaries(self.boundaries, names) + self.box.wrong(kinds)
 
     def _wrong_places(self) -> list[str]:
         """Which places of probes and ends of fronts lie outside the nodes."""

@@ -55,45 +55,68 @@ def refuse_places(layout: CloudLayout, centre: Array, is_first: bool = False) ->
 
 def refuse_scene(params: MeshlessGasParams, keys: Moving) -> None:
     """Refuse what bodies that carry clouds do not go with."""
-    if params.neighbour_count < BLOCK:
-        raise SceneError(
-            f"bodies that carry clouds need {BLOCK} neighbours at least; found "
-            f"{params.neighbour_count}. Correct neighbours."
-        )
-    if params.box is None:
-        raise SceneError("bodies that carry clouds need a box around them. Give a box.")
-    if not params.viscous and any(body.is_no_slip for body in keys.bodies):
-        raise SceneError(
-            "walls of a temperature, or adiabatic ones, hold the gas by friction. Say viscous = "
-            "true, or leave out temperature and is_adiabatic."
-        )
-    if keys.axisymmetric and (params.kind_of("z-") != "symmetry" or params.box.lowest[2] != 0.0):
-        raise SceneError(
-            "an axisymmetric flow needs a box that begins at z = 0 with symmetry there; found "
-            f"{params.kind_of('z-')} at {params.box.lowest[2]:g} m. Correct the box, or "
-            'boundaries."z-".'
-        )
-    if keys.axisymmetric and not params.planar:
-        raise SceneError(
-            "bodies on an axis of symmetry need two dimensions; found 3. Leave out axisymmetric, "
-            "or dimensions."
-        )
-    if params.viscous and keys.fringe_order == 1:
-        raise SceneError(
-            "friction needs gradients at seams, too; found fringe_order = 1. Leave it out."
-        )
-    if keys.line_stencils and (params.planar or params.box.jitter > 0.0):
-        raise SceneError(
-            "neighbours along lines alone are for three dimensions and lattices without jitter. "
-            "Leave out line_stencils, or jitter."
-        )
+    for is_wrong, sentence in (*_rules_of_the_gas(params, keys), *_rules_of_bodies(params, keys)):
+        if is_wrong:
+            raise SceneError(sentence)
     refuse_sector(params)
-    for body in keys.bodies:
-        if params.planar and (body.centre[1] or body.velocity[1]):
-            raise SceneError(
+
+
+def _rules_of_the_gas(params: MeshlessGasParams, keys: Moving) -> list[tuple[bool, str]]:
+    """What of the gas is wrong round bodies that carry clouds, and how to correct it."""
+    count, floor = params.neighbour_count, 0.0 if params.box is None else params.box.lowest[2]
+    on_axis = params.kind_of("z-") == "symmetry" and floor == 0.0
+    jitter = 0.0 if params.box is None else params.box.jitter
+    return [
+        (
+            count < BLOCK,
+            f"bodies that carry clouds need {BLOCK} neighbours at least; found {count}. Correct "
+            "neighbours.",
+        ),
+        (
+            params.box is None,
+            "bodies that carry clouds need a box around them. Give a box.",
+        ),
+        (
+            keys.axisymmetric and not on_axis,
+            "an axisymmetric flow needs a box that begins at z = 0 with symmetry there; found "
+            f"{params.kind_of('z-')} at {floor:g} m. Correct the box, or "
+            'boundaries."z-".',
+        ),
+        (
+            keys.axisymmetric and not params.planar,
+            "bodies on an axis of symmetry need two dimensions; found 3. Leave out axisymmetric, "
+            "or dimensions.",
+        ),
+        (
+            params.viscous and keys.fringe_order == 1,
+            "friction needs gradients at seams, too; found fringe_order = 1. Leave it out.",
+        ),
+        (
+            keys.line_stencils and (params.planar or jitter > 0.0),
+            "neighbours along lines alone are for three dimensions and lattices without jitter. "
+            "Leave out line_stencils, or jitter.",
+        ),
+    ]
+
+
+def _rules_of_bodies(params: MeshlessGasParams, keys: Moving) -> list[tuple[bool, str]]:
+    """What of the bodies does not go with the gas, and how to correct it."""
+    no_slip = any(body.is_no_slip for body in keys.bodies)
+    return [
+        (
+            no_slip and not params.viscous,
+            "walls of a temperature, or adiabatic ones, hold the gas by friction. Say viscous = "
+            "true, or leave out temperature and is_adiabatic.",
+        ),
+        *(
+            (
+                params.planar and bool(body.centre[1] or body.velocity[1]),
                 "bodies in two dimensions lie and move in the plane y = 0; found centre "
-                f"{list(body.centre)} m, velocity {list(body.velocity)} m/s. Leave y at 0."
+                f"{list(body.centre)} m, velocity {list(body.velocity)} m/s. Leave y at 0.",
             )
+            for body in keys.bodies
+        ),
+    ]
 
 
 def refuse_sector(params: MeshlessGasParams) -> None:
