@@ -24,11 +24,11 @@ cover from within; its mass and inertia are those of the shape. A fluid cannot s
 Any of a body's six degrees of freedom may be `locked`: it then keeps its velocity there. Planes are
 infinite and at rest, in any pose; a box with all six locked is a finite one, at rest or moving.
 
-In two dimensions bodies are discs and convex polygons in the plane of x and z, prisms of 1 m along
-y, and move in it: nothing here pushes them out of it, and what loads would is left out. A disc has
-the contacts of a sphere of its radius, a polygon those of its rounded corners with the edges of
+In two dimensions bodies are discs and polygons in the plane of x and z, prisms of 1 m along y, and
+move in it: nothing here pushes them out of it, and what loads would is left out. A disc has the
+contacts of a sphere of its radius, a convex polygon those of its rounded corners with the edges of
 others; so contacts are softer than those of a cylinder along 1 m, but restitution, friction and
-momentum are those of the prisms.
+momentum are those of the prisms. A polygon that is not convex has no contacts, and must be alone.
 
 Two materials in contact have the lower of their frictions, restitutions and rolling coefficients;
 `pairs` in a scene overrides each of them for two materials, or for one and itself. Rolling

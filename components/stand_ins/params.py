@@ -2,7 +2,7 @@
 
 from typing import ClassVar, Literal
 
-from quintet.components.shared.geometry.polygons import require_convex
+from quintet.components.shared.geometry.polygons import require_outline
 from quintet.components.shared.geometry.shape_keys import (
     RENAMED,
     BoxKeys,
@@ -106,7 +106,7 @@ def check_body(where: str, body: PrescribedBody, planar: bool) -> None:
         )
     shape_of(body, where)
     if body.corners is not None:
-        require_convex(f"{where}.corners", body.corners)
+        require_outline(f"{where}.corners", body.corners)
     across, normal = body.angular_velocity[::2], (body.velocity[1], body.amplitude[1])
     if planar and any((*across, *normal)):
         raise ValueError(

@@ -11,7 +11,7 @@ from quintet.components.dem_bodies.shapes.planar import leaves_edges
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry import shape_keys
-from quintet.components.shared.geometry.polygons import area_moments, in_space, require_convex
+from quintet.components.shared.geometry.polygons import area_moments, in_space, require_outline
 from quintet.components.shared.geometry.shapes import ORIGIN, Box, Disc, Polygon, Sphere
 from quintet.interfaces.component import Array
 
@@ -68,7 +68,7 @@ def _place(where: str, body: Any) -> dict[str, Any]:
     if isinstance(shape, Box):
         return {"position": shape.centre, "size": shape.size}
     if isinstance(shape, Polygon):
-        require_convex(f"{where}.corners", shape.corners)
+        require_outline(f"{where}.corners", shape.corners)
         return _from_origin(body, in_space(area_moments(shape.outline).centre[None])[0])
     assert isinstance(shape, Sphere | Disc)
     return {"position": shape.centre}

@@ -1,4 +1,4 @@
-"""Bodies of two dimensions: discs and convex polygons in the plane of x and z, 1 m deep along y.
+"""Bodies of two dimensions: discs and polygons in the plane of x and z, 1 m deep along y.
 
 Arrays of corners are (k, 2) m, x and z, and go round from x to z.
 """
@@ -10,6 +10,7 @@ from quintet.components.shared.geometry.polygons import (
     area_moments,
     edges,
     in_order,
+    polygon_depths,
 )
 from quintet.interfaces.component import Array
 
@@ -39,13 +40,8 @@ def shortest_edge(body: RigidBody) -> float:
 
 
 def polygon_distance(corner: Array, points: Array) -> Array:
-    """Signed distances (n,) m of points (n, 2) m from a convex polygon."""
-    along, from_corner = edges(corner), points[:, None] - corner
-    length2 = (along * along).sum(axis=1)
-    share = np.clip((from_corner * along).sum(axis=2) / length2, 0.0, 1.0)
-    far = np.linalg.norm(from_corner - share[:, :, None] * along, axis=2).min(axis=1)
-    outside = from_corner[:, :, 0] * along[:, 1] - from_corner[:, :, 1] * along[:, 0]
-    return np.where((outside > 0.0).any(axis=1), far, -far)
+    """Signed distances (n,) m of points (n, 2) m from a polygon."""
+    return -polygon_depths(corner, points)[0]
 
 
 def polygon_gap(a: Array, b: Array) -> float:

@@ -2,9 +2,12 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.planar import SHAPES
 from quintet.components.dem_bodies.shapes.rigid_body import Plane
+from quintet.components.shared.geometry.polygons import is_convex
 from quintet.interfaces.params import Vector
 
 
@@ -19,6 +22,8 @@ def check_plane(bodies: Bodies, planes: Sequence[Plane], gravity: Vector, dimens
                 f"bodies[{k}].shape must be {rule} where dimensions is {dimensions}; found "
                 f"{body.shape}. Choose another, or set dimensions to {3 if planar else 2}."
             )
+        if body.corners is not None and not is_convex(np.array(body.corners)):
+            _require_alone(k, len(bodies) - 1, len(planes))
     if not planar:
         return
     _require_plane("gravity", gravity, (1,))
@@ -37,6 +42,15 @@ def check_plane(bodies: Bodies, planes: Sequence[Plane], gravity: Vector, dimens
         _require_plane(f"{where}.velocity", body.velocity, (1,))
         _require_plane(f"{where}.angular_velocity", body.angular_velocity, (0, 2))
         _require_plane(f"{where}.orientation (w, x, y, z)", body.orientation, (1, 3))
+
+
+def _require_alone(number: int, others: int, planes: int) -> None:
+    if others or planes:
+        raise ValueError(
+            f"bodies[{number}].corners must go round a convex polygon where it may touch anything; "
+            f"found one that is not, beside {others} other bodies and {planes} planes. Leave these "
+            "out, or make several bodies of it."
+        )
 
 
 def _require_plane(where: str, vector: Sequence[float], none: tuple[int, ...]) -> None:

@@ -1,4 +1,4 @@
-"""Polygons in the plane of x and z: their moments, what is inside, whether they are convex.
+"""Polygons in the plane of x and z: moments, what is inside and how deep, which are convex.
 
 Arrays of corners are (k, 2) m and go round from x to z.
 """
@@ -36,7 +36,7 @@ def area_moments(corner: Array) -> Area:
 def in_order(corners: Sequence[tuple[float, float]]) -> Array:
     """Corners of a polygon that may go round either way, from x to z."""
     outline = np.array(corners)
-    return outline[::-1].copy() if turns(outline).sum() < 0.0 else outline
+    return outline[::-1].copy() if _cross(outline, edges(outline)).sum() < 0.0 else outline
 
 
 def in_space(plane: Array) -> Array:
@@ -56,21 +56,26 @@ def turns(corner: Array) -> Array:
     return np.asarray(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0])
 
 
-def require_convex(where: str, corners: Sequence[tuple[float, float]]) -> None:
-    """Refuse corners that do not go once round a convex polygon, either way."""
-    if len(corners) < 3 or not _convex(np.array(corners)):
+def require_outline(where: str, corners: Sequence[tuple[float, float]]) -> None:
+    """Refuse corners that do not go once round a polygon, either way, or are straight."""
+    if len(corners) < 3 or not (np.abs(_sines(np.array(corners))) > STRAIGHT).all():
         raise ValueError(
-            f"{where} must go once round a convex polygon, x and z of three corners or more, none "
-            f"of them straight; found {corners}. Put them in order, or make several bodies of it."
+            f"{where} must go once round a polygon, x and z of three corners or more, none of them "
+            f"straight; found {corners}. Put them in order, or leave some out."
         )
+    require_simple(where, corners)
 
 
-def _convex(corner: Array) -> bool:
-    along = edges(corner)
-    length = np.linalg.norm(along, axis=1)
-    if not length.all():
-        return False
-    sine = turns(corner) / (length * np.roll(length, 1))
+def _sines(corner: Array) -> Array:
+    """Sine of the turn (k,) at each corner; 0 at corners that do not differ from the next."""
+    length = np.linalg.norm(edges(corner), axis=1)
+    both = length * np.roll(length, 1)
+    return np.asarray(turns(corner) / np.where(both > 0.0, both, np.inf))
+
+
+def is_convex(corner: Array) -> bool:
+    """Whether corners (k, 2) m go once round a convex polygon, either way."""
+    along, sine = edges(corner), _sines(corner)
     if sine.sum() < 0.0:
         sine = -sine
     # Round once: of a star each corner is right, but its turns add up to more.
@@ -86,9 +91,7 @@ def require_simple(where: str, corners: Sequence[tuple[float, float]]) -> None:
     along = np.roll(start, -1, axis=0) - start
     count = len(start)
     if not (np.linalg.norm(along, axis=1) > 0.0).all():
-        raise ValueError(
-            f"{where}: corners of a prism must differ from the next. Remove one of two."
-        )
+        raise ValueError(f"{where}: corners must differ from the next. Remove one of two.")
     first, second = np.triu_indices(count, 2)
     keep = ~((first == 0) & (second == count - 1))  # neighbours
     first, second = first[keep], second[keep]
@@ -100,7 +103,7 @@ def require_simple(where: str, corners: Sequence[tuple[float, float]]) -> None:
     if met.any():
         k = int(np.argmax(met))
         raise ValueError(
-            f"{where}: corners of a prism must go once round a polygon that does not cross itself; "
+            f"{where}: corners must go once round a polygon that does not cross itself; "
             f"the edges after corners {first[k]} and {second[k]} meet. Put them in order."
         )
 
@@ -117,3 +120,19 @@ def inside_polygon(first: Array, second: Array, corners: Array) -> NDArray[np.bo
         if b != d:
             inside ^= passes & (first < a + (second - b) * (c - a) / (d - b))
     return inside
+
+
+def polygon_depths(corner: Array, points: Array) -> tuple[Array, Array]:
+    """How deep (n,) m points (n, 2) m lie in a polygon, negative outside, and normals (n, 2).
+
+    Normals point outwards along the way to the nearest place of an edge.
+    """
+    along, from_corner = edges(corner), points[:, None] - corner
+    share = np.clip((from_corner * along).sum(axis=2) / (along * along).sum(axis=1), 0.0, 1.0)
+    away = from_corner - share[:, :, None] * along
+    distance = np.linalg.norm(away, axis=2)
+    nearest = distance.argmin(axis=1)
+    rows = np.arange(len(points))
+    far, out = distance[rows, nearest], away[rows, nearest]
+    inward = np.where(inside_polygon(points[:, 0], points[:, 1], corner), 1.0, -1.0)
+    return inward * far, out * (-inward / np.maximum(far, 1e-300))[:, None]

@@ -101,7 +101,7 @@ class PolygonKeys:
     Parameters
     ----------
     corners : m
-        x and z of a convex polygon's corners, three or more, in order round it, either way.
+        x and z of a polygon's corners, three or more, in order round it, either way.
     origin : m
         Where the origin of the corners is; that of the world if not given.
     """

@@ -12,6 +12,7 @@ import numpy as np
 from quintet.components.shared.geometry import surface_samples_closed as closed
 from quintet.components.shared.geometry import surface_samples_planar as plane
 from quintet.components.shared.geometry import surface_samples_solid as solid
+from quintet.components.shared.geometry.polygons import is_convex
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
 
@@ -122,6 +123,7 @@ def box(size: Sequence[float], asked: Sampling) -> BodySamples:
 
 def spheres(centres: Array, radii: Array, volume: float, asked: Sampling) -> BodySamples:
     """Sample a union of spheres (k, 3) m, (k,) m about its centre of mass, of a volume [m3]."""
+    _require_space(asked)
     require_width(2.0 * float(radii.max()), asked)
     low, high = (centres - radii[:, None]).min(axis=0), (centres + radii[:, None]).max(axis=0)
     return _closed(closed.Body(closed.depths_in_spheres(centres, radii), low, high, volume), asked)
@@ -129,13 +131,13 @@ def spheres(centres: Array, radii: Array, volume: float, asked: Sampling) -> Bod
 
 def mesh(triangles: Array, volume: float, asked: Sampling) -> BodySamples:
     """Sample a closed surface of triangles (t, 3, 3) m about its centre of mass [m3]."""
+    _require_space(asked)
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
     require_width(float((high - low).min()), asked)
     return _closed(closed.Body(closed.depths_in_mesh(triangles), low, high, volume), asked)
 
 
 def _closed(body: closed.Body, asked: Sampling) -> BodySamples:
-    _require_space(asked)
     less = asked.inset - 0.5 * asked.spacing
     samples, deepest = closed.fill_closed(body, asked.spacing, asked.depth, less)
     # The deepest place of the lattice may miss the middle by half a cell.
@@ -152,8 +154,10 @@ def disc(diameter: float, asked: Sampling) -> BodySamples:
 
 
 def polygon(corner: Array, asked: Sampling) -> BodySamples:
-    """Sample a convex polygon with corners (k, 2) m about its centre, from x to z."""
+    """Sample a polygon with corners (k, 2) m about its centre, from x to z."""
     _require_plane(asked)
+    if not is_convex(corner):
+        return _closed(plane.closed_polygon(corner), asked)
     require_width(2.0 * plane.inradius(corner), asked)
     arm, normal, volume = plane.fill_polygon(corner, asked.spacing, asked.depth, asked.inset)
     return BodySamples(arm, normal, volume, plane.polygon_images(corner, arm, normal))

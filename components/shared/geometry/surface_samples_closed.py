@@ -15,6 +15,7 @@ from quintet.interfaces.component import Array
 CLOSE = 0.5  # spacings: samples of one place, of which one stands for all
 FINER = 0.01  # by which the pitch of the lattice shrinks until there are enough samples
 TRIES = 12
+ROUNDING = 1e-9
 # Points (n, 3) m -> how deep (n,) m they lie in the body, negative outside, and outward normals.
 Depths = Callable[[Array], tuple[Array, Array]]
 Samples = tuple[Array, Array, Array, Array]  # arm, normal, volume, image
@@ -24,9 +25,14 @@ class Body(NamedTuple):
     """A closed body in its own frame."""
 
     depths: Depths
-    low: Array  # (3,) m, corners of the box that holds it
+    low: Array  # (3,) m, corners of the box that holds it; of no extent along y: a slice 1 m deep
     high: Array
     volume: float  # m3
+
+    @property
+    def dimensions(self) -> int:
+        """Along how many axes it extends."""
+        return int((self.high > self.low).sum())
 
 
 class Layers(NamedTuple):
@@ -59,9 +65,9 @@ def fill_closed(body: Body, spacing: float, depth: float, less: float) -> tuple[
     -------
     samples, and the depth [m] of the deepest lattice place: about half the body's width
     """
-    layers, wanted = _layers(body, spacing, spacing, less), body.volume / spacing**3
+    layers, wanted = _layers(body, spacing, spacing, less), body.volume / spacing**body.dimensions
     excess = len(layers.arm) / max(wanted * layers.filled, 1.0)
-    pitch = spacing * max(1.0, excess ** (1.0 / 3.0))
+    pitch = spacing * max(1.0, excess ** (1.0 / body.dimensions))
     for _ in range(TRIES):
         if pitch != spacing:
             layers = _layers(body, spacing, pitch, less)
@@ -98,8 +104,9 @@ def _layers(body: Body, spacing: float, pitch: float, less: float) -> Layers:
 
 def _lattice(body: Body, pitch: float, beyond: float = 0.0) -> Array:
     """Places (n, 3) m about the middle of a body and so far [m] beyond it."""
-    low, high = body.low - beyond, body.high + beyond
-    count = np.maximum(np.ceil((high - low) / pitch).astype(int), 1)
+    around = np.where(body.high > body.low, beyond, 0.0)
+    low, high = body.low - around, body.high + around
+    count = np.maximum(np.ceil((high - low) / pitch - ROUNDING).astype(int), 1)
     axes = [
         0.5 * (a + b) + (np.arange(n) - 0.5 * (n - 1)) * pitch
         for a, b, n in zip(low, high, count, strict=True)

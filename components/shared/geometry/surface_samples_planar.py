@@ -1,4 +1,4 @@
-"""Filling a rigid body of two dimensions with samples: discs and convex polygons, 1 m deep.
+"""Filling a rigid body of two dimensions with samples: discs and polygons, 1 m deep.
 
 Arrays of points in the plane are (n, 2) m, x and z; what crosses a link is (n, 3), with y 0.
 """
@@ -8,6 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from quintet.components.shared.geometry.polygons import in_space, polygon_depths
+from quintet.components.shared.geometry.surface_samples_closed import Body
 from quintet.components.shared.geometry.surface_samples_solid import box_lattice
 from quintet.interfaces.component import Array
 
@@ -46,6 +48,17 @@ def fill_polygon(
     if axes is None:
         return _layers(outline, spacing, depth)
     return _rectangle(outline, axes, spacing, depth)
+
+
+def closed_polygon(corner: Array) -> Body:
+    """Any polygon with corners (k, 2) m, from x to z, as a closed body of no extent along y."""
+
+    def depths(points: Array) -> tuple[Array, Array]:
+        below, normal = polygon_depths(corner, points[:, [0, 2]])
+        return below, in_space(normal)
+
+    low, high = in_space(np.array([corner.min(axis=0), corner.max(axis=0)]))
+    return Body(depths, low, high, area(corner))
 
 
 def polygon_images(corner: Array, arm: Array, normal: Array) -> Array:
@@ -125,7 +138,7 @@ def _rectangle(corner: Array, axes: Array, spacing: float, depth: float) -> Samp
     """Lattice of a rectangle, whose cells divide its edges."""
     (x, z), centre = np.ptp(corner @ axes.T, axis=0), corner.mean(axis=0)
     points, normal, volume = box_lattice(np.array([x, 1.0, z]), spacing, depth, planar=True)
-    return _in_space(points[:, [0, 2]] @ axes + centre), _in_space(normal[:, [0, 2]] @ axes), volume
+    return in_space(points[:, [0, 2]] @ axes + centre), in_space(normal[:, [0, 2]] @ axes), volume
 
 
 def _layers(corner: Array, spacing: float, depth: float) -> Samples:
@@ -145,7 +158,7 @@ def _layers(corner: Array, spacing: float, depth: float) -> Samples:
         normals.append(normal)
         volumes.append(np.full(len(places), ring / len(places)))
     place, normal = np.concatenate(points), np.concatenate(normals)
-    return _in_space(place), _in_space(normal), np.concatenate(volumes)
+    return in_space(place), in_space(normal), np.concatenate(volumes)
 
 
 def _along_edges(corner: Array, spacing: float) -> tuple[Array, Array]:
@@ -178,9 +191,4 @@ def _disc(radius: float, spacing: float, depth: float) -> Samples:
     distance = np.linalg.norm(place, axis=1)
     normal = place / np.maximum(distance, 1e-12 * radius)[:, None]
     normal[~normal.any(axis=1)] = (0.0, 1.0)
-    return _in_space(place), _in_space(normal), np.concatenate(volumes)
-
-
-def _in_space(plane: Array) -> Array:
-    """Vectors (n, 3) of vectors (n, 2) in the plane of x and z."""
-    return np.insert(plane, 1, 0.0, axis=1)
+    return in_space(place), in_space(normal), np.concatenate(volumes)

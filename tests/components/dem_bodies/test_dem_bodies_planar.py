@@ -27,6 +27,7 @@ from quintet.interfaces.component import outputs_of
 from quintet.interfaces.ports import PLANAR_MOTION
 
 G = 9.81
+HOOK = [[0.0, 0.0], [0.0, 0.4], [0.2, 0.4], [0.2, 0.2], [0.4, 0.2], [0.4, 0.0]]  # an L
 WEDGE = [[0.0, 0.0], [0.0, 0.2], [0.3, 0.0]]  # the other way round: it is turned
 
 
@@ -54,8 +55,10 @@ def ring(count, radius):
         (rectangle(NOTHING, 0.3, 0.2), 0.06, (0.3**2 + 0.2**2) / 12.0),
         (polygon(NOTHING, WEDGE), 0.03, (0.3**2 + 0.2**2) / 18.0),
         (polygon(NOTHING, ring(6, 0.1)), 0.015 * math.sqrt(3.0), 0.01 * 5.0 / 12.0),
+        # Three squares about their own centres, and these about that of all.
+        (polygon(NOTHING, HOOK), 0.12, 0.2**2 / 6.0 + 0.2**2 * 4.0 / 9.0),
     ],
-    ids=["disc", "rectangle", "triangle", "hexagon"],
+    ids=["disc", "rectangle", "triangle", "hexagon", "L"],
 )
 def test_mass_is_area_times_density_and_inertia_that_of_the_prism_about_its_axis(
     body, area, moment
@@ -308,11 +311,12 @@ def test_touching_is_allowed_and_overlaps_are_found_for_every_pair():
         ([disc(NOTHING, orientation=about([1, 0, 0], 1.0))], {}, "bodies[0].orientation (w, x"),
         ([disc(NOTHING)], {"planes": [FLOOR | {"normal": [0, 1, 1]}]}, "planes[0].normal must"),
         ([disc(NOTHING), disc([1, 1, 0])], {}, "must have the y of all others, 0 m"),
-        ([polygon(NOTHING, [[0, 0], [1, 0]])], {}, "round a convex polygon"),
+        ([polygon(NOTHING, [[0, 0], [1, 0]])], {}, "once round a polygon"),
         ([polygon(NOTHING, [[0, 0], [1, 0], [2, 0], [0, 1]])], {}, "none of them straight"),
-        ([polygon(NOTHING, [[0, 0], [1, 0], [0.1, 0.1], [0, 1]])], {}, "round a convex polygon"),
-        ([polygon(NOTHING, [[0, 0], [1, 0], [0, 1], [1, 1]])], {}, "round a convex polygon"),
-        ([polygon(NOTHING, ring(5, 1.0)[::2] + ring(5, 1.0)[1::2])], {}, "once round a convex"),
+        ([polygon(NOTHING, [[0, 0], [1, 0], [0, 1], [1, 1]])], {}, "does not cross itself"),
+        ([polygon(NOTHING, ring(5, 1.0)[::2] + ring(5, 1.0)[1::2])], {}, "does not cross itself"),
+        ([polygon([0, 0, 3], HOOK), disc(NOTHING)], {}, "convex polygon where it may touch"),
+        ([polygon([0, 0, 3], HOOK)], {"planes": [FLOOR]}, "beside 0 other bodies and 1 planes"),
         ([polygon(NOTHING, WEDGE, edge_radius=0.08)], {}, "leave something of each edge"),
         (
             [disc(NOTHING, edge_radius=0.01)],

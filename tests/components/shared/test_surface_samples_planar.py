@@ -6,6 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from quintet.components.shared.geometry.polygons import polygon_depths
+from quintet.components.shared.geometry.surface_samples import Sampling, polygon
 from quintet.components.shared.geometry.surface_samples_planar import (
     fill_disc,
     fill_polygon,
@@ -40,6 +42,25 @@ SHAPES = {
     "hexagon": (ring(6), 1.5 * math.sqrt(3.0) * 0.25),
     "thin plate": (PLATE, 0.06),
 }
+
+
+# An L and a U.
+BENT = {
+    "L": (0.1 * np.array([[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]]), 0.12),
+    "U": (0.1 * np.array([[0, 0], [6, 0], [6, 4], [4, 4], [4, 2], [2, 2], [2, 4], [0, 4]]), 0.2),
+}
+
+
+@pytest.mark.parametrize("name", BENT)
+@pytest.mark.parametrize("spacing", [0.05, 0.043, 0.02])
+def test_a_polygon_that_is_not_convex_is_filled_and_mirrored_to_the_outside(name, spacing):
+    corner, area = BENT[name]
+    samples = polygon(corner, Sampling(spacing, DEEP, 0.5 * spacing, planar=True))
+    assert samples.volume.sum() == pytest.approx(area, rel=1e-12)
+    below, _ = polygon_depths(corner, samples.arm[:, [0, 2]])
+    assert below.min() > 0.0
+    assert (polygon_depths(corner, samples.image[:, [0, 2]])[0] < 1e-9)[below < spacing].all()
+    assert (samples.arm[:, 1] == 0.0).all() and len(samples.arm) == round(area / spacing**2)
 
 
 @pytest.mark.parametrize("name", SHAPES)

@@ -18,9 +18,13 @@ ACROSS, CELLS = 8, 14  # cells in the body's width and in the tank's
 SPACING = 0.15 / ACROSS  # m
 WEIGHT = 9810.0  # N/m3
 SQUARE = 0.075 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+HOOK = [(-4, -4), (4, -4), (4, 0), (0, 0), (0, 4), (-4, 4)]  # cells, an L
+CUP = [(-4, -4), (4, -4), (4, 4), (2, 4), (2, -1), (-2, -1), (-2, 4), (-4, 4)]  # a U, open above
 SHAPES = {
     "square": (partial(polygon, SQUARE), 0.0225),
     "disc": (partial(disc, 0.15), math.pi / 4.0 * 0.0225),
+    "L": (partial(polygon, SPACING * np.array(HOOK)), 48 * SPACING**2),
+    "U": (partial(polygon, SPACING * np.array(CUP)), 44 * SPACING**2),
 }
 CALM = {"kernel": "wendland", "courant": 0.3, "density_diffusion": 0.1, "negative_pressure": True}
 POTENTIAL = {"boundary.method": "potential", "integration": "symplectic", "courant": 1.0}
@@ -33,14 +37,20 @@ DROP = {
 }
 
 
-def wet_cells(disc: bool) -> tuple:
+def outside(name: str, x: float, z: float) -> bool:
+    """Whether a place, in cells from the middle of the body, is outside of it."""
+    if name == "disc":
+        return math.hypot(x, z) - 0.3 > 0.5 * ACROSS
+    notch = {"L": x > 0.0 and z > 0.0, "U": abs(x) < 2.0 and z > -1.0}
+    return max(abs(x), abs(z)) > 0.5 * ACROSS or notch.get(name, False)
+
+
+def wet_cells(name: str) -> tuple:
     """Cells of water around the body in the middle of the tank, all in one slab of 1 m."""
     found = []
     for i in range(CELLS):
         for k in range(CELLS):
-            x, z = (abs(one + 0.5 - 0.5 * CELLS) for one in (i, k))
-            outside = math.hypot(x, z) - 0.3 if disc else max(x, z)
-            if outside > 0.5 * ACROSS:
+            if outside(name, *(cell + 0.5 - 0.5 * CELLS for cell in (i, k))):
                 low, high = ((i, 0.0, k), (i + 1, 1.0 / SPACING, k + 1))
                 found.append(tuple(tuple(SPACING * x for x in one) for one in (low, high)))
     return tuple(found)
@@ -54,7 +64,7 @@ def sunk(name: str, **given: object) -> SphFluid:
         "spacing": SPACING,
         "dimensions": 2,
         "sound_speed": 10.1 * math.sqrt(9.81 * side),
-        "fluid": wet_cells(name == "disc"),
+        "fluid": wet_cells(name),
         "boundary.walls": ((0.0, 0.0, 0.0), (side, 1.0, side + 0.09)),
         "boundary.method": "mdbc",
     }
@@ -92,6 +102,8 @@ def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
     ("name", "given", "end", "within"),
     [
         ("square", {}, 0.5, 0.005),
+        ("L", {}, 0.5, 0.02),
+        pytest.param("U", {}, 0.5, 0.02, marks=pytest.mark.full),
         pytest.param("disc", {}, 1.0, 0.01, marks=pytest.mark.full),
         pytest.param(
             "square",
@@ -101,7 +113,7 @@ def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
             marks=pytest.mark.full,
         ),
     ],
-    ids=["square", "disc", "square held by the potential"],
+    ids=["square", "L", "U", "disc", "square held by the potential"],
 )
 def test_a_body_under_water_is_pushed_up_by_the_weight_of_its_area(name, given, end, within):
     force = push(sunk(name, **given), 0.25, end) / (WEIGHT * SHAPES[name][1])
