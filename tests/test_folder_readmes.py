@@ -14,7 +14,7 @@ from test_layers import FLOORS
 from quintet.coupler import cli
 from quintet.coupler.conform.check import try_all
 from quintet.coupler.conform.trial import Trial
-from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 from quintet.coupler.coupling.link import Binding, Demands, Transfer
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.report.show import results

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from quintet.coupler.coupling.answers import AnswerSums
-from quintet.coupler.coupling.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.exchange import Exchange, WindowInputs
+from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.plan import CouplingPlan

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal, Union
 
 from quintet.coupler.coupling.exchange import Exchange
-from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 
 Scheme = Literal["serial", "parallel", "iterated"]
 

@@ -11,11 +11,11 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from quintet.coupler.coupling.acceleration import Acceleration
-from quintet.coupler.coupling.acceleration import make as make_acceleration
-from quintet.coupler.coupling.convergence_log import ConvergenceLog
-from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
+from quintet.coupler.coupling.iteration.acceleration import Acceleration
+from quintet.coupler.coupling.iteration.acceleration import make as make_acceleration
+from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.iteration.convergence_measure import ConvergenceMeasure
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.coupling.plan import CouplingPlan

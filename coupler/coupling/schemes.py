@@ -6,9 +6,9 @@ staggered schemes; `acceleration` for those of repeated windows.
 
 from collections.abc import Callable
 
-from quintet.coupler.coupling.convergence_log import ConvergenceRow
-from quintet.coupler.coupling.convergence_measure import allowed, converged
 from quintet.coupler.coupling.exchange import WindowInputs
+from quintet.coupler.coupling.iteration.convergence_log import ConvergenceRow
+from quintet.coupler.coupling.iteration.convergence_measure import allowed, converged
 from quintet.coupler.coupling.schedule import Coupling, Given, Guess, Window
 from quintet.interfaces.errors import StepError
 

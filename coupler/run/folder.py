@@ -12,7 +12,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from quintet.coupler.coupling.convergence_log import log_file
+from quintet.coupler.coupling.iteration.convergence_log import log_file
 from quintet.coupler.files import reached
 from quintet.coupler.files.disk import PART
 from quintet.coupler.files.plain_files import require_no_links, require_plain

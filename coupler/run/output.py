@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
-from quintet.coupler.coupling.convergence_log import ConvergenceLog
+from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows, in_ticks

@@ -13,8 +13,8 @@ from typing import Any, Protocol
 
 import tomli_w
 
-from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import assemble
+from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.participant import ComponentFailed, Participant

@@ -17,8 +17,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-from quintet.coupler.coupling.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.group import Group
+from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.files.checksums import of_files, require_same

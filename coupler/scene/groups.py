@@ -6,7 +6,7 @@ from typing import Any
 
 from quintet.coupler.coupling import plan
 from quintet.coupler.coupling.exchange import Exchange
-from quintet.coupler.coupling.iteration_settings import unknown_fields
+from quintet.coupler.coupling.iteration.settings import unknown_fields
 from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.measures.expectation import Expectation, lacking_items

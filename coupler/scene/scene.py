@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 import pydantic
 
 from quintet.coupler.coupling.exchange import Exchange
-from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation

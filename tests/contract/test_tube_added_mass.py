@@ -13,9 +13,13 @@ import numpy as np
 import pytest
 from toy_tubes import Channel, Membrane, added_masses
 
-from quintet.coupler.coupling.acceleration import make
-from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure, allowed, converged
-from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.coupling.iteration.acceleration import make
+from quintet.coupler.coupling.iteration.convergence_measure import (
+    ConvergenceMeasure,
+    allowed,
+    converged,
+)
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 from quintet.interfaces.component import outputs_of
 
 KEY = ("membrane", "pressure.force")

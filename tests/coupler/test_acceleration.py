@@ -8,10 +8,14 @@ import sys
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.acceleration import make
-from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure, allowed, converged
-from quintet.coupler.coupling.iteration_settings import IterationSettings
-from quintet.coupler.coupling.least_squares import combination, filtered_least_squares
+from quintet.coupler.coupling.iteration.acceleration import make
+from quintet.coupler.coupling.iteration.convergence_measure import (
+    ConvergenceMeasure,
+    allowed,
+    converged,
+)
+from quintet.coupler.coupling.iteration.least_squares import combination, filtered_least_squares
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 from quintet.interfaces.sums import dot, norm
 
 PLACE, FORCE = ("beam", "faces.position"), ("water", "load.force")
@@ -246,9 +250,9 @@ def test_inner_products_are_exact_to_rounding_whatever_the_layout():
 MANY = """
 import hashlib
 import numpy as np
-from quintet.coupler.coupling.acceleration import make
-from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure, allowed
-from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.coupling.iteration.acceleration import make
+from quintet.coupler.coupling.iteration.convergence_measure import ConvergenceMeasure, allowed
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 
 key = ("water", "load.force")
 seen = hashlib.sha256()
@@ -287,7 +291,7 @@ def test_no_number_of_threads_changes_a_bit():
 
 def test_no_library_of_linear_algebra_has_a_part_in_it():
     """What decides an exchange names neither a matrix product nor numpy's linear algebra."""
-    from quintet.coupler.coupling import (
+    from quintet.coupler.coupling.iteration import (
         acceleration,
         convergence_measure,
         least_squares,

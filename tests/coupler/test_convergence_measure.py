@@ -5,9 +5,9 @@ import csv
 import numpy as np
 import pytest
 
-from quintet.coupler.coupling.convergence_log import ConvergenceLog, ConvergenceRow
-from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure, converged
-from quintet.coupler.coupling.iteration_settings import IterationSettings, unknown_fields
+from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog, ConvergenceRow
+from quintet.coupler.coupling.iteration.convergence_measure import ConvergenceMeasure, converged
+from quintet.coupler.coupling.iteration.settings import IterationSettings, unknown_fields
 from quintet.interfaces.params import read
 from quintet.interfaces.ports import LOAD, MOTION
 

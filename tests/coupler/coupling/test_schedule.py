@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from quintet.coupler.coupling import plan
-from quintet.coupler.coupling.acceleration import make as make_acceleration
-from quintet.coupler.coupling.convergence_measure import ConvergenceMeasure, converged
 from quintet.coupler.coupling.exchange import Exchange
-from quintet.coupler.coupling.iteration_settings import IterationSettings
+from quintet.coupler.coupling.iteration.acceleration import make as make_acceleration
+from quintet.coupler.coupling.iteration.convergence_measure import ConvergenceMeasure, converged
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.links import maker
 from quintet.coupler.coupling.plan import CouplingPlan

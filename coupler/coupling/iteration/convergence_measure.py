@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quintet.coupler.coupling.residual_scaling import Guess, Key
+from quintet.coupler.coupling.iteration.residual_scaling import Guess, Key
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.sums import norm
 

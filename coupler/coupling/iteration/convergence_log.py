@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from quintet.coupler.coupling.convergence_measure import Residual
-from quintet.coupler.coupling.residual_scaling import Key
+from quintet.coupler.coupling.iteration.convergence_measure import Residual
+from quintet.coupler.coupling.iteration.residual_scaling import Key
 from quintet.coupler.files.table_file import TableFile
 
 

@@ -15,9 +15,9 @@ from typing import Protocol
 
 import numpy as np
 
-from quintet.coupler.coupling.iteration_settings import IterationSettings
-from quintet.coupler.coupling.least_squares import combination, filtered_least_squares
-from quintet.coupler.coupling.residual_scaling import Guess, Key, ResidualScaling
+from quintet.coupler.coupling.iteration.least_squares import combination, filtered_least_squares
+from quintet.coupler.coupling.iteration.residual_scaling import Guess, Key, ResidualScaling
+from quintet.coupler.coupling.iteration.settings import IterationSettings
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.sums import dot, norm
 

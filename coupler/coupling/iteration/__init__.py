@@ -1,0 +1,1 @@
+"""How windows are repeated until what crosses the links agrees: guesses, measures, their log."""
