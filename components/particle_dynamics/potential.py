@@ -11,7 +11,7 @@ from quintet.components.particle_dynamics.coefficients import (
     PairDamping,
     SevenRoots,
 )
-from quintet.components.particle_dynamics.params import Damping, SevenRootForce
+from quintet.components.particle_dynamics.force_params import Damping, SevenRootForce
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import fill_box
-from quintet.components.shared.geometry.shapes import Bounds
 from quintet.components.sph_fluid.boundary.obstacles import obstacle_points
 from quintet.components.sph_fluid.boundary.walls import wall_points, wall_velocity
 from quintet.components.sph_fluid.laws import TAIT

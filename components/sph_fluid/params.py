@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import NonNegativeInt
 
-from quintet.components.shared.geometry.shapes import Bounds
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup import checks
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.gauge_places import Gauges

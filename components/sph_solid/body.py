@@ -3,6 +3,7 @@
 import math
 from typing import ClassVar, Literal
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.shape_keys import (
     RENAMED,
     BoxKeys,
@@ -12,7 +13,7 @@ from quintet.components.shared.geometry.shape_keys import (
     TubeKeys,
     shape_of,
 )
-from quintet.components.shared.geometry.shapes import Bounds, Mesh, Shape
+from quintet.components.shared.geometry.shapes import Mesh, Shape
 from quintet.components.shared.materials.params import Material, MaterialName
 from quintet.interfaces.params import Vector, parameters
 

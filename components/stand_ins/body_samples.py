@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from functools import partial
 
 from quintet.components.shared.geometry import surface_samples as surfaces
-from quintet.components.shared.geometry.shapes import Box, Disc, Polygon, Shape, Sphere
+from quintet.components.shared.geometry.planar_shapes import Disc, Polygon
+from quintet.components.shared.geometry.shapes import Box, Shape, Sphere
 from quintet.interfaces.component import Array, Fields
 
 

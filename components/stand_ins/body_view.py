@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from quintet.components.shared.geometry import body_view
-from quintet.components.shared.geometry.shapes import Box, Disc, Polygon, Shape, Sphere
+from quintet.components.shared.geometry.planar_shapes import Disc, Polygon
+from quintet.components.shared.geometry.shapes import Box, Shape, Sphere
 from quintet.interfaces.component import Fields
 from quintet.interfaces.rotation import matrix
 

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from quintet.components.shared.geometry.planar_shapes import Disc, Polygon
 from quintet.components.shared.geometry.shape_keys import shape_of
-from quintet.components.shared.geometry.shapes import Box, Disc, Polygon, Shape, Sphere
+from quintet.components.shared.geometry.shapes import Box, Shape, Sphere
 from quintet.components.stand_ins.params import PrescribedParams, prescribed_ports
 from quintet.interfaces.component import Array, Component, Field, Fields, Keys
 from quintet.interfaces.params import Vector

@@ -11,17 +11,9 @@ from quintet.components.dem_bodies.kernels.geometry import (
     set_vector,
     vector,
 )
-from quintet.components.dem_bodies.kernels.locked_motion import (
-    locked_angular_velocity,
-    masked,
-    rotate_locked,
-    turns_evenly,
-)
-from quintet.components.dem_bodies.kernels.rigid_rotation import (
-    angular_velocity,
-    rotate_body,
-    symmetric_product,
-)
+from quintet.components.dem_bodies.kernels.kicks import kick, kick_body, kick_rotation, kick_work
+from quintet.components.dem_bodies.kernels.locked_motion import rotate_locked, turns_evenly
+from quintet.components.dem_bodies.kernels.rigid_rotation import rotate_body, symmetric_product
 from quintet.components.dem_bodies.state import (
     ACCELERATION2,
     BLOCK,
@@ -46,31 +38,7 @@ from quintet.components.dem_bodies.state import (
     Whole,
 )
 from quintet.components.shared.numba_options import INNER
-from quintet.components.shared.rotations import Vector, axpy, dot, rotated, scaled, sub, to_world
-
-
-@njit(**INNER)
-def kick(half_gravity: Vector, inverse: float, force: Vector, load: Vector) -> Vector:
-    """Half a step's change of velocity [m/s]; `inverse` is half the step over the mass."""
-    return axpy(inverse, load, axpy(inverse, force, half_gravity))
-
-
-@njit(**INNER)
-def kick_rotation(ω: Vector, inverse: float, torque: Vector, load: Vector) -> Vector:
-    """Angular velocity [rad/s] of a ball after half a step, or a body's angular momentum."""
-    return axpy(inverse, load, axpy(inverse, torque, ω))
-
-
-@njit(**INNER)
-def kick_work(
-    half: float, force: Vector, torque: Vector, v: Vector, change: Vector, before: Vector, ω: Vector
-) -> float:
-    """Work [J] of a force and a torque in half a step that ended at v and ω.
-
-    With the mean of both ends' velocities, work is exactly the kinetic energy that it gives.
-    """
-    mean = axpy(-0.5, change, v)
-    return half * (dot(force, mean) + 0.5 * dot(torque, axpy(1.0, ω, before)))
+from quintet.components.shared.rotations import axpy, dot, rotated, scaled, sub, to_world
 
 
 @njit(**INNER)
@@ -119,33 +87,6 @@ def place_spheres(model: Model, state: State, i: int) -> float:
         moved = sub(placed, row_vector(listed, s))
         furthest = max(furthest, dot(moved, moved))
     return furthest
-
-
-@njit(**INNER)
-def kick_body(
-    model: Model, state: State, i: int, half: float
-) -> tuple[Vector, Vector, float, float]:
-    """Half kick of a body that is no ball: change of v, new ω, and works [J]."""
-    half_gravity, motion = scaled(half, vector(model.gravity, 0)), state.motion
-    force, torque = row_vector(state.contact_load, i), row_vector(state.contact_load, i, 3)
-    outer, twist = row_vector(state.load, i), row_vector(state.load, i, 3)
-    change = kick(half_gravity, half * model.inverse_mass[i], force, outer)
-    momentum = kick_rotation(row_vector(state.angular_momentum, i), half, torque, twist)
-    if model.locked[i]:
-        change, momentum = masked(model.free, i, 0, change), masked(model.free, i, 3, momentum)
-        before = locked_angular_velocity(model, state, i)
-    else:
-        before = angular_velocity(state, i)
-    v = axpy(1.0, change, row_vector(motion, i, VELOCITY))
-    set_row_vector(state.angular_momentum, i, 0, momentum)
-    if model.locked[i]:
-        ω = locked_angular_velocity(model, state, i)
-    else:
-        ω = angular_velocity(state, i)
-    set_row_vector(motion, i, VELOCITY, v)
-    set_row_vector(motion, i, OMEGA, ω)
-    work = kick_work(half, force, torque, v, change, before, ω)
-    return change, ω, work, kick_work(half, outer, twist, v, change, before, ω)
 
 
 @njit(**INNER)

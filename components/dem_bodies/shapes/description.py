@@ -11,8 +11,10 @@ from quintet.components.dem_bodies.shapes.planar import leaves_edges
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry import shape_keys
+from quintet.components.shared.geometry.bounds import ORIGIN
+from quintet.components.shared.geometry.planar_shapes import Disc, Polygon
 from quintet.components.shared.geometry.polygons import area_moments, in_space, require_outline
-from quintet.components.shared.geometry.shapes import ORIGIN, Box, Disc, Polygon, Sphere
+from quintet.components.shared.geometry.shapes import Box, Sphere
 from quintet.interfaces.component import Array
 
 NEEDS = {

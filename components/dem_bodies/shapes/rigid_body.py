@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from quintet.components.shared.geometry.shapes import Corners
+from quintet.components.shared.geometry.bounds import Corners
 from quintet.interfaces.params import (
     Count,
     NotNegative,

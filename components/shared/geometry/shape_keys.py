@@ -5,16 +5,17 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from quintet.components.shared.geometry import shapes
-from quintet.components.shared.geometry.shapes import Corners, Shape
+from quintet.components.shared.geometry import planar_shapes, shapes
+from quintet.components.shared.geometry.bounds import Corners
+from quintet.components.shared.geometry.shapes import Shape
 from quintet.interfaces.params import DataFile, Positive, Vector, parameters
 
 CLASSES: Mapping[str, Any] = {
     "box": shapes.Box,
     "sphere": shapes.Sphere,
     "cylinder": shapes.Cylinder,
-    "disc": shapes.Disc,
-    "polygon": shapes.Polygon,
+    "disc": planar_shapes.Disc,
+    "polygon": planar_shapes.Polygon,
     "mesh": shapes.Mesh,
 }
 NEEDS = {

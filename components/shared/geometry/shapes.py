@@ -13,23 +13,18 @@ A table of a scene that has a shape derives from classes of `shape_keys`, and fi
 import math
 from decimal import Decimal
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import Field
 
-from quintet.components.shared.geometry.polygons import area_moments, in_order
+from quintet.components.shared.geometry.bounds import ORIGIN, Bounds, Mask
+from quintet.components.shared.geometry.planar_shapes import Disc, Polygon
 from quintet.interfaces.component import Array
-from quintet.interfaces.params import Number, Positive, Vector, parameters
+from quintet.interfaces.params import Positive, Vector, parameters
 
 if TYPE_CHECKING:
     from quintet.components.shared.geometry.mesh_files import Solid
 
-Bounds = tuple[Vector, Vector]  # lowest and highest corner, m
-Corners = Annotated[tuple[tuple[Number, Number], ...], Field(max_length=1000)]
-Mask = NDArray[np.bool_]
-ORIGIN = (0.0, 0.0, 0.0)
 ROUNDING = 1e-9  # of a cylinder's length: how far its axis may lean
 
 
@@ -179,70 +174,6 @@ class Cylinder:
         aside2 = (places[first] - self.base[first]) ** 2 + (places[second] - self.base[second]) ** 2
         within = (self.base[k] < places[k]) & (places[k] < self.top[k])
         return within & (aside2 < self.radius**2) & (aside2 >= (self.inner_radius or 0.0) ** 2)
-
-
-@parameters
-class Disc:
-    """A disc in the plane of x and z, 1 m deep along y.
-
-    Parameters
-    ----------
-    shape
-        Name of the shape.
-    centre, radius : m
-        Middle, and distance of the surface from it.
-    """
-
-    shape: Literal["disc"] = "disc"
-    centre: Vector
-    radius: Positive
-
-    @property
-    def bounds(self) -> Bounds:
-        """Lowest and highest corner [m]."""
-        (x, y, z), r = self.centre, self.radius
-        return (x - r, y - 0.5, z - r), (x + r, y + 0.5, z + r)
-
-    @property
-    def share(self) -> float:
-        """Part of the box of its bounds that it fills."""
-        return 0.25 * math.pi
-
-
-@parameters
-class Polygon:
-    """A polygon in the plane of x and z, 1 m deep along y.
-
-    Parameters
-    ----------
-    shape
-        Name of the shape.
-    corners : m
-        x and z of its corners, in order round it, either way.
-    origin : m
-        Where the origin of its corners is.
-    """
-
-    shape: Literal["polygon"] = "polygon"
-    corners: Corners
-    origin: Vector = ORIGIN
-
-    @property
-    def outline(self) -> Array:
-        """Corners (k, 2) m about the origin, from x to z."""
-        return in_order(self.corners)
-
-    @property
-    def bounds(self) -> Bounds:
-        """Lowest and highest corner [m]."""
-        (x, y, z), outline = self.origin, self.outline
-        (a, c), (b, d) = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
-        return (x + a, y - 0.5, z + c), (x + b, y + 0.5, z + d)
-
-    @property
-    def share(self) -> float:
-        """Part of the box of its bounds that it fills."""
-        return area_moments(self.outline).area / math.prod(np.ptp(self.outline, axis=0).tolist())
 
 
 @parameters

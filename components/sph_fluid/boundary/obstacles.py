@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import lattice_points
-from quintet.components.shared.geometry.shapes import Bounds
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import ROUNDING, Face
 from quintet.components.sph_fluid.state import Array

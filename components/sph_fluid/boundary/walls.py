@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import fill_box
-from quintet.components.shared.geometry.shapes import Bounds
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import FACES, cells
 from quintet.components.sph_fluid.state import Array

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from quintet.components.shared.geometry.shapes import Bounds
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import Lists, NeighbourLists
 from quintet.components.shared.search.verlet_list import longest, slack

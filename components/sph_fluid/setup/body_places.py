@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.shared.geometry.shapes import Bounds
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup.geometry import FACES
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError

@@ -3,7 +3,8 @@
 from dataclasses import field
 from typing import ClassVar, Literal
 
-from quintet.components.shared.geometry.shapes import Bounds, Box
+from quintet.components.shared.geometry.bounds import Bounds
+from quintet.components.shared.geometry.shapes import Box
 from quintet.components.sph_fluid.setup.geometry import FACES, Exponent, Face, UprightFace
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from quintet.components.shared.geometry.shapes import Bounds
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.geometry import ROUNDING
 from quintet.components.sph_fluid.setup.shapes import Fluid, named_boxes

@@ -5,8 +5,8 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import cells_between
-from quintet.components.shared.geometry.shapes import Bounds
 from quintet.interfaces.params import Number, Vector
 
 Spot = tuple[Number, Number]  # x and y, m

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.components.shared.geometry.shapes import Bounds
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup.expressions import Expression, values_at
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import DataFile, parameters

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from quintet.components.shared.geometry.shapes import Bounds, Cylinder
+from quintet.components.shared.geometry.bounds import Bounds
+from quintet.components.shared.geometry.shapes import Cylinder
 from quintet.components.sph_fluid.setup.shape_filling import fill_shape
 from quintet.components.sph_fluid.setup.shapes import Fluid, Prism, named_boxes, named_shapes
 from quintet.interfaces.component import Array

@@ -7,8 +7,9 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from quintet.components.shared.geometry import shape_keys
+from quintet.components.shared.geometry.bounds import Bounds, Corners, Mask
 from quintet.components.shared.geometry.polygons import inside_polygon, require_simple
-from quintet.components.shared.geometry.shapes import Bounds, Corners, Cylinder, Mask, Mesh, Sphere
+from quintet.components.shared.geometry.shapes import Cylinder, Mesh, Sphere
 from quintet.components.sph_fluid.setup.geometry import Axis
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import Number, parameters

@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from quintet.components.shared.geometry.planar_shapes import Polygon
 from quintet.components.shared.geometry.polygons import area_moments
 from quintet.components.shared.geometry.shape_keys import NEEDS, shape_of
-from quintet.components.shared.geometry.shapes import Box, Cylinder, Polygon, Sphere
+from quintet.components.shared.geometry.shapes import Box, Cylinder, Sphere
 from quintet.coupler.reference.sections import sections
 from quintet.coupler.scene.read import library, parse
 from quintet.interfaces.manifest import find, known_kinds
