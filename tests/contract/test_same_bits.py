@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import h5py
@@ -68,15 +69,17 @@ def _run(path, out, *arguments, threads="1"):
     return out
 
 
-@pytest.fixture
-def alone(tmp_path):
-    """A run in this process."""
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """Make a scene and run it in one process, once for all tests."""
 
-    def made(make):
-        path = make(tmp_path)
-        return path, _run(path, tmp_path / "memory")
+    @cache
+    def run(make):
+        folder = tmp_path_factory.mktemp("alone")
+        path = make(folder)
+        return path, _run(path, folder / "memory")
 
-    return made
+    return run
 
 
 @SCENES

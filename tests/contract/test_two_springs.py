@@ -28,8 +28,8 @@ def test_the_component_fits_on_a_screen():
     assert len((FOLDER / "springs.py").read_text().splitlines()) <= 60
 
 
-def _run(tmp_path, transport):
-    scene = load(str(FOLDER / "scene.toml"), transport=transport)
+def _run(tmp_path, transport, settings=()):
+    scene = load(str(FOLDER / "scene.toml"), settings=settings, transport=transport)
     make_folder(scene, tmp_path / transport)
     status = simulate(scene, tmp_path / transport)
     return status, json.loads((tmp_path / transport / "results.json").read_text())
@@ -52,7 +52,7 @@ def test_two_springs_run_as_two_processes_with_the_same_bits(tmp_path):
 
     assert load(str(FOLDER / "scene.toml")).transport == "zenoh"
     for transport in ("memory", "zenoh"):
-        assert _run(tmp_path, transport)[0] == 0
+        assert _run(tmp_path, transport, ("end=0.2", "expect=[]"))[0] == 0
     assert compare(tmp_path / "memory", tmp_path / "zenoh") is None
 
 
