@@ -175,6 +175,12 @@ class Component(ABC):
         """What it will describe and give at the start, as far as the parameters tell it."""
         return cls.manifest.initial(params) if cls.manifest and cls.manifest.initial else {}
 
+    @classmethod
+    def complete_of(cls, keys: dict[str, Any], partners: Fields) -> dict[str, Any]:
+        """Return its table of a scene, completed by what its partners state at the start."""
+        completes = cls.manifest.complete if cls.manifest else None
+        return completes(keys, partners) if completes else keys
+
     @staticmethod
     def conform_cases() -> tuple[Any, ...]:
         """`manifest.ConformCase`s, on which ``quintet conform`` tries the laws of the contract."""

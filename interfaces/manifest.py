@@ -102,6 +102,8 @@ class Manifest:
     ``conform`` name functions that return tuples of `BenchCase` and `ConformCase`. ``initial``
     tells, as far as that is known without the solver, what the component will describe and the
     instants that it gives at the start: by these a link is checked before anything runs.
+    ``complete`` returns its table of a scene with what its partners know already: it gets the
+    table, unchecked, and what they state in ``initial``, by the names of the ports that take it.
     """
 
     kind: str
@@ -111,6 +113,7 @@ class Manifest:
     ports: Callable[[Any], Ports]
     plan: Callable[[Any], Plan | None] | None = None
     initial: Callable[[Any], Fields] | None = None
+    complete: Callable[[dict[str, Any], Fields], dict[str, Any]] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
@@ -168,7 +171,7 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
             "none. Write `@parameters class Params` inside it."
         )
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
-    functions = (cls.ports_of, cls.plan_of, cls.initial_of)
+    functions = (cls.ports_of, cls.plan_of, cls.initial_of, cls.complete_of)
     return Manifest(
         kind, title, cls.Params, path, *functions, patience=cls.patience, shows=cls.shows
     )

@@ -15,6 +15,7 @@ the meshless algorithm; Katz & Jameson, AIAA J. 48 (2010) 1756; Kim, Kim & Rho, 
 Phys. 77 (1988) 439.
 """
 
+from quintet.components.meshless_gas.driven_bodies import complete
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.plan import plan
 from quintet.components.meshless_gas.ports import SHOWS, initial, ports
@@ -31,6 +32,7 @@ MANIFEST = Manifest(
     shows=SHOWS,
     plan=plan,
     initial=initial,
+    complete=complete,
     bench="quintet.components.meshless_gas.bench:cases",
     conform="quintet.components.meshless_gas.conform:cases",
 )

@@ -23,7 +23,8 @@ class Body:
     shape
         A cylinder is written as a sphere, too.
     centre, radius : m
-        Of the body at the start.
+        At the start. Leave out the centre of a driven body, and its radius unless it is smaller
+        than its partner's: the gas takes both from the partner.
     velocity : m/s
         Of one that is not driven; of one that is, at the start.
     angular_velocity : rad/s
@@ -74,8 +75,8 @@ class Body:
         "first_at_sector": "first_spacing_at_sector",
     }
     shape: Literal["sphere"] = "sphere"
-    centre: Vector
-    radius: Positive
+    centre: Vector = None  # type: ignore[assignment]  # one without is refused below
+    radius: Positive = None  # type: ignore[assignment]
     velocity: Vector = (0.0, 0.0, 0.0)
     angular_velocity: Number = 0.0
     is_driven: bool = False
@@ -93,6 +94,12 @@ class Body:
     weight: NotNegative = 0.0
 
     def __post_init__(self) -> None:
+        lacking = [name for name in ("centre", "radius") if getattr(self, name) is None]
+        if lacking:
+            raise ValueError(
+                f"a body must have {' and '.join(lacking)}, given here or, of a driven body, "
+                "stated by its partner; found neither. Give it here."
+            )
         if self.is_adiabatic and self.temperature is not None:
             raise ValueError(
                 "an adiabatic wall has the temperature of the gas; found both. Leave out "

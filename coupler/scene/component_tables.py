@@ -1,5 +1,6 @@
 """``[components.NAME]``: kind and settings of each component, checked by its manifest."""
 
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -8,11 +9,13 @@ import numpy as np
 
 from quintet.coupler.scene.foreign_code import is_trusted, unread_manifest
 from quintet.coupler.scene.scene import NAME, ComponentKeys, ComponentPlan
+from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import QuintetError, SceneError
 from quintet.interfaces.manifest import Manifest, find, known_kinds, unknown_kind
 from quintet.interfaces.params import beyond_computing, read, shown
 
 Table = dict[str, Any]
+Pair = tuple[tuple[str, str], tuple[str, str]]  # component and port of the giver, of the taker
 
 
 def require_components(path: Path, table: Table, mistakes: list[str]) -> Table:
@@ -27,14 +30,33 @@ def require_components(path: Path, table: Table, mistakes: list[str]) -> Table:
 
 
 def read_components(
-    table: Table, folder: Path, mistakes: list[str], imports: bool = True
+    table: Table,
+    folder: Path,
+    mistakes: list[str],
+    imports: bool = True,
+    links: Iterable[Table] = (),
 ) -> dict[str, ComponentPlan]:
     """Read the components of a scene; those with mistakes are left out.
 
-    `imports` is whether code of the scene's own may be imported to read them.
+    Parameters
+    ----------
+    table
+        Tables of the components by their names.
+    folder
+        Of the scene.
+    mistakes
+        Added to.
+    imports
+        Whether code of the scene's own may be imported to read them.
+    links
+        Tables of the links: components whose tables their partners complete are read last.
     """
-    plans = {}
-    for name, keys in table.items():
+    plans: dict[str, ComponentPlan] = {}
+    pairs = list(_pairs(links))
+    completed = {taker for _, (taker, _) in pairs if _is_completed(table.get(taker))}
+    last = completed | {name for name in table if _is_code(table[name])}
+    for name in sorted(table, key=last.__contains__):
+        keys = table[name]
         if not NAME.fullmatch(name) or name == "coupler":
             mistakes.append(
                 f"components: a name must be letters, digits, _ or -, and not coupler; found "
@@ -44,13 +66,67 @@ def read_components(
             mistakes.append(
                 f"components.{name} must be a table; found {shown(keys)}. Give it a kind."
             )
-        elif plan := _component(name, dict(keys), folder, mistakes, imports):
-            plans[name] = plan
-    return plans
+        elif not _waits(name, pairs, completed, table.keys() - plans.keys()):
+            partners = _starts(name, pairs, plans) if name in last else {}
+            if plan := _component(name, dict(keys), folder, mistakes, imports, partners):
+                plans[name] = plan
+    return {name: plans[name] for name in table if name in plans}
+
+
+def _pairs(links: Iterable[Table]) -> Iterator[Pair]:
+    """Components and ports that links pair, the giver's first; mistakes are left out."""
+    for link in links:
+        pairs = link.get("pairs")
+        for pair in pairs if isinstance(pairs, list) else ():
+            if isinstance(pair, list) and len(pair) == 2 and all(isinstance(p, str) for p in pair):
+                (giver, _, source), (taker, _, target) = (path.partition(".") for path in pair)
+                yield (giver, source), (taker, target)
+
+
+def _is_code(keys: Any) -> bool:
+    """Whether a component is a class of the scene's own, whose table partners may complete."""
+    return isinstance(keys, dict) and ":" in str(keys.get("kind", ""))
+
+
+def _is_completed(keys: Any) -> bool:
+    """Whether partners complete the table of a component, of an installed kind."""
+    kind = keys.get("kind") if isinstance(keys, dict) else None
+    try:
+        return kind in known_kinds() and find(str(kind)).complete is not None
+    except Exception:  # reported as it is read
+        return False
+
+
+def _waits(name: str, pairs: Iterable[Pair], completed: set[str], unread: set[str]) -> bool:
+    """Whether the table of a component lacks what a partner with mistakes would state."""
+    partners = {giver for (giver, _), (taker, _) in pairs if taker == name}
+    return name in completed and bool(partners & unread - completed)
+
+
+def _starts(name: str, pairs: Iterable[Pair], plans: Mapping[str, ComponentPlan]) -> Fields:
+    """What the partners of a component state at the start, by its own ports."""
+    fields: dict[str, Array] = {}
+    for (giver, source), (taker, target) in pairs:
+        if taker != name or giver not in plans:
+            continue
+        try:
+            start = plans[giver].initial()
+        except Exception:  # of any kind: it is reported as the scene's start is checked
+            continue
+        for key, array in start.items():
+            port, _, field = key.partition(".")
+            if port == source:
+                fields[f"{target}.{field}"] = array
+    return fields
 
 
 def _component(
-    name: str, keys: Table, folder: Path, mistakes: list[str], imports: bool
+    name: str,
+    keys: Table,
+    folder: Path,
+    mistakes: list[str],
+    imports: bool,
+    partners: Fields,
 ) -> ComponentPlan | None:
     where = f"components.{name}"
     if not isinstance(kind := keys.get("kind"), str):
@@ -71,6 +147,8 @@ def _component(
     if manifest is None:
         return None
     try:
+        if partners and manifest.complete:
+            keys = manifest.complete(keys, partners)
         params, wrong = read(manifest.params, keys, where, folder)
         if wrong:
             mistakes += wrong

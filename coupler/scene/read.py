@@ -151,10 +151,11 @@ def _check(
     file, mistakes = read(SceneFile, keys, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
     component_tables = require_components(path, table, mistakes)
-    components = read_components(component_tables, path.parent, mistakes, imports)
+    link_tables = _tables(table, "links", mistakes)
+    components = read_components(component_tables, path.parent, mistakes, imports, link_tables)
     wrong = set(component_tables) - set(components)  # their mistakes are known already
     unread = {name for name, plan in components.items() if plan.unread}
-    links = read_links(_tables(table, "links", mistakes), components, wrong | unread, mistakes)
+    links = read_links(link_tables, components, wrong | unread, mistakes)
     expect = _expect(_tables(table, "expect", mistakes), components, wrong, path.parent, mistakes)
     coupling = None
     if file is not None:

@@ -1,10 +1,11 @@
 """Bodies that fly through a gas with clouds of their own."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
 from quintet.coupler.scene.read import library, load, parse
+from quintet.interfaces.errors import SceneError
 from quintet.scenarios.moving_sphere.compare import Flight, flight
 
 Run = Callable[..., dict]
@@ -33,33 +34,72 @@ def fly(run_scene: Run) -> Fly:
     return made
 
 
-def driven_bodies() -> Iterator[tuple[str, list[dict], list[dict]]]:
-    """Scenes and presets with driven bodies: these bodies, and the spheres of the partner."""
-    for name, path in library().items():
-        if "is_driven" not in path.read_text():
+def test_driven_bodies_of_scenes_are_described_by_their_partner_alone() -> None:
+    presets = {
+        (name, preset)
+        for name, path in library().items()
+        if "is_driven" in path.read_text()
+        for preset in ("", *parse(path)["presets"])
+    }
+    driven = 0
+    for name, preset in presets:
+        scene = load(name, preset)
+        table, plan = scene.resolved["components"]["gas"], scene.components["gas"].checked
+        spheres = scene.resolved["components"].get("particle", {}).get("spheres", ())
+        tables = [body for body in table["moving"]["bodies"] if body.get("is_driven")]
+        bodies = [body for body in plan.moving.bodies if body.is_driven]
+        assert not any("centre" in body for body in tables), (name, preset)
+        if not bodies:
             continue
-        for preset in ("", *parse(path)["presets"]):
-            tables = load(name, preset).resolved["components"]
-            bodies = [
-                body
-                for table in tables.values()
-                for body in table.get("moving", {}).get("bodies", ())
-                if body.get("is_driven")
-            ]
-            if bodies:
-                spheres = [s for table in tables.values() for s in table.get("spheres", ())]
-                yield f"{name} {preset}".strip(), bodies, spheres
+        assert [list(body.centre) for body in bodies] == [s["centre"] for s in spheres]
+        for body, sphere in zip(bodies, spheres, strict=True):
+            # Larger spheres keep bodies apart where they strike each other.
+            assert body.radius == sphere["radius"] or len(bodies) > 1
+        driven += len(bodies)
+    assert driven >= 6
 
 
-def test_driven_bodies_of_scenes_stand_where_their_partner_has_them() -> None:
-    """A run refuses other places, smaller bodies and another number of them, too."""
-    scenes = list(driven_bodies())
-    assert len(scenes) >= 4
-    for name, bodies, spheres in scenes:
-        assert [b["centre"] for b in bodies] == [s["centre"] for s in spheres], name
-        # Larger spheres keep bodies apart where they strike each other.
-        pairs = zip(bodies, spheres, strict=True)
-        assert all(b["radius"] == s["radius"] or len(bodies) > 1 for b, s in pairs), name
+def driving(body: str, sphere: str = "centre = [-1.0, 0.0, 0.0], radius = 0.1") -> list[str]:
+    """Settings of a scene whose sphere is a body in the gas."""
+    round_it = "points_around = 40, thickness = 0.25, spacing = 0.04, is_driven = true"
+    return [
+        f"components.gas.moving.bodies=[{{ {round_it}{body} }}]",
+        f"components.particle.spheres=[{{ {sphere}, density = 300.0 }}]",
+    ]
+
+
+def test_a_driven_body_takes_its_place_and_size_from_its_partner() -> None:
+    gas = load("shock_layer_particle", settings=driving("")).components["gas"]
+    (body,) = gas.checked.moving.bodies
+    assert (body.centre, body.radius) == ((-1.0, 0.0, 0.0), 0.1)
+    (smaller,) = (
+        load("shock_layer_particle", settings=driving(", radius = 0.07"))
+        .components["gas"]
+        .checked.moving.bodies
+    )
+    assert smaller.radius == 0.07
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        (driving(", centre = [-1.0, 0.0, 0.0]"), r"bodies.0.centre: .* Leave it out"),
+        ([*driving(""), "links=[]"], "must have centre and radius, .* stated by its partner"),
+        (driving("", "centre = [-1.0, 0.0, 0.0], radius = 0.1, copies = { number = [2, 1, 1], "
+                 "spacing = [0.5, 0.5, 0.5] }"), "1 driven bodies and 2 of the partner"),
+    ],
+)  # fmt: skip
+def test_driven_bodies_that_are_described_twice_or_never_are_refused(
+    settings: list[str], said: str
+) -> None:
+    with pytest.raises(SceneError, match=said):
+        load("shock_layer_particle", settings=settings)
+
+
+def test_a_mistake_of_a_partner_is_reported_alone() -> None:
+    with pytest.raises(SceneError) as error:
+        load("shock_layer_particle", settings=driving("", "centre = [-1.0, 0.0, 0.0]"))
+    assert len(error.value.mistakes) == 1 and "radius" in str(error.value)
 
 
 @pytest.mark.full

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from quintet.components.particle_dynamics.spheres.params import Sphere, Wall
+from quintet.components.particle_dynamics.spheres.start import places
 from quintet.components.particle_dynamics.spheres.state import Spheres, State
-from quintet.components.shared.geometry.lattice import lattice_points
 from quintet.components.shared.search.sphere_pairs import Pairs
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
@@ -24,13 +24,11 @@ def build(entries: Sequence[Sphere]) -> Spheres:
 
     radius, parcel = repeated("radius"), repeated("parcel")
     mass = parcel * repeated("density") * 4.0 / 3.0 * math.pi * radius**3
-    start, launch = repeated("centre"), repeated("launch")
+    start, launch = places(entries), repeated("launch")
     first = 0
     for sphere in entries:
         if sphere.copies is not None:
-            rows, axes = slice(first, first + sphere.count), map(np.arange, sphere.copies.number)
-            places = lattice_points(list(axes), x_fastest=False)
-            start[rows] += places * np.array(sphere.copies.spacing)
+            rows = slice(first, first + sphere.count)
             launch[rows] += sphere.copies.interval * np.arange(sphere.count)
         first += sphere.count
     return Spheres(
