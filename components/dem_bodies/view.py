@@ -50,15 +50,9 @@ def mesh(file: str, scale: float) -> body_view.Outline:
 
 def planes_view(planes: Numbers, state: State) -> Fields:
     """Polygons on planes (p, 4): the part of each before the others, and near the bodies."""
-    where, radius = state.position[:-1], state.motion[:-1, 3]
-    low, high = (where - radius[:, None]).min(axis=0), (where + radius[:, None]).max(axis=0)
     normals = planes[:, :3]
     points = normals * planes[:, 3:]
-    centre = 0.5 * (low + high)
-    feet = centre - normals * ((centre - points) * normals).sum(axis=1, keepdims=True)
-    low, high = np.vstack([feet, low]).min(axis=0), np.vstack([feet, high]).max(axis=0)
-    size = float((high - low).max())
-    low, high = low - REACH * size, high + REACH * size
+    low, high, size = _near_bodies(points, normals, state)
     # The box as six more planes, that look inwards.
     limits = np.concatenate([points, np.tile(low, (3, 1)), np.tile(high, (3, 1))])
     inwards = np.concatenate([normals, np.eye(3), -np.eye(3)])
@@ -73,6 +67,17 @@ def planes_view(planes: Numbers, state: State) -> Fields:
         if len(corners) >= 3:
             outlines.append(corners)
     return polygons(outlines)
+
+
+def _near_bodies(points: Array, normals: Array, state: State) -> tuple[Array, Array, float]:
+    """Corners (3,) m of a box around bodies and their feet on planes; its size without rim [m]."""
+    where, radius = state.position[:-1], state.motion[:-1, 3]
+    low, high = (where - radius[:, None]).min(axis=0), (where + radius[:, None]).max(axis=0)
+    centre = 0.5 * (low + high)
+    feet = centre - normals * ((centre - points) * normals).sum(axis=1, keepdims=True)
+    low, high = np.vstack([feet, low]).min(axis=0), np.vstack([feet, high]).max(axis=0)
+    size = float((high - low).max())
+    return low - REACH * size, high + REACH * size, size
 
 
 def _square(normal: Array) -> Array:

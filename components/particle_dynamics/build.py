@@ -101,11 +101,9 @@ def _law(
 ) -> tuple[Law, float]:
     """Pair law, and the highest angular frequency [rad/s] of the lattice."""
     lattice, roots = params.lattice, params.seven_roots
-    table = params.force_table
-    law: Law
     if roots is None:
-        assert table is not None
-        law = force_table(table)
+        assert params.force_table is not None
+        law: Law = force_table(params.force_table)
     else:
         law = seven_roots(roots, lattice.spacing, roots.amplitude or 1.0)
     if len(start) > LARGEST:

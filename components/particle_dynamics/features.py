@@ -42,16 +42,8 @@ def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
 
 def _driven(start: Array, lattice: Lattice, drive: Drive) -> Driven:
     (first,), axis = nearest_rows(start, [drive.point]), "xyz".index(drive.partner[1])
-    towards = 1.0 if drive.partner[0] == "+" else -1.0
-    place = start[first].copy()
-    place[axis] += towards * lattice.spacing
-    (second,) = nearest_rows(start, [place])
-    if np.abs(start[second] - place).max() > 0.5 * lattice.spacing:
-        raise SceneError(
-            f"drive: partner must be a point of the lattice; towards {drive.partner} of "
-            f"{start[first].tolist()} m there is none. Take another direction."
-        )
-    distance = -towards * lattice.spacing
+    distance = -lattice.spacing if drive.partner[0] == "+" else lattice.spacing
+    second = _partner(start, start[first] - distance * np.eye(3)[axis], lattice, drive)
     shares = {"relative": (0.5, 0.5), "symmetric": (0.5, 0.5), "point": (1.0, 0.0)}
     share_first, share_second = shares.get(drive.mode, (0.0, 1.0))
     return Driven(
@@ -67,6 +59,17 @@ def _driven(start: Array, lattice: Lattice, drive: Drive) -> Driven:
         rest_first=float(start[first, axis]),
         rest_second=float(start[second, axis]),
     )
+
+
+def _partner(start: Array, place: Array, lattice: Lattice, drive: Drive) -> int:
+    """Number of the point at a place (3,) m."""
+    (second,) = nearest_rows(start, [place])
+    if np.abs(start[second] - place).max() > 0.5 * lattice.spacing:
+        raise SceneError(
+            f"drive: partner must be a point of the lattice; towards {drive.partner}, at "
+            f"{place.tolist()} m, there is none. Take another direction."
+        )
+    return int(second)
 
 
 def bathed(start: Array, baths: tuple[Bath, ...]) -> Bathed:

@@ -12,6 +12,7 @@ lost if its particles are out of each other's reach and none is between them.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from quintet.components.shared.materials.solid import NEVER, Solid
@@ -136,11 +137,7 @@ def note_torn(state: State, pairs: Whole, laws: list[Solid], params: SphSolidPar
     if not len(far):
         return
     i, j = i[far], j[far]
-    solid = np.array([
-        law.reference_temperature + law.melting if law.hard < NEVER else NEVER for law in laws
-    ])  # fmt: skip
-    failed = np.bincount(state.body, state.failed, len(params.bodies)) > 0.0
-    whole = ~failed[state.body] & (state.temperature < solid[state.material])
+    whole = _has_strength(state, laws, len(params.bodies))
     far = np.flatnonzero(whole[i] & whole[j])
     middle = 0.5 * (state.position[i[far]] + state.position[j[far]])
     near, _ = cKDTree(state.position).query(middle)
@@ -148,6 +145,15 @@ def note_torn(state: State, pairs: Whole, laws: list[Solid], params: SphSolidPar
     if len(lost) and state.torn[0] == 0.0:
         state.torn[1], state.torn[2:] = state.time, middle[lost[0]]
     state.torn[0] = max(state.torn[0], float(len(lost)))
+
+
+def _has_strength(state: State, laws: list[Solid], bodies: int) -> NDArray[np.bool_]:
+    """Which particles (n,) are solid, of bodies of which nothing has failed."""
+    solid = np.array([
+        law.reference_temperature + law.melting if law.hard < NEVER else NEVER for law in laws
+    ])  # fmt: skip
+    failed = np.bincount(state.body, state.failed, bodies) > 0.0
+    return np.asarray(~failed[state.body] & (state.temperature < solid[state.material]))
 
 
 def _of_energy(state: State, turned: float, params: SphSolidParams) -> dict[str, str]:

@@ -53,19 +53,9 @@ def rigid_body(where: str, body: Any) -> RigidBody:
 def _place(where: str, body: Any) -> dict[str, Any]:
     """Centre of mass, and the edges of a box."""
     if body.shape == "spheres":
-        if len(body.centres) != len(body.radii) or not body.radii:
-            raise ValueError(
-                f"{where}: spheres need one radius for each centre, and at least one; found "
-                f"{len(body.centres)} centres and {len(body.radii)} radii. Complete them."
-            )
-        return _from_origin(body, measure_union((body.centres, body.radii))[1])
+        return _from_origin(body, _centre_of_spheres(where, body))
     if body.shape == "mesh":
-        try:
-            covered = cover(body)
-        except ValueError as error:  # the mistakes that are in the file
-            raise ValueError(f"{where}: {error}") from error
-        assert covered is not None
-        return _from_origin(body, covered.centre)
+        return _from_origin(body, _centre_of_mesh(where, body))
     shape = shape_keys.shape_of(body, where)
     if isinstance(shape, Box):
         return {"position": shape.centre, "size": shape.size}
@@ -74,6 +64,24 @@ def _place(where: str, body: Any) -> dict[str, Any]:
         return _from_origin(body, in_space(area_moments(shape.outline).centre[None])[0])
     assert isinstance(shape, Sphere | Disc)
     return {"position": shape.centre}
+
+
+def _centre_of_spheres(where: str, body: Any) -> Array:
+    if len(body.centres) != len(body.radii) or not body.radii:
+        raise ValueError(
+            f"{where}: spheres need one radius for each centre, and at least one; found "
+            f"{len(body.centres)} centres and {len(body.radii)} radii. Complete them."
+        )
+    return measure_union((body.centres, body.radii))[1]
+
+
+def _centre_of_mesh(where: str, body: Any) -> Array:
+    try:
+        covered = cover(body)
+    except ValueError as error:  # the mistakes that are in the file
+        raise ValueError(f"{where}: {error}") from error
+    assert covered is not None
+    return covered.centre
 
 
 def _from_origin(body: Any, centre: Array) -> dict[str, Any]:

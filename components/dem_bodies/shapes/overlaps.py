@@ -13,8 +13,8 @@ import numpy as np
 
 from quintet.components.dem_bodies.shapes import placement, planar
 from quintet.components.dem_bodies.shapes.copies import Bodies, at, places, some_places
-from quintet.components.dem_bodies.shapes.near_pairs import near_pairs
 from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
+from quintet.components.shared.search.overlapping import overlapping
 from quintet.interfaces.component import Array
 
 MOST_SCATTERED = 400_000  # copies whose places are looked at one by one
@@ -40,23 +40,28 @@ def require_above(first: int, body: RigidBody, m: int, plane: Plane) -> None:
     allowed = placement.ALLOWED * reach
     number, gap = 0, placement.plane_gap(body, plane)
     if body.copies is not None:
-        normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
-        lattice, counts = body.copies, np.array(body.copies.number)
-        down = np.minimum(normal * lattice.spacing, 0.0) * (counts - 1)
-        lowest = gap + float(down.sum())
-        if lattice.scatter == 0.0 or lowest - scatter(body) @ np.abs(normal) > -allowed:
-            x, y, z = np.where(down < 0.0, counts - 1, 0).tolist()
-            number, gap = (x * counts[1] + y) * counts[2] + z, lowest
-        elif counts.prod() <= MOST_SCATTERED:
-            gaps = gap + (places(body) - body.position) @ normal
-            number, gap = int(np.argmin(gaps)), float(gaps.min())
-        else:
-            gap = lowest - float(scatter(body) @ np.abs(normal))
+        number, gap = lowest_copy(body, plane, gap, allowed)
     if gap < -allowed:
         raise ValueError(
             f"bodies[{first + number}] must start above planes[{m}]; it reaches {-gap:.6g} m "
             "below. Raise it, or turn the plane's normal to the free side."
         )
+
+
+def lowest_copy(body: RigidBody, plane: Plane, gap: float, allowed: float) -> tuple[int, float]:
+    """Number of the lowest copy above a plane, and its gap [m], that of the first being given."""
+    assert body.copies is not None
+    normal = np.array(plane.normal) / np.linalg.norm(plane.normal)
+    lattice, counts = body.copies, np.array(body.copies.number)
+    down = np.minimum(normal * lattice.spacing, 0.0) * (counts - 1)
+    lowest = gap + float(down.sum())
+    if lattice.scatter == 0.0 or lowest - scatter(body) @ np.abs(normal) > -allowed:
+        x, y, z = np.where(down < 0.0, counts - 1, 0).tolist()
+        return (x * counts[1] + y) * counts[2] + z, lowest
+    if counts.prod() <= MOST_SCATTERED:
+        gaps = gap + (places(body) - body.position) @ normal
+        return int(np.argmin(gaps)), float(gaps.min())
+    return 0, lowest - float(scatter(body) @ np.abs(normal))
 
 
 def scatter(body: RigidBody) -> Array:
@@ -131,7 +136,7 @@ def refuse_pairs(first: int, body: RigidBody) -> None:
     """Refuse scattered copies of which two overlap, as they stand."""
     where = places(body)
     radius = np.full(len(where), placement.bounding_radius(body))
-    for i, j in near_pairs(where, radius):
+    for i, j in overlapping(where, radius):
         if body.radius is not None:
             gap = np.linalg.norm(where[i] - where[j], axis=1) - 2.0 * body.radius
         else:
@@ -197,7 +202,7 @@ def compare(bodies: Bodies, group: Array, number: Array, where: Array, radius: A
     """Refuse two of these bodies that overlap: their templates, numbers, places (n, 3) m, radii."""
     first = np.array(bodies.first)[group] + number
     round_ = np.array([bodies.templates[k].radius is not None for k in group])
-    for i, j in near_pairs(where, radius):
+    for i, j in overlapping(where, radius):
         other = (group[i] != group[j]) | (np.array(bodies.counts)[group[i]] == 1)
         i, j = i[other], j[other]
         gap = np.linalg.norm(where[i] - where[j], axis=1) - radius[i] - radius[j]

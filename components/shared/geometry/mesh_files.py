@@ -127,17 +127,7 @@ def open_edges(mesh: object) -> int:
 
 def voxels(path: Path, width: float) -> Solid:
     """Read voxels of a width [m]; their sides towards what is not solid are the surface."""
-    try:
-        array = np.load(path, allow_pickle=False)
-    except (OSError, ValueError) as error:
-        raise ValueError(
-            f"file {path.name} must be one array: {error}. Write it by numpy.save."
-        ) from error
-    if getattr(array, "ndim", 0) != 3 or array.dtype.kind not in "biuf" or not array.any():
-        raise ValueError(
-            f"file {path.name} must have three axes of numbers, of which not all are zero; found "
-            f"shape {getattr(array, 'shape', None)}. Write it by numpy.save."
-        )
+    array = _voxel_array(path)
     solid = np.pad(array != 0, 1)
     squares = [
         sides(np.argwhere(solid & ~np.roll(solid, 1 - 2 * side, axis=axis)) - 1, axis, side)
@@ -151,6 +141,22 @@ def voxels(path: Path, width: float) -> Solid:
     second = (middles - centre).T @ (middles - centre) * width**3
     second = second + np.eye(3) * (width**2 / 12.0 * volume)  # of each about its own middle
     return Solid(triangles, volume, centre, np.trace(second) * np.eye(3) - second)
+
+
+def _voxel_array(path: Path) -> Array:
+    """Read an array of three axes, not all zero."""
+    try:
+        array = np.load(path, allow_pickle=False)
+    except (OSError, ValueError) as error:
+        raise ValueError(
+            f"file {path.name} must be one array: {error}. Write it by numpy.save."
+        ) from error
+    if getattr(array, "ndim", 0) != 3 or array.dtype.kind not in "biuf" or not array.any():
+        raise ValueError(
+            f"file {path.name} must have three axes of numbers, of which not all are zero; found "
+            f"shape {getattr(array, 'shape', None)}. Write it by numpy.save."
+        )
+    return np.asarray(array)
 
 
 def sides(cells: Array, axis: int, side: int) -> Array:

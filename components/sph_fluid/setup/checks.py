@@ -41,6 +41,10 @@ def check_walls(boundary: Boundary, fluid: Fluid, spacing: float, dimensions: in
                     f"{high[axis]} m; found {bottom[axis]} to {top[axis]} m. Move the box, or add "
                     "the face to boundary.open_faces."
                 )
+    _check_wall_velocity(boundary, dimensions)
+
+
+def _check_wall_velocity(boundary: Boundary, dimensions: int) -> None:
     closed = boundary.closed_faces(dimensions)
     for face, velocity in boundary.wall_velocity.items():
         if face not in closed or velocity["xyz".index(face[0])] != 0.0:

@@ -35,18 +35,7 @@ class Gauges:
         """Refuse gauges beyond a wall of the tank or inside an obstacle."""
         tolerance = ROUNDING * spacing
         for name, point in self._points():
-            for axis, value in enumerate(point) if boundary.tank else ():
-                if dimensions == 2 and axis == 1:
-                    continue
-                assert boundary.tank is not None
-                low, high = boundary.tank[0][axis], boundary.tank[1][axis]
-                closed = [f"{'xyz'[axis]}{side}" not in boundary.open_faces for side in "-+"]
-                below, above = value < low - tolerance, value > high + tolerance
-                if (below and closed[0]) or (above and closed[1]):
-                    raise ValueError(
-                        f"gauges.{name} must be inside the walls along {'xyz'[axis]}, {low:g} to "
-                        f"{high:g} m; found {value:g} m, where there is no fluid. Move the gauge."
-                    )
+            require_within_walls(f"gauges.{name}", point, boundary, tolerance, dimensions)
             for number, (lowest, highest) in enumerate(boundary.solids):
                 inside = [
                     low + tolerance < value < high - tolerance
@@ -63,3 +52,21 @@ class Gauges:
             yield f"pressure_gauges[{number}]", point
         for number, spot in enumerate(self.level_gauges):
             yield f"level_gauges[{number}]", spot
+
+
+def require_within_walls(
+    where: str, point: tuple[float, ...], boundary: Boundary, tolerance: float, dimensions: int
+) -> None:
+    """Refuse a gauge at x, y and, if it has one, z [m], that lies beyond a closed wall."""
+    for axis, value in enumerate(point) if boundary.tank else ():
+        if dimensions == 2 and axis == 1:
+            continue
+        assert boundary.tank is not None
+        low, high = boundary.tank[0][axis], boundary.tank[1][axis]
+        closed = [f"{'xyz'[axis]}{side}" not in boundary.open_faces for side in "-+"]
+        below, above = value < low - tolerance, value > high + tolerance
+        if (below and closed[0]) or (above and closed[1]):
+            raise ValueError(
+                f"{where} must be inside the walls along {'xyz'[axis]}, {low:g} to {high:g} m; "
+                f"found {value:g} m, where there is no fluid. Move the gauge."
+            )

@@ -11,7 +11,7 @@ from quintet.components.dem_bodies.params import Body
 from quintet.components.dem_bodies.shapes import placement
 from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.description import rigid_body
-from quintet.components.dem_bodies.shapes.near_pairs import near_pairs
+from quintet.components.shared.search.overlapping import overlapping
 from quintet.interfaces.params import read
 
 APART = {"edge_radius": 0.002}
@@ -34,7 +34,7 @@ def test_pairs_of_spheres_of_all_sizes_are_found_once():
     middle, radius = random.uniform(0.0, 1.0, (300, 3)), 10.0 ** random.uniform(-3.0, -0.7, 300)
     apart = np.linalg.norm(middle[:, None] - middle, axis=2) - radius[:, None] - radius
     expected = {(i, j) for i, j in combinations(range(300), 2) if apart[i, j] < 0.0}
-    found = [np.sort(np.stack(both, axis=1)) for both in near_pairs(middle, radius)]
+    found = [np.sort(np.stack(both, axis=1)) for both in overlapping(middle, radius)]
     pairs = [(int(i), int(j)) for i, j in np.concatenate(found)]
     assert len(pairs) == len(set(pairs)) and set(pairs) == expected and len(expected) > 300
 
