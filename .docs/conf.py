@@ -1,6 +1,6 @@
 """The documentation site, built from the texts in the folders that they describe.
 
-pip install -e ".[mpi,docs]" && sphinx-build -W -c .docs . build/site
+pip install -e ".[all,docs]" && sphinx-build -W -c .docs . build/site
 """
 
 import re

@@ -18,6 +18,7 @@ MAY_IMPORT = {
 FLOORS = {
     "interfaces": [
         {"errors"},
+        {"libraries"},
         {"units", "params", "recordings"},
         {"component", "keys"},
         {"ports", "manifest", "rotation", "sums", "faces"},

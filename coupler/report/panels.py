@@ -4,8 +4,11 @@ Matplotlib is loaded by the functions that draw: a run without pictures does not
 """
 
 import math
+import sys
 from pathlib import Path
 from typing import Any
+
+from quintet.interfaces.libraries import how_to_install, is_installed
 
 WIDEST, TALLEST = 11.0, 8.5  # inches, shape of a page, and width of all panels together
 LARGEST = 6.5  # inches, edge of a panel that shows a place
@@ -16,6 +19,15 @@ AROUND = (0.8, 0.95)  # inches, what axes take beside and below a panel, and its
 MOST = 6  # columns
 GAP = 0.1  # inches, between rows of panels, and from their title
 DOTS = 120  # per inch
+
+
+def can_draw() -> bool:
+    """Whether pictures can be drawn; if not, print what is missing."""
+    if is_installed("matplotlib"):
+        return True
+    lacks = f"no pictures: matplotlib is not installed. {how_to_install('matplotlib')}"
+    print(f"quintet: {lacks}", file=sys.stderr, flush=True)
+    return False
 
 
 def curve_panels(count: int, title: str = "") -> tuple[Any, list[Any]]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from rich.table import Table
 
-from quintet.coupler.report.panels import curve_panels, save
+from quintet.coupler.report.panels import can_draw, curve_panels, save
 
 Row = dict[str, Any]
 
@@ -45,11 +45,11 @@ def three_digits(value: float | None) -> str:
 def draw(rows: Sequence[Row], out: Path, title: str = "") -> Path | None:
     """Draw error over processor time, both on a logarithmic scale, a panel for each expectation.
 
-    Returns `out`, or None where no refinement has an error to be drawn.
+    Returns `out`, or None where no refinement has an error to be drawn, or nothing can draw.
     """
     done = [row for row in rows if row["status"] == "done" and row["cpu"] > 0.0]
     names = list(dict.fromkeys(n for row in done for n, e in row["errors"].items() if e))
-    if not names:
+    if not names or not can_draw():
         return None
     figure, panels = curve_panels(len(names), title)
     for panel, name in zip(panels, names, strict=True):

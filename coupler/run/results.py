@@ -18,6 +18,7 @@ from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.run_files import LEDGER, PICTURES, RESULTS, SCENE
 from quintet.coupler.measures.expectation import ROUNDING, Expectation, Outcome, evaluate
 from quintet.coupler.report.comparison import comparison
+from quintet.coupler.report.panels import can_draw
 from quintet.coupler.report.side_views import side_views
 from quintet.coupler.report.view_steps import view_files
 from quintet.coupler.scene.overrides import run_arguments
@@ -81,7 +82,7 @@ def draw_until(scene: Scene, folder: Path, reached: float) -> None:
     """Draw what was due before a failure at a time [s]; what is torn is left out, and told."""
     output, out = scene.file.output, folder / PICTURES[0]
     due = [time for time in output.pictures if time <= reached]
-    if not due:
+    if not due or not can_draw():
         return
     try:
         if view_files(folder):
@@ -94,6 +95,8 @@ def draw_until(scene: Scene, folder: Path, reached: float) -> None:
 def draw(scene: Scene, folder: Path, outcomes: list[Outcome]) -> None:
     """Draw the pictures of a scene, and its time series against references."""
     output, title = scene.file.output, scene.headline
+    if not ((output.pictures or outcomes) and can_draw()):
+        return
     if output.pictures and view_files(folder):
         out, scale = folder / PICTURES[0], output.displacement_scale
         end = scene.file.end

@@ -13,6 +13,7 @@ from quintet.coupler.scene.needs import require_memory
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.libraries import require
 from quintet.interfaces.lines.endpoint import require_free
 
 
@@ -66,12 +67,14 @@ def headline(scene: Scene, folder: Path) -> str:
 
 
 def check_machine(scene: Scene) -> None:
-    """Refuse what this machine does not have: memory, an endpoint that is free, a launcher."""
+    """Refuse what this machine lacks: memory, a library, a launcher, an endpoint that is free."""
     require_memory(scene, scene.elsewhere)
     if scene.transport == "mpi":
         find_launcher()
-    elif scene.transport == "zenoh" and scene.endpoint:
-        require_free(scene.endpoint)
+    elif scene.transport == "zenoh":
+        require("zenoh", "transport zenoh")
+        if scene.endpoint:
+            require_free(scene.endpoint)
 
 
 def _run(scene: Scene, folder: Path, snapshot: Path | None, own_process: bool) -> int:

@@ -14,6 +14,7 @@ import psutil
 
 from quintet.interfaces.component import Component, Resources, make
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
+from quintet.interfaces.libraries import require
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
@@ -125,6 +126,7 @@ def build(manifest: Manifest, header: dict[str, Any]) -> Component:
 
 def over_zenoh(options: argparse.Namespace, hello: dict[str, Any]) -> Line:
     """Connect over zenoh; only a process that does so imports it."""
+    require("zenoh", "a component that joins over zenoh")
     # What a run does not use is not loaded: zenoh starts threads.
     from quintet.interfaces.lines.zenoh import connect, join
 
