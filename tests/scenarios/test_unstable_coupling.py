@@ -51,7 +51,7 @@ def advised(settings: Settings, text: str) -> Settings:
         (200.0, SERIAL),
         (50.0, ITERATED),
         pytest.param(50.0, SERIAL, marks=pytest.mark.slow),
-        pytest.param(20.0, SERIAL, marks=pytest.mark.slow),
+        pytest.param(20.0, SERIAL, marks=pytest.mark.full),
     ],
 )
 def test_a_light_body_in_long_windows_is_told_and_stable_as_advised(

@@ -28,7 +28,7 @@ def test_a_build_that_does_nothing_ends_the_run_after_its_patience(faulty, trans
 
 @pytest.mark.parametrize("transport", ["memory", ZENOH])
 def test_a_build_may_compute_for_thirty_times_its_patience(faulty, transport):
-    check_build(_hangs(faulty, "computes", transport, 0.2), "computing", "toy_faults.py")
+    check_build(_hangs(faulty, "computes", transport, 0.1), "computing", "toy_faults.py")
 
 
 def test_over_memory_a_build_that_holds_the_lock_of_python_ends(faulty):

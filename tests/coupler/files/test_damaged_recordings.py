@@ -115,8 +115,7 @@ def try_bits(read, whole, path, count, seed=0):
 @pytest.mark.parametrize(
     "count",
     [
-        15,
-        pytest.param(300, marks=pytest.mark.slow),
+        pytest.param(120, marks=pytest.mark.slow),
         pytest.param(2500, marks=pytest.mark.full),
     ],
 )
