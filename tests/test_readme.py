@@ -43,6 +43,15 @@ def test_the_picture_and_the_files_it_links_are_there():
         assert (ROOT / link).exists(), link
 
 
+def test_every_scene_has_a_row_that_names_the_kind_of_its_reference():
+    table = RUNNING.split("## Errors and times")[1].split("\n## ")[0]
+    rows = [line.split("|")[1:-1] for line in table.splitlines() if line.startswith("| ")][1:]
+    kinds = {kind.strip() for row in rows for kind in row[2].split(",")}
+    assert kinds == {"exact", "experiment", "other code", "own finest run"}
+    named = {name for row in rows for name in re.findall(r"quintet run (\w+)", row[0])}
+    assert named == {path.parent.name for path in (ROOT / "scenarios").glob("*/scene.toml")}
+
+
 def test_the_scenes_it_runs_exist():
     named = set(re.findall(r"quintet (?:run|check|join) ([a-z]\w*)(?![\w.])", README + RUNNING))
     assert named and all((ROOT / "scenarios" / name / "scene.toml").exists() for name in named)
