@@ -20,12 +20,6 @@ from quintet.components.meshless_gas.readings import Front, Steady
 from quintet.components.meshless_gas.starts import Riemann, Vortex, Zone
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
-# Boundaries of clouds in layers.
-NAMES = {
-    "sphere": ("wall", "far", "exit"),
-    "plate": ("wall", "ahead", "inlet", "far", "exit"),
-}
-
 
 @parameters
 class MeshlessGasParams:
@@ -202,8 +196,9 @@ class MeshlessGasParams:
 
     def _wrong_layers(self) -> list[str]:
         """What does not fit among the boundaries of a cloud in layers."""
-        names = NAMES["sphere" if self.sphere is not None else "plate"]
-        mistakes = wrong_round_layers(self.boundaries, names, self.sphere is not None)
+        cloud = self.sphere or self.plate
+        assert cloud is not None
+        mistakes = wrong_round_layers(self.boundaries, cloud.SIDES, self.sphere is not None)
         if mistakes or self.sphere is None:
             return mistakes
         far = self.boundaries["far"].state

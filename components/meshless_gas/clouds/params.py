@@ -191,6 +191,7 @@ class SphereCloud:
     """
 
     RENAMED: ClassVar = {"rays": "points_around", "farthest": "outer_radius"}
+    SIDES: ClassVar = ("wall", "far", "exit")
     centre: Vector = (0.0, 0.0, 0.0)
     radius: Positive
     points_around: Annotated[int, Field(ge=8)]
@@ -265,6 +266,7 @@ class PlateCloud:
     """
 
     RENAMED: ClassVar = {"rays": "points_along"}
+    SIDES: ClassVar = ("wall", "ahead", "inlet", "far", "exit")
     length: Positive
     ahead: Positive
     height: Positive
