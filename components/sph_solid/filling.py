@@ -6,7 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
+from quintet.components.shared.geometry.lattice import (
+    cell_centres,
+    cells_along,
+    cells_between,
+    lattice_points,
+)
 from quintet.components.shared.geometry.shapes import Cylinder, Mesh, Sphere
 from quintet.components.sph_solid.body import Body
 from quintet.components.sph_solid.params import SphSolidParams
@@ -38,10 +43,7 @@ def filling(body: Body, params: SphSolidParams) -> Filling:
 
 
 def _box(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
-    axes = [
-        cell_centres(low, high, max(1, round((high - low) / params.spacing)))
-        for low, high in zip(*body.bounds, strict=True)
-    ]
+    axes = [cells_along(low, high, params.spacing) for low, high in zip(*body.bounds, strict=True)]
     if params.dimensions == 2:
         axes[1] = np.zeros(1)
     points = lattice_points(axes)
@@ -59,7 +61,7 @@ def _round(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     for axis in range(3):
         if axis == along:
             edge = high[axis] - low[axis]
-            axes.append(cell_centres(-0.5 * edge, 0.5 * edge, max(1, round(edge / params.spacing))))
+            axes.append(cells_along(-0.5 * edge, 0.5 * edge, params.spacing))
         else:
             half = math.ceil(radius / params.spacing)
             axes.append(cell_centres(-half * params.spacing, half * params.spacing, 2 * half))
@@ -79,7 +81,7 @@ def _tube(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
     assert isinstance(shape, Cylinder) and shape.inner_radius is not None
     low, high = shape.bounds
     along, inner, outer = shape.axis, shape.inner_radius, shape.radius
-    layers = max(1, round((outer - inner) / params.spacing))
+    layers = cells_between(inner, outer, params.spacing)
     edges = np.linspace(inner, outer, layers + 1)
     circles, shares = [], []
     for a, b in itertools.pairwise(edges):
@@ -89,8 +91,7 @@ def _tube(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
         circles.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
         shares.append(np.full(count, (b * b - a * a) / count))
     circle, share = np.concatenate(circles), np.concatenate(shares)
-    edge = high[along] - low[along]
-    heights = cell_centres(low[along], high[along], max(1, round(edge / params.spacing)))
+    heights = cells_along(low[along], high[along], params.spacing)
     if params.dimensions == 2:
         heights = np.zeros(1)
     points = np.empty((len(heights), len(circle), 3))

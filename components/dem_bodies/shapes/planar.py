@@ -9,7 +9,9 @@ from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.shared.geometry.polygons import (
     area_moments,
     edges,
+    half_planes,
     in_order,
+    meeting_points,
     polygon_depths,
 )
 from quintet.interfaces.component import Array
@@ -26,12 +28,8 @@ def corners(body: RigidBody) -> Array:
 
 def inner_corners(corner: Array, radius: float) -> Array:
     """Corners (k, 2) m of the polygon at which a circle of a radius [m] is swept round."""
-    along = edges(corner)
-    length = np.linalg.norm(along, axis=1)
-    away = np.stack([along[:, 1], -along[:, 0]], axis=1) / length[:, None]
-    level = (away * corner).sum(axis=1) - radius
-    pairs = zip(np.roll(away, 1, axis=0), away, np.roll(level, 1), level, strict=True)
-    return np.array([np.linalg.solve([n, m], [a, b]) for n, m, a, b in pairs])
+    away, level = half_planes(corner)
+    return meeting_points(away, level - radius)
 
 
 def shortest_edge(body: RigidBody) -> float:
@@ -54,10 +52,8 @@ def polygon_gap(a: Array, b: Array) -> float:
 
 def _separation(a: Array, b: Array) -> float:
     """How far [m] b is beyond that edge of a which it is furthest beyond."""
-    along = edges(a)
-    away = np.stack([along[:, 1], -along[:, 0]], axis=1)
-    away = away / np.linalg.norm(away, axis=1, keepdims=True)
-    return float((b @ away.T - (away * a).sum(axis=1)).min(axis=0).max())
+    away, level = half_planes(a)
+    return float((b @ away.T - level).min(axis=0).max())
 
 
 def leaves_edges(body: RigidBody, radius: float) -> bool:

@@ -27,6 +27,11 @@ def cells_between(low: float, high: float, spacing: float) -> int:
     return max(1, round((high - low) / spacing))
 
 
+def cells_along(low: float, high: float, spacing: float) -> Array:
+    """Centres (n,) m of the cells from `low` to `high` [m] whose length is nearest to a spacing."""
+    return cell_centres(low, high, cells_between(low, high, spacing))
+
+
 def fill_box(
     box: tuple[Sequence[float], Sequence[float]],
     counts: Sequence[int],

@@ -33,10 +33,30 @@ def area_moments(corner: Array) -> Area:
     return Area(area, corner[0] + centre, moment)
 
 
+def area(corner: Array) -> float:
+    """Area [m2] of a polygon that goes round from x to z; below 0 the other way."""
+    x, z = corner.T
+    return 0.5 * float((x * np.roll(z, -1) - np.roll(x, -1) * z).sum())
+
+
+def half_planes(corner: Array) -> tuple[Array, Array]:
+    """Outward normals (k, 2) and levels (k,) m of edges; a convex polygon is where n·x < level."""
+    along = edges(corner)
+    away = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    away = away / np.linalg.norm(away, axis=1, keepdims=True)
+    return away, (away * corner).sum(axis=1)
+
+
+def meeting_points(away: Array, level: Array) -> Array:
+    """Corners (k, 2) m at which each line n·x = level meets the one before it."""
+    pairs = zip(np.roll(away, 1, axis=0), away, np.roll(level, 1), level, strict=True)
+    return np.array([np.linalg.solve([n, m], [a, b]) for n, m, a, b in pairs])
+
+
 def in_order(corners: Sequence[tuple[float, float]]) -> Array:
     """Corners of a polygon that may go round either way, from x to z."""
     outline = np.array(corners)
-    return outline[::-1].copy() if _cross(outline, edges(outline)).sum() < 0.0 else outline
+    return outline[::-1].copy() if area(outline) < 0.0 else outline
 
 
 def in_space(plane: Array) -> Array:

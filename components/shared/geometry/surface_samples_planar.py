@@ -8,7 +8,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from quintet.components.shared.geometry.polygons import in_space, polygon_depths
+from quintet.components.shared.geometry.polygons import (
+    area,
+    half_planes,
+    in_space,
+    meeting_points,
+    polygon_depths,
+)
 from quintet.components.shared.geometry.surface_samples_closed import Body
 from quintet.components.shared.geometry.surface_samples_solid import box_lattice
 from quintet.interfaces.component import Array
@@ -73,20 +79,6 @@ def polygon_images(corner: Array, arm: Array, normal: Array) -> Array:
     return np.asarray(arm + 2.0 * (nearest / steepest)[:, None] * normal)
 
 
-def half_planes(corner: Array) -> tuple[Array, Array]:
-    """Outward normals (k, 2) and levels (k,) m of a convex polygon's edges: inside n·x < level."""
-    along = np.roll(corner, -1, axis=0) - corner
-    away = np.stack([along[:, 1], -along[:, 0]], axis=1)
-    away = away / np.linalg.norm(away, axis=1, keepdims=True)
-    return away, np.einsum("kd,kd->k", away, corner)
-
-
-def area(corner: Array) -> float:
-    """Area [m2] of a polygon that goes round from x to z."""
-    x, z = corner.T
-    return 0.5 * float((x * np.roll(z, -1) - np.roll(x, -1) * z).sum())
-
-
 def offset_inward(corner: Array, distance: float) -> Array:
     """Corners (k, 2) m of the polygon whose edges lie so far further in; (0, 2): nothing is left.
 
@@ -97,9 +89,7 @@ def offset_inward(corner: Array, distance: float) -> Array:
     away, level = half_planes(corner)
     level = level - distance
     if distance < 0.0:
-        before = np.roll(np.arange(len(corner)), 1)
-        pairs = zip(away[before], away, level[before], level, strict=True)
-        return np.array([np.linalg.solve([n, m], [a, b]) for n, m, a, b in pairs])
+        return meeting_points(away, level)
     for n, a in zip(away, level, strict=True):
         corner = _clip(corner, corner @ n - a)
     edge_length = np.linalg.norm(corner - np.roll(corner, 1, axis=0), axis=1)

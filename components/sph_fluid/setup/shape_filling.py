@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.geometry.lattice import cell_centres, lattice_points
+from quintet.components.shared.geometry.lattice import cell_centres, cells_between, lattice_points
 from quintet.components.shared.geometry.shapes import Cylinder, Sphere
 from quintet.components.sph_fluid.setup.shapes import FluidRegion
 
@@ -43,7 +43,7 @@ def edges(shape: FluidRegion, spacing: float, planar: bool) -> list[Edge]:
             middle, half = 0.5 * (low + high), 0.5 * count * spacing
             cut.append(Edge(middle - half, middle + half, count))
         else:
-            count = 1 if planar and axis == 1 else max(1, round((high - low) / spacing))
+            count = 1 if planar and axis == 1 else cells_between(low, high, spacing)
             cut.append(Edge(low, high, count))
     return cut
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from quintet.components.shared.geometry import shape_keys
 from quintet.components.shared.geometry.bounds import Bounds, Corners, Mask
-from quintet.components.shared.geometry.polygons import inside_polygon, require_simple
+from quintet.components.shared.geometry.polygons import area, inside_polygon, require_simple
 from quintet.components.shared.geometry.shapes import Cylinder, Mesh, Sphere
 from quintet.components.sph_fluid.setup.geometry import Axis
 from quintet.interfaces.component import Array
@@ -43,9 +43,7 @@ class Prism:
     @property
     def volume(self) -> float:
         """Volume [m3]."""
-        pairs = zip(self.corners, (*self.corners[1:], self.corners[0]), strict=True)
-        area = 0.5 * sum(a * d - b * c for (a, b), (c, d) in pairs)
-        return abs(area) * (self.ends[1] - self.ends[0])
+        return abs(area(np.array(self.corners))) * (self.ends[1] - self.ends[0])
 
     def contains(self, x: Array, y: Array, z: Array) -> Mask:
         """Whether places [m] are inside."""
