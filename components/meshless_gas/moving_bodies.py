@@ -100,51 +100,69 @@ class Body:
                 f"a body must have {' and '.join(lacking)}, given here or, of a driven body, "
                 "stated by its partner; found neither. Give it here."
             )
-        if self.is_adiabatic and self.temperature is not None:
-            raise ValueError(
+        rules = [*self._rules_of_walls(), *self._rules_of_layers()]
+        for is_wrong, sentence in (*rules, *(self._rules_of_sectors() if self.is_cut else ())):
+            if is_wrong:
+                raise ValueError(sentence)
+
+    def _rules_of_walls(self) -> list[tuple[bool, str]]:
+        """What does not fit between walls and friction, and how to correct it."""
+        return [
+            (
+                self.is_adiabatic and self.temperature is not None,
                 "an adiabatic wall has the temperature of the gas; found both. Leave out "
-                "temperature or is_adiabatic."
-            )
-        if self.angular_velocity and not self.is_no_slip:
-            raise ValueError(
+                "temperature or is_adiabatic.",
+            ),
+            (
+                bool(self.angular_velocity) and not self.is_no_slip,
                 "angular_velocity is of a wall that holds the gas; found one that slips. Give a "
-                "temperature, or leave out angular_velocity."
-            )
-        if (self.shock_height is None) != (self.shock_spacing is None):
-            raise ValueError(
+                "temperature, or leave out angular_velocity.",
+            ),
+        ]
+
+    def _rules_of_layers(self) -> list[tuple[bool, str]]:
+        """What does not fit among the heights of layers, and how to correct it."""
+        at_sector = self.first_spacing_at_sector is not None
+        return [
+            (
+                (self.shock_height is None) != (self.shock_spacing is None),
                 "shock_height and shock_spacing belong together; found one of them. Give both, or "
-                "neither."
-            )
-        if self.shock_spacing is not None and self.first_spacing_at_sector is not None:
-            raise ValueError(
+                "neither.",
+            ),
+            (
+                self.shock_spacing is not None and at_sector,
                 "layers are as high at all angles where shock_spacing sets them; found "
-                "first_spacing_at_sector beside it. Leave out one of them."
-            )
-        if not self.is_cut:
-            if self.first_spacing_at_sector is not None:
-                raise ValueError(
-                    "first_spacing_at_sector is of a cloud that ends at a sector; found none. Give "
-                    "a sector of π/2, or leave out first_spacing_at_sector."
-                )
-            return
-        if abs(self.sector - 0.5 * math.pi) > CLOSE:
-            raise ValueError(
+                "first_spacing_at_sector beside it. Leave out one of them.",
+            ),
+            (
+                at_sector and not self.is_cut,
+                "first_spacing_at_sector is of a cloud that ends at a sector; found none. Give "
+                "a sector of π/2, or leave out first_spacing_at_sector.",
+            ),
+        ]
+
+    def _rules_of_sectors(self) -> list[tuple[bool, str]]:
+        """What does not fit a cloud that ends at a sector, and how to correct it."""
+        layers, first = len(self.heights) - 1, self.first_spacing_at_sector or 0.0
+        thickest = self.heights[-1] / layers
+        return [
+            (
+                abs(self.sector - 0.5 * math.pi) > CLOSE,
                 f"a cloud ends at π/2 = 1.5707963 or is whole, π; found sector = {self.sector:g}. "
-                "Correct sector."
-            )
-        if self.is_driven or any(self.velocity):
-            raise ValueError(
+                "Correct sector.",
+            ),
+            (
+                self.is_driven or any(self.velocity),
                 "a body whose cloud ends at a sector must stand still, for its box ends there too; "
-                "found one that moves. Leave out sector, or is_driven and velocity."
-            )
-        heights, first = self.heights, self.first_spacing_at_sector or 0.0
-        thickest = heights[-1] / (len(heights) - 1)
-        if first > thickest:
-            raise ValueError(
-                f"first_spacing_at_sector: {len(heights) - 1} layers over {heights[-1]:g} m are "
+                "found one that moves. Leave out sector, or is_driven and velocity.",
+            ),
+            (
+                first > thickest,
+                f"first_spacing_at_sector: {layers} layers over {self.heights[-1]:g} m are "
                 f"{thickest:.4g} m thick in the mean, and the first can be no thicker; found "
-                f"{first:g} m. Lower it, or growth."
-            )
+                f"{first:g} m. Lower it, or growth.",
+            ),
+        ]
 
     @property
     def is_no_slip(self) -> bool:

@@ -45,30 +45,14 @@ class FringeStencils:
     def join(self, active: Flags, centre: Array) -> None:
         """Find neighbours across seams, and coefficients of all nodes that they changed for."""
         cloud, layout, neighbours = self.cloud, self.layout, self.stencils.neighbours
-        count = cloud.nodes
-        region = cloud.region[:count]
-        band = np.zeros(count, bool)
-        near_any = np.zeros(count, bool)
-        for b, heights in enumerate(layout.heights_of(cloud.positions[:count], centre)):
-            reach = BAND * layout.spacing[b]
-            mine = region == b + 1
-            band |= ~mine & (heights < layout.thickness[b] + reach)
-            band |= mine & (heights > layout.thickness[b] - reach)
-            near_any |= ~mine & (heights < layout.thickness[b] + 2.0 * reach) | mine
-        band &= active[:count] & (layout.height > 0.0)
-        # Of a box that is coarser than the cloud some reach farther.
-        far = np.flatnonzero(active[:count] & ~band & ~active[layout.home].all(axis=1))
-        band[far[layout.height[far] > 0.0]] = True
-        reached = layout.home[far]
-        near_any[reached[reached < count]] = True
-        if not layout.planar:
-            band[layout.leaving] = False  # they have the state of the node beside them
+        region = cloud.region[: cloud.nodes]
+        band, near_any = self._beside_seams(active, centre)
         self._refuse_walls(band & self.no_slip, active)
         rows = np.flatnonzero(band & ~self.no_slip)
         before = self.touched
         neighbours[before] = layout.home[before]
         images = near_any[cloud.owner] & active[cloud.owner]
-        among = np.flatnonzero(np.concatenate([near_any & active[:count], images]))
+        among = np.flatnonzero(np.concatenate([near_any & active[: cloud.nodes], images]))
         near = around(rows, among, cloud, NEAR * layout.fringe_count, layout.planar, self.team)
         lacks = choose(
             rows, near, cloud.positions, cloud.spacing, centre, layout.radii, layout.fringe_count,
@@ -83,6 +67,26 @@ class FringeStencils:
         self.touched, self.across = rows[~(whole & ~other)], rows[other]
         self.fit(np.union1d(before, self.touched))
         self.fitted[:] = centre
+
+    def _beside_seams(self, active: Flags, centre: Array) -> tuple[Flags, Flags]:
+        """Nodes (n,) whose neighbours may lie across a seam, and nodes that these may be."""
+        cloud, layout, count = self.cloud, self.layout, self.cloud.nodes
+        band, near_any = np.zeros(count, bool), np.zeros(count, bool)
+        for b, heights in enumerate(layout.heights_of(cloud.positions[:count], centre)):
+            reach = BAND * layout.spacing[b]
+            mine = cloud.region[:count] == b + 1
+            band |= ~mine & (heights < layout.thickness[b] + reach)
+            band |= mine & (heights > layout.thickness[b] - reach)
+            near_any |= ~mine & (heights < layout.thickness[b] + 2.0 * reach) | mine
+        band &= active[:count] & (layout.height > 0.0)
+        # Of a box that is coarser than the cloud some reach farther.
+        far = np.flatnonzero(active[:count] & ~band & ~active[layout.home].all(axis=1))
+        band[far[layout.height[far] > 0.0]] = True
+        reached = layout.home[far]
+        near_any[reached[reached < count]] = True
+        if not layout.planar:
+            band[layout.leaving] = False  # they have the state of the node beside them
+        return band, near_any
 
     def _refuse_walls(self, close: Flags, active: Flags) -> None:
         """Refuse clouds that cover neighbours of walls of the box that hold the gas."""
