@@ -14,7 +14,7 @@ from quintet.components.shared.geometry import shape_keys
 from quintet.components.shared.geometry.bounds import ORIGIN
 from quintet.components.shared.geometry.planar_shapes import Disc, Polygon
 from quintet.components.shared.geometry.polygons import area_moments, in_space, require_outline
-from quintet.components.shared.geometry.shapes import Box, Sphere
+from quintet.components.shared.geometry.shapes import Box, Mesh, Sphere
 from quintet.interfaces.component import Array
 
 NEEDS = {
@@ -51,19 +51,20 @@ def rigid_body(where: str, body: Any) -> RigidBody:
 
 
 def _place(where: str, body: Any) -> dict[str, Any]:
-    """Centre of mass, and the edges of a box."""
+    """Centre of mass, the shape, and the edges of a box."""
     if body.shape == "spheres":
         return _from_origin(body, _centre_of_spheres(where, body))
     if body.shape == "mesh":
-        return _from_origin(body, _centre_of_mesh(where, body))
+        mesh = Mesh(file=body.file, scale=body.scale or 1.0)
+        return _from_origin(body, _centre_of_mesh(where, body)) | {"geometry": mesh}
     shape = shape_keys.shape_of(body, where)
-    if isinstance(shape, Box):
-        return {"position": shape.centre, "size": shape.size}
     if isinstance(shape, Polygon):
         require_outline(f"{where}.corners", shape.corners)
-        return _from_origin(body, in_space(area_moments(shape.outline).centre[None])[0])
-    assert isinstance(shape, Sphere | Disc)
-    return {"position": shape.centre}
+        centre = in_space(area_moments(shape.outline).centre[None])[0]
+        return _from_origin(body, centre) | {"geometry": shape}
+    assert isinstance(shape, Box | Sphere | Disc)
+    size = shape.size if isinstance(shape, Box) else None
+    return {"position": shape.centre, "size": size, "geometry": shape}
 
 
 def _centre_of_spheres(where: str, body: Any) -> Array:

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from quintet.components.shared.geometry.bounds import Corners
+from quintet.components.shared.geometry.shapes import Shape
 from quintet.interfaces.params import (
     Count,
     NotNegative,
@@ -86,6 +87,7 @@ class RigidBody:
 
     shape: str
     position: Vector  # m, of the centre of mass
+    geometry: Shape | None = None  # where the scene has it; None of a union of spheres
     size: Vector | None = None  # m, edges of a box
     edge_radius: float | None = None  # m, of a box or polygon
     radius: float | None = None  # m, of a sphere or disc

@@ -9,13 +9,11 @@ from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.placement import (
     ROUNDED,
     contact_spheres,
-    cover,
     edge_radius,
 )
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry.box_faces import CORNERS
-from quintet.components.shared.geometry.polygons import area_moments
 from quintet.interfaces.component import Array
 
 THIN = 0.1  # of a box's longest edge: a thinner box is listed as if it were as thick
@@ -41,40 +39,23 @@ def measure(body: RigidBody) -> Solid:
     """Measure a body: a union of spheres by voxels, all others exactly."""
     if body.size is not None:
         size = np.array(body.size)
-        volume = float(size.prod())
-        inertia = (np.eye(3) * (size**2).sum() - np.diag(size**2)) / 12.0 * volume
         centres = CORNERS * (0.5 * size - edge_radius(body))
         radii = np.full(8, edge_radius(body))
     else:
         centres, radii = contact_spheres(body)
         size = np.ptp(np.vstack([centres - radii[:, None], centres + radii[:, None]]), axis=0)
         if body.shape in planar.SHAPES:
-            volume, inertia = planar_inertia(body)
             if body.corners is not None:
                 size[[0, 2]] = np.ptp(planar.corners(body), axis=0)
             size[1] = 1.0
-        elif body.radius is not None:
-            diameter = 2.0 * body.radius
-            volume = np.pi / 6.0 * diameter**3
-            inertia = np.eye(3) * volume * diameter**2 / 10.0
-        elif (covered := cover(body)) is not None:
-            volume, inertia = covered.volume, covered.inertia
-        else:
-            assert body.centres is not None and body.radii is not None
-            volume, _, inertia = measure_union((body.centres, body.radii))
+    if body.geometry is not None:
+        volume, inertia = body.geometry.volume, body.geometry.inertia
+    else:
+        assert body.centres is not None and body.radii is not None
+        volume, _, inertia = measure_union((body.centres, body.radii))
     density = body.density if body.mass is None else body.mass / volume
     assert density is not None
     return Solid(density * volume, density * inertia, centres, radii, size)
-
-
-def planar_inertia(body: RigidBody) -> tuple[float, Array]:
-    """Volume [m3] of 1 m along y, and inertia at unit density: about all axes that about y."""
-    if body.radius is not None:
-        diameter = 2.0 * body.radius
-        area, moment = np.pi / 4.0 * diameter**2, np.pi / 32.0 * diameter**4
-    else:
-        area, _, moment = area_moments(planar.corners(body))
-    return area, moment * np.eye(3)
 
 
 def is_ball(body: RigidBody) -> bool:

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from quintet.components.shared.geometry.bounds import ORIGIN, Bounds, Corners
-from quintet.components.shared.geometry.polygons import area_moments, in_order
+from quintet.components.shared.geometry.polygons import Area, area_moments, in_order
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import Positive, Vector, parameters
 
@@ -37,6 +37,16 @@ class Disc:
     def share(self) -> float:
         """Part of the box of its bounds that it fills."""
         return 0.25 * math.pi
+
+    @property
+    def volume(self) -> float:
+        """Volume [m3]."""
+        return math.pi / 4.0 * (2.0 * self.radius) ** 2
+
+    @property
+    def inertia(self) -> Array:
+        """Inertia (3, 3) m5 about its centre, at unit density; about all axes that about y."""
+        return math.pi / 32.0 * (2.0 * self.radius) ** 4 * np.eye(3)
 
 
 @parameters
@@ -73,3 +83,18 @@ class Polygon:
     def share(self) -> float:
         """Part of the box of its bounds that it fills."""
         return area_moments(self.outline).area / math.prod(np.ptp(self.outline, axis=0).tolist())
+
+    @property
+    def volume(self) -> float:
+        """Volume [m3]."""
+        return self._moments.area
+
+    @property
+    def inertia(self) -> Array:
+        """Inertia (3, 3) m5 about its centre, at unit density; about all axes that about y."""
+        return self._moments.moment * np.eye(3)
+
+    @property
+    def _moments(self) -> Area:
+        outline = self.outline
+        return area_moments(outline - area_moments(outline).centre)

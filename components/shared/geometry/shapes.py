@@ -55,6 +55,18 @@ class Box:
         return 1.0
 
     @property
+    def volume(self) -> float:
+        """Volume [m3]."""
+        return math.prod(self.size)
+
+    @property
+    def inertia(self) -> Array:
+        """Inertia (3, 3) m5 about its middle, at unit density."""
+        squares = np.array(self.size) ** 2
+        inertia: Array = (np.eye(3) * squares.sum() - np.diag(squares)) / 12.0 * self.volume
+        return inertia
+
+    @property
     def size(self) -> Vector:
         """Edges [m], as the decimal numbers of the corners give them."""
         x, y, z = map(_difference, self.highest, self.lowest)
@@ -99,6 +111,16 @@ class Sphere:
     def share(self) -> float:
         """Part of the box of its bounds that it fills."""
         return math.pi / 6.0
+
+    @property
+    def volume(self) -> float:
+        """Volume [m3]."""
+        return math.pi / 6.0 * (2.0 * self.radius) ** 3
+
+    @property
+    def inertia(self) -> Array:
+        """Inertia (3, 3) m5 about its middle, at unit density."""
+        return np.eye(3) * self.volume * (2.0 * self.radius) ** 2 / 10.0
 
     def contains(self, x: Array, y: Array, z: Array) -> Mask:
         """Whether places [m] are inside."""
@@ -167,6 +189,19 @@ class Cylinder:
         hollow = 0.0 if self.inner_radius is None else (self.inner_radius / self.radius) ** 2
         return 0.25 * math.pi * (1.0 - hollow)
 
+    @property
+    def volume(self) -> float:
+        """Volume [m3]."""
+        return self.share * (2.0 * self.radius) ** 2 * self.length
+
+    @property
+    def inertia(self) -> Array:
+        """Inertia (3, 3) m5 about its middle, at unit density."""
+        squares = self.radius**2 + (self.inner_radius or 0.0) ** 2
+        across = (3.0 * squares + self.length**2) / 12.0
+        moments = np.where(np.arange(3) == self.axis, 0.5 * squares, across)
+        return np.diag(self.volume * moments)
+
     def contains(self, x: Array, y: Array, z: Array) -> Mask:
         """Whether places [m] are inside."""
         places, k = (x, y, z), self.axis
@@ -218,6 +253,11 @@ class Mesh:
     def volume(self) -> float:
         """Volume [m3]."""
         return self.solid.volume
+
+    @property
+    def inertia(self) -> Array:
+        """Inertia (3, 3) m5 about its centre of mass, at unit density."""
+        return self.solid.inertia
 
     def contains(self, x: Array, y: Array, z: Array) -> Mask:
         """Whether places [m] are inside."""

@@ -35,6 +35,21 @@ def test_a_shape_contains_its_share_of_its_bounds(name):
     assert not shape.contains(*(axis + 10.0 for axis in axes)).any()
 
 
+@pytest.mark.parametrize("name", SHAPES)
+def test_volume_and_inertia_are_those_of_what_a_shape_contains(name):
+    shape = SHAPES[name]
+    edges = [high - low for low, high in zip(*shape.bounds, strict=True)]
+    axes = [edge * ((np.arange(60) + 0.5) / 60 - 0.5) for edge in edges]
+    arm = np.stack([place.ravel() for place in np.meshgrid(*axes, indexing="ij")])
+    middle = 0.5 * np.sum(shape.bounds, axis=0)
+    within = arm[:, shape.contains(*(arm + middle[:, None]))]
+    cell = math.prod(edges) / 60**3
+    assert shape.volume == pytest.approx(cell * within.shape[1], rel=2e-2)
+    second = within @ within.T * cell
+    inertia = np.trace(second) * np.eye(3) - second
+    assert shape.inertia == pytest.approx(inertia, rel=3e-2, abs=1e-3 * np.trace(inertia))
+
+
 def test_edges_and_middles_of_boxes_are_those_of_decimal_numbers():
     box = Box(lowest=(5.2, 0.275, 0.15), highest=(5.35, 0.425, 0.3))
     assert 5.35 - 5.2 != 0.15  # as binary numbers
