@@ -44,9 +44,9 @@ class Prescribed(Component):
     def sample(self, request: Fields) -> Fields:
         """Sample the surfaces of all bodies as a partner requests."""
         # Left out of scenes whose bodies nobody samples.
-        from quintet.components.stand_ins.body_samples import sample
+        from quintet.components.shared.geometry.surface_samples import rigid_answer, sampler_of
 
-        return sample(self.shapes, request)
+        return rigid_answer("motion", request, [sampler_of(shape) for shape in self.shapes])
 
     def stable_dt(self) -> float:
         """Allow any step: the path is known."""

@@ -9,7 +9,6 @@ from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry import surface_samples as surfaces
-from quintet.components.shared.geometry.mesh_files import read
 from quintet.interfaces.component import Array, Fields
 
 
@@ -29,17 +28,10 @@ def _form(body: RigidBody) -> object:
 
 
 def _sampler(body: RigidBody) -> surfaces.Sampler:
-    if body.size is not None:
-        return partial(surfaces.box, body.size)
     if body.corners is not None:
         return partial(surfaces.polygon, planar.corners(body))
-    if body.file is not None:
-        solid = read(body.file, body.scale or 1.0)
-        return partial(surfaces.mesh, solid.triangles - solid.centre, solid.volume)
-    if body.radius is None:
-        assert body.centres is not None and body.radii is not None
-        volume, centre, _ = measure_union((body.centres, body.radii))
-        centres = np.array(body.centres) - centre
-        return partial(surfaces.spheres, centres, np.array(body.radii), volume)
-    shape = surfaces.disc if body.shape in planar.SHAPES else surfaces.sphere
-    return partial(shape, 2.0 * body.radius)
+    if body.geometry is not None:
+        return surfaces.sampler_of(body.geometry)
+    assert body.centres is not None and body.radii is not None
+    volume, centre, _ = measure_union((body.centres, body.radii))
+    return partial(surfaces.spheres, np.array(body.centres) - centre, np.array(body.radii), volume)

@@ -6,13 +6,16 @@ A solver that moves bodies answers `Component.sample` by `rigid_answer`, one tha
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from quintet.components.shared.geometry import surface_samples_closed as closed
 from quintet.components.shared.geometry import surface_samples_planar as plane
 from quintet.components.shared.geometry import surface_samples_solid as solid
+from quintet.components.shared.geometry.planar_shapes import Disc, Polygon
 from quintet.components.shared.geometry.polygons import is_convex
+from quintet.components.shared.geometry.shapes import Box, Mesh, Shape, Sphere
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
 
@@ -102,6 +105,18 @@ def require_width(width: float, asked: Sampling) -> None:
     """Refuse a body of a width [m] that is less than samples need."""
     if width < asked.least:
         raise ThinError(f"{width:g}")
+
+
+def sampler_of(shape: Shape) -> Sampler:
+    """How a shape is sampled about its centre; a polygon is about the origin of its corners."""
+    if isinstance(shape, Polygon):
+        return partial(polygon, shape.outline)
+    if isinstance(shape, Mesh):
+        return partial(mesh, shape.solid.triangles - shape.solid.centre, shape.volume)
+    if isinstance(shape, Box):
+        return partial(box, shape.size)
+    assert isinstance(shape, Sphere | Disc)
+    return partial(disc if isinstance(shape, Disc) else sphere, 2.0 * shape.radius)
 
 
 def sphere(diameter: float, asked: Sampling) -> BodySamples:
