@@ -23,6 +23,7 @@ def turning(rays=24, **body):
         "gas": {"gas_constant": PRESSURE, "viscosity": VISCOSITY, "reference_temperature": 1.0},
         "viscous": True,
         "neighbours": 8,
+        "limiter": "van_albada",
         "box": {"lowest": [-4.0, 0.0, -4.0], "highest": [4.0, 0.0, 4.0], "spacing": spacing},
         "boundaries": {f"{axis}{side}": {"kind": "symmetry"} for axis in "xz" for side in "-+"},
         "initial": {"density": 1.0, "pressure": PRESSURE},
