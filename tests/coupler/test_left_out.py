@@ -29,6 +29,19 @@ except SystemExit as ended:
     with open(os.environ["FOUND"], "w") as file:
         json.dump([ended.code, sorted(sys.modules)], file)
 """
+CHECKS = """
+import json, os, sys
+from quintet.coupler.cli import main
+found, seen = {}, set()
+for name in sys.argv[1:]:
+    try:
+        main(["check", name])
+    except SystemExit as ended:
+        found[name] = ended.code, sorted(set(sys.modules) - seen)
+    seen = set(sys.modules)
+with open(os.environ["FOUND"], "w") as file:
+    json.dump(found, file)
+"""
 SPY = """
 import os, sys
 from toys import Toy
@@ -41,19 +54,24 @@ class Spy(Toy):
 """
 
 
-def modules(tmp_path, *arguments):
-    """Run the command line in a fresh interpreter; return what it imported."""
+def fresh(tmp_path, program, *arguments):
+    """Run a program in a fresh interpreter; return what it found, and what it said of errors."""
     found = tmp_path / "modules.json"
     done = subprocess.run(
-        [sys.executable, "-c", MAIN, *arguments],
+        [sys.executable, "-c", program, *arguments],
         env={**os.environ, "FOUND": str(found)},
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=120,
     )
-    status, names = json.loads(found.read_text())
-    assert status == 0, done.stderr
+    return json.loads(found.read_text()), done.stderr
+
+
+def modules(tmp_path, *arguments):
+    """Run the command line in a fresh interpreter; return what it imported."""
+    (status, names), said = fresh(tmp_path, MAIN, *arguments)
+    assert status == 0, said
     return set(names)
 
 
@@ -97,11 +115,19 @@ def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
     assert "quintet.interfaces.lines.memory" not in names
 
 
+@pytest.fixture(scope="module")
+def checked(tmp_path_factory):
+    """Check all scenes one by one; return the status of each, and what was first imported there."""
+    # Last the one that needs scipy, for trimesh, which reads its hull.
+    names = sorted(library(), key=lambda name: (name == "floating_hull", name))
+    return fresh(tmp_path_factory.mktemp("checked"), CHECKS, *names)[0]
+
+
 @pytest.mark.parametrize("name", library())
-def test_checking_a_scene_imports_no_solver_and_no_transport(tmp_path, name):
-    names = modules(tmp_path, "check", name)
-    needed = {"scipy"} if name == "floating_hull" else set()  # by trimesh, which reads its hull
-    assert names & {*HEAVY, "h5py"} == needed
+def test_checking_a_scene_imports_no_solver_and_no_transport(checked, name):
+    status, names = checked[name]
+    assert status == 0
+    assert set(names) & {*HEAVY, "h5py"} == ({"scipy"} if name == "floating_hull" else set())
     assert not solvers(names)[1] & {"component", "kernels", "laws"}
 
 

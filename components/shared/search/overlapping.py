@@ -7,6 +7,7 @@ import numpy as np
 from quintet.interfaces.component import Array
 
 BATCH = 1_000_000  # pairs that are looked at at a time
+FEW = 1000  # spheres of which all pairs are compared
 
 
 def overlapping(middle: Array, radius: Array) -> Iterator[tuple[Array, Array]]:
@@ -20,7 +21,13 @@ def overlapping(middle: Array, radius: Array) -> Iterator[tuple[Array, Array]]:
     middle : (n, 3) float array, m
     radius : (n,) float array, m
     """
-    # Left out of scenes of one body.
+    if len(radius) <= FEW:
+        i, j = np.triu_indices(len(radius), 1)
+        near = np.linalg.norm(middle[i] - middle[j], axis=1) < radius[i] + radius[j]
+        if near.any():
+            yield i[near], j[near]
+        return
+    # Left out of scenes of few bodies.
     from scipy.spatial import cKDTree
 
     size = np.floor(np.log2(radius / radius.min(initial=np.inf))) if len(radius) else radius
