@@ -10,7 +10,7 @@ fail are eroded and their mass stays at the nodes. Velocity Verlet: velocities a
 steps' ends, and the impulse of a load is its force times the step to rounding.
 
 Of all elements the step is bounded by 2/ω with ω² ≤ 2 (K + 4G/3)/ρ Σ B², a proven bound of the
-greatest frequency (0.58 of what cubes would bear).
+greatest frequency (0.58 of the stable step of cubes).
 
 Papers: Flanagan & Belytschko, Int. J. Numer. Methods Eng. 17 (1981) 679; Belytschko, Liu, Moran &
 Elkhodary, Nonlinear Finite Elements (2014), chapter 8; Benson, Comput. Methods Appl. Mech. Eng. 99

@@ -199,7 +199,7 @@ class Body:
 
 @parameters
 class Moving:
-    """Bodies that carry clouds of nodes, and how clouds are joined at their seams.
+    """Bodies that carry clouds of nodes, and how clouds are joined at their overlaps.
 
     Nodes of other clouds are left out where a body's cloud covers them.
 
@@ -210,17 +210,18 @@ class Moving:
     axisymmetric
         Whether x is an axis of symmetry and z the radius; bodies are then spheres on it.
     threshold : 1
-        Way of a body, over its spacing, after which holes are cut and neighbours found anew.
+        Way of a body, over its spacing, after which holes are cut and neighbours found again.
     hysteresis : 1
-        By how many spacings more than it was left out by a node must be uncovered to come back.
+        Spacings by which a body must be farther from a node for it to come back than it was when
+        the node was left out.
     fringe_distance : 1
         Nodes that are nearer than this to one of a body's cloud are left out, in spacings.
     overlap : 1
         By how many spacings clouds overlap.
     fringe_order
-        Of the scheme at nodes that reach over a seam; 1 where a strong shock crosses it.
+        Of the scheme at nodes that reach over an overlap; 1 where a strong shock crosses it.
     line_stencils
-        In space: whether nodes that reach over no seam have neighbours along lines alone, 6 in a
+        In space: whether nodes that reach over no overlap have neighbours along lines alone, 6 in a
         lattice and 8 in shells; else those of a whole block.
     """
 

@@ -69,7 +69,7 @@ class MeshlessGasParams:
     courant : 1
         Share of 1/Σ_j (|v·c_ij| + a |c_ij|) that a step takes.
     local_steps
-        Whether each node takes the step that it bears, towards a steady flow: times are then those
+        Whether each node takes its own stable step, towards a steady flow: times are then those
         of the node of the shortest step, and what entered and drifts of `balance` say nothing.
     steady
         When the flow has settled; the force on the walls is then what is given.
@@ -278,7 +278,7 @@ class MeshlessGasParams:
 
     @property
     def expected_step(self) -> float:
-        """Step [s] that the states at the start and at the boundary bear."""
+        """Stable step [s] of the states at the start and at the boundary."""
         states = [self.initial, *(zone.state for zone in self.zones)]
         states += [boundary.state for boundary in self.boundaries.values()]
         if self.riemann is not None:

@@ -125,7 +125,7 @@ BODIES = Port(
         # velocity there.
         Field("coefficient", (3,), "1"),
         Field("highest_pressure", (), "Pa"),  # on the wall
-        Field("uncovered", (), "1"),  # nodes of all clouds that came back since the start
+        Field("fresh_nodes", (), "1"),  # nodes of all clouds that came back since the start
     ),
 )
 # Nodes of the walls of those bodies, one body after another, each from upstream round to z.

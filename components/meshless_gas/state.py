@@ -60,7 +60,7 @@ class Fluxes:
     residual: Array  # (n, 5) kg/(m3 s), N/m3, W/m3
     start: Array  # (n, 5), conservative, at the step's start
     sound: Array  # (m,) m/s
-    bounds: Array  # (n,) s, steps that nodes bear at a Courant number of 1
+    bounds: Array  # (n,) s, stable steps of nodes at a Courant number of 1
     steps: Array  # (n,) 1, steps of nodes over the shortest
     changes: Array  # (n,) 1, squares of relative changes of densities
     flows: Array  # (5,) kg/s, N, W, through the boundary

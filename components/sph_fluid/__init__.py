@@ -39,7 +39,7 @@ With `integration` "symplectic" there are two passes a step, of second order; re
 to a `courant` of 1.6 instead of 0.4 (`integration/position_verlet.py`).
 
 What strikes the fluid faster than half the speed of sound, so that its density rises by a quarter,
-is an error: a tenth is what a weakly compressible fluid bears (Monaghan 1994).
+is an error: a weakly compressible fluid allows a tenth (Monaghan 1994).
 
 A particle that goes further than half of the tank's longest edge beyond the walls is lost: it is
 removed, and `totals` shows its mass missing. Without walls none is.

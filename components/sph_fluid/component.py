@@ -115,7 +115,7 @@ class SphFluid(Component):
         """Advance by dt [s]."""
         if not self.samples.placed:
             raise OrderError("step: surface samples must be placed first. Call take before it.")
-        if self.lists.are_outworn(self.state, self.boundary, dt):
+        if self.lists.need_rebuild(self.state, self.boundary, dt):
             diagnostics.refuse_dense(self.state, self.params)
             self.lists.sort(self.state)
             self._list()

@@ -44,7 +44,7 @@ class State:
     viscous: Array  # (2,) J, heat of viscosity in elastic bodies: now, and least so far
     torn: Array  # (5,) 1, s, m, m, m: most bonds lost at a time; when and where the first was lost
     reach: float = 0.0  # m, of the neighbour list
-    bound: float = 0.0  # s, step that all bear
+    bound: float = 0.0  # s, stable step of all particles
     time: float = 0.0  # s
     steps: int = 0
     work: float = 0.0  # J, done on glued particles by what they hang on

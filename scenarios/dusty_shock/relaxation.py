@@ -7,7 +7,7 @@ drag and heat bring them together, while mass, momentum and energy of both stay:
     v dv/dx = 18 μ f(Re) (u - v)/(ρ_d d²),   v dT_d/dx = 6 λ Nu (T - T_d)/(ρ_d c d²)
 
 Carrier, J. Fluid Mech. 4 (1958) 376; Miura & Glass, Proc. R. Soc. A 382 (1982) 373 (shock tube).
-Drag by Clift & Gauvin and heat by Ranz & Marshall are written here anew, apart from the solver's.
+Drag by Clift & Gauvin and heat by Ranz & Marshall are written here, apart from the solver's.
 
 Run as a program, ``python -m quintet.scenarios.dusty_shock.relaxation``, it writes `velocity.csv`
 and `warmer.csv` (above its first temperature), what a grain of dust does after the shock has met

@@ -55,7 +55,7 @@ class Swing(Mass):
                 ConformCase("ridden", params, rest={"load.force": nothing, **ground}, scale=scale))
 '''
 ADAPTER = '''
-"""A program of its own, started anew for every step, moves it on by a metre."""
+"""A program of its own, started again for every step, moves it on by a metre."""
 
 import subprocess
 import sys

@@ -40,7 +40,7 @@ SCENES = {
     "newtons_cradle": ("quick", 0.9, 2e-3, ()),
 }
 MOVES = {  # what must have changed, or nothing is compared
-    "moving_sphere": ("gas", "bodies.uncovered"),
+    "moving_sphere": ("gas", "bodies.fresh_nodes"),
     "shock_layer_particle": ("particle", "motion.position"),
 }
 # Cut so short these warn, with status 1, of a flow that has not settled.

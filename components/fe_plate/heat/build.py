@@ -28,7 +28,7 @@ def build(params: FeHeatParams) -> Model:
         middle = np.array2string(grid.node[grid.corner[worst]].mean(axis=0), precision=4)
         raise SceneError(
             f"element {worst} at {middle} m must have a volume above 0 at each of its points; it "
-            "has not: it is inside out. Turn its corners, or mesh it anew."
+            "has not: it is inside out. Turn its corners, or mesh it again."
         )
     part = np.empty(nodes, np.int64)
     part[grid.corner] = grid.part[:, None]

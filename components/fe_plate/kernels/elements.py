@@ -58,7 +58,7 @@ def step_elements(
         Blocks, all of one material.
     model, state, law, resistance
     dt : float, s
-        Step that led to the present positions; 0 to write forces anew.
+        Step that led to the present positions; 0 to write forces again.
 
     Returns
     -------

@@ -12,7 +12,7 @@ from quintet.components.shared.numba_options import EXACT
 def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> float:
     """Advance velocities by half a step and positions by a whole one; return the loads' work [J].
 
-    The elements' forces are then none, for the elements to write them anew.
+    The elements' forces are then none, for the elements to write them again.
 
     Parameters
     ----------

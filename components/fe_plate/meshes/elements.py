@@ -47,7 +47,7 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
         raise SceneError(
             f"{where}: element {worst} at {_middle(node, corner, worst)} m must have a Jacobian "
             f"above 0 at each corner; found {least[worst]:.3g} m3: it is inside out, and "
-            f"{len(bad)} of {len(corner)} elements are. Turn their corners, or mesh it anew."
+            f"{len(bad)} of {len(corner)} elements are. Turn their corners, or mesh it again."
         )
     poor = np.flatnonzero(scaled < POOR)
     if not len(poor):

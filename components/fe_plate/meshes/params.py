@@ -172,7 +172,7 @@ class Part(MeshedPart):
 
     @property
     def expected_step(self) -> float:
-        """Step [s] that its shortest edge bears."""
+        """Stable step [s] of its shortest edge."""
         law = material(self.material)
         bound = sum((1.0 / edge**2 for edge in self.edges()), 0.0)
         speed = math.sqrt((law.bulk + 4.0 / 3.0 * law.shear) / law.density)

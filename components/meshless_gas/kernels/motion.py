@@ -1,4 +1,4 @@
-"""Steps in time: the largest that each node bears, and the stages of SSP-RK3."""
+"""Steps in time: the stable step of each node, and the stages of SSP-RK3."""
 
 import math
 from typing import Any
@@ -32,7 +32,7 @@ def write_bounds(
     frame: Any,
     bounds: Any,
 ) -> float:
-    """Write the step [s] that each node bears at a Courant number of 1; return the least.
+    """Write the stable step [s] of each node at a Courant number of 1; return the least.
 
     Δt_i = 1/Σ_j (max(|v_i·c_ij|, |v_j·c_ij|) + max(a_i, a_j) |c_ij|), velocities in the node's
     frame.
@@ -117,7 +117,7 @@ def advance(
 def write_changes(
     first: int, last: int, rows: Any, residual: Any, bounds: Any, conservative: Any, changes: Any
 ) -> None:
-    """Write the squares (m,) of relative changes of densities in the steps that nodes bear."""
+    """Write the squares (m,) of relative changes of densities in the stable steps of nodes."""
     for row in range(first, last):
         i = rows[row]
         rate = residual[i, 0] * bounds[i] / conservative[i, 0]

@@ -16,7 +16,7 @@ from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 
 LINES = 6  # neighbours of a node of a lattice in space along its lines
-ACROSS = 14  # neighbours of a node in space over a seam, at least
+ACROSS = 14  # neighbours of a node in space over an overlap, at least
 
 
 def moving_clouds(params: MeshlessGasParams, team: Team) -> MovingClouds:

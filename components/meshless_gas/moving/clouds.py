@@ -200,7 +200,7 @@ class MovingClouds(NodeMotion):
         outputs, positions = self.outputs, self.domain.cloud.positions
         return {
             "bodies": lambda: outputs.bodies(
-                self.pose, self.summed, primitive, self.holes.uncovered
+                self.pose, self.summed, primitive, self.holes.fresh_count
             ),
             "surface": lambda: outputs.surface(positions, primitive, self.friction),
             "load": lambda: outputs.load(self.summed),
@@ -251,7 +251,7 @@ class MovingClouds(NodeMotion):
         saved = self._arrays() | {
             "touched": self.fringe.touched,
             "across": self.fringe.across,
-            "uncovered": np.array(self.holes.uncovered),
+            "fresh_count": np.array(self.holes.fresh_count),
         }
         return {f"moving/{name}": np.array(array) for name, array in saved.items()}
 
@@ -261,7 +261,7 @@ class MovingClouds(NodeMotion):
             array[:] = saved[f"moving/{name}"]
         self.fringe.touched = np.array(saved["moving/touched"], np.int64)
         self.fringe.across = np.array(saved["moving/across"], np.int64)
-        self.holes.uncovered = int(saved["moving/uncovered"])
+        self.holes.fresh_count = int(saved["moving/fresh_count"])
         self.middle = None
         self._place(self.pose.centre)
         self.fringe.fitted[:] = self.pose.centre

@@ -28,10 +28,10 @@ class Holes:
         self.active = np.ones(len(cloud.positions), bool)
         self.seen = np.zeros((len(layout.radii), 3))  # m, centres when holes were cut last
         self.volumes = layout.volumes.copy()  # (n,) m3, those of overlaps counted once
-        self.uncovered = 0  # nodes that came back since the start
+        self.fresh_count = 0  # nodes that came back since the start
 
     def are_old(self, centre: Array) -> bool:
-        """Whether bodies have gone on so far that holes are to be cut anew."""
+        """Whether bodies have gone on so far that holes are to be cut again."""
         way = np.abs(centre - self.seen).max(axis=1)
         return bool((way > self.params.threshold * self.layout.spacing).any())
 
@@ -62,7 +62,7 @@ class Holes:
         fresh = np.flatnonzero(active & ~was)
         self.seen[:] = centre
         self.volumes[:] = partitioned(layout, cloud, active, away, self.team)
-        self.uncovered += len(fresh)
+        self.fresh_count += len(fresh)
         return fresh
 
     def _part(self, b: int, away: Array, was: Flags, active: Flags, more: float) -> None:

@@ -50,7 +50,7 @@ class CloudLayout(NamedTuple):
     is_cut: NDArray[np.bool_]  # (b,) whether the cloud ends where the box does
     box: Array  # (2, 3) m, corners of the background
     open_sides: list[tuple[int, int]]  # axis and side of faces that clouds must not reach
-    fringe_count: int  # neighbours of a node across seams
+    fringe_count: int  # neighbours of a node across overlaps
     planar: bool  # whether nothing leaves the plane of x and z
 
     def heights_of(self, places: Array, centre: Array) -> Array:
@@ -105,7 +105,7 @@ def layout(
         Of the background; rows of other nodes are written.
     box : (2, 3) m
     fringe_count : int
-        Neighbours of a node across seams.
+        Neighbours of a node across overlaps.
     planar : bool
     """
     count = cloud.nodes

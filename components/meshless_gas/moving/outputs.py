@@ -40,7 +40,7 @@ class BodyOutputs:
             "bodies.heat": loads[:, HEAT].copy(),
             "bodies.coefficient": force / self.unit_force[:, None],
             "bodies.highest_pressure": np.array(highest),
-            "bodies.uncovered": np.full(count, float(fresh)),
+            "bodies.fresh_nodes": np.full(count, float(fresh)),
         }
 
     def surface(self, positions: Array, primitive: Array, friction: BodyFriction) -> Fields:

@@ -1,4 +1,4 @@
-"""Stencils across the seams of clouds."""
+"""Stencils across the overlaps of clouds."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from quintet.interfaces.errors import StepError
 
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
-BAND = 3.0  # spacings about a seam within which neighbours are found anew
+BAND = 3.0  # spacings about an overlap within which neighbours are found again
 NEAR = 4  # times as many nodes are looked at as a node has neighbours
 
 
@@ -34,16 +34,16 @@ class FringeStencils:
         self.layout, self.cloud, self.stencils, self.team = layout, cloud, domain.stencils, team
         self.fitted = np.zeros((len(layout.radii), 3))  # m, centres when coefficients were written
         self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
-        self.across = np.zeros(0, np.int64)  # of these, those that reach over a seam
+        self.across = np.zeros(0, np.int64)  # of these, those that reach over an overlap
         self.no_slip = np.isin(cloud.kind[: cloud.nodes], NO_SLIP_KINDS)
         self.edges, self.weights = domain.edges, domain.weights  # of boundary nodes of the box
         self.place = np.full(len(cloud.positions), -1)  # of nodes among these
         self.place[domain.edges] = np.arange(len(domain.edges))
         self.quality = np.ones(len(cloud.positions))
-        self.least = np.zeros(len(cloud.positions))  # weight of least squares across seams
+        self.least = np.zeros(len(cloud.positions))  # weight of least squares across overlaps
 
     def join(self, active: Flags, centre: Array) -> None:
-        """Find neighbours across seams, and coefficients of all nodes that they changed for."""
+        """Find neighbours across overlaps, and coefficients of all nodes that they changed for."""
         cloud, layout, neighbours = self.cloud, self.layout, self.stencils.neighbours
         region = cloud.region[: cloud.nodes]
         band, near_any = self._beside_seams(active, centre)
@@ -69,7 +69,7 @@ class FringeStencils:
         self.fitted[:] = centre
 
     def _beside_seams(self, active: Flags, centre: Array) -> tuple[Flags, Flags]:
-        """Nodes (n,) whose neighbours may lie across a seam, and nodes that these may be."""
+        """Nodes (n,) whose neighbours may lie across an overlap, and nodes that these may be."""
         cloud, layout, count = self.cloud, self.layout, self.cloud.nodes
         band, near_any = np.zeros(count, bool), np.zeros(count, bool)
         for b, heights in enumerate(layout.heights_of(cloud.positions[:count], centre)):
@@ -129,7 +129,7 @@ class FringeStencils:
         self.weights[places] = weights
 
     def refit(self, centre: Array) -> None:
-        """Write the coefficients of what reaches over seams of clouds that have moved."""
+        """Write the coefficients of what reaches over overlaps of clouds that have moved."""
         moved = np.append(False, (centre != self.fitted).any(axis=1))  # of each region
         if len(self.across) and moved.any():
             region, near = self.cloud.region, self.stencils.neighbours[self.across]

@@ -89,7 +89,7 @@ def _rules_of_the_gas(params: MeshlessGasParams, keys: Moving) -> list[tuple[boo
         ),
         (
             params.viscous and keys.fringe_order == 1,
-            "friction needs gradients at seams, too; found fringe_order = 1. Leave it out.",
+            "friction needs gradients at overlaps, too; found fringe_order = 1. Leave it out.",
         ),
         (
             keys.line_stencils and (params.planar or jitter > 0.0),
@@ -149,7 +149,7 @@ def too_few(count: int, place: Array) -> str:
     return (
         f"nodes need {count} neighbours in sight that surround them; that at "
         f"{np.array2string(place, precision=4)} m has not. Make spacings on both sides of the "
-        "seam alike, or clouds thicker."
+        "overlap alike, or clouds thicker."
     )
 
 

@@ -17,7 +17,7 @@ THIN = 1e-12  # of the length of its first tangent: a second one that adds nothi
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """Points hung on the faces of a mesh."""
+    """Points projected onto the faces of a mesh."""
 
     node: Array  # (n, 4) corners of the face on which each point lies
     weight: Array  # (n, 4) 1, shape functions there; each row sums to one

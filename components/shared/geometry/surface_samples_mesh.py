@@ -22,7 +22,7 @@ HALF = 0.5  # of a layer's thickness: a sample nearer by so much to another face
 SAME_WAY = 0.7  # cosine of the angle between faces that go on from one another
 ROUNDING = 1e-9
 SAMPLES = ("node", "weight", "along", "across", "depth", "side", "normal", "volume")
-HUNG = ("node", "weight", "face", "gap", "size", "beyond")
+PROJECTED = ("node", "weight", "face", "gap", "size", "beyond")
 
 
 def mesh_answer(port: str, request: Fields, static: Fields) -> dict[str, Array]:
@@ -39,8 +39,10 @@ def mesh_answer(port: str, request: Fields, static: Fields) -> dict[str, Array]:
     """
     position, face = static[f"{port}.start"], static[f"{port}.corner"]
     if (points := request.get(f"{port}.points")) is not None:
-        hung = project(points, position, face)
-        return {f"{port}.{name}": np.asarray(getattr(hung, name), float) for name in HUNG}
+        projection = project(points, position, face)
+        return {
+            f"{port}.{name}": np.asarray(getattr(projection, name), float) for name in PROJECTED
+        }
     asked = sampling_of(port, request)
     if asked.planar != (static.get(f"{port}.dimensions", [3.0])[0] == 2.0):
         raise SceneError(

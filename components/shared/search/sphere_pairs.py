@@ -2,7 +2,7 @@
 
 Cells have keys, so that spheres may be as far apart as they like. A list holds pairs whose surfaces
 are nearer than a skin; as impacts look at the pairs that overlap, and these stand in the same order
-in any list that has them, a list is no state: made anew it changes no bit.
+in any list that has them, a list is no state: made again it changes no bit.
 """
 
 from typing import NamedTuple
@@ -87,7 +87,7 @@ def list_pairs(
 
 
 class NearPairs:
-    """The pairs of one set of spheres, listed anew when they have moved by half of the skin."""
+    """The pairs of one set of spheres, listed again when they have moved by half of the skin."""
 
     def __init__(self, radius: Array) -> None:
         self.radius, largest = radius, 2.0 * float(radius.max())

@@ -16,7 +16,7 @@ Under a pressure p the fluid comes as near as p = p s(d) + K Δpᵈ S(d) says: S
 between two cubic lattices, d apart, over K Δpᵈ, and s the share of p that p_i/ρ_i² brings, one half
 where d is a spacing, as between the fluid's own planes. K Δpᵈ = (1-s(1))p/S(1) holds p there.
 
-Walls and samples are given it for the pressure that water at rest has where they are, samples anew
+Walls and samples are given it for the pressure that water at rest has where they are, samples again
 whenever they are placed, so that a body that goes deeper is held up there too; with n = 1 the
 potential then has the shape of what the fluid lacks at a wall, and its lattice stays at rest. Dry
 bodies are given it for the fluid's mean pressure. Dry walls have none: there, and under pressures

@@ -35,7 +35,7 @@ class Samples:
         self.find_rows(state)
 
     def find_rows(self, state: State) -> None:
-        """Find their rows anew."""
+        """Find their rows again."""
         self.row = state.sample_rows()
 
     def move(self, state: State, fields: Fields) -> None:

@@ -37,7 +37,7 @@ class FluidLists:
         """What kernels take."""
         return self.near.arrays
 
-    def are_outworn(self, state: State, boundary: BoundaryMethod, dt: float) -> bool:
+    def need_rebuild(self, state: State, boundary: BoundaryMethod, dt: float) -> bool:
         """Whether pairs may meet in a step of dt [s] that the lists lack."""
         if len(state.reference) == 0:
             return True

@@ -18,7 +18,7 @@ class ShepardFilter:
         self.every, self.constants = params.shepard_every, constants(params)
 
     def apply(self, state: State, lists: Lists, team: Team) -> None:
-        """Filter the fluid's density where it is time, and press anew."""
+        """Filter the fluid's density where it is time, and compute pressures again."""
         if state.steps % self.every != self.every - 1:
             return
         density, rows = np.empty(state.fluid), slice(state.fluid)

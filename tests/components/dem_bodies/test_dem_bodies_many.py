@@ -39,7 +39,7 @@ def crowd(seed=0, count=9000, others=(), threads=1, **given):
 
 @pytest.fixture(scope="module")
 def mixed():
-    """A crowd that has met and been listed anew, its rows far from the bodies' order."""
+    """A crowd that has met and been listed again, its rows far from the bodies' order."""
     scene = crowd()
     run(scene, 4e-3, dt=2e-5)
     return scene
@@ -119,7 +119,7 @@ def test_many_go_on_with_the_same_bits_when_loaded(mixed):
 
 
 def test_listing_anew_changes_no_contact():
-    """The same spheres, listed anew in every step: history is carried, also of swapped rows."""
+    """The same spheres, listed again in every step: history is carried, also of swapped rows."""
     ends = []
     for often in (False, True):
         scene = crowd(count=600, rolling_friction=0.1, restitution=0.8)

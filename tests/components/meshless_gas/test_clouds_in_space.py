@@ -1,4 +1,4 @@
-"""Clouds of nodes that go with bodies in three dimensions: shells, seams, and what is refused."""
+"""Clouds of nodes that go with bodies in space: shells, overlaps, and what is refused."""
 
 import math
 
@@ -83,13 +83,13 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform_in_space(cross):
     for _ in range(8):
         gas.step(gas.stable_dt())
     inner = gas.motion.domain.inner
-    assert gas.motion.holes.uncovered > 20
+    assert gas.motion.holes.fresh_count > 20
     same = [1.0, *(-MACH * OBLIQUE), PRESSURE]
     assert np.abs(gas.state.primitive[inner] - same).max() < 1e-12
 
 
 @pytest.mark.full
-def test_uncovered_nodes_get_linear_fields_exactly_in_space():
+def test_fresh_nodes_get_linear_fields_exactly_in_space():
     rng = np.random.default_rng(1)
     positions = rng.uniform(-1.0, 1.0, (13, 3))
     positions[0] = 0.0
@@ -138,7 +138,7 @@ def test_a_saved_state_goes_on_with_the_same_bits_in_space():
         ({"moving.axisymmetric": True}, "need two dimensions"),
         ({"dimensions": 2}, "three dimensions and lattices"),
         ({"box.jitter": 0.2}, "lattices without jitter"),
-        ({"viscous": True, "moving.fringe_order": 1}, "gradients at seams"),
+        ({"viscous": True, "moving.fringe_order": 1}, "gradients at overlaps"),
     ],
 )
 def test_what_clouds_in_space_do_not_go_with_is_refused(change, sentence):

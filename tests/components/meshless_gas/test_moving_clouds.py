@@ -1,4 +1,4 @@
-"""Clouds of nodes that go with bodies: seams, holes, walls, and what is refused."""
+"""Clouds of nodes that go with bodies: overlaps, holes, walls, and what is refused."""
 
 import subprocess
 import sys
@@ -111,7 +111,7 @@ def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.motion.domain.inner
-    assert gas.motion.holes.uncovered > 20
+    assert gas.motion.holes.fresh_count > 20
     assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
@@ -130,7 +130,7 @@ def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.motion.domain.inner
-    assert gas.motion.holes.uncovered > 10
+    assert gas.motion.holes.fresh_count > 10
     assert np.allclose(gas.state.primitive[inner, 1], -MACH, rtol=1e-12)
     assert np.allclose(gas.state.primitive[inner, 4], PRESSURE, rtol=1e-12)
 
@@ -213,7 +213,7 @@ def test_bodies_off_the_axis_are_refused():
         gas.take(turning)
 
 
-def test_uncovered_nodes_get_linear_fields_exactly():
+def test_fresh_nodes_get_linear_fields_exactly():
     rng = np.random.default_rng(1)
     positions = rng.uniform(-1.0, 1.0, (9, 3))
     positions[0] = 0.0
@@ -256,7 +256,7 @@ def test_hysteresis_keeps_nodes_from_coming_and_going():
         gas = made(scene(share=1.0, hysteresis=hysteresis))
         for _ in range(60):
             gas.step(gas.stable_dt())
-        counts.append(gas.motion.holes.uncovered)
+        counts.append(gas.motion.holes.fresh_count)
     assert counts[1] < 0.8 * counts[0]
 
 

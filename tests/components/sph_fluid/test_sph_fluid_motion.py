@@ -282,7 +282,7 @@ def test_lists_are_renewed_before_a_pair_is_missed(pool: Make) -> None:
     for _ in range(30):
         fluid.step(fluid.stable_dt())
         old = fluid.state.position_density.copy()
-        if fluid.lists.are_outworn(fluid.state, fluid.boundary, 0.0):
+        if fluid.lists.need_rebuild(fluid.state, fluid.boundary, 0.0):
             continue
         near = fluid.lists.near
         distance = np.linalg.norm(old[:, None, :3] - old[None, :10, :3], axis=2)

@@ -62,7 +62,7 @@ def test_corrected_gradients_of_linear_fields_are_exact(dimensions):
     random = np.random.default_rng(1)
     plane = np.array([1.0, dimensions == 3, 1.0])
     made.state.position += 0.1 * DX * plane * random.uniform(-1, 1, made.state.position.shape)
-    made.state.reach = 0.0  # lists are made anew
+    made.state.reach = 0.0  # lists are made again
     gradient = np.array([[1.0, 2.0, 3.0], [0.0, 1.5, 0.0], [0.5, 0.0, -1.0]])  # 1/s
     gradient = gradient * plane * plane[:, None]
     made.state.velocity[:] = made.state.position @ gradient.T

@@ -1,4 +1,4 @@
-"""Neighbours across the seams of clouds, and states of nodes that are uncovered."""
+"""Neighbours across the overlaps of clouds, and states of fresh nodes."""
 
 import math
 from typing import Any

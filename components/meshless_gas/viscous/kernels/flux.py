@@ -137,7 +137,7 @@ def shorten_bounds(  # type: ignore[no-untyped-def]
     first, last, rows, positions, primitive, transported, neighbours, coefficients, gamma, law,
     bounds,
 ):  # fmt: skip
-    """Shorten the step (n,) s that each node bears by what diffusion adds; return the least.
+    """Shorten the stable step (n,) s of each node by what diffusion adds; return the least.
 
     1/Δt_i is raised by Σ_j 2 |c_ij|/|r_ij| · γ μ/(Pr ρ).
     """
