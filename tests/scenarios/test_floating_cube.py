@@ -11,7 +11,8 @@ Run = Callable[..., dict]
 
 @pytest.fixture(scope="module")
 def found(run_scene: Run) -> dict:
-    return run_scene("floating_cube", "--preset", "quick")
+    # One period after the first fifth of a second.
+    return run_scene("floating_cube", "--preset", "quick", "--set", "end=1.2")
 
 
 @pytest.mark.slow
