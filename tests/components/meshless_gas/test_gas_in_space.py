@@ -49,7 +49,7 @@ def rates(made, primitive, frame):
     made_rates = np.zeros((len(primitive), 5))
     write_residuals(
         0, len(own.inner), own.inner, cloud.positions, primitive, gradients, lowest,
-        *own.stencils, frame, None, True, made.gamma, VanAlbada(1e-6), made_rates,
+        *own.stencils, frame, None, True, made.params.gas.gamma, VanAlbada(1e-6), made_rates,
     )  # fmt: skip
     return made_rates[own.inner]
 
