@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.shared.geometry.lattice import lattice_points
+from quintet.components.shared.geometry.lattice import lattice_points, spread_evenly
 from quintet.components.shared.geometry.mesh_files import Solid, inside, nearest, read
 from quintet.interfaces.component import Array
 
@@ -66,8 +66,7 @@ def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate
     counts = np.ceil((size - 2.0 * radius) / spacing - 1e-9).astype(int) + 1
     require_few(file, dim, radius, int(counts.prod()) // PLACES)
     axes = [
-        np.linspace(a + radius, b - radius, n) if n > 1 else np.array([0.5 * (a + b)])
-        for a, b, n in zip(low, high, counts, strict=True)
+        spread_evenly(a + radius, b - radius, n) for a, b, n in zip(low, high, counts, strict=True)
     ]
     places = lattice_points(axes, x_fastest=False)
     centres = covering(places, shape, radius, spacing)
