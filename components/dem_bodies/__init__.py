@@ -19,7 +19,7 @@ their exact distance. Contacts along an edge or face thus need no row of small s
 would add to the friction.
 
 An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surface equal spheres
-cover from within; its mass and inertia are those of the shape. A fluid cannot sample it.
+cover from within; its mass and inertia are those of the shape, and fluids meet the shape itself.
 
 Any of a body's six degrees of freedom may be `locked`: it then keeps its velocity there. Planes are
 infinite and at rest, in any pose; a box with all six locked is a finite one, at rest or moving.

@@ -27,7 +27,7 @@ class InterphaseExchange:
 
     Parameters
     ----------
-    given : PointParticles
+    keys : PointParticles
     cloud : Cloud
     planar : bool
         Whether nodes lie in the plane of x and z, where y of particles does not count.
