@@ -60,6 +60,15 @@ def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
         assert "finished" in (run.folder / "log" / "pong.log").read_text()
 
 
+@pytest.fixture
+def heard():
+    """Interruptions raise `KeyboardInterrupt`: shells start background jobs that ignore them."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heard")
 def test_an_interruption_while_pictures_are_drawn_keeps_the_results(tmp_path, monkeypatch, capsys):
     def interrupted(*_):
         os.kill(os.getpid(), signal.SIGINT)
