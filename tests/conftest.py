@@ -1,6 +1,8 @@
 """What tests of several folders share."""
 
 import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -39,3 +41,20 @@ def certificates(tmp_path_factory):
     """Files for mutual TLS on this host: of an authority of ours, and of a foreign one."""
     folder = tmp_path_factory.mktemp("certificates")
     return authority(folder, "ours"), authority(folder, "foreign")
+
+
+@pytest.fixture(scope="session")
+def on_ranks():
+    """Run a Python program on several MPI ranks, with a deadline; return what it printed."""
+    beside = Path(sys.executable).with_name("mpiexec")
+    launcher = str(beside) if beside.exists() else "mpiexec"
+
+    def run(program, ranks, *arguments, seconds=100):
+        command = [launcher, "-n", str(ranks), sys.executable, "-m", "mpi4py", str(program)]
+        done = subprocess.run(
+            [*command, *map(str, arguments)], timeout=seconds, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    return run

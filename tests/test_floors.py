@@ -13,7 +13,7 @@ FLOOR = {name: n for n, name in enumerate(ROWS)}  # files of a component, the lo
 # Folders whose parts must not import each other in a circle: components and crowded wings.
 STOREYS = [
     *(where(folder) for folder in COMPONENTS),
-    *(f"components/shared{part}" for part in ("", "/geometry", "/search")),
+    *(f"components/shared{part}" for part in ("", "/domain", "/geometry", "/search")),
     *(f"coupler/{part}" for part in ("coupling", "launch", "report", "run", "scene", "study")),
     *("interfaces", "interfaces/lines", "interfaces/serving"),
 ]

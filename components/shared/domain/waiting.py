@@ -1,0 +1,31 @@
+"""Waiting for other ranks without holding the core, and with an end."""
+
+import os
+import time
+from typing import Any
+
+from mpi4py import MPI
+
+from quintet.interfaces.errors import LineError
+
+# s; ranks that others wait for may compute long. One that is dead or hangs is noticed earlier, by
+# the coupler, which then ends all ranks of the component.
+LONGEST = 86400.0
+OFTEN = 1000  # polls between two looks at the clock
+
+
+def wait(*requests: Any) -> None:
+    """Wait until all requests are done; other processes may use the core meanwhile.
+
+    Raises
+    ------
+    LineError
+        If they are not done within a day.
+    """
+    waiting, polls = list(requests), 0
+    began = time.monotonic()
+    while not MPI.Request.Testall(waiting):
+        os.sched_yield()
+        polls += 1
+        if polls % OFTEN == 0 and time.monotonic() - began > LONGEST:
+            raise LineError(f"another rank must answer within {LONGEST:g} s; it did not.")
