@@ -43,6 +43,8 @@ class ParticleSpheres(Component):
         self.spheres = build(params.spheres)
         self.impacts = impacts(params, self.spheres)
         self.gravity = np.array(params.gravity)
+        self.stiff = (self.spheres.tether / self.spheres.mass)[:, None]  # (n, 1) 1/s2
+        self.frequency = math.sqrt(float(self.stiff.max()))  # rad/s, of the stiffest tether
         self.stages = np.array(STAGES[params.integrator])
         self.state = initial_state(self.spheres)
         self._launch(0.0)
@@ -74,14 +76,13 @@ class ParticleSpheres(Component):
 
     def stable_dt(self) -> float:
         """Return what tethers, closing speeds and the scene allow; free flight has no limit."""
-        spheres, limits = self.spheres, [self.params.longest_step or math.inf]
-        frequency = math.sqrt(float((spheres.tether / spheres.mass).max()))
-        if frequency > 0.0:
-            limits.append(self.params.courant * LIMIT[self.params.integrator] / frequency)
+        limits = [self.params.longest_step or math.inf]
+        if self.frequency > 0.0:
+            limits.append(self.params.courant * LIMIT[self.params.integrator] / self.frequency)
         if self.impacts is not None:
             closing = self.impacts.closing_speed(self.state.velocity)
             pull = self.impacts.closing_speed(self._acceleration())
-            room = 2.0 * CLOSING * float(spheres.radius.min())
+            room = 2.0 * CLOSING * float(self.spheres.radius.min())
             if closing + pull > 0.0:
                 limits.append(2.0 * room / (closing + math.sqrt(closing**2 + 2.0 * pull * room)))
         return min(limits)
@@ -93,8 +94,9 @@ class ParticleSpheres(Component):
 
     def _free_acceleration(self) -> Array:
         """Accelerations (n, 3) m/s2 of launched spheres, by gravity and tethers."""
-        stiff = (self.spheres.tether / self.spheres.mass)[:, None]
-        pull = self.gravity - stiff * (self.state.position - self.spheres.start)
+        pull = self.gravity
+        if self.frequency > 0.0:
+            pull = pull - self.stiff * (self.state.position - self.spheres.start)
         return np.asarray(pull * self.state.launched[:, None])
 
     def take(self, fields: Fields) -> None:
@@ -109,18 +111,17 @@ class ParticleSpheres(Component):
             self._advance(dt)
             return
         start, parts = self.save(), 1
-        allowed = max(self.impacts.overlap(self.state.position), TOUCHING)
-        while not self._advance_in_parts(dt, parts, allowed, self.impacts) and parts < MOST_PARTS:
+        while not self._advance_in_parts(dt, parts, start, self.impacts) and parts < MOST_PARTS:
             parts *= 2
             self.load(start)
         self.state.sums[TIME] = start["sums"][TIME] + dt
 
-    def _advance_in_parts(self, dt: float, parts: int, allowed: float, impacts: Impacts) -> bool:
-        """Advance by equal parts of dt; return whether no two overlap by more than allowed."""
+    def _advance_in_parts(self, dt: float, parts: int, start: Fields, impacts: Impacts) -> bool:
+        """Advance by equal parts of dt; return whether none overlap by more than at the start."""
         for _ in range(parts):
             self._advance(dt / parts)
             overlap = impacts.overlap(self.state.position)
-            if overlap > allowed:
+            if overlap > TOUCHING and overlap > impacts.overlap(start["position"]):
                 if parts < MOST_PARTS:
                     return False
                 self.state.sums[DEEPEST] = max(self.state.sums[DEEPEST], overlap)

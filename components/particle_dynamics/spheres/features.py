@@ -15,6 +15,7 @@ from quintet.components.particle_dynamics.spheres.kernels import (
 from quintet.components.particle_dynamics.spheres.params import ParticleSpheresParams
 from quintet.components.particle_dynamics.spheres.state import LOST, Spheres, State
 from quintet.components.shared.search.sphere_pairs import NearPairs
+from quintet.components.shared.search.verlet_list import longest
 from quintet.interfaces.component import Array
 
 SWEEPS = 100  # over all pairs, in which an impulse runs through a row: each in turn
@@ -52,8 +53,7 @@ class Impacts:
         """
         fastest = 0.0
         if self.near is not None:
-            relative = rates - rates.mean(axis=0)
-            fastest = 2.0 * math.sqrt(float((relative * relative).sum(axis=1).max()))
+            fastest = 2.0 * longest(rates - rates.mean(axis=0))
         if len(self.planes):
             fastest = max(fastest, float((-(rates @ self.planes[:, :3].T)).max()))
         return fastest
