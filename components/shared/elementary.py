@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from quintet.components.shared.float_bits import bits_of, number_of
-from quintet.components.shared.numba_options import LANEWISE
+from quintet.components.shared.numba_options import FAST_LANEWISE
 
 LN2 = 0.6931471805599453
 LARGEST = 700.0  # whose exponential is still finite
@@ -15,7 +15,7 @@ ROOT_HALF = 0x3FE6A09E667F3BCD  # bits of √½
 LEAST = 1e-300
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def logarithm(x):  # type: ignore[no-untyped-def]
     """Ln x, that of 1e-300 of what is below it.
 
@@ -31,7 +31,7 @@ def logarithm(x):  # type: ignore[no-untyped-def]
     return exponent * LN2 + 2.0 * s * (1.0 + z * series)
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def exponential(x):  # type: ignore[no-untyped-def]
     """Exp x, of x from -700 to 700: 2ᵏ exp r with |r| ≤ ½ ln 2, by its series to r¹²."""
     bounded = min(max(x, -LARGEST), LARGEST)
@@ -44,7 +44,7 @@ def exponential(x):  # type: ignore[no-untyped-def]
     return series * number_of((np.int64(whole) + 1023) << 52)
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def logarithm_of_few_digits(x):  # type: ignore[no-untyped-def]
     """As `logarithm`, within 2e-6: its series to s⁵."""
     bits = bits_of(max(x, LEAST))
@@ -55,7 +55,7 @@ def logarithm_of_few_digits(x):  # type: ignore[no-untyped-def]
     return exponent * LN2 + 2.0 * s * (1.0 + z * (1 / 3 + z * (1 / 5)))
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def exponential_of_few_digits(x):  # type: ignore[no-untyped-def]
     """As `exponential`, within 4e-6: its series to r⁵."""
     bounded = min(max(x, -LARGEST), LARGEST)
@@ -65,7 +65,7 @@ def exponential_of_few_digits(x):  # type: ignore[no-untyped-def]
     return series * number_of((np.int64(whole) + 1023) << 52)
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def power(x, y):  # type: ignore[no-untyped-def]
     """Return x to the power y, of x from 0 on."""
     return exponential(y * logarithm(x))

@@ -1,7 +1,5 @@
 """Impacts of spheres: with walls, and, if spheres collide, among themselves."""
 
-import math
-
 from quintet.components.particle_dynamics.spheres.build import (
     planes,
     refuse_behind_walls,

@@ -7,12 +7,12 @@ Papers: Steinberg, Equation of State and Strength Properties of Selected Materia
 from numba import njit
 
 from quintet.components.shared.elementary import exponential
-from quintet.components.shared.numba_options import EXACT, INNER, LANEWISE
+from quintet.components.shared.numba_options import EXACT, FAST_LANEWISE, INNER
 
 POLE = 1e300  # Pa; kernels take every number to be finite
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def reference_pressure(mu, law):  # type: ignore[no-untyped-def]
     """P [Pa] at μ = ρ/ρ₀ - 1 without thermal energy; huge beyond the Hugoniot's pole."""
     if mu <= 0.0 or not law.shocks:
@@ -23,7 +23,7 @@ def reference_pressure(mu, law):  # type: ignore[no-untyped-def]
     return law.density * law.c2 * numerator / (denominator * denominator)
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def fractions(mu, law):  # type: ignore[no-untyped-def]
     """Numerator of p/(ρ₀c²) in compression, square root of its denominator, and their slopes."""
     over = 1.0 / (mu + 1.0)
@@ -37,7 +37,7 @@ def fractions(mu, law):  # type: ignore[no-untyped-def]
     return numerator, rise, denominator, fall
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def pressure_and_energy(mu, energy, change, law):  # type: ignore[no-untyped-def]
     """Pressure [Pa] and energy [J/kg] at a step's end, both implicit in each other.
 
@@ -57,7 +57,7 @@ def pressure_and_energy(mu, energy, change, law):  # type: ignore[no-untyped-def
     return pressure, energy - 0.5 * pressure * change
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def sound_speed_squared(mu, energy, pressure, law):  # type: ignore[no-untyped-def]
     """c² [m2/s2] of longitudinal waves: (∂p/∂ρ)_s + 4G/(3ρ), at least a tenth of that at rest."""
     stiffness = 1.0
@@ -72,7 +72,7 @@ def sound_speed_squared(mu, energy, pressure, law):  # type: ignore[no-untyped-d
     return max(bulk, 0.1 * law.c2) + 4.0 / 3.0 * law.shear / (law.density * (1.0 + mu))
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def temperature(mu, energy, law):  # type: ignore[no-untyped-def]
     """T [K] from the energy: T₀ exp(γ₀η) on the isentrope, and (e - e_s(η))/c_v beyond it.
 
@@ -84,14 +84,14 @@ def temperature(mu, energy, law):  # type: ignore[no-untyped-def]
     return temperature_between(mu, energy, place - row, low, high, law)
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def place_on_isentrope(mu, law):  # type: ignore[no-untyped-def]
     """Where in the isentrope's table a density stands, in rows, and the row before it."""
     place = (mu / (1.0 + mu) - law.first) / law.step
     return place, min(max(int(place), 0), law.isentrope.shape[0] - 2)
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def temperature_between(mu, energy, beyond, low, high, law):  # type: ignore[no-untyped-def]
     """Temperature [K] so far beyond a row of the isentrope's table, of its numbers and the next's.
 

@@ -11,14 +11,14 @@ import math
 from numba import njit
 
 from quintet.components.shared.elementary import exponential, logarithm
-from quintet.components.shared.numba_options import INNER, LANEWISE
+from quintet.components.shared.numba_options import FAST_LANEWISE, INNER
 
 CLOSE = 1e-8  # of the flow stress: how far the returned stress may be from it
 MOST = 80  # iterations
 LEAST = 1e-300  # plastic strain by which none is divided
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def turned_and_strained(s, gradient, shear, dt):  # type: ignore[no-untyped-def]
     """Deviator after an elastic step, s + dt (2G dev D + W s - s W).
 
@@ -45,21 +45,21 @@ def turned_and_strained(s, gradient, shear, dt):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def equivalent(s):  # type: ignore[no-untyped-def]
     """Von Mises' equivalent stress √(3/2 s:s) [Pa] of a deviator."""
     xx, yy, zz, xy, yz, zx = s
     return math.sqrt(1.5 * (xx * xx + yy * yy + zz * zz) + 3.0 * (xy * xy + yz * yz + zx * zx))
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def softening(temperature, law):  # type: ignore[no-untyped-def]
     """1 - T*ᵐ, between 0 at melting and 1."""
     above = min(max((temperature - law.reference_temperature) / law.melting, 0.0), 1.0)
     return 1.0 - (above if law.m == 1.0 else exponential(law.m * logarithm(above)))
 
 
-@njit(**LANEWISE)
+@njit(**FAST_LANEWISE)
 def flow_stress(strain, rate, soft, law):  # type: ignore[no-untyped-def]
     """Y [Pa] at a plastic strain and its rate [1/s], and dY/dε_p at that rate, dY/d(rate)."""
     grows = law.b * (strain if law.n == 1.0 else exponential(law.n * logarithm(strain)))
