@@ -32,6 +32,7 @@ class Plan:
     bytes_per_item: float = 0.0
     times: Array | None = None  # (n,) s, the only ones at which it can give; None: at any
     notes: tuple[str, ...] = ()  # sentences that `check` prints
+    serial: float = 1.0  # share of a step's time on one thread that more threads do not shorten
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,8 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.mass import region_masses
 from quintet.interfaces.manifest import Plan
 
+SERIAL = 0.05  # share of a step that threads do not shorten: `quintet bench` on 1 and 2 threads
+
 
 def plan(params: SphFluidParams) -> Plan:
     """What a run will need."""
@@ -14,7 +16,7 @@ def plan(params: SphFluidParams) -> Plan:
     twice = params.integration == "symplectic"  # two passes over longer lists
     listed = (58.0 if twice else 45.0) * params.smoothing**3  # neighbours, with their margin
     rate = 2e6 * 150 / listed * (0.5 if twice else 1.0) * (0.8 if params.mirrored else 1.0)
-    return Plan(particles(params), dt, rate=rate, bytes_per_item=180 + 4 * listed)
+    return Plan(particles(params), dt, rate, 180 + 4 * listed, serial=SERIAL)
 
 
 def particles(params: SphFluidParams) -> int:

@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from quintet.coupler.files.checksums import require_sealed
+from quintet.coupler.measures.advice import sentences
 from quintet.interfaces.errors import SceneError
 
 NAME = "results.json"
@@ -69,7 +70,8 @@ def print_results(run: Mapping[str, Any], screen: Console, frame: box.Box | None
     for outcome in run.get("expect") or []:
         if outcome.get("reason"):
             screen.print(Text(f"{outcome.get('name', '?')}: not met: {outcome['reason']}"))
-    for line in (_balance(run), _masses(run), _shares(run)):
+    advised = sentences(run["advice"]) if run.get("advice") else []
+    for line in (_balance(run), _masses(run), _shares(run), *advised):
         if line:
             screen.print(line)
     for name, notes in (run.get("notes") or {}).items():

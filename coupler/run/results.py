@@ -5,6 +5,7 @@ import platform
 import shlex
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -16,13 +17,15 @@ from quintet.coupler.files.checksums import of_files, sealed
 from quintet.coupler.files.disk import reporting_disk, write_at_last
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.run_files import LEDGER, PICTURES, RESULTS, SCENE
+from quintet.coupler.measures.advice import Load, advice, serial_share, stages
 from quintet.coupler.measures.expectation import ROUNDING, Expectation, Outcome, evaluate
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.panels import can_draw
 from quintet.coupler.report.side_views import side_views
 from quintet.coupler.report.view_steps import view_files
 from quintet.coupler.scene.overrides import run_arguments
-from quintet.coupler.scene.scene import Scene
+from quintet.coupler.scene.planned_times import cores_here, serial_of
+from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
 
@@ -145,6 +148,24 @@ def timing(participants: dict[str, Participant], wall: float, costs: Costs) -> d
         "checks": costs.checks,
         "memory": memory,
     }
+
+
+def advise(scene: Scene, participants: Mapping[str, Participant]) -> dict[str, Any]:
+    """Who waited for whom, and the threads with which the same run would take the shortest time."""
+    loads = {
+        name: _load(scene.components[name], participant)
+        for name, participant in participants.items()
+    }
+    if loads.keys() != scene.components.keys():  # it ended before all had joined
+        return {}
+    return advice(stages(scene.coupling, scene.transport != "memory"), loads, cores_here())
+
+
+def _load(plan: ComponentPlan, participant: Participant) -> Load:
+    times = participant.timing
+    share = serial_share(times.compute, times.cpu, plan.threads)
+    planned = serial_of(plan) if share is None else share
+    return Load(times.compute, plan.threads, planned, share is not None)
 
 
 def machine() -> dict[str, Any]:

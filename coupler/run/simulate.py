@@ -334,6 +334,7 @@ def conclude(run: ActiveRun) -> int:
         "time_errors": run.judgement.time.errors.summary(),
         "notes": notes(run),
         "timing": results.timing(run.participants, run.clock(), run.costs),
+        "advice": results.advise(scene, run.participants),
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))

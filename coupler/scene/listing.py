@@ -13,10 +13,12 @@ from rich.table import Table
 
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.coupling.windows import auto_length
+from quintet.coupler.measures.advice import sentences
 from quintet.coupler.measures.expectation import ROUNDING, Expectation
 from quintet.coupler.scene.foreign_code import unread_note
+from quintet.coupler.scene.planned_times import planned_advice, planned_load
 from quintet.coupler.scene.read import library, parse
-from quintet.coupler.scene.scene import ComponentPlan, Scene
+from quintet.coupler.scene.scene import ComponentPlan, Scene, SceneFile
 from quintet.interfaces.component import Port, port_text
 
 UNWRAPPED = 10_000  # characters, more than any line has
@@ -94,8 +96,10 @@ def print_plan(scene: Scene, console: Console) -> None:
     for head in ("component", "kind", "threads", "items", "step", "memory", "time"):
         table.add_column(head)
     for plan in scene.components.values():
-        table.add_row(plan.name, plan.kind, str(plan.threads), *_needs(plan, file.end))
+        table.add_row(plan.name, plan.kind, str(plan.threads), *_needs(plan, file))
     console.print(table)
+    for line in _advice(scene):
+        console.print(line)
     for note in unread_notes(scene):
         console.print(note)
     for plan in (plan for plan in scene.components.values() if not plan.unread):
@@ -167,15 +171,23 @@ def _processes(scene: Scene) -> str:
     return f"{count} process" + ("es, the coupler one of them" if count > 1 else "")
 
 
-def _needs(component: ComponentPlan, end: float) -> tuple[str, str, str, str]:
+def _needs(component: ComponentPlan, file: SceneFile) -> tuple[str, str, str, str]:
     plan = component.planned
     if plan is None:
         return "", "", "", ""
     memory = f"{plan.items * plan.bytes_per_item / 1e6:.0f} MB" if plan.bytes_per_item else ""
     if math.isinf(plan.dt):
         return f"{plan.items}", "any", memory, ""
-    seconds = float(plan.items) * math.ceil(end / plan.dt) / (plan.rate * component.threads)
+    seconds = planned_load(component, file).seconds
     return f"{plan.items}", f"{plan.dt:.2g} s", memory, f"{seconds:.0f} s"
+
+
+def _advice(scene: Scene) -> list[str]:
+    """Who will wait for whom, and the threads for the shortest run here, by the kinds' plans."""
+    advised = planned_advice(scene)
+    if not advised["seconds"]:
+        return []
+    return [f"{text}; planned, not measured" for text in sentences(advised)]
 
 
 def _names(ports: tuple[Port, ...]) -> str:

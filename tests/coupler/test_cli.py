@@ -59,7 +59,7 @@ def test_no_line_is_wrapped_into_a_pipe(capsys, monkeypatch, command):
     monkeypatch.setenv("COLUMNS", "40")
     assert status(*command) == 0
     lines = capsys.readouterr().out.splitlines()
-    rows = len(library()) if command == ["list"] else len(load(command[1]).expect) + 10
+    rows = len(library()) if command == ["list"] else len(load(command[1]).expect) + 12
     lines = [line for line in lines if command != ["list"] or (line.split()[:1] and "(" in line)]
     assert len(lines) == rows and max(map(len, lines)) > 80
 
