@@ -1,6 +1,7 @@
 """Options that several commands share."""
 
 import argparse
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,17 @@ TRANSPORT = "how messages travel (default: key transport of the scene)"
 FORCE = "replace a former run in that folder; only files that it wrote are removed"
 IMPORT = "also import and check kinds module:Class, which are code beside the scene"
 FOR_PROGRAMS = "write the results as JSON to this file"
+
+
+def seconds(text: str) -> float:
+    """Read a time of an option [s]."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 <= value < math.inf:
+        raise argparse.ArgumentTypeError(f"must be seconds, 0 or more; found {text!r}")
+    return value
 
 
 def add_scene(command: argparse.ArgumentParser, **more: Any) -> None:

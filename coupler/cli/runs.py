@@ -12,9 +12,11 @@ from quintet.coupler.cli.options import (
     add_scene,
     add_settings,
     load_scene,
+    seconds,
 )
 from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.serving.log_stream import outlive_readers
+from quintet.interfaces.serving.process import STARTER
 
 if TYPE_CHECKING:
     from quintet.coupler.scene.scene import Scene
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
 OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"
 RESUME = "continue an interrupted or failed run from its last snapshot"
 ELSEWHERE = "do not start this component: quintet join starts it, here or on another host"
+GRACE = (
+    "after Ctrl-C or SIGTERM, wait so much longer for the end of the window and the snapshot "
+    "(default: 0, which is about a second in all)"
+)
 COMPILED = "scenes, or kinds, which stand for all scenes that use them (default: all scenes)"
 
 
@@ -33,6 +39,7 @@ def add_commands(command: Command) -> None:
     running.add_argument("--force", action="store_true", help=FORCE)
     running.add_argument("--resume", type=Path, metavar="DIR", help=RESUME)
     running.add_argument("--elsewhere", action="append", default=[], metavar="NAME", help=ELSEWHERE)
+    running.add_argument("--grace", type=seconds, default=0.0, metavar="SECONDS", help=GRACE)
     running.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
     joining = command("join", join, "start one component here and join it to a coupler elsewhere")
     add_scene(joining)
@@ -55,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
     """Run a scene, from the start or from a snapshot."""
     outlive_readers()
     scene, out, snapshot = _resumed(options) if options.resume else _begun(options)
-    scene.elsewhere = set(options.elsewhere)
+    scene.elsewhere, scene.grace = set(options.elsewhere), options.grace
     unknown = scene.elsewhere - set(scene.components)
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")
@@ -63,16 +70,27 @@ def run(options: argparse.Namespace) -> int:
     from quintet.coupler.report import show as report
     from quintet.coupler.run.run_scene import resume_scene, run_scene
 
-    if options.inside_mpi:
+    rank = options.inside_mpi
+    if rank and STARTER in os.environ:
         return _run_rank(scene, out or Path(), snapshot)
     if snapshot and out:
-        folder, status = out, resume_scene(scene, out, snapshot, own_process=True)
+        folder, status = out, resume_scene(scene, out, snapshot, own_process=True, rank=rank)
     else:
-        folder, status = run_scene(scene, out, options.force, own_process=True)
+        folder, status = run_scene(scene, out, options.force, own_process=True, rank=rank)
     if status != BAD and (folder / report.NAME).is_file():
         report.show(folder)
         print(f"left in {os.path.relpath(folder)}", flush=True)
+    if rank:
+        _leave_job(folder, status)
     return status
+
+
+def _leave_job(folder: Path, status: int) -> None:
+    """End the coupler's rank of a job whose launcher waits for all ranks, and starts no other."""
+    # Start-up: only this way of running needs it.
+    from quintet.coupler.launch.mpi_job import end_rank
+
+    end_rank(folder, status)
 
 
 def _run_rank(scene: "Scene", folder: Path, snapshot: Path | None) -> int:

@@ -57,6 +57,8 @@ class ProcessProbe:
     activity: str = ""  # what it did since the last reading
     _read_at: float = 0.0
     _times: tuple[float, float] = (0.0, 0.0)  # s, of its own and of its children
+    _looked_at: float = 0.0
+    _ended: bool = False
     _stopped: int = 0  # readings that found it so, one after the other
     _killed_before: int = field(default_factory=killed_for_memory)
 
@@ -64,17 +66,28 @@ class ProcessProbe:
         """Whether the process still runs."""
         if self.process:
             return self.process.poll() is None
-        return self.pid == 0 or running(self.pid)
+        if self.pid:
+            return running(self.pid)
+        return self.exit_file is None or not self._has_written()
+
+    def _has_written(self) -> bool:
+        """Whether the exit status of a process elsewhere has been written; asked now and then."""
+        now = time.monotonic()
+        if now - self._looked_at > INTERVAL:
+            self._looked_at, self._ended = now, bool(self.exit_file and self.exit_file.exists())
+        return self._ended
 
     def ending(self) -> str:
         """Describe how the process ended."""
         code = self.process.returncode if self.process else self._written()
+        who = f"process {self.pid}" if self.pid else "its process, not on the coupler's host,"
         if code is None:
-            return f"process {self.pid} is gone: it ended or was killed"
+            return f"{who} is gone: it ended or was killed"
         if code < 0:
             name = signal.Signals(-code).name
-            return f"process {self.pid} was killed by signal {-code} ({name}){self._reason(-code)}"
-        return f"process {self.pid} ended by itself with status {code}, before it was told to"
+            reason = self._reason(-code) if self.pid else ""
+            return f"{who} was killed by signal {-code} ({name}){reason}"
+        return f"{who} ended by itself with status {code}, before it was told to"
 
     def _written(self) -> int | None:
         """Exit status of a process of another parent; negative: the signal that killed it."""

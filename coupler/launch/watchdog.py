@@ -110,12 +110,15 @@ class Watchdog:
         Whether it is this watchdog's turn to tell and to end.
     alone : bool
         Whether the run has one component, which keeps nobody waiting.
+    grace : float, s
+        More time than usual for the end of a window and for a snapshot, after an end was asked for.
     """
 
     stop: Request
     in_main_thread: bool = False
     acts: Callable[[], bool] = lambda: True
     alone: bool = False
+    grace: float = 0.0
     substitute: Substitute | None = None
     mark: str = field(default_factory=lambda: secrets.token_hex(8))  # of all processes of the run
     news: Callable[[], str] = lambda: ""  # what else the user should know, in every round
@@ -192,7 +195,8 @@ class Watchdog:
             if component.participant.keeping_others_waiting.since
         ]
         saves = any(component.order in ("save", "finish") for component in waited)
-        late = bool(waited) and now - self._asked_at > (SAVING if saves else ENDING)
+        limit = self.grace + (SAVING if saves else ENDING)
+        late = bool(waited) and now - self._asked_at > limit
         if late or self.stop.at_once():
             self._judge(KeyboardInterrupt())
 

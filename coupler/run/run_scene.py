@@ -18,7 +18,11 @@ from quintet.interfaces.lines.endpoint import require_free
 
 
 def run_scene(
-    scene: Scene, out: Path | None = None, force: bool = False, own_process: bool = False
+    scene: Scene,
+    out: Path | None = None,
+    force: bool = False,
+    own_process: bool = False,
+    rank: bool = False,
 ) -> tuple[Path, int]:
     """Run a scene from its start; return the folder of the run and the exit status.
 
@@ -30,13 +34,15 @@ def run_scene(
         Replace a former run in the folder: only what it wrote, once the new one has begun.
     own_process : bool
         Whether this process may be left from within, if a solver in it does not come back.
+    rank : bool
+        Whether it is rank 0 of an MPI job that a launcher has started with all its ranks.
     """
-    check_machine(scene)  # before a former run is touched
+    check_machine(scene, rank)  # before a former run is touched
     with begin("run", scene.file.name, files_of(scene), out, force) as place:
         try:
             make_folder(scene, place.path)
             print(headline(scene, place.path), flush=True)
-            status = _run(scene, place.path, None, own_process)
+            status = _run(scene, place.path, None, own_process, rank)
         except QuintetError:
             place.undo()
             raise
@@ -45,13 +51,15 @@ def run_scene(
     return place.path, status
 
 
-def resume_scene(scene: Scene, folder: Path, snapshot: Path, own_process: bool = False) -> int:
-    """Continue a run from one of its snapshots; return the exit status."""
-    check_machine(scene)
+def resume_scene(
+    scene: Scene, folder: Path, snapshot: Path, own_process: bool = False, rank: bool = False
+) -> int:
+    """Continue a run from one of its snapshots; return the exit status. See `run_scene`."""
+    check_machine(scene, rank)
     with go_on(folder, "run"):
         reserve(folder, RESULTS)
         print(headline(scene, folder), flush=True)
-        return _run(scene, folder, snapshot, own_process)
+        return _run(scene, folder, snapshot, own_process, rank)
 
 
 def headline(scene: Scene, folder: Path) -> str:
@@ -66,10 +74,10 @@ def headline(scene: Scene, folder: Path) -> str:
     return f"{name}: {', '.join(parts)} over {scene.transport}, into {where}"
 
 
-def check_machine(scene: Scene) -> None:
+def check_machine(scene: Scene, rank: bool = False) -> None:
     """Refuse what this machine lacks: memory, a library, a launcher, an endpoint that is free."""
     require_memory(scene, scene.elsewhere)
-    if scene.transport == "mpi":
+    if scene.transport == "mpi" and not rank:
         find_launcher()
     elif scene.transport == "zenoh":
         require("zenoh", "transport zenoh")
@@ -77,9 +85,10 @@ def check_machine(scene: Scene) -> None:
             require_free(scene.endpoint)
 
 
-def _run(scene: Scene, folder: Path, snapshot: Path | None, own_process: bool) -> int:
-    if scene.transport == "mpi":
+def _run(scene: Scene, folder: Path, snapshot: Path | None, own_process: bool, rank: bool) -> int:
+    if scene.transport == "mpi" and not rank:
         target = ["--resume", str(folder)] if snapshot else ["--out", str(folder)]
+        target += ["--grace", str(scene.grace)] if scene.grace else []
         end = run_under_mpi(["run", *run_arguments(**scene.asked), *target], scene, folder)
         if end.cause:
             conclude_for_coupler(scene, folder, end.status, end.cause)

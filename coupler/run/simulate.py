@@ -43,6 +43,7 @@ from quintet.coupler.run.start_report import StartReport
 from quintet.coupler.scene.predicted_limits import beyond_limits
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import DiskError, LinkError, QuintetError, SceneError
+from quintet.interfaces.serving.process import STARTER
 
 
 class Closable(Protocol):
@@ -60,7 +61,8 @@ def simulate(
     Where the process is our own, it is left from a thread if its main thread does not come back.
     """
     stop = StopRequest()
-    watchdog = Watchdog(stop, scene.transport == "memory", alone=len(scene.components) == 1)
+    in_main_thread, alone = scene.transport == "memory", len(scene.components) == 1
+    watchdog = Watchdog(stop, in_main_thread, alone=alone, grace=scene.grace)
     run = ActiveRun(scene, folder, snapshot, stop, watchdog)
     if own_process:
         stop.leave = run.leave
@@ -167,7 +169,8 @@ class ActiveRun:
         """Have it written down if this process is killed: the others are processes of their own."""
         path = self.folder / "log" / REACHED
         self.writer.on_window = Reached(path).note
-        if self.scene.transport == "zenoh":  # who started an MPI job sees to its ranks
+        # Of other MPI jobs who started them sees to the ranks.
+        if self.scene.transport == "zenoh" or STARTER not in os.environ:
             self._companion = Companion(once_gone(self._report_death))
 
     def _report_death(self) -> None:

@@ -203,6 +203,7 @@ class Scene:
     transport: Transport = "zenoh"
     asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand
+    grace: float = 0.0  # s more for the end of a window and a snapshot, once an end is asked for
 
     @property
     def endpoint(self) -> str:

@@ -26,6 +26,7 @@ from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.serve import LONGEST_WAIT, Server, failure, serve
 
 LINGERING = 10.0  # s
+PREPARING = 60.0  # s for the coupler to make the folder of the logs
 # Asks a component where in its code it is: one of the signals that no library uses for itself.
 STACK_SIGNAL = signal.SIGRTMIN + 7
 LOOK_IN = "look for module:Class here too, after all that is installed; may be repeated"
@@ -56,7 +57,13 @@ def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -
 
 
 def redirect(path: str) -> None:
-    """Send all output of the process, and of the libraries in it, to a file."""
+    """Send all output of the process, and of the libraries in it, to a file.
+
+    Whoever prepares its folder may start at the same time, as in an MPI job.
+    """
+    limit = time.monotonic() + PREPARING
+    while not os.path.isdir(os.path.dirname(path) or ".") and time.monotonic() < limit:
+        time.sleep(0.05)
     file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
     os.dup2(file, 1)
     os.dup2(file, 2)

@@ -156,6 +156,16 @@ def test_how_a_rank_ended_is_read_from_the_file_of_its_parent(tmp_path, written,
     assert words in ProcessProbe("pong", 7, exit_file=tmp_path / "pong.exit").ending()
 
 
+def test_a_rank_on_another_host_lives_until_its_exit_status_is_written(tmp_path, monkeypatch):
+    monkeypatch.setattr("quintet.coupler.launch.process_probe.INTERVAL", 0.0)
+    probe = ProcessProbe("toy", exit_file=tmp_path / "exit")
+    assert probe.alive() and "on another host" in probe.described()
+    (tmp_path / "exit").write_text("137\n")
+    assert not probe.alive()
+    said = "its process, not on the coupler's host, was killed by signal 9 (SIGKILL)"
+    assert probe.ending() == said
+
+
 def test_a_lack_of_memory_is_said_where_the_system_has_killed_for_it(monkeypatch, tmp_path):
     (tmp_path / "pong.exit").write_text("137")
     watch = ProcessProbe("pong", 7, exit_file=tmp_path / "pong.exit")

@@ -1,0 +1,113 @@
+"""A scene runs as jobs of a real SLURM, on two nodes, as far as its limits of time."""
+
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+import pytest
+from slurm_cluster import Cluster, lacking
+from started import write_scene
+
+from quintet.coupler.report.diff import compare
+from quintet.coupler.report.show import results
+
+QUINTET = [sys.executable, "-m", "quintet.coupler.cli"]
+OUT = ("--out", "run", "--submit")
+MAIN = ("dam_break_cubes", "--preset", "quick", "--set", "end=0.9")
+pytestmark = [
+    pytest.mark.full,
+    pytest.mark.mpi,
+    pytest.mark.skipif(
+        bool(lacking()),
+        reason=f"SLURM is not installed here: no {', '.join(lacking())} "
+        "(Debian: apt-get install slurm-wlm munge)",
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    slurm = Cluster(tmp_path_factory.mktemp("slurm"))
+    try:
+        yield slurm
+    finally:
+        slurm.close()
+
+
+def _launch(cluster, folder, *arguments, limit="00:10:00"):
+    words = ("--slurm", "--nodes", "2", "--time", limit, "--margin", "10")
+    said = cluster.call(*QUINTET, "launch", *map(str, arguments), *words, *OUT, cwd=folder)
+    assert "Submitted batch job" in said, said
+
+
+def _output(folder):
+    """What all jobs said, one after the other."""
+    jobs = sorted(folder.glob("*-*.out"), key=lambda path: int(path.stem.rpartition("-")[2]))
+    return "".join(path.read_text() for path in jobs)
+
+
+def _wait_for_windows(folder):
+    limit = time.monotonic() + 60.0
+    while not (folder / "run/log/reached").exists() or "window" not in _output(folder):
+        assert time.monotonic() < limit, _output(folder)
+        time.sleep(0.2)
+
+
+def test_the_main_job_goes_on_in_further_jobs_to_the_same_bits(cluster, tmp_path):
+    undisturbed = tmp_path / "undisturbed"
+    subprocess.run([*QUINTET, "run", *MAIN, "--out", str(undisturbed)], capture_output=True)
+    _launch(cluster, tmp_path, *MAIN, limit="00:01:00")
+    cluster.wait(550.0)
+    said = _output(tmp_path)
+    resumed = re.findall(r"ended in snapshot-(\d+)\.h5; submitted again", said)
+    assert resumed and list(map(int, resumed)) == sorted(set(map(int, resumed))), said
+    assert said.count("quintet launch: the run is done") == 1, said
+    assert results(tmp_path / "run")["status"] == "done"
+    assert compare(undisturbed, tmp_path / "run") is None
+    assert not list((tmp_path / "run/log").glob("*.exit"))
+
+
+def test_a_failed_run_is_reported_and_not_submitted_again(cluster, tmp_path):
+    scene = write_scene(tmp_path, "mpi", 0.1, pong="fails_at = 50")
+    _launch(cluster, tmp_path, scene)
+    cluster.wait(120.0)
+    said = _output(tmp_path)
+    assert "pong failed in window" in said and "not submitted again" in said
+    assert "the run failed with status" in said and "Submitted batch" not in said
+    assert results(tmp_path / "run")["fault"]["component"] == "pong"
+
+
+def test_a_killed_coupler_leaves_results_and_its_ranks_are_ended(cluster, tmp_path):
+    scene = write_scene(tmp_path, "mpi", 1000.0, pong="pause = 1e-3")
+    _launch(cluster, tmp_path, scene)
+    _wait_for_windows(tmp_path)
+    job = cluster.jobs()[0]
+    coupler = re.search(r'"coupler": (\d+)', (tmp_path / "run/log/mpi.json").read_text())[1]
+    subprocess.run(["kill", "-KILL", coupler])
+    cluster.wait(150.0)
+    assert results(tmp_path / "run")["fault"]["component"] == "coupler"
+    said = _output(tmp_path)
+    assert "the run failed with status 137" in said and job in said
+
+
+def test_who_cancels_a_job_gets_a_snapshot_and_no_other_job(cluster, tmp_path):
+    scene = write_scene(tmp_path, "mpi", 1000.0, pong="pause = 1e-3")
+    _launch(cluster, tmp_path, scene)
+    _wait_for_windows(tmp_path)
+    cluster.call("scancel", cluster.jobs()[0])
+    cluster.wait(60.0)
+    assert results(tmp_path / "run")["status"] == "interrupted"
+    assert list((tmp_path / "run").glob("snapshot-*.h5"))
+    assert "Submitted batch" not in _output(tmp_path)
+
+
+def test_a_job_without_progress_is_the_last(cluster, tmp_path):
+    """A window that takes longer than a job may, as a margin that is too short, would go on."""
+    scene = write_scene(tmp_path, "mpi", 1000.0, pong="pause = 200.0")
+    _launch(cluster, tmp_path, scene, limit="00:01:00")
+    cluster.wait(200.0)
+    said = _output(tmp_path)
+    assert "no snapshot was written in this job" in said and "Submitted batch" not in said
+    shutil.rmtree(tmp_path / "run")
