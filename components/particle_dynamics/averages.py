@@ -24,15 +24,22 @@ class BlockMeans:
         # The last row: times of both, number of blocks, and whether the start has passed.
         self.sums: Array = np.zeros((count + 1, 4))
 
+    def needs(self, time: float) -> bool:
+        """Whether the integrals at a time [s] begin or end a block."""
+        _, since, _, has_begun = self.sums[-1].tolist()
+        if has_begun:
+            return bool(time - since >= self.block * (1.0 - 1e-9))
+        return time >= self.begin * (1.0 - 1e-12)
+
     def add(self, time: float, integrals: Array) -> None:
-        """Take the integrals (count,) at a time [s]."""
-        rows, (first, since, blocks, has_begun) = self.sums[:-1], self.sums[-1].tolist()
-        if time < self.begin * (1.0 - 1e-12):
+        """Take the integrals (count,) at a time [s], where they are needed."""
+        if not self.needs(time):
             return
+        rows, (first, since, blocks, has_begun) = self.sums[:-1], self.sums[-1].tolist()
         if not has_begun:
             rows[:, 0] = rows[:, 1] = integrals
             self.sums[-1] = (time, time, 0.0, 1.0)
-        elif time - since >= self.block * (1.0 - 1e-9):
+        else:
             rate = (integrals - rows[:, 1]) / (time - since)
             rows[:, 1] = integrals
             rows[:, 2] += rate

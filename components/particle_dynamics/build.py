@@ -38,11 +38,15 @@ class Built(NamedTuple):
     frozen: Whole  # (f,) points
 
 
+def lattice_cells(lattice: Lattice) -> Whole:
+    """Places (n, 3) of the points in spacings, counted along z first."""
+    axes = [np.arange(count) for count in lattice.points]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+
+
 def lattice_points(lattice: Lattice) -> Array:
     """Positions (n, 3) m, counted along z first."""
-    axes = [np.arange(count) for count in lattice.points]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
-    return np.array(lattice.lowest) + lattice.spacing * grid
+    return np.array(lattice.lowest) + lattice.spacing * lattice_cells(lattice)
 
 
 def build(params: ParticleLatticeParams) -> Built:
@@ -61,6 +65,7 @@ def initial_state(
 ) -> State:
     """Points at their places, with random velocities if they are warm; baths (b,) K."""
     lattice, count = params.lattice, len(start)
+    damped = count if params.damping is not None and params.damping.coefficient > 0.0 else 0
     random = np.random.default_rng(params.seed)
     width = math.sqrt(2.0 * params.boltzmann * lattice.temperature / lattice.mass)
     velocity = width * random.normal(size=(count, 3))
@@ -75,7 +80,10 @@ def initial_state(
         kinetic=np.zeros(count),
         temperature=temperature.copy(),
         heat=np.zeros(len(temperature)),
-        energies=np.zeros(6),
+        flow=np.zeros(len(temperature)),
+        lost=np.zeros(damped),
+        dissipated=np.zeros(damped),
+        energies=np.zeros(4),
         generator=np.array([params.seed], np.uint64),
     )
 

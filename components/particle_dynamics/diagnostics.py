@@ -1,19 +1,12 @@
 """Energies of a lattice and their audit, hotness, and what indicates that the lattice breaks up."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.particle_dynamics.build import CLOSE, Built
-from quintet.components.particle_dynamics.kernels.forces import (
-    Pairs,
-    count_intact,
-    count_near,
-    sum_energies,
-)
+from quintet.components.particle_dynamics.build import CLOSE
 from quintet.components.particle_dynamics.params import Drive, Lattice
-from quintet.components.particle_dynamics.state import DISSIPATED, TIME, WORK, Model, State, Whole
+from quintet.components.particle_dynamics.state import Whole
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
 
@@ -31,21 +24,26 @@ class Energies(NamedTuple):
     potential: float  # J, of pairs and tethers
 
 
-def energies(state: State, pairs: Pairs, built: Built, model: Model) -> Energies:
-    """Sum the energies of points, pairs and tethers."""
-    bathed = model.bathed
-    kinetic = 0.5 * model.mass * float((state.velocity**2).sum())
-    away = ((state.position[bathed.point] - bathed.rest) ** 2).sum(axis=1)
-    potential = sum_energies(state.position, pairs, built.law, built.period)
-    return Energies(kinetic, float(potential + 0.5 * (bathed.tether * away).sum()))
+class Balance(NamedTuple):
+    """What was put into a lattice since the start."""
+
+    work: float  # J, of the drive
+    heat: Array  # (b,) J, from the bath to each bathed point
+    dissipated: float  # J
 
 
-def heat_of_baths(state: State, bath: Whole, count: int) -> Array:
-    """Heat (count,) J from each bath, of the baths (b,) of points."""
-    return np.bincount(bath, state.heat, count).astype(np.float64)[:count]
+def energies(mass: float, velocity: Array, pairs: Array, tethers: Array) -> Energies:
+    """Sum the energies of points, of the pairs of each, and of tethers (twice their energies)."""
+    kinetic = 0.5 * mass * float((velocity**2).sum())
+    return Energies(kinetic, float(pairs.sum() + 0.5 * tethers.sum()))
 
 
-def audit(now: Energies, initial: float, state: State, baths: Array, unit: float) -> float:
+def heat_of_baths(heat: Array, bath: Whole, count: int) -> Array:
+    """Heat (count,) J from each bath, of heat (b,) J to points and the baths (b,) of these."""
+    return np.bincount(bath, heat, count).astype(np.float64)[:count]
+
+
+def audit(now: Energies, initial: float, balance: Balance, baths: Array, least: float) -> float:
     """Energy missing in the balance, over what was put in since the start.
 
     Parameters
@@ -53,28 +51,22 @@ def audit(now: Energies, initial: float, state: State, baths: Array, unit: float
     now : Energies
     initial : float, J
         Their sum at the start.
-    state : State
+    balance : Balance
     baths : (any,) float array, J
         Heat of each bath.
-    unit : float, J
-        m a² ω².
+    least : float, J
+        Energy that is small for the lattice.
     """
-    work = float(state.energies[WORK])
-    put_in = float(state.energies[WORK] + state.heat.sum())
-    gained = now.kinetic + now.potential - initial + float(state.energies[DISSIPATED])
-    size = abs(work) + float(np.abs(baths).sum())
-    return (gained - put_in) / max(size, now.kinetic, AUDITED * len(state.position) * unit)
+    put_in = float(balance.work + balance.heat.sum())
+    gained = now.kinetic + now.potential - initial + balance.dissipated
+    size = abs(balance.work) + float(np.abs(baths).sum())
+    return (gained - put_in) / max(size, now.kinetic, least)
 
 
-def outer_work(state: State, wall: Whole) -> float:
+def outer_work(balance: Balance, wall: Whole) -> float:
     """Energy [J] of drive, damping and baths so far, except a wall that a partner heats."""
-    heat = float(state.heat.sum() - state.heat[wall].sum())
-    return float(state.energies[WORK] - state.energies[DISSIPATED]) + heat
-
-
-def intact(position: Array, bonds: Whole, spacing: float, period: Array | None) -> float:
-    """Share of the bonds between nearest points that have 0.8 to 1.2 spacings [m]."""
-    return float(count_intact(position, bonds, spacing, period) / max(len(bonds), 1))
+    heat = float(balance.heat.sum() - balance.heat[wall].sum())
+    return balance.work - balance.dissipated + heat
 
 
 def hotness(kinetic: Array, since: float, least: float) -> tuple[Array, Array]:
@@ -103,16 +95,21 @@ class Losses:
         # Times [s] of a lost point, of broken bonds, of missing energy; the point. -1: none.
         self.times = np.full(4, -1.0)
 
-    def check(self, state: State, pairs: Pairs, built: Built, spacing: float) -> None:
-        """Note the times of the first lost point and of broken bonds."""
+    def check(self, time: float, near: int, point: int, intact: float) -> None:
+        """Note the times [s] of the first lost point and of broken bonds.
+
+        Parameters
+        ----------
+        time : float, s
+        near, point : int
+            Fewest points that a point has within the cut-off, and that point.
+        intact : float
+            Share of the bonds that are neither short nor long.
+        """
         self.unchecked = 0
-        time, near = float(state.energies[TIME]), np.empty(len(state.position), np.int64)
-        count_near(state.position, pairs, built.law.cutoff2, built.period, near)
-        if self.times[0] < 0.0 and (near == 0).any():
-            self.times[0], self.times[3] = time, int(np.argmin(near))
-        if self.times[1] < 0.0 and (
-            intact(state.position, built.bonds, spacing, built.period) < INTACT
-        ):
+        if self.times[0] < 0.0 and near == 0:
+            self.times[0], self.times[3] = time, point
+        if self.times[1] < 0.0 and intact < INTACT:
             self.times[1] = time
 
     def check_energy(self, missing: float, time: float) -> None:
@@ -157,12 +154,10 @@ def drive_notes(drive: Drive | None, lattice: Lattice) -> tuple[str, ...]:
     )
 
 
-def failure(state: State, start: Array, skin: float, dt: float) -> StepError:
+def failure(point: int, start: Array, time: float, skin: float, dt: float) -> StepError:
     """Name the point that moved furthest in a step dt [s] that neighbour lists do not allow."""
-    moved = ((state.position - state.listed) ** 2).sum(axis=1)
-    point = int(np.argmax(np.where(np.isfinite(moved), moved, math.inf)))
     return StepError(
         f"point {point}, at {start[point]} m at the start: it must move by less "
         f"than {0.2 * skin:.3g} m in a step of {dt:.3g} s, and did not, at "
-        f"{state.energies[TIME]:g} s. Take a smaller courant, or drive and heat less."
+        f"{time:g} s. Take a smaller courant, or drive and heat less."
     )

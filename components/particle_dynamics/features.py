@@ -1,19 +1,24 @@
 """What holds, drives, damps and heats a lattice; each is absent unless the scene has it."""
 
 import math
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from quintet.components.particle_dynamics.build import Built
+from quintet.components.particle_dynamics.build import Built, lattice_cells
 from quintet.components.particle_dynamics.integrators import STAGES
 from quintet.components.particle_dynamics.params import Bath, Drive, Lattice, ParticleLatticeParams
-from quintet.components.particle_dynamics.state import Bathed, Driven, Model, Whole
+from quintet.components.particle_dynamics.potential import pair_damping
+from quintet.components.particle_dynamics.ranks.one import OneRank
+from quintet.components.particle_dynamics.ranks.terms import Terms
+from quintet.components.particle_dynamics.state import NO_DRIVE, Bathed, Driven, Model, State, Whole
 from quintet.components.shared.geometry.selections import in_box
 from quintet.components.shared.search.nearest import nearest_rows
-from quintet.interfaces.component import Array
+from quintet.interfaces.component import Array, Resources
 from quintet.interfaces.errors import SceneError
 
-NO_DRIVE = Driven(-1, -1, 0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0, 0.0)
+if TYPE_CHECKING:
+    from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 
 
 def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
@@ -27,6 +32,7 @@ def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
             f"{start[min(shared)].tolist()} m. Make the boxes smaller."
         )
     loose = ~np.isin(built.bonds, sorted(held)).any(axis=1)
+    collision_rate = params.collision_rate if loose.any() else 0.0
     is_literal = damping is not None and damping.range == "all"
     return Model(
         mass=params.lattice.mass,
@@ -34,7 +40,8 @@ def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
         driven=driven,
         bathed=bathed,
         bonds=built.bonds[loose],
-        collision_rate=params.collision_rate if loose.any() else 0.0,
+        collision_rate=collision_rate,
+        is_random=collision_rate > 0.0 or len(bathed.point) > 0,
         stages=np.array(STAGES[params.integrator]),
         literal_damping=damping.coefficient if damping is not None and is_literal else 0.0,
     )
@@ -93,9 +100,48 @@ def bathed(start: Array, baths: tuple[Bath, ...]) -> Bathed:
         rate=np.array([bath.rate for bath in baths], float)[number_of],
         tether=np.array([bath.tether for bath in baths], float)[number_of],
         rest=start[point].copy(),
+        passed=np.zeros(len(point) + 1, np.int64),
     )
 
 
-def wall_of(bathed: Bathed, baths: tuple[Bath, ...]) -> Whole:
-    """Rows of the bathed points that are coupled, which are the wall of a link `heat`."""
-    return np.flatnonzero(np.array([bath.coupled for bath in baths], bool)[bathed.bath])
+class Wall(NamedTuple):
+    """The bathed points that are the wall of a link `heat`."""
+
+    rows: Whole  # (w,) of all bathed points
+    here: Whole  # (k,) rows of the bathed points of this rank
+    of_wall: Whole  # (k,) which of the wall's points each of these is
+
+
+def wall_of(bathed: Bathed, baths: tuple[Bath, ...], bathed_here: Whole) -> Wall:
+    """Find the bathed points that are coupled; `bathed_here` (b,) are those of this rank."""
+    rows = np.flatnonzero(np.array([bath.coupled for bath in baths], bool)[bathed.bath])
+    here = np.flatnonzero(np.isin(bathed_here, rows))
+    return Wall(rows, here, np.searchsorted(rows, bathed_here[here]))
+
+
+def rows_of(
+    resources: Resources, params: ParticleLatticeParams, built: Built, state: State, model: Model
+) -> "OneRank | SeveralRanks":
+    """Points as they are stepped: all of them, or the share of this rank."""
+    lattice, communicator = params.lattice, resources.communicator
+    terms = Terms(
+        law=built.law,
+        damping=pair_damping(params.damping, lattice.spacing),
+        period=built.period,
+        lowest=np.array(lattice.lowest),
+        bonds=built.bonds,
+        spacing=lattice.spacing,
+        boltzmann=params.boltzmann,
+        averaged_from=params.averages.begin,
+    )
+    if communicator is None or communicator.size == 1:
+        return OneRank(state, model, terms)
+    if model.literal_damping > 0.0:
+        raise SceneError(
+            "damping: the range all needs every pair of points, so the lattice cannot be shared "
+            f"out; found {communicator.size} ranks. Take one rank, or the range cut-off."
+        )
+    # Only a lattice of several ranks loads mpi4py.
+    from quintet.components.particle_dynamics.ranks.several import SeveralRanks
+
+    return SeveralRanks(communicator, state, model, terms, lattice_cells(lattice))

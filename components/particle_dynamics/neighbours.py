@@ -8,7 +8,7 @@ from quintet.components.particle_dynamics.kernels.forces import Pairs
 from quintet.components.particle_dynamics.kernels.motion import EARLY
 from quintet.components.particle_dynamics.kernels.pair_lists import write_pairs
 from quintet.components.particle_dynamics.state import Whole
-from quintet.components.shared.search.cells import grid_around, sorted_into
+from quintet.components.shared.search.cells import corners, grid_between, sorted_into
 from quintet.components.shared.search.neighbours import neighbours_within
 from quintet.components.shared.search.verlet_list import furthest, slack
 from quintet.components.shared.threads import Team
@@ -45,7 +45,13 @@ class Neighbours:
         return slack(EARLY * self.skin, furthest(position, listed)) < 0.0
 
 
-def pairs_within(reach: float, position: Array, lowest: Array, period: Array | None) -> Pairs:
+def pairs_within(
+    reach: float,
+    position: Array,
+    lowest: Array,
+    period: Array | None,
+    bounds: tuple[Array, Array] | None = None,
+) -> Pairs:
     """List all pairs within a reach.
 
     Parameters
@@ -56,20 +62,21 @@ def pairs_within(reach: float, position: Array, lowest: Array, period: Array | N
         Where periodic sides begin.
     period : (6,) float array, m and 1/m, or None
         Lengths of periodic sides and their inverses, 0 of open ones.
+    bounds : two (3,) float arrays, m
+        Corners of a box that holds the points, by which they are sorted; by default of the least.
     """
-    points, source = position, np.arange(len(position))
-    images: Array = np.empty((0, 3))
-    if period is not None:
-        sides = period[:3]
-        points = position - sides * np.floor((position - lowest) * period[3:])
-        images, source = _images(points, reach, lowest, sides)
-    order = sorted_into(points, grid_around(points, reach))[2]
-    if len(images):
+    points = wrapped(position, lowest, period)
+    across, source = images(points, reach, lowest, period)
+    low, high = bounds or corners(points)
+    grid = grid_between(low, high, reach)
+    order = sorted_into(points, grid)[2]
+    if len(across):
         # Sorted by the cells of the first group, which alone searches for them.
-        rising = sorted_into(images, grid_around(points, reach))[2]
-        images, source = images[rising], source[rising]
+        rising = sorted_into(across, grid)[2]
+        across, source = across[rising], source[rising]
     count = len(points)
-    lists = neighbours_within(reach, np.concatenate([points[order], images]), count, TEAM)
+    everything = np.concatenate([points[order], across])
+    lists = neighbours_within(reach, everything, count, TEAM, grid=grid)
     place = np.empty(count, np.int64)
     place[order] = np.arange(count)
     begin: Whole = np.zeros(count + 1, np.int64)
@@ -79,9 +86,17 @@ def pairs_within(reach: float, position: Array, lowest: Array, period: Array | N
     return Pairs(begin, neighbour[:written].copy())
 
 
-def _images(points: Array, reach: float, lowest: Array, sides: Array) -> tuple[Array, Whole]:
+def wrapped(position: Array, lowest: Array, period: Array | None) -> Array:
+    """Points (n, 3) m between the periodic sides."""
+    if period is None:
+        return position
+    return np.asarray(position - period[:3] * np.floor((position - lowest) * period[3:]))
+
+
+def images(points: Array, reach: float, lowest: Array, period: Array | None) -> tuple[Array, Whole]:
     """Images (m, 3) m of points near periodic sides, and the numbers (m,) of these points."""
     places, source = points, np.arange(len(points))
+    sides = np.zeros(3) if period is None else period[:3]
     for axis in range(3):
         if sides[axis] == 0.0:
             continue

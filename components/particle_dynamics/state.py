@@ -27,6 +27,9 @@ class Driven(NamedTuple):
     rest_second: float
 
 
+NO_DRIVE = Driven(-1, -1, 0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0, 0.0)
+
+
 class Bathed(NamedTuple):
     """Points that baths keep at temperatures; a point is in one bath at most."""
 
@@ -35,6 +38,9 @@ class Bathed(NamedTuple):
     rate: Array  # (b,) 1/s
     tether: Array  # (b,) N/m
     rest: Array  # (b, 3) m
+    # (b + 1,) points whose random numbers are passed over before each of these and after the last:
+    # those that other ranks draw.
+    passed: Whole
 
 
 class Model(NamedTuple):
@@ -46,6 +52,7 @@ class Model(NamedTuple):
     bathed: Bathed
     bonds: Whole  # (m, 2) pairs of nearest points that collide
     collision_rate: float  # 1/s
+    is_random: bool  # whether baths or collisions change velocities in the middle of a step
     stages: Array  # (s,) shares of a step: 1, or Yoshida's three
     literal_damping: float  # N s/m, of all pairs at any distance
 
@@ -60,9 +67,14 @@ class State(NamedTuple):
     kinetic: Array  # (n,) J s, ½ m v² over time since the averages began
     temperature: Array  # (b,) K, of bathed points
     heat: Array  # (b,) J, from the bath to each point
-    energies: Array  # (6,) see below
+    flow: Array  # (b,) W, into the bath from each point, mean of the last call of `step`
+    lost: Array  # (n,) W, dissipated now by the pairs listed for each point; (0,) without damping
+    dissipated: Array  # (n,) J, its integral
+    energies: Array  # (4,) see below
     generator: Generator  # (1,)
 
 
-# Rows of `State.energies`: s, J of the drive, J and W dissipated, N on the driven pair.
-TIME, WORK, DISSIPATED, LOST, PULL_FIRST, PULL_SECOND = range(6)
+POINTS = ("position", "velocity", "acceleration", "listed", "kinetic", "lost", "dissipated")
+BATHED = ("temperature", "heat", "flow")
+# Rows of `State.energies`: s, J of the drive, N on the driven pair.
+TIME, WORK, PULL_FIRST, PULL_SECOND = range(4)

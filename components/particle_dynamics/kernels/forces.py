@@ -66,8 +66,8 @@ def _minimum_image(period, axis, x):  # type: ignore[no-untyped-def]
 @njit(**FAST)
 def sum_forces(
     position: Array, velocity: Array, pairs: Pairs, law: Any, damping: Any, period: Any,
-    force: Array,
-) -> float:  # fmt: skip
+    force: Array, lost: Array,
+) -> None:  # fmt: skip
     """Sum the forces of all pairs.
 
     Parameters
@@ -80,11 +80,8 @@ def sum_forces(
         Lengths of periodic sides and their inverses, 0 of open ones.
     force : (n, 3) float array, N
         Written.
-
-    Returns
-    -------
-    float
-        Power [W] that is dissipated.
+    lost : (n,) float array, W
+        Written where there is damping: what the pairs of each point's list dissipate.
     """
     begin, neighbour = pairs
     longest = 1
@@ -92,7 +89,6 @@ def sum_forces(
         longest = max(longest, begin[i + 1] - begin[i])
     dx, dy, dz = np.empty(longest), np.empty(longest), np.empty(longest)
     force[:] = 0.0
-    lost = 0.0
     for i in range(position.shape[0]):
         first, count = np.uint64(begin[i]), begin[i + 1] - begin[i]
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
@@ -101,15 +97,15 @@ def sum_forces(
             dx[k] = minimum_image(period, 0, x - position[j, 0])
             dy[k] = minimum_image(period, 1, y - position[j, 1])
             dz[k] = minimum_image(period, 2, z - position[j, 2])
-        fx, fy, fz = 0.0, 0.0, 0.0
+        fx, fy, fz, power = 0.0, 0.0, 0.0, 0.0
         # A loop of its own, so that the compiler vectorises it.
         for k in range(count):
             f = -force_over_distance(law, dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k])
             if damping is not None:
                 j = neighbour[first + np.uint64(k)]
-                push, power = opposed(damping, velocity, i, j, dx[k], dy[k], dz[k])
+                push, heat = opposed(damping, velocity, i, j, dx[k], dy[k], dz[k])
                 f -= push
-                lost += power
+                power += heat
             dx[k] *= f
             dy[k] *= f
             dz[k] *= f
@@ -124,14 +120,17 @@ def sum_forces(
         force[i, 0] += fx
         force[i, 1] += fy
         force[i, 2] += fz
-    return lost
+        if damping is not None:
+            lost[i] = power
 
 
 @njit(**FAST)
-def damp_all_pairs(position: Array, velocity: Array, coefficient: float, force: Array) -> float:
-    """Add δ ṙ of all pairs, at whatever distance; return the power [W] that is dissipated."""
-    lost = 0.0
+def damp_all_pairs(
+    position: Array, velocity: Array, coefficient: float, force: Array, lost: Array
+) -> None:
+    """Add δ ṙ of all pairs, at whatever distance; write the powers (n,) W that are dissipated."""
     for i in range(position.shape[0]):
+        power = 0.0
         for j in range(i + 1, position.shape[0]):
             x = position[i, 0] - position[j, 0]
             y = position[i, 1] - position[j, 1]
@@ -141,28 +140,30 @@ def damp_all_pairs(position: Array, velocity: Array, coefficient: float, force: 
             w = velocity[i, 2] - velocity[j, 2]
             opening = u * x + v * y + w * z
             push = coefficient * opening / (x * x + y * y + z * z)
-            lost += push * opening
+            power += push * opening
             force[i, 0] -= push * x
             force[i, 1] -= push * y
             force[i, 2] -= push * z
             force[j, 0] += push * x
             force[j, 1] += push * y
             force[j, 2] += push * z
-    return lost
+        lost[i] = power
 
 
 @njit(**EXACT)
-def sum_energies(position: Array, pairs: Pairs, law: Any, period: Any) -> float:
-    """Potential energy [J] of all pairs."""
-    energy = 0.0
+def write_energies(
+    position: Array, pairs: Pairs, law: Any, period: Any, energies: Array
+) -> None:  # fmt: skip
+    """Write the potential energies (n,) J of the pairs that are listed for each point."""
     for i in range(position.shape[0]):
+        energy = 0.0
         for k in range(pairs.begin[i], pairs.begin[i + 1]):
             j = pairs.neighbour[k]
             x = minimum_image(period, 0, position[i, 0] - position[j, 0])
             y = minimum_image(period, 1, position[i, 1] - position[j, 1])
             z = minimum_image(period, 2, position[i, 2] - position[j, 2])
             energy += pair_energy(law, x * x + y * y + z * z)
-    return energy
+        energies[i] = energy
 
 
 @njit(**EXACT)

@@ -28,6 +28,12 @@ def uniform(state: Generator) -> float:
 
 
 @njit(**INNER)
+def pass_over(state: Generator, draws: int) -> None:
+    """Come to where so many numbers have been drawn."""
+    state[0] += STEP * np.uint64(draws)
+
+
+@njit(**INNER)
 def normal(state: Generator) -> float:
     """Draw a number of mean 0 and variance 1 (Box and Muller)."""
     length = math.sqrt(-2.0 * math.log(uniform(state)))

@@ -7,10 +7,13 @@ import numpy as np
 from numba import njit
 
 from quintet.components.particle_dynamics.kernels.forces import Pairs, damp_all_pairs, sum_forces
-from quintet.components.particle_dynamics.kernels.generator import direction, normal, uniform
+from quintet.components.particle_dynamics.kernels.generator import (
+    direction,
+    normal,
+    pass_over,
+    uniform,
+)
 from quintet.components.particle_dynamics.state import (
-    DISSIPATED,
-    LOST,
     PULL_FIRST,
     PULL_SECOND,
     TIME,
@@ -25,6 +28,7 @@ from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.search.verlet_list import furthest, slack
 from quintet.interfaces.component import Array
 
+DRAWN = 6  # random numbers of a bathed point in a step
 EARLY = 0.6  # of the skin: distance at which lists are rebuilt; the rest covers the next step
 
 
@@ -84,12 +88,14 @@ def exchange_with_baths(
     """Ornstein and Uhlenbeck's velocities after a step: the O of BAOAB (Leimkuhler & Matthews)."""
     velocity = state.velocity
     for b in range(bathed.point.shape[0]):
+        pass_over(state.generator, DRAWN * bathed.passed[b])
         i, decay = bathed.point[b], math.exp(-bathed.rate[b] * dt)
         width = math.sqrt(boltzmann * state.temperature[b] / mass * (1.0 - decay * decay))
         for k in range(3):
             old = velocity[i, k]
             velocity[i, k] = decay * old + width * normal(state.generator)
             state.heat[b] += 0.5 * mass * (velocity[i, k] * velocity[i, k] - old * old)
+    pass_over(state.generator, DRAWN * bathed.passed[-1])
 
 
 @njit(**EXACT)
@@ -125,9 +131,9 @@ def accelerate(
 ) -> None:  # fmt: skip
     """Write the accelerations at a time [s], for some velocities, and the powers with them."""
     position, acceleration, bathed = state.position, state.acceleration, model.bathed
-    lost = sum_forces(position, velocity, pairs, law, damping, period, acceleration)
+    sum_forces(position, velocity, pairs, law, damping, period, acceleration, state.lost)
     if model.literal_damping > 0.0:
-        lost += damp_all_pairs(position, velocity, model.literal_damping, acceleration)
+        damp_all_pairs(position, velocity, model.literal_damping, acceleration, state.lost)
     for b in range(bathed.point.shape[0]):
         i = bathed.point[b]
         for k in range(3):
@@ -141,7 +147,6 @@ def accelerate(
             acceleration[model.frozen[f], k] = 0.0
     if model.driven.first >= 0:
         drive(model, time, acceleration, state.energies)
-    state.energies[LOST] = lost
 
 
 @njit(**EXACT)
@@ -183,46 +188,61 @@ def average(dt: float, mass: float, velocity: Array, kinetic: Array) -> float:
 
 
 @njit(**EXACT)
-def drift_in_baths(h: float, boltzmann: float, model: Model, state: State) -> None:
-    """Move points for a time [s]; in its middle baths and random collisions change velocities."""
-    position, velocity = state.position, state.velocity
-    if model.bathed.point.shape[0] == 0 and not model.collision_rate > 0.0:
-        drift(h, position, velocity)
-        return
-    drift(0.5 * h, position, velocity)
-    exchange_with_baths(model.bathed, model.mass, boltzmann, h, state)
-    if model.collision_rate > 0.0:
-        expected = model.collision_rate * h * model.bonds.shape[0]
-        collide(model.bonds, expected, velocity, state.generator)
-    drift(0.5 * h, position, velocity)
+def add_work(h: float, model: Model, state: State, velocity: Array) -> None:
+    """Add what pairs dissipate and the drive does in a time [s], at the present powers."""
+    for i in range(state.lost.shape[0]):
+        state.dissipated[i] += h * state.lost[i]
+    state.energies[WORK] += h * power_of_drive(model.driven, velocity, state.energies)
 
 
 @njit(**EXACT)
-def make_stage(
-    h: float, boltzmann: float, model: Model, state: State, predicted: Array, pairs: Pairs,
-    law: Any, damping: Any, period: Any,
-) -> None:  # fmt: skip
-    """Advance by a step h [s] of velocity Verlet; `predicted` is memory for damped velocities."""
-    position, velocity, acceleration = state.position, state.velocity, state.acceleration
-    energies, driven = state.energies, model.driven
-    energies[DISSIPATED] += 0.5 * h * energies[LOST]
-    energies[WORK] += 0.5 * h * power_of_drive(driven, velocity, energies)
-    kick(0.5 * h, velocity, acceleration)
-    drift_in_baths(h, boltzmann, model, state)
-    energies[TIME] += h
-    if damping is not None or model.literal_damping > 0.0:
+def open_stage(h: float, boltzmann: float, model: Model, state: State) -> None:
+    """Kick and drift; up to the middle of the drift, where baths act, if anything is random."""
+    add_work(0.5 * h, model, state, state.velocity)
+    kick(0.5 * h, state.velocity, state.acceleration)
+    if model.is_random:
+        drift(0.5 * h, state.position, state.velocity)
+        exchange_with_baths(model.bathed, model.mass, boltzmann, h, state)
+    else:
+        drift(h, state.position, state.velocity)
+
+
+@njit(**EXACT)
+def collide_once(h: float, model: Model, velocity: Array, generator: Generator) -> None:
+    """Let nearest points collide as often as they do in a time [s]."""
+    if model.collision_rate > 0.0:
+        expected = model.collision_rate * h * model.bonds.shape[0]
+        collide(model.bonds, expected, velocity, generator)
+
+
+@njit(**EXACT)
+def place(h: float, model: Model, state: State, predicted: Array, is_damped: bool) -> None:
+    """Bring points to where forces are computed, and predict the velocities that are damped."""
+    position, velocity = state.position, state.velocity
+    if model.is_random:
+        drift(0.5 * h, position, velocity)
+    state.energies[TIME] += h
+    if is_damped:
         # Damping takes the velocity at the step's end, to the accuracy of the step.
         predicted[:] = velocity
-        kick(0.5 * h, predicted, acceleration)
-    if driven.first >= 0:
-        constrain(driven, energies[TIME], position, predicted)
-        constrain(driven, energies[TIME], position, velocity)
-    accelerate(energies[TIME], model, state, predicted, pairs, law, damping, period)
-    kick(0.5 * h, velocity, acceleration)
-    if driven.first >= 0:
-        constrain(driven, energies[TIME], position, velocity)
-    energies[DISSIPATED] += 0.5 * h * energies[LOST]
-    energies[WORK] += 0.5 * h * power_of_drive(driven, velocity, energies)
+        kick(0.5 * h, predicted, state.acceleration)
+    if model.driven.first >= 0:
+        constrain(model.driven, state.energies[TIME], position, predicted)
+        constrain(model.driven, state.energies[TIME], position, velocity)
+
+
+@njit(**EXACT)
+def close_stage(
+    h: float, model: Model, state: State, predicted: Array, pairs: Pairs, law: Any, damping: Any,
+    period: Any,
+) -> None:  # fmt: skip
+    """Compute the forces and kick."""
+    position, velocity, time = state.position, state.velocity, state.energies[TIME]
+    accelerate(time, model, state, predicted, pairs, law, damping, period)
+    kick(0.5 * h, velocity, state.acceleration)
+    if model.driven.first >= 0:
+        constrain(model.driven, time, position, velocity)
+    add_work(0.5 * h, model, state, velocity)
 
 
 @njit(**EXACT)
@@ -250,13 +270,15 @@ def advance(
         Number of steps done; -1 if points moved further in a step than the lists allow, or if
         velocities are not finite.
     """
-    predicted = state.velocity
-    if damping is not None or model.literal_damping > 0.0:
-        predicted = np.empty_like(state.velocity)
+    is_damped = damping is not None or model.literal_damping > 0.0
+    predicted = np.empty_like(state.velocity) if is_damped else state.velocity
     for step in range(steps):
         for s in range(model.stages.shape[0]):
             h = model.stages[s] * dt
-            make_stage(h, boltzmann, model, state, predicted, pairs, law, damping, period)
+            open_stage(h, boltzmann, model, state)
+            collide_once(h, model, state.velocity, state.generator)
+            place(h, model, state, predicted, is_damped)
+            close_stage(h, model, state, predicted, pairs, law, damping, period)
         weight = dt if state.energies[TIME] > averaged_from else 0.0
         squares = average(weight, model.mass, state.velocity, state.kinetic)
         moved = furthest(state.position, state.listed)

@@ -1,6 +1,8 @@
 """Pairs of a lattice from the neighbour lists of its points and of their periodic images."""
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from quintet.components.particle_dynamics.state import Whole
 from quintet.components.shared.numba_options import EXACT
@@ -26,5 +28,26 @@ def write_pairs(
             if j > i:
                 neighbour[k] = j
                 k += 1
+        begin[i + 1] = k
+    return k
+
+
+@njit(**EXACT)
+def keep_pairs_of(
+    is_chosen: NDArray[np.bool_], begin: Whole, neighbour: NDArray[np.int32],
+    is_near: NDArray[np.bool_],
+) -> int:  # fmt: skip
+    """Remove the pairs of which neither point is chosen; mark the points of the others, count."""
+    k, first = 0, begin[0]
+    for i in range(is_chosen.shape[0]):
+        last = begin[i + 1]
+        for m in range(first, last):
+            j = neighbour[m]
+            if is_chosen[i] or is_chosen[j]:
+                neighbour[k] = j
+                k += 1
+                is_near[i] = True
+                is_near[j] = True
+        first = last
         begin[i + 1] = k
     return k

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from mpi4py import MPI
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.waiting import wait
@@ -38,16 +37,17 @@ class Halo:
     ) -> None:
         self._sent = _Buffers(sent, widths)
         self._received = _Buffers(received, widths)
-        partners = self._sent.buffers, self._received.buffers
-        self._requests = [communicator.Recv_init(b, rank, TAG) for rank, b in partners[1].items()]
-        self._requests += [communicator.Send_init(b, rank, TAG) for rank, b in partners[0].items()]
+        self._communicator = communicator
+        self._requests: list[Any] = []
 
     def begin(self, *arrays: Array) -> None:
         """Send rows of C-contiguous float64 arrays (n, width); they may change afterwards."""
         for rows, *views in self._sent.blocks:
             for array, view in zip(arrays, views, strict=True):
                 np.take(array, rows, axis=0, out=view, mode="clip")
-        MPI.Prequest.Startall(self._requests)
+        receive, send = self._communicator.Irecv, self._communicator.Isend
+        self._requests = [receive(b, rank, TAG) for rank, b in self._received.buffers.items()]
+        self._requests += [send(b, rank, TAG) for rank, b in self._sent.buffers.items()]
 
     def finish(self, *arrays: Array) -> None:
         """Wait for the rows of the others and write them into the same arrays."""
@@ -60,12 +60,6 @@ class Halo:
         """Begin and finish at once."""
         self.begin(*arrays)
         self.finish(*arrays)
-
-    def close(self) -> None:
-        """Free the requests; once, when it is exchanged for another."""
-        for request in self._requests:
-            request.Free()
-        self._requests = []
 
 
 class _Buffers:

@@ -58,10 +58,14 @@ def corners(points: Points) -> tuple[Points, Points]:
 
 def grid_around(points: Points, reach: float) -> Grid:
     """Cells around points (n, 3 or more) m that hold all that is nearer to one than `reach` [m]."""
+    return grid_between(*corners(points), reach)
+
+
+def grid_between(lowest: Points, highest: Points, reach: float) -> Grid:
+    """Cells around all points between two corners (3,) m, as `grid_around`."""
     width = reach / REACH
-    low, high = corners(points)
-    low -= 1.001 * reach
-    extent = high + 1.001 * reach - low
+    low = lowest - 1.001 * reach
+    extent = highest + 1.001 * reach - low
     nx, ny, nz = (math.floor(edge / width) + 1 for edge in extent.tolist())
     if nx * ny * nz > MOST:
         raise StepError(

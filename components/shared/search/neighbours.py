@@ -131,6 +131,7 @@ def neighbours_within(
     team: Team,
     query_points: Points | None = None,
     buffer: NDArray[np.int32] | None = None,
+    grid: Grid | None = None,
 ) -> NeighbourLists:
     """List what is nearer than a reach.
 
@@ -146,13 +147,15 @@ def neighbours_within(
         Places that look for the first group in place of the second group's.
     buffer : (any,) int32 array
         Memory of lists no longer wanted: fresh one costs as much as half of the search.
+    grid : Grid
+        Cells by which the points are sorted; by default those around the first group.
 
     Returns
     -------
     NeighbourLists
         A list for each point of the first group, then for each of the second or query point.
     """
-    grid = grid_around(points[:split], reach)
+    grid = grid or grid_around(points[:split], reach)
     cell_one, start_one, _ = sorted_into(points[:split], grid)
     cell_two, start_two, _ = sorted_into(points[split:], grid)
     if query_points is not None:

@@ -142,7 +142,7 @@ def test_results_depend_on_ratios_only():
 @pytest.mark.parametrize("mode", ["relative", "symmetric", "point", "partner"])
 def test_the_driven_pair_has_the_distance_that_is_told(mode):
     made = bar(mode=mode)
-    driven = made.model.driven
+    driven = made.rows.model.driven
     start = made.built.start
     for _ in range(97):
         made.step(2e-4)
@@ -159,7 +159,7 @@ def test_the_driven_pair_has_the_distance_that_is_told(mode):
     else:
         assert moved.sum() != 0.0  # their mean is free
     assert abs(made.give({"energies.audit"})["energies.audit"][0]) < 1e-2
-    frozen = made.model.frozen
+    frozen = made.rows.model.frozen
     assert (made.state.position[frozen] == start[frozen]).all()
 
 

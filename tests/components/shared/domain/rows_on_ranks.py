@@ -46,7 +46,6 @@ def near_sums(points, values, ids):
         halo.begin(place, value)
         place[len(ids) :] = np.nan
         halo.finish(place, value)
-    halo.close()
     order = np.argsort(np.concatenate([ids, halo_ids]))
     near = ((place[order] - points[:, None]) ** 2).sum(axis=2) < REACH**2
     return np.array([np.cumsum(value[order][row])[-1] for row in near])
