@@ -14,7 +14,7 @@ from quintet.components.particle_dynamics.laws import (
     pair_energy,
 )
 from quintet.components.particle_dynamics.state import Whole
-from quintet.components.shared.numba_options import EXACT, FAST
+from quintet.components.shared.numba_options import EXACT
 from quintet.interfaces.component import Array
 
 
@@ -25,27 +25,23 @@ class Pairs(NamedTuple):
     neighbour: NDArray[np.int32]  # (p,)
 
 
-def opposed(
-    damping: Any, velocity: Any, i: int, j: int, x: float, y: float, z: float
-) -> tuple[float, float]:
-    """Force [N] of the damping of a pair, over its distance; and what it dissipates [W]."""
+def opposed(damping: Any, opening: Array, k: int, square: float) -> float:
+    """Force [N] of the damping of a pair, over its distance, at a squared distance [m2].
+
+    `opening` (k,) holds ṙ r [m2/s] of the pairs, and then what is dissipated [W].
+    """
     raise NotImplementedError("it is called by compiled functions only")
 
 
 @overload(opposed, inline="always")
-def _opposed(damping, velocity, i, j, x, y, z):  # type: ignore[no-untyped-def]
+def _opposed(damping, opening, k, square):  # type: ignore[no-untyped-def]
     if isinstance(damping, types.NoneType):
-        return lambda damping, velocity, i, j, x, y, z: (0.0, 0.0)
+        return lambda damping, opening, k, square: 0.0
 
-    def along(damping, velocity, i, j, x, y, z):  # type: ignore[no-untyped-def]
-        r = math.sqrt(x * x + y * y + z * z)
-        opening = (
-            (velocity[i, 0] - velocity[j, 0]) * x
-            + (velocity[i, 1] - velocity[j, 1]) * y
-            + (velocity[i, 2] - velocity[j, 2]) * z
-        ) / r
-        push = damping_weight(damping, r) * opening
-        return push / r, push * opening
+    def along(damping, opening, k, square):  # type: ignore[no-untyped-def]
+        push = damping_weight(damping, math.sqrt(square)) * opening[k] / square
+        opening[k] *= push
+        return push
 
     return along
 
@@ -63,7 +59,7 @@ def _minimum_image(period, axis, x):  # type: ignore[no-untyped-def]
     return lambda period, axis, x: x - period[axis] * np.rint(x * period[axis + 3])
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def sum_forces(
     position: Array, velocity: Array, pairs: Pairs, law: Any, damping: Any, period: Any,
     force: Array, lost: Array,
@@ -88,6 +84,7 @@ def sum_forces(
     for i in range(position.shape[0]):
         longest = max(longest, begin[i + 1] - begin[i])
     dx, dy, dz = np.empty(longest), np.empty(longest), np.empty(longest)
+    opening = np.empty(longest if damping is not None else 0)
     force[:] = 0.0
     for i in range(position.shape[0]):
         first, count = np.uint64(begin[i]), begin[i + 1] - begin[i]
@@ -97,23 +94,28 @@ def sum_forces(
             dx[k] = minimum_image(period, 0, x - position[j, 0])
             dy[k] = minimum_image(period, 1, y - position[j, 1])
             dz[k] = minimum_image(period, 2, z - position[j, 2])
-        fx, fy, fz, power = 0.0, 0.0, 0.0, 0.0
-        # A loop of its own, so that the compiler vectorises it.
-        for k in range(count):
-            f = -force_over_distance(law, dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k])
             if damping is not None:
-                j = neighbour[first + np.uint64(k)]
-                push, heat = opposed(damping, velocity, i, j, dx[k], dy[k], dz[k])
-                f -= push
-                power += heat
+                opening[k] = (
+                    (velocity[i, 0] - velocity[j, 0]) * dx[k]
+                    + (velocity[i, 1] - velocity[j, 1]) * dy[k]
+                    + (velocity[i, 2] - velocity[j, 2]) * dz[k]
+                )
+        # A loop of its own, without sums, so that the compiler vectorises it as it is written: what
+        # may be reordered has other bits where it is compiled into another function.
+        for k in range(count):
+            square = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]
+            f = -force_over_distance(law, square) - opposed(damping, opening, k, square)
             dx[k] *= f
             dy[k] *= f
             dz[k] *= f
+        fx, fy, fz, power = 0.0, 0.0, 0.0, 0.0
+        for k in range(count):
+            j = np.uint64(neighbour[first + np.uint64(k)])
             fx += dx[k]
             fy += dy[k]
             fz += dz[k]
-        for k in range(count):
-            j = np.uint64(neighbour[first + np.uint64(k)])
+            if damping is not None:
+                power += opening[k]
             force[j, 0] -= dx[k]
             force[j, 1] -= dy[k]
             force[j, 2] -= dz[k]
@@ -124,7 +126,7 @@ def sum_forces(
             lost[i] = power
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def damp_all_pairs(
     position: Array, velocity: Array, coefficient: float, force: Array, lost: Array
 ) -> None:
