@@ -15,7 +15,7 @@ from quintet.coupler.report.show import results
 
 QUINTET = [sys.executable, "-m", "quintet.coupler.cli"]
 OUT = ("--out", "run", "--submit")
-MAIN = ("dam_break_cubes", "--preset", "quick", "--set", "end=0.9")
+MAIN = ("dam_break_cubes", "--preset", "quick", "--set", "end=0.7")
 pytestmark = [
     pytest.mark.full,
     pytest.mark.mpi,
@@ -59,7 +59,7 @@ def test_the_main_job_goes_on_in_further_jobs_to_the_same_bits(cluster, tmp_path
     undisturbed = tmp_path / "undisturbed"
     subprocess.run([*QUINTET, "run", *MAIN, "--out", str(undisturbed)], capture_output=True)
     _launch(cluster, tmp_path, *MAIN, limit="00:01:00")
-    cluster.wait(550.0)
+    cluster.wait(900.0)
     said = _output(tmp_path)
     resumed = re.findall(r"ended in snapshot-(\d+)\.h5; submitted again", said)
     assert resumed and list(map(int, resumed)) == sorted(set(map(int, resumed))), said
