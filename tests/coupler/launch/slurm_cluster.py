@@ -68,15 +68,18 @@ class Cluster:
         names = {"key-file": "key", "socket": "sock", "pid-file": "pid", "log-file": "log"}
         files = [f"--{option}={folder / 'munge'}.{end}" for option, end in names.items()]
         self.daemons = []
+        # Only root may give the second node another name of its host.
+        rename = ("unshare", "--uts", "sh", "-c", 'hostname n2 && exec "$@"', "sh")
+        self.other_host = rename if os.geteuid() == 0 and shutil.which("unshare") else ()
         self._start("munged", "--foreground", "--force", f"--seed-file={folder}/seed", *files)
         self._await(lambda: (folder / "munge.sock").exists())
         self._start("slurmctld", "-D")
-        for node in ("n1", "n2"):
-            self._start("slurmd", "-D", "-N", node)
+        self._start("slurmd", "-D", "-N", "n1")
+        self._start(*self.other_host, "slurmd", "-D", "-N", "n2")
         self._await(lambda: self.call("sinfo", "-h", "-t", "idle", "-o", "%D").strip() == "2")
 
     def _start(self, *command):
-        log = open(self.folder / f"{command[0]}-{len(self.daemons)}.out", "wb")
+        log = open(self.folder / f"daemon-{len(self.daemons)}.out", "wb")
         self.daemons.append(
             subprocess.Popen(command, env=self.env, stdout=log, stderr=log, cwd=self.folder)
         )

@@ -92,6 +92,24 @@ def test_a_killed_coupler_leaves_results_and_its_ranks_are_ended(cluster, tmp_pa
     assert "the run failed with status 137" in said and job in said
 
 
+def test_a_component_that_is_killed_on_the_other_node_is_named(cluster, tmp_path):
+    """Ping is placed on the second node: only the file with its exit status tells of its end."""
+    scene = write_scene(tmp_path, "mpi", 1000.0, pong="pause = 1e-3")
+    _launch(cluster, tmp_path, scene)
+    _wait_for_windows(tmp_path)
+    log = (tmp_path / "run/log/ping.log").read_text()
+    subprocess.run(["kill", "-KILL", re.search(r"process (\d+)", log)[1]])
+    began = time.monotonic()
+    while "ping failed in window" not in _output(tmp_path):
+        assert time.monotonic() < began + 10.0, _output(tmp_path)
+        time.sleep(0.1)
+    cluster.wait(100.0)
+    who = "its process, not on the coupler's host," if cluster.other_host else "process"
+    fault = results(tmp_path / "run")["fault"]
+    assert fault["component"] == "ping" and "by signal 9 (SIGKILL)" in fault["cause"]
+    assert who in fault["cause"]
+
+
 def test_who_cancels_a_job_gets_a_snapshot_and_no_other_job(cluster, tmp_path):
     scene = write_scene(tmp_path, "mpi", 1000.0, pong="pause = 1e-3")
     _launch(cluster, tmp_path, scene)
