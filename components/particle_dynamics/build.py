@@ -49,6 +49,13 @@ def lattice_points(lattice: Lattice) -> Array:
     return np.array(lattice.lowest) + lattice.spacing * lattice_cells(lattice)
 
 
+def place_at_start(lattice: Lattice, point: int) -> Array:
+    """Position (3,) m of a point at the start."""
+    return np.array(lattice.lowest) + lattice.spacing * np.array(
+        np.unravel_index(point, lattice.points)
+    )
+
+
 def build(params: ParticleLatticeParams) -> Built:
     """Build a lattice."""
     lattice = params.lattice

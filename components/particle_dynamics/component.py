@@ -45,12 +45,13 @@ class ParticleLattice(Component):
     def __init__(self, params: ParticleLatticeParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.lattice, baths = params.lattice, params.baths
-        self.built = built = build(params)
+        built = build(params)
         self.bathed = bathed(built.start, baths)
         whole = model(params, built, self.bathed)
         temperature = np.array([bath.temperature for bath in baths], float)[self.bathed.bath]
         state = initial_state(params, built.start, whole, temperature)
         self.rows = rows_of(resources, params, built, state, whole)
+        self.built = self.rows.reduced(built)
         self.wall = wall_of(self.bathed, baths, self.rows.bathed)
         stiffest = self.bathed.tether.max(initial=0.0)
         frequency = math.sqrt(built.frequency**2 + stiffest / self.lattice.mass)  # rad/s
@@ -60,7 +61,7 @@ class ParticleLattice(Component):
         self.initial = sum(self._energies())  # J
         speed = self.lattice.spacing * frequency
         self.unit = self.lattice.mass * speed * speed  # J
-        self.free = len(built.start) - len(built.frozen)  # points
+        self.free = self.lattice.count - len(built.frozen)  # points
         self.means.add(0.0, self._integrals())
 
     @property
@@ -101,8 +102,8 @@ class ParticleLattice(Component):
         while remaining:
             done = rows.advance(remaining, dt / steps)
             if done < 0:
-                start, step = self.built.start, dt / steps
-                raise diagnostics.failure(rows.furthest(), start, self.time, rows.skin, step)
+                point, step = rows.furthest(), dt / steps
+                raise diagnostics.failure(point, self.lattice, self.time, rows.skin, step)
             remaining -= done
             self.losses.unchecked += done
             if remaining or rows.needs_lists():
@@ -132,7 +133,7 @@ class ParticleLattice(Component):
 
     def _audit(self, energies: diagnostics.Energies) -> float:
         """Share of the energy put in that the balance lacks."""
-        balance, least = self._balance(), AUDITED * len(self.built.start) * self.unit
+        balance, least = self._balance(), AUDITED * self.lattice.count * self.unit
         heat = diagnostics.heat_of_baths(balance.heat, self.bathed.bath, len(self.params.baths))
         return diagnostics.audit(energies, self.initial, balance, heat, least)
 
@@ -223,7 +224,7 @@ class ParticleLattice(Component):
 
     def warnings(self) -> dict[str, str]:
         """Warn of points that left all others, of broken bonds and of missing energy."""
-        return self.losses.warnings(self.built.start)
+        return self.losses.warnings(self.lattice)
 
     def notes(self) -> tuple[str, ...]:
         """Note a strong drive."""
@@ -237,4 +238,4 @@ class ParticleLattice(Component):
 
     def items(self) -> int:
         """Count the points."""
-        return len(self.built.start)
+        return self.lattice.count

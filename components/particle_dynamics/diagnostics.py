@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from quintet.components.particle_dynamics.build import CLOSE
+from quintet.components.particle_dynamics.build import CLOSE, place_at_start
 from quintet.components.particle_dynamics.params import Drive, Lattice
 from quintet.components.particle_dynamics.state import Whole
 from quintet.interfaces.component import Array
@@ -122,14 +122,14 @@ class Losses:
         """Whether a point was lost or bonds were broken."""
         return bool((self.times[:2] >= 0.0).any())
 
-    def warnings(self, start: Array) -> dict[str, str]:
-        """Warn of each; points are named by their positions (n, 3) m at the start."""
+    def warnings(self, lattice: Lattice) -> dict[str, str]:
+        """Warn of each; points are named by their positions at the start."""
         lost, broken, missing, point = self.times.tolist()
         sentences = {}
         if lost >= 0.0:
             sentences["lost point"] = (
-                f"point {int(point)}, at {start[int(point)]} m at the start, has left all others "
-                f"behind, at {lost:g} s: drive or heat less, or damp more."
+                f"{_named(int(point), lattice)}, has left all others behind, at {lost:g} s: drive "
+                "or heat less, or damp more."
             )
         if broken >= 0.0:
             sentences["broken bonds"] = (
@@ -154,10 +154,13 @@ def drive_notes(drive: Drive | None, lattice: Lattice) -> tuple[str, ...]:
     )
 
 
-def failure(point: int, start: Array, time: float, skin: float, dt: float) -> StepError:
+def _named(point: int, lattice: Lattice) -> str:
+    return f"point {point}, at {place_at_start(lattice, point)} m at the start"
+
+
+def failure(point: int, lattice: Lattice, time: float, skin: float, dt: float) -> StepError:
     """Name the point that moved furthest in a step dt [s] that neighbour lists do not allow."""
     return StepError(
-        f"point {point}, at {start[point]} m at the start: it must move by less "
-        f"than {0.2 * skin:.3g} m in a step of {dt:.3g} s, and did not, at "
-        f"{time:g} s. Take a smaller courant, or drive and heat less."
+        f"{_named(point, lattice)}: it must move by less than {0.2 * skin:.3g} m in a step of "
+        f"{dt:.3g} s, and did not, at {time:g} s. Take a smaller courant, or drive and heat less."
     )

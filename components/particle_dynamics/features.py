@@ -39,7 +39,7 @@ def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
         frozen=built.frozen,
         driven=driven,
         bathed=bathed,
-        bonds=built.bonds[loose],
+        bonds=built.bonds[loose] if collision_rate > 0.0 else built.bonds[:0].copy(),
         collision_rate=collision_rate,
         is_random=collision_rate > 0.0 or len(bathed.point) > 0,
         stages=np.array(STAGES[params.integrator]),

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.forces import (
     count_intact,
     count_near,
@@ -32,6 +33,10 @@ class OneRank:
         self.skin = self.lists.skin  # m
         self.lists.rebuild(state.listed)
         begin(model, state, self.lists.pairs, terms.law, terms.damping, terms.period)
+
+    def reduced(self, built: Built) -> Built:
+        """What the lattice was built of, as far as this rank needs it."""
+        return built
 
     def advance(self, steps: int, dt: float) -> int:
         """Advance until all steps are done or lists must be made; -1 if points moved too far."""

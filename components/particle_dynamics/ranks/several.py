@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.forces import (
     count_intact,
     count_near,
@@ -52,8 +53,10 @@ class SeveralRanks:
     def __init__(
         self, communicator: Any, state: State, model: Model, terms: Terms, cells: Whole
     ) -> None:
-        self.terms, self._communicator = terms, communicator
+        self._communicator = communicator
         self._shares = Shares(communicator, model, terms.bonds, cells)
+        self._bonds_of_all = len(terms.bonds)
+        self.terms = terms = terms._replace(bonds=self._shares.bonds)
         self.bathed = self._shares.bathed
         self._all = Replication(communicator, self._shares.ids, 3) if model.collision_rate else None
         cutoff = math.sqrt(terms.law.cutoff2)
@@ -83,12 +86,11 @@ class SeveralRanks:
         self._copied = (self.state.position, self._predicted)[: 1 + (terms.damping is not None)]
         widths = [3 for _ in self._copied]
         self._halo = Halo(self._communicator, self._layout.sent, self._layout.received, widths)
-        self._bonds = self._rows_of_bonds()
         self._moved = self._greatest(furthest(owned["position"], owned["listed"]))
 
     def _rows_of_bonds(self) -> Whole:
         """Rows (b, 2) of the bonds of this rank; those whose second point is far are broken."""
-        bonds, ids = self._shares.bonds, self._layout.ids
+        bonds, ids = self.terms.bonds, self._layout.ids
         second = np.minimum(np.searchsorted(ids, bonds[:, 1]), len(ids) - 1)
         rows = np.column_stack([self._layout.rows(bonds[:, 0]), second])
         return rows[ids[second] == bonds[:, 1]]
@@ -97,6 +99,11 @@ class SeveralRanks:
         """Rows of this rank's points, or what the state has of it."""
         array: Array = getattr(self.state, name)
         return array[self._layout.owned] if name in POINTS and len(array) else array
+
+    def reduced(self, built: Built) -> Built:
+        """What the lattice was built of, as far as this rank needs it."""
+        nothing = built.start[:0].copy()
+        return built._replace(start=nothing, bonds=self.terms.bonds)
 
     def advance(self, steps: int, dt: float) -> int:
         """Advance until all steps are done or lists must be made; -1 if points moved too far."""
@@ -184,9 +191,9 @@ class SeveralRanks:
         """Share of the bonds between nearest points that have 0.8 to 1.2 spacings."""
         self._refresh()
         terms, position = self.terms, self.state.position
-        here = count_intact(position, self._bonds, terms.spacing, terms.period)
+        here = count_intact(position, self._rows_of_bonds(), terms.spacing, terms.period)
         count = counted(self._communicator, np.array([here]))[0]
-        return float(count / max(len(terms.bonds), 1))
+        return float(count / max(self._bonds_of_all, 1))
 
     def furthest(self) -> int:
         """The point that has moved furthest since lists were made, or is nowhere."""

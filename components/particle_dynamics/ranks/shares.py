@@ -44,7 +44,7 @@ class Shares:
         owner, rank = owners(cells, model.driven, communicator.size), communicator.rank
         self.ids = np.flatnonzero(owner == rank)
         self.bathed = np.flatnonzero(owner[model.bathed.point] == rank)
-        self.bonds = bonds[owner[bonds[:, 0]] == rank]
+        self.bonds = bonds[owner[bonds[:, 0]] == rank].astype(np.int32)  # half the memory
         self._drives = int(owner[max(model.driven.first, 0)])  # the rank that owns the driven pair
         self._points = Collection(communicator, self.ids)
         self._baths = Collection(communicator, self.bathed)

@@ -11,6 +11,7 @@ from quintet.interfaces.errors import LineError
 # s; ranks that others wait for may compute long. One that is dead or hangs is noticed earlier, by
 # the coupler, which then ends all ranks of the component.
 LONGEST = 86400.0
+SOON = 200  # polls, some 50 µs, in which another rank answers that is as far
 OFTEN = 1000  # polls between two looks at the clock
 
 
@@ -25,7 +26,8 @@ def wait(*requests: Any) -> None:
     waiting, polls = list(requests), 0
     began = time.monotonic()
     while not MPI.Request.Testall(waiting):
-        os.sched_yield()
         polls += 1
+        if polls > SOON:
+            os.sched_yield()
         if polls % OFTEN == 0 and time.monotonic() - began > LONGEST:
             raise LineError(f"another rank must answer within {LONGEST:g} s; it did not.")
