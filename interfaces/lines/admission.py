@@ -19,7 +19,7 @@ JOIN = "quintet/join"
 OUTSIDE = "quintet/**"  # all keys of quintet but those with a secret part
 ANSWERING = 5.0  # s for the coupler to answer who asks to join
 LONGEST_REQUEST = 4096  # bytes
-TOO_MANY = 500  # messages between two looks, after which nobody listens to more for a while
+TOO_MANY = 1000  # messages between two looks, after which nobody listens to more for a while
 DEAF = 5.0  # s
 REPEATED = 10.0  # s between two reports
 
@@ -40,22 +40,26 @@ class ForeignMessages:
     at_least: bool = False
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _subscription: Any = None
-    _seen: int = 0
     _reported: int = 0
     _report_at: float = 0.0
     _listen_at: float = 0.0
 
     def look(self) -> str:
         """Return what the user should know now; called many times a second."""
+        # Imported by runs over zenoh only.
+        from zenoh import handlers
+
         now = time.monotonic()
         if self._subscription is None:
             if now >= self._listen_at:
-                self._subscription = self.session.declare_subscriber(OUTSIDE, self._hear)
-        elif self.count - self._seen > TOO_MANY:
+                # Not a function: its thread would still run as Python ends, and abort the process.
+                self._subscription = self.session.declare_subscriber(
+                    OUTSIDE, handlers.RingChannel(TOO_MANY + 1)
+                )
+        elif self._count_new() > TOO_MANY:
             self._subscription.undeclare()
             self._subscription, self._listen_at = None, now + DEAF
             self.at_least = True
-        self._seen = self.count
         if self.count + self.refused == self._reported or now < self._report_at:
             return ""
         self._reported, self._report_at = self.count + self.refused, now + REPEATED
@@ -74,12 +78,16 @@ class ForeignMessages:
             said.append(f"{self.refused} request(s) to join were refused; the last: {self.reason}")
         return said
 
-    def _hear(self, sample: Any) -> None:
-        with self._lock:
+    def _count_new(self) -> int:
+        """Count what came since the last look, up to `TOO_MANY` + 1."""
+        number = 0
+        while number <= TOO_MANY and (sample := self._subscription.try_recv()) is not None:
             if not self.first:
                 size = len(sample.payload.to_bytes())
                 self.first = f"{size} bytes to {_printable(str(sample.key_expr))}"
-            self.count += 1
+            number += 1
+        self.count += number
+        return number
 
     def refuse(self, reason: str) -> str:
         """Count a request to join that is refused."""

@@ -15,7 +15,7 @@ kind = "echo"
 items = 50
 """
 COUPLER = """
-import sys, time
+import sys, threading, time
 from pathlib import Path
 import numpy as np
 from quintet.coupler.launch.connect import connect
@@ -36,7 +36,9 @@ for window in range(count):
         time.sleep(8.0)  # the answer lies there for longer than a silent component may take
     found = part.finish().fields["returned.value"]
     assert (found == window + 0.5).all() or (found == window + 1.0).all(), window
+threads = [thread.name for thread in threading.enumerate() if thread.daemon]
 connection.close(True)
+assert threads == ["watchdog"], threads  # one of a library may abort the process as Python ends
 (folder / "done").write_text(str(part.timing.steps))
 """
 COMPONENT = ["quintet.interfaces.serving.process", "echo", "--name", "echo", "--mpi"]
