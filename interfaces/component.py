@@ -126,7 +126,8 @@ class Resources:
     folder : Path
         The scene's folder; data files are looked for here, nowhere else.
     communicator : mpi4py communicator or None
-        Of a component that owns several MPI ranks.
+        Of a component that owns several MPI ranks: all methods are called on all of them, and what
+        rank 0 returns counts.
     device : str
         Where it computes: "cpu".
     """
@@ -153,6 +154,7 @@ class Component(ABC):
     compiles: bool = False  # whether to try a step, which is undone, before the run's clock starts
     shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
     gives_integrals: bool = False  # whether `give` returns integrals over the last step, not rates
+    ranks: bool = False  # whether it can own several MPI ranks
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
     Params: Any = None  # its parameter class, where no manifest names one
     manifest: ClassVar[Any] = None  # of a kind that publishes one; classes derived from it have it

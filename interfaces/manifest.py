@@ -119,6 +119,7 @@ class Manifest:
     conform: str = ""  # "module:function"
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
     shows: tuple[Field, ...] = ()  # as of the component
+    ranks: bool = False  # whether a component may own several MPI ranks
 
     def load(self) -> type[Any]:
         """Import the solver itself; only the process that runs it does so."""
@@ -174,8 +175,9 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
     title = (cls.__doc__ or kind).strip().splitlines()[0].removesuffix(".")
     functions = (cls.ports_of, cls.plan_of, cls.initial_of, cls.complete_of)
     return Manifest(
-        kind, title, cls.Params, path, *functions, patience=cls.patience, shows=cls.shows
-    )
+        kind, title, cls.Params, path, *functions, patience=cls.patience, shows=cls.shows,
+        ranks=cls.ranks,
+    )  # fmt: skip
 
 
 def known_kinds() -> dict[str, str]:

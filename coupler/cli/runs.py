@@ -19,7 +19,7 @@ from quintet.interfaces.serving.log_stream import outlive_readers
 from quintet.interfaces.serving.process import STARTER
 
 if TYPE_CHECKING:
-    from quintet.coupler.scene.scene import Scene
+    from quintet.coupler.scene.scene import ComponentPlan, Scene
 
 OUT = "folder of the run, new or empty (default: runs/SCENE, or the next number that is free)"
 RESUME = "continue an interrupted or failed run from its last snapshot"
@@ -148,8 +148,24 @@ def join(options: argparse.Namespace) -> int:
     arguments = ["--name", options.name, "--at", options.at]
     if scene.tls:
         arguments += ["--tls", *scene.tls]
-    serve_component(scene.components[options.name].manifest, arguments)
+    plan = scene.components[options.name]
+    if plan.ranks > 1:
+        _join_ranks(plan, arguments, scene.import_folders)
+    serve_component(plan.manifest, arguments)
     return 0
+
+
+def _join_ranks(plan: "ComponentPlan", arguments: list[str], folders: list[str]) -> None:
+    """Become the launcher of the ranks of a component."""
+    # Start-up: only a component of several ranks needs it.
+    from quintet.coupler.launch.mpi_job import find_launcher
+    from quintet.coupler.launch.processes import PYTHON, environment
+
+    line = [*find_launcher(), "-n", str(plan.ranks), *PYTHON, "-m", "mpi4py"]
+    line += ["-m", "quintet.interfaces.serving.process", plan.kind, *arguments]
+    line += ["--ranks", str(plan.ranks)]
+    line += [word for folder in folders for word in ("--look-in", folder)]
+    os.execvpe(line[0], line, environment(plan.threads))
 
 
 def compile_kernels(options: argparse.Namespace) -> int:

@@ -12,7 +12,12 @@ from typing import Any, Protocol
 
 from quintet.coupler.coupling.participant import LONGEST_WAIT, ComponentFailed, Participant
 from quintet.coupler.launch import stack
-from quintet.coupler.launch.mpi_job import exit_file, write_processes
+from quintet.coupler.launch.acceptance import accept, log_of, probe_of, settings
+from quintet.coupler.launch.mpi_job import (
+    find_launcher,
+    under_shell,
+    write_processes,
+)
 from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
 from quintet.coupler.launch.watchdog import Watchdog
@@ -22,7 +27,6 @@ from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Component
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines.endpoint import Security
-from quintet.interfaces.lines.message import Message
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.process import build, shared_files
 from quintet.interfaces.serving.serve import Server, answer, failure
@@ -51,16 +55,6 @@ def connect(scene: Scene, folder: Path, watchdog: Watchdog) -> Connection:
     if scene.transport == "mpi":
         return OverMpi(scene, folder, watchdog)
     return OverZenoh(scene, folder, watchdog)
-
-
-def settings(scene: Scene, name: str) -> dict[str, Any]:
-    """What a component is told before it is built."""
-    plan = scene.components[name]
-    return {
-        "params": plan.params,
-        "threads": plan.threads,
-        "folder": str(scene.folder.resolve()),
-    }
 
 
 class InMemory:
@@ -137,7 +131,7 @@ class OverZenoh:
             if scene.security and kinds.keys() - awaited.keys():
                 require_reachable(endpoint, scene.security)
             for name, line in lines.items():
-                self.probes[name] = ProcessProbe(name, awaited=name in awaited)
+                self.probes[name] = probe_of(scene, name, awaited=name in awaited)
                 if name in scene.elsewhere:
                     print(f"{name} is awaited: {join_command(scene, name, endpoint)}", flush=True)
                 else:
@@ -147,7 +141,7 @@ class OverZenoh:
             for name, line in lines.items():
                 seconds = JOINING_BY_HAND if name in scene.elsewhere else LONGEST_WAIT
                 hello = self.participants[name].await_hello(seconds, line.wait_for_partner)
-                accept(scene, self.participants[name], hello, self.probes[name], folder)
+                accept(scene, self.participants[name], hello, self.probes[name], folder, 0)
         except BaseException:
             self.close(False)
             raise
@@ -167,7 +161,15 @@ class OverZenoh:
             arguments += ["--tls", *scene.tls]
         for place in scene.import_folders:
             arguments += ["--look-in", place]
-        process = start(arguments, log_of(folder, name), plan.threads, self.run, self.secret)
+        launcher: list[str] = []
+        if plan.ranks > 1:
+            arguments = ["-m", "mpi4py", *arguments, "--ranks", str(plan.ranks)]
+            arguments += ["--log", str(log_of(folder, name))]
+            launcher = [*find_launcher(), "-n", str(plan.ranks)]
+            launcher += under_shell(folder, name, plan.ranks)
+        process = start(
+            arguments, log_of(folder, name), plan.threads, self.run, self.secret, launcher
+        )
         self.probes[name].pid, self.probes[name].process = process.pid, process
 
     def close(self, well: bool) -> None:
@@ -209,24 +211,25 @@ class OverMpi:
         # Only the transport that a run uses is loaded: mpi4py starts MPI.
         from quintet.interfaces.lines import mpi
 
-        mpi.self_check(1 + len(scene.components))
+        mpi.self_check(1 + sum(plan.ranks for plan in scene.components.values()))
         run = secrets.token_hex(4)
         self.participants: dict[str, Participant] = {}
         self.watchdog = watchdog
         self.probes: dict[str, ProcessProbe] = {}
         write_processes(folder, None, shared_files())
         try:
-            for rank, name in enumerate(scene.components, start=1):
-                participant = Participant(name, mpi.MpiLine(run, "coupler", name, rank))
-                probe = self.probes[name] = ProcessProbe(name, exit_file=exit_file(folder, name))
+            for name in scene.components:
+                first = scene.first_rank(name)
+                participant = Participant(name, mpi.MpiLine(run, "coupler", name, first))
+                probe = self.probes[name] = probe_of(scene, name, folder)
                 self.watchdog.add(participant, probe, scene.patience(name))
                 hello = participant.await_hello(LONGEST_WAIT, lambda seconds: None)
                 self.participants[name] = participant
-                accept(scene, participant, hello, probe, folder)
+                accept(scene, participant, hello, probe, folder, first)
         except BaseException:
             self.close(False)
             raise
-        pids = [probe.pid for probe in self.probes.values() if probe.pid]
+        pids = [pid for probe in self.probes.values() for pid in probe.pids()]
         shared = [path for probe in self.probes.values() for path in probe.shared]
         write_processes(folder, pids, [*shared_files(), *shared])
 
@@ -244,34 +247,6 @@ class OverMpi:
     def notes(self) -> list[str]:
         """See `Connection.notes`."""
         return []
-
-
-def accept(
-    scene: Scene, participant: Participant, hello: Message, probe: ProcessProbe, folder: Path
-) -> None:
-    """Accept a component: check its kind, find its process, send its parameters."""
-    expected = scene.components[participant.name].manifest.kind
-    header = hello.header
-    if hello.order != "hello" or header.get("kind") != expected:
-        raise ComponentFailed(
-            participant.name,
-            0,
-            f"{expected} must say hello; found {header.get('kind')!r}. Start that.",
-        )
-    probe.awaited = False
-    if header.get("host") == socket.gethostname():
-        probe.pid = int(header["pid"])
-        paths = map(Path, map(str, header.get("shared", [])))
-        probe.shared = [str(path) for path in paths if path.parent == Path("/dev/shm")]
-        probe.where = partial(
-            stack.of_process, probe.pid, int(header["stack"]), log_of(folder, participant.name)
-        )
-    participant.send_order("go", **settings(scene, participant.name))
-
-
-def log_of(folder: Path, name: str) -> Path:
-    """Log of a component in the folder of a run."""
-    return folder / "log" / f"{name}.log"
 
 
 def finish(participants: dict[str, Participant]) -> None:

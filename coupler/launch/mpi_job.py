@@ -40,6 +40,8 @@ LAUNCHER_FILE = (
 )
 # Starts a rank and writes how it ended: only its parent learns that, and mpiexec reports late.
 RANK = f'{LAUNCHER}=$PPID; export {LAUNCHER}; "$@"; echo $? > "$0"'
+# The same of several: the number of the rank in its job ends the name of the file.
+RANKS = RANK.replace("$0", "$0.${PMI_RANK:-${PMIX_RANK:-${OMPI_COMM_WORLD_RANK:-$SLURM_PROCID}}}")
 ENDING, AT_ONCE = 3.0, 0.5  # s for all ranks to end after the coupler has, if all is well or not
 LOOKING = 0.2  # s between two looks at the ranks while they start
 ORPHANED = 10.0  # s for the coupler to end in order after the process that started the job died
@@ -53,17 +55,31 @@ def command(arguments: list[str], scene: Scene, folder: Path) -> list[str]:
     line = [*find_launcher(), "-n", "1", *new_session, *python]
     line += ["-m", "quintet.coupler.cli", *arguments, "--inside-mpi"]
     for name, plan in scene.components.items():
-        log = str(folder / "log" / f"{name}.log")
-        line += [":", "-n", "1", "sh", "-c", RANK, str(exit_file(folder, name))]
+        line += [":", "-n", str(plan.ranks), *under_shell(folder, name, plan.ranks)]
         line += [*python, "-m", "quintet.interfaces.serving.process", plan.kind]
-        line += ["--name", name, "--mpi", "--log", log]
+        line += ["--name", name, "--mpi", "--log", str(folder / "log" / f"{name}.log")]
+        if plan.ranks > 1:
+            line += ["--ranks", str(plan.ranks), "--first", str(scene.first_rank(name))]
         line += [word for place in scene.import_folders for word in ("--look-in", place)]
     return line
+
+
+def under_shell(folder: Path, name: str, ranks: int) -> list[str]:
+    """Words before the command of a component's ranks: their exit statuses are written."""
+    return ["sh", "-c", RANK if ranks == 1 else RANKS, str(exit_file(folder, name))]
 
 
 def exit_file(folder: Path, name: str) -> Path:
     """File in which the exit status of a component's rank is written when it has ended."""
     return folder / "log" / f"{name}.exit"
+
+
+def exit_files(folder: Path, name: str, ranks: int, first: int) -> list[Path]:
+    """Files of all ranks of a component, the first of which has this number in the MPI job."""
+    path = exit_file(folder, name)
+    if ranks == 1:
+        return [path]
+    return [path.with_name(f"{path.name}.{first + rank}") for rank in range(ranks)]
 
 
 def find_launcher() -> list[str]:
@@ -113,7 +129,11 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
     job_file.parent.mkdir(parents=True, exist_ok=True)
     job_file.unlink(missing_ok=True)
     starter = Starter(os.getpid(), time.time())
-    exits = [exit_file(folder, name) for name in scene.components]
+    exits = [
+        path
+        for name, plan in scene.components.items()
+        for path in exit_files(folder, name, plan.ranks, scene.first_rank(name))
+    ]
     for path in exits:
         path.unlink(missing_ok=True)
     threads = max(plan.threads for plan in scene.components.values())

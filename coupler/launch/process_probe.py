@@ -156,6 +156,10 @@ class ProcessProbe:
             with contextlib.suppress(OSError):
                 os.unlink(path)
 
+    def pids(self) -> list[int]:
+        """Processes of this host that belong to the component."""
+        return [self.pid] if self.pid else []
+
     def kill(self) -> None:
         """Kill the process."""
         if self.pid and self.alive():

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import psutil
@@ -24,15 +24,22 @@ RUN = "QUINTET_RUN"  # in the environment of all processes of a run, and of thos
 
 
 def start(
-    arguments: list[str], log: Path, threads: int, run: str = "", secret: str = ""
+    arguments: list[str],
+    log: Path,
+    threads: int,
+    run: str = "",
+    secret: str = "",
+    launcher: Sequence[str] = (),
 ) -> subprocess.Popen[bytes]:
     """Start a Python program, part of a run, in a session of its own, its output in a log.
+
+    With a launcher it is that command's, which starts several.
 
     It gets the secret of the run's messages in its environment, which other users cannot see.
     """
     with open(log, "ab") as file:
         return subprocess.Popen(
-            [*PYTHON, *arguments],
+            [*launcher, *PYTHON, *arguments],
             stdin=subprocess.DEVNULL,
             stdout=file,
             stderr=file,

@@ -62,12 +62,16 @@ def resume_scene(
         return _run(scene, folder, snapshot, own_process, rank)
 
 
+def _several(count: int, what: str) -> str:
+    return f", {count} {what}" if count > 1 else ""
+
+
 def headline(scene: Scene, folder: Path) -> str:
     """What is about to run: scene, transport, components, folder."""
     name = scene.file.name + (f" ({scene.preset})" if scene.preset else "")
     parts = [
-        f"{component.name} ({component.kind}"
-        + (f", {component.threads} threads)" if component.threads > 1 else ")")
+        f"{component.name} ({component.kind}{_several(component.ranks, 'ranks')}"
+        f"{_several(component.threads, 'threads')})"
         for component in scene.components.values()
     ]
     where = os.path.relpath(folder)

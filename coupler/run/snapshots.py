@@ -175,14 +175,23 @@ def scene_of(path: Path, transport: str) -> Scene:
 
 
 def check_same(scene: Scene, folder: Path) -> None:
-    """Refuse to go on with a scene that is not the one that began."""
-    before, now = parse(folder / "scene.toml"), scene.resolved
+    """Refuse to go on with a scene that is not the one that began; cores may differ."""
+    before, now = _without_cores(parse(folder / "scene.toml")), _without_cores(scene.resolved)
     keys = [key for key in {**before, **now} if key not in FREE]
     for key in (key for key in keys if before.get(key) != now.get(key)):
         raise SceneError(
             f"--resume {folder}: the scene must be the one that began; {key} has changed. Undo "
             "the change, or run the scene again."
         )
+
+
+def _without_cores(scene: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a scene without the keys by which components share work out: they change no bit."""
+    components = {
+        name: {key: value for key, value in table.items() if key not in ("ranks", "threads")}
+        for name, table in scene["components"].items()
+    }
+    return {**scene, "components": components}
 
 
 def file_sizes(path: Path) -> tuple[int, dict[str, int]]:

@@ -141,10 +141,17 @@ def _component(
     if not (imports or is_trusted(kind, folder)):
         unread = unread_manifest(kind)
         return ComponentPlan(
-            name, kind, unread, keys, None, (), (), threads=common.threads, unread=True
-        )
+            name, kind, unread, keys, None, (), (), threads=common.threads,
+            ranks=common.ranks, unread=True,
+        )  # fmt: skip
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
+        return None
+    if common.ranks > 1 and not manifest.ranks:
+        mistakes.append(
+            f"{where}.ranks must be 1, for kind {kind} computes on one rank; found "
+            f"{common.ranks}. Give it threads."
+        )
         return None
     try:
         if partners and manifest.complete:
@@ -166,7 +173,9 @@ def _component(
         said = f"{type(error).__name__}: {error}"
         mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
         return None
-    return ComponentPlan(name, kind, manifest, keys, params, takes, gives, common.threads, plan)
+    return ComponentPlan(
+        name, kind, manifest, keys, params, takes, gives, common.threads, common.ranks, plan
+    )
 
 
 def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:

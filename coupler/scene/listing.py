@@ -93,10 +93,13 @@ def print_plan(scene: Scene, console: Console) -> None:
     for line in _windows(scene, scene.coupling):
         console.print(line)
     table = Table(box=None, pad_edge=False)
-    for head in ("component", "kind", "threads", "items", "step", "memory", "time"):
+    shared = any(plan.ranks > 1 for plan in scene.components.values())
+    cores = ("ranks", "threads") if shared else ("threads",)
+    for head in ("component", "kind", *cores, "items", "step", "memory", "time"):
         table.add_column(head)
     for plan in scene.components.values():
-        table.add_row(plan.name, plan.kind, str(plan.threads), *_needs(plan, file))
+        numbers = [str(getattr(plan, head)) for head in cores]
+        table.add_row(plan.name, plan.kind, *numbers, *_needs(plan, file))
     console.print(table)
     for line in _advice(scene):
         console.print(line)
@@ -167,7 +170,8 @@ def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:
 
 
 def _processes(scene: Scene) -> str:
-    count = 1 if scene.transport == "memory" else 1 + len(scene.components)
+    ranks = sum(plan.ranks for plan in scene.components.values())
+    count = 1 if scene.transport == "memory" else 1 + ranks
     return f"{count} process" + ("es, the coupler one of them" if count > 1 else "")
 
 

@@ -1,7 +1,7 @@
 """Reading a scene: TOML, a preset, what the command line sets; every mistake at once."""
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from functools import partial
 from importlib.resources import files
@@ -172,7 +172,7 @@ def _check(
                 f"scene.window must not exceed scene.end ({file.end:g} s); found {file.window:g} s."
                 " Shorten it."
             )
-        mistakes += _reachable(file) + wrong_name(file.name)
+        mistakes += _reachable(file) + wrong_name(file.name) + _alone(file, components)
     series = {key: _tables(table, key, mistakes) for key in VARIED}
     series = series if with_variants else {key: [] for key in series}
     scope, check = None, None
@@ -199,6 +199,16 @@ def _also_tables(mistake: str) -> str:
     if known and "." not in name:
         return unknown(head, name, [*SceneFile.__dataclass_fields__, *TABLES])
     return mistake
+
+
+def _alone(file: SceneFile, components: Mapping[str, ComponentPlan]) -> list[str]:
+    """Refuse several ranks where all components are one process."""
+    return [
+        f"components.{name}.ranks must be 1 over the transport memory, which is one process; found "
+        f"{plan.ranks}. Choose the transport mpi or zenoh."
+        for name, plan in components.items()
+        if plan.ranks > 1 and file.transport == "memory"
+    ]
 
 
 def _reachable(file: SceneFile) -> list[str]:

@@ -33,11 +33,15 @@ class ComponentKeys:
         An installed kind, or ``module:Class`` of a module beside the scene or in the folder where
         the run is started.
     threads : 1
-        That it may use.
+        That it may use; of each rank, where it has several.
+    ranks : 1
+        MPI ranks, processes that share its work, if its kind can: over the transports zenoh, as a
+        job of their own, and mpi.
     """
 
     kind: str
     threads: Annotated[int, pydantic.Field(ge=1, le=1024)] = 1
+    ranks: Annotated[int, pydantic.Field(ge=1, le=65536)] = 1
 
 
 @parameters
@@ -175,6 +179,7 @@ class ComponentPlan:
     takes: tuple[Port, ...]
     gives: tuple[Port, ...]
     threads: int = 1
+    ranks: int = 1
     planned: Plan | None = None  # what running it will need, where its kind can tell
     unread: bool = False  # its kind is code that was not imported: keys and ports are unknown
 
@@ -209,6 +214,11 @@ class Scene:
     def endpoint(self) -> str:
         """Where the coupler listens; "" for a free port of the loopback."""
         return self.file.endpoint
+
+    def first_rank(self, name: str) -> int:
+        """Number of a component's first rank in an MPI job of the whole run; 0 is the coupler."""
+        before = list(self.components).index(name)
+        return 1 + sum(plan.ranks for plan in list(self.components.values())[:before])
 
     @property
     def tls(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Lines over MPI: one rank per component, polled without blocking calls."""
+"""Lines over MPI: to one rank, polled without blocking calls."""
 
 import functools
 import os
@@ -26,15 +26,23 @@ def world() -> Any:
     return MPI.COMM_WORLD.Dup()
 
 
-class MpiLine(FramedLine):
-    """A line to one rank."""
+def communicator_of(first: int, count: int) -> Any:
+    """Communicator of some ranks in a row; called by all ranks of the job, or by these alone."""
+    group = world().Get_group().Range_incl([(first, first + count - 1, 1)])
+    return world().Create_group(group)
 
-    def __init__(self, run: str, name: str, other: str, rank: int, pid: int = 0) -> None:
+
+class MpiLine(FramedLine):
+    """A line to one rank of a communicator, by default that of all ranks."""
+
+    def __init__(
+        self, run: str, name: str, other: str, rank: int, pid: int = 0, communicator: Any = None
+    ) -> None:
         super().__init__(run, name)
         self.other = other
         self.rank = rank
         self.pid = pid  # of the other side when it runs on this host, else 0
-        self._comm = world()
+        self._comm = communicator or world()
         self._frames: list[Array] = []
 
     def _put(self, frame: bytearray) -> None:

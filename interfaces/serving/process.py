@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import psutil
 
@@ -24,6 +24,9 @@ from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.notices import listen, notice
 from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.serve import LONGEST_WAIT, Server, failure, serve
+
+if TYPE_CHECKING:
+    from quintet.interfaces.serving.ranks import Ranks
 
 LINGERING = 10.0  # s
 PREPARING = 60.0  # s for the coupler to make the folder of the logs
@@ -47,13 +50,28 @@ def main(manifest: Manifest | None = None, arguments: list[str] | None = None) -
     where.add_argument("--mpi", action="store_true", help="started by mpiexec; rank 0 couples")
     parser.add_argument("--tls", nargs=3, metavar=("AUTHORITY", "CERTIFICATE", "KEY"))
     parser.add_argument("--log", help="file for all that it prints")
+    parser.add_argument("--ranks", type=int, default=1, help="MPI ranks of the component")
+    parser.add_argument("--first", type=int, default=0, help="number of its first in the MPI job")
     parser.add_argument("--look-in", action="append", default=[], metavar="DIR", help=LOOK_IN)
     options = parser.parse_args(arguments)
     if options.log:
-        redirect(options.log)
+        redirect(options.log if options.ranks == 1 else own_log(options))
     print_into_logs()
     look_in(options.look_in)
     sys.exit(run(manifest or find(options.kind), options))
+
+
+def own_log(options: argparse.Namespace) -> str:
+    """File for what this rank of a component prints."""
+    # Only a component of several ranks loads MPI here.
+    from quintet.interfaces.serving.ranks import rank_in_job
+
+    return log_of_rank(options.log, rank_in_job() - options.first)
+
+
+def log_of_rank(path: str, rank: int) -> str:
+    """File for what a rank of a component prints: ``water.log``, ``water.rank1.log``."""
+    return str(Path(path).with_suffix(f".rank{rank}.log")) if rank else path
 
 
 def redirect(path: str) -> None:
@@ -82,7 +100,8 @@ def run(manifest: Manifest, options: argparse.Namespace) -> int:
     say(f"{options.name}: {manifest.title}, process {os.getpid()}")
     try:
         hello = {"order": "hello", "kind": manifest.kind, **about_me()}
-        line = over_mpi(options.name) if options.mpi else over_zenoh(options, hello)
+        ranks = join_ranks(options) if options.ranks > 1 else None
+        line = join_coupler(options, hello, ranks)
         line.send(hello, {})
         order = line.receive(LONGEST_WAIT)  # others may join later, or be started by hand
     except QuintetError as error:
@@ -93,10 +112,11 @@ def run(manifest: Manifest, options: argparse.Namespace) -> int:
     status = 3
     try:
         start = time.perf_counter()
-        component = build(manifest, order.header)
+        component = build(manifest, order.header, ranks.communicator if ranks else None)
         seconds = time.perf_counter() - start
         say(f"built in {seconds:.1f} s: {component.items()} items")
-        if serve(Server(component, options.name, seconds), line):
+        server = make_server(component, options.name, seconds, line, ranks)
+        if serve(server, line):
             status = 0
     except LineError as error:
         say(f"{options.name}: the coupler: {error}")
@@ -112,16 +132,55 @@ def run(manifest: Manifest, options: argparse.Namespace) -> int:
     return status
 
 
+def join_ranks(options: argparse.Namespace) -> "Ranks":
+    """Meet the other ranks of the component."""
+    require("mpi4py", "a component of several ranks")
+    # Only a component of several ranks loads MPI here.
+    from quintet.interfaces.lines.mpi import self_check
+    from quintet.interfaces.serving.ranks import Ranks
+
+    if not options.mpi:
+        self_check(options.ranks)
+    return Ranks(options.name, options.first, options.ranks, about_me())
+
+
+def join_coupler(options: argparse.Namespace, hello: dict[str, Any], ranks: "Ranks | None") -> Any:
+    """Connect to the coupler, or to the rank of this component that does."""
+    if ranks and ranks.rank:
+        os.environ.pop(SECRET, "")
+        return ranks.follow()
+    if ranks:
+        hello["ranks"] = ranks.about_others()
+    line = over_mpi(options.name) if options.mpi else over_zenoh(options, hello)
+    return ranks.lead(line) if ranks else line
+
+
+def make_server(
+    component: Component, name: str, seconds: float, line: Any, ranks: "Ranks | None"
+) -> Server:
+    """Make what carries out the coupler's orders."""
+    if ranks is None:
+        return Server(component, name, seconds)
+    # Only a component of several ranks loads MPI here.
+    from quintet.interfaces.serving.ranks import FollowingServer
+
+    server = FollowingServer if ranks.rank else Server
+    return server(component, name, seconds, line.spread)
+
+
 def linger(line: Line) -> None:
     """Stay until the coupler has read what went wrong: leaving would end an MPI job at once."""
+    limit = time.monotonic() + LINGERING
     with contextlib.suppress(QuintetError):
-        line.receive(LINGERING)
+        while (left := limit - time.monotonic()) > 0.0:
+            line.receive(left)  # orders that were on their way
 
 
-def build(manifest: Manifest, header: dict[str, Any]) -> Component:
+def build(manifest: Manifest, header: dict[str, Any], communicator: Any = None) -> Component:
     """Check the parameters, then import the solver and make the component."""
     check_order("go", header)
-    resources = Resources(int(header["threads"]), Path(header.get("folder", "")))
+    folder = Path(header.get("folder", ""))
+    resources = Resources(int(header["threads"]), folder, communicator)
     params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
     if mistakes:
         raise SceneError(mistakes)

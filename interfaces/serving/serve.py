@@ -47,11 +47,20 @@ def divide(left: float, stable: float) -> int:
 class Server:
     """Carries out the coupler's orders on one component."""
 
-    def __init__(self, component: Component, name: str, build_seconds: float = 0.0) -> None:
+    outputs_class = Outputs
+
+    def __init__(
+        self,
+        component: Component,
+        name: str,
+        build_seconds: float = 0.0,
+        spread: Callable[[Fields], Fields] = lambda state: state,
+    ) -> None:
         self.component, self.build_seconds = component, build_seconds
+        self._spread = spread  # gives a saved state to all ranks of the component
         self.guard = OrderGuard(name)
         self.inputs = Inputs(component.takes)
-        self.outputs = Outputs(component.gives, component.gives_integrals)
+        self.outputs = self.outputs_class(component.gives, component.gives_integrals)
         fields = self.inputs.fields
         # Turns about several axes do not add up: of rotations the first step alone is checked.
         rates = {k: v for k, v in self.inputs.rates.items() if fields[k].kind != "rotation"}
@@ -128,7 +137,7 @@ class Server:
         component.take(self.inputs.at_start())
         component.step(TRIED * component.stable_dt())
         outputs_of(component)
-        component.load(state)
+        component.load(self._spread(state))
 
     def _give(self, _: Message) -> Answer:
         began = time.perf_counter()
@@ -262,7 +271,8 @@ class Server:
 
     def _rewind(self, message: Message) -> Answer:
         states, at = self._kept, depth(message)
-        self.restore(states.pop(at) if message.header.get("last") else states[at])
+        state = states.pop(at) if message.header.get("last") else states[at]
+        self.restore(self._spread(state))
         return {}, {}
 
     def _save(self, _: Message) -> Answer:

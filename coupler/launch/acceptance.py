@@ -1,0 +1,89 @@
+"""Components that say hello to the coupler: who they are, and the processes to be watched."""
+
+import socket
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.coupling.participant import ComponentFailed, Participant
+from quintet.coupler.launch import stack
+from quintet.coupler.launch.mpi_job import exit_files
+from quintet.coupler.launch.process_probe import ProcessProbe
+from quintet.coupler.launch.ranks_probe import RanksProbe
+from quintet.coupler.scene.scene import Scene
+from quintet.interfaces.lines.message import Message
+from quintet.interfaces.serving.process import log_of_rank
+
+
+def settings(scene: Scene, name: str) -> dict[str, Any]:
+    """What a component is told before it is built."""
+    plan = scene.components[name]
+    return {
+        "params": plan.params,
+        "threads": plan.threads,
+        "folder": str(scene.folder.resolve()),
+    }
+
+
+def probe_of(
+    scene: Scene, name: str, folder: Path | None = None, awaited: bool = False
+) -> ProcessProbe:
+    """Make what watches a component; with a folder, its exit status is written there."""
+    plan = scene.components[name]
+    if plan.ranks > 1:
+        return RanksProbe(name, awaited=awaited)
+    exits = exit_files(folder, name, 1, 0)[0] if folder else None
+    return ProcessProbe(name, awaited=awaited, exit_file=exits)
+
+
+def accept(
+    scene: Scene,
+    participant: Participant,
+    hello: Message,
+    probe: ProcessProbe,
+    folder: Path,
+    first: int,
+) -> None:
+    """Accept a component: check its kind, find its processes, send its parameters.
+
+    `first` is the number of its first rank in its MPI job.
+    """
+    expected = scene.components[participant.name].manifest.kind
+    header = hello.header
+    if hello.order != "hello" or header.get("kind") != expected:
+        raise ComponentFailed(
+            participant.name,
+            0,
+            f"{expected} must say hello; found {header.get('kind')!r}. Start that.",
+        )
+    probe.awaited = False
+    others = header.get("ranks", [])
+    count = scene.components[participant.name].ranks
+    if not isinstance(others, list) or len(others) != count - 1:
+        said = f"its hello must tell of {count - 1} further ranks; found {others!r:.80}."
+        raise ComponentFailed(participant.name, 0, said)
+    log = log_of(folder, participant.name)
+    find_process(probe, header, log)
+    if isinstance(probe, RanksProbe):
+        exits = exit_files(folder, participant.name, count, first)
+        for rank, (about, path) in enumerate(zip([header, *others], exits, strict=True)):
+            name = f"rank {rank} on {str(about.get('host'))[:80]}"
+            process = ProcessProbe(name, exit_file=path)
+            find_process(process, about, Path(log_of_rank(str(log), rank)))
+            probe.ranks.append(process)
+        probe.where = probe.calls
+    participant.send_order("go", **settings(scene, participant.name))
+
+
+def find_process(probe: ProcessProbe, about: dict[str, Any], log: Path) -> None:
+    """Let a probe watch the process that has told about itself, if it runs on this host."""
+    if about.get("host") == socket.gethostname():
+        probe.pid = int(about["pid"])
+        paths = map(Path, map(str, about.get("shared", [])))
+        probe.shared = [str(path) for path in paths if path.parent == Path("/dev/shm")]
+        probe.where = partial(stack.of_process, probe.pid, int(about["stack"]), log)
+
+
+def log_of(folder: Path, name: str) -> Path:
+    """Log of a component in the folder of a run."""
+    return folder / "log" / f"{name}.log"

@@ -1,0 +1,87 @@
+"""The processes of a component of several MPI ranks, watched as one."""
+
+from dataclasses import dataclass, field
+
+from quintet.coupler.launch.process_probe import IDLE, ProcessProbe
+
+# In whose calls a rank waits for others, or for orders.
+WAITING = ("/shared/domain/waiting.py", "/lines/transport.py", "/serving/ranks.py")
+
+
+@dataclass(slots=True)
+class RanksProbe(ProcessProbe):
+    """Reads what the ranks of a component do; its own process, if any, is their launcher.
+
+    Parameters
+    ----------
+    ranks : list of ProcessProbe
+        One for each rank in order, named after rank and host; empty until they have joined.
+    """
+
+    ranks: list[ProcessProbe] = field(default_factory=list)
+
+    def alive(self) -> bool:
+        """Whether all processes still run."""
+        launched = self.process is None or self.process.poll() is None
+        return launched and all(rank.alive() for rank in self.ranks)
+
+    def ending(self) -> str:
+        """Describe how the first that is not alive ended."""
+        for rank in self.ranks:
+            if not rank.alive():
+                return f"{rank.name}: {rank.ending()}"
+        return ProcessProbe.ending(self)
+
+    def stopped(self) -> bool:
+        """Whether a rank was stopped; asked again and again."""
+        stopped = [rank for rank in self.ranks if rank.stopped()]
+        for rank in stopped:
+            rank.activity = "stopped"
+        return bool(stopped)
+
+    def begin(self) -> None:
+        """Begin to find out what the ranks do: from now on."""
+        self.activity = ""
+        for rank in self.ranks:
+            rank.begin()
+
+    def read(self) -> None:
+        """Find out what the ranks did since the last reading, now and then."""
+        for rank in self.ranks:
+            rank.read()
+        doing = [rank.activity for rank in self.ranks if rank.pid]
+        self.activity = next((activity for activity in doing if activity != IDLE), IDLE)
+        if not all(doing):
+            self.activity = ""
+
+    def described(self) -> str:
+        """What the ranks do, in words; if one alone is stopped or computes, that one."""
+        if self.awaited or not self.ranks:
+            return ProcessProbe.described(self)
+        for activity in ("stopped", "computing"):
+            doing = [rank for rank in self.ranks if rank.activity == activity]
+            if len(doing) == 1:
+                return f"{doing[0].name}: {doing[0].described()}"
+        return "; ".join(f"{rank.name}: {rank.described()}" for rank in self.ranks)
+
+    def calls(self) -> str:
+        """Where in its code the first rank is that waits for no other."""
+        stacks = [rank.where() for rank in self.ranks]
+        at_work = (stack for stack in stacks if stack and not any(at in stack for at in WAITING))
+        return next(at_work, stacks[0] if stacks else "")
+
+    def pids(self) -> list[int]:
+        """See `ProcessProbe.pids`."""
+        return [rank.pid for rank in self.ranks if rank.pid]
+
+    def end(self, grace: float) -> None:
+        """Wait for the processes to end, then kill them; remove their files in shared memory."""
+        for rank in self.ranks:
+            rank.end(grace)
+        ProcessProbe.end(self, grace)
+
+    def kill(self) -> None:
+        """Kill the processes."""
+        for rank in self.ranks:
+            rank.kill()
+        ProcessProbe.kill(self)

@@ -1,0 +1,134 @@
+"""A component of several MPI ranks gives the bits of one, over every line; its faults are named."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from started import Started
+
+from quintet.coupler.cli import main
+from quintet.coupler.launch.connect import free_port
+from quintet.coupler.report.diff import compare
+from quintet.coupler.scene.read import load
+from quintet.interfaces.errors import SceneError
+
+TOYS = Path(__file__).parents[1] / "toy_scenes" / "toy_ranks.py"
+SCENE = """
+name = "chain"
+end = {end}
+window = 2e-3
+patience = 2.0
+transport = "{transport}"
+[components.chain]
+kind = "toy_ranks:Chain"
+ranks = {ranks}
+{keys}
+[components.pusher]
+kind = "toy_ranks:Pusher"
+[[links]]
+kind = "direct"
+pairs = [["chain.motion", "pusher.motion"], ["pusher.push", "chain.push"]]
+[output]
+snapshots = 0.05
+"""
+OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+
+
+def write(folder, transport, ranks, end=0.2, keys=""):
+    folder.mkdir(exist_ok=True)
+    shutil.copy(TOYS, folder)
+    path = folder / "scene.toml"
+    path.write_text(SCENE.format(transport=transport, ranks=ranks, end=end, keys=keys))
+    return path
+
+
+def run(path, *arguments):
+    started = Started(path, *arguments)
+    started.out, started.err = started.process.communicate(timeout=60)
+    return started
+
+
+@pytest.fixture(scope="module")
+def of_one_rank(tmp_path_factory):
+    started = run(write(tmp_path_factory.mktemp("one") / "run", "memory", 1))
+    assert started.process.returncode == 0, started.err
+    return started.folder
+
+
+@pytest.mark.parametrize("ranks", [2, 3])
+@pytest.mark.parametrize("transport", OVER)
+def test_several_ranks_give_the_bits_of_one(tmp_path, of_one_rank, transport, ranks):
+    started = run(write(tmp_path / "run", transport, ranks))
+    assert started.process.returncode == 0, started.err
+    assert compare(of_one_rank, started.folder) is None
+    assert f"chain (toy_ranks:Chain, {ranks} ranks)" in started.out
+    assert not started.left_processes(5.0) and (started.folder / "log" / "chain.rank1.log").exists()
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(("before", "after"), [(3, 1), (1, 2)])
+def test_a_snapshot_of_any_number_of_ranks_goes_on_with_any_other(
+    tmp_path, of_one_rank, before, after
+):
+    started = Started(write(tmp_path / "run", "mpi", before, keys="pause = 5e-3"))
+    started.wait_until(lambda: list(started.folder.glob("snapshot-*")))
+    started.process.terminate()
+    started.process.communicate(timeout=30)
+    assert started.process.returncode == 130
+    changed = write(tmp_path / "run", "mpi", after, keys="pause = 5e-3")
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(changed), "--resume", str(started.folder)])
+    assert ended.value.code == 0
+    assert compare(of_one_rank, started.folder) is None
+
+
+@pytest.mark.parametrize("transport", OVER)
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        ("raise", "rank 1 on {host}: asked to raise"),
+        ("kill", "rank 1 on {host}: process"),
+        ("stop", "rank 1 on {host}: process"),
+        ("loop", "rank 1 on {host}: process"),
+        ("build", "rank 1 on {host}: asked not to be built"),
+    ],
+)
+def test_the_rank_that_fails_is_named(tmp_path, transport, fault, said):
+    keys = f'fails_on = 1\nfails_by = "{fault}"'
+    began = time.monotonic()
+    started = run(write(tmp_path / "run", transport, 3, end=100.0, keys=keys))
+    took = time.monotonic() - began
+    assert started.process.returncode == 3
+    results = json.loads((started.folder / "results.json").read_text())
+    assert results["fault"]["component"] == "chain"
+    assert said.format(host=os.uname().nodename) in results["fault"]["cause"], results["fault"]
+    assert took < 20.0 and not started.left_processes(5.0)
+
+
+@pytest.mark.zenoh
+def test_ranks_join_by_hand(tmp_path, of_one_rank):
+    port, path = free_port(), write(tmp_path / "run", "zenoh", 2)
+    at = f"tcp/127.0.0.1:{port}"
+    started = Started(path, "--set", f'endpoint="{at}"', "--elsewhere", "chain")
+    command = [sys.executable, "-m", "quintet.coupler.cli", "join", str(path), "chain", "--at", at]
+    joined = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert joined.returncode == 0, joined.stderr
+    assert started.wait() == 0, started.err
+    assert compare(of_one_rank, started.folder) is None
+
+
+def test_a_kind_that_computes_on_one_rank_refuses_more(tmp_path):
+    path = write(tmp_path / "run", "mpi", 2)
+    path.write_text(path.read_text().replace("toy_ranks:Chain", "toy_ranks:Pusher"))
+    with pytest.raises(SceneError, match="ranks must be 1, for kind toy_ranks:Pusher computes"):
+        load(str(path))
+
+
+def test_memory_refuses_several_ranks(tmp_path):
+    with pytest.raises(SceneError, match="ranks must be 1 over the transport memory"):
+        load(str(write(tmp_path / "run", "memory", 2)))
