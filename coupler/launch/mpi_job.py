@@ -250,13 +250,15 @@ def begin_rank(folder: Path) -> None:
 
 def write_processes(folder: Path, pids: list[int] | None, shared: list[str]) -> None:
     """Write the process ids (None until all have joined) and shared files of the run."""
-    _write(folder, {"coupler": os.getpid(), "pids": pids, "shared": shared})
+    launcher = list(_launcher_files(os.getppid()))  # may be killed before anybody else looks
+    _write(folder, {"coupler": os.getpid(), "pids": pids, "shared": shared, "launcher": launcher})
 
 
 def end_rank(folder: Path, status: int) -> None:
     """End the coupler's rank: in order when all is well, else with an abort of the job."""
     job = _read(folder / "log" / JOB_FILE)
-    _unlink(job.get("shared", []))  # type: ignore[arg-type]  # all ranks have it open by now; the process that started the job may have ended
+    # All ranks have these open by now, and the process that started the job may have ended.
+    _unlink(job.get("shared", []))  # type: ignore[arg-type]
     _write(folder, {**job, "status": status})
     sys.stdout.flush()
     sys.stderr.flush()
@@ -297,7 +299,7 @@ def end_ranks(job: dict[str, object], starter: Starter) -> None:
     used = {path for pid in pids for path in (*shared_files(pid), *_launcher_files(pid))}
     files = {path for path in used if starter.precedes(path)}
     end_marked(STARTER, str(starter.pid))
-    _unlink({*job.get("shared", []), *files})  # type: ignore[misc]
+    _unlink({*job.get("shared", []), *job.get("launcher", []), *files})  # type: ignore[misc]
 
 
 def _launcher_files(pid: int) -> Iterator[str]:

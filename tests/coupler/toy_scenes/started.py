@@ -133,8 +133,14 @@ class Started:
         text = (self.folder / "log" / f"{name}.log").read_text()
         return int(re.search(r"process (\d+)", text)[1])
 
-    def left_in_shared_memory(self):
-        """Files that came while it ran, and that no process uses any more."""
+    def left_in_shared_memory(self, seconds=3.0):
+        """Files that came while it ran, and that no process uses any more, nor will soon delete."""
+        limit = time.monotonic() + seconds
+        while (left := self._unused_in_shared_memory()) and time.monotonic() < limit:
+            time.sleep(0.2)
+        return left
+
+    def _unused_in_shared_memory(self):
         new = set(os.listdir("/dev/shm")) - self.before
         used = ""
         for maps in Path("/proc").glob("[0-9]*/maps"):
