@@ -250,7 +250,9 @@ def begin_rank(folder: Path) -> None:
 
 def write_processes(folder: Path, pids: list[int] | None, shared: list[str]) -> None:
     """Write the process ids (None until all have joined) and shared files of the run."""
-    launcher = list(_launcher_files(os.getppid()))  # may be killed before anybody else looks
+    # The launcher is two processes up, and may be killed before anybody else looks.
+    above = psutil.Process().parents()[:2]
+    launcher = [path for process in above for path in _launcher_files(process.pid)]
     _write(folder, {"coupler": os.getpid(), "pids": pids, "shared": shared, "launcher": launcher})
 
 
