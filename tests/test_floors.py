@@ -128,3 +128,12 @@ def vague_names(path):
 def test_locals_are_named_after_what_they_hold():
     vague = [line for path in FILES for line in vague_names(path)]
     assert vague == []
+
+
+@pytest.mark.parametrize("folder", COMPONENTS, ids=where)
+def test_the_story_of_a_step_is_short_and_asks_little_what_is_on(folder):
+    """At most 20 methods and 3 comparisons with None: optional physics is in `features.py`."""
+    tree = list(ast.walk(ast.parse((folder / "component.py").read_text())))
+    assert sum(isinstance(node, ast.FunctionDef) for node in tree) <= 20
+    compared = [node.comparators[0] for node in tree if isinstance(node, ast.Compare)]
+    assert sum(isinstance(c, ast.Constant) and c.value is None for c in compared) <= 3

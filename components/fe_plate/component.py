@@ -200,13 +200,9 @@ class FePlate(Component):
             values[ACTIVE] = self.places.active(self.state)[self.owner]
         return values | readings(self.measured, self.built, self.state, wanted)
 
-    def _arrays(self) -> dict[str, Array]:
-        """All that moves; of the forces those on nodes: the others are none between steps."""
-        return {**self.state._asdict(), "forces": self.state.internal}
-
     def save(self) -> Fields:
         """Copy out all state."""
-        saved = {name: array.copy() for name, array in self._arrays().items()}
+        saved = {name: array.copy() for name, array in self.state.to_save().items()}
         saved["accumulated"] = np.array([*astuple(self.accumulated), self.bound])
         saved["judge"] = self.judge.save()
         saved["loads"], saved["half_kick"] = self.loads.copy(), self.half_kick.copy()
@@ -215,7 +211,7 @@ class FePlate(Component):
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
         self.state.forces[:] = 0.0
-        for name, array in self._arrays().items():
+        for name, array in self.state.to_save().items():
             array[:] = state[name]
         self.loads[:] = state["loads"]
         self.half_kick = np.array(state["half_kick"])

@@ -75,6 +75,10 @@ class State(NamedTuple):
         """Force [N] of the elements on the nodes (n, 3)."""
         return self.forces[: len(self.position)]
 
+    def to_save(self) -> dict[str, Array]:
+        """All that moves; of the forces those on nodes: the others are none between steps."""
+        return {**self._asdict(), "forces": self.internal}
+
 
 @dataclass(slots=True)
 class Accumulated:

@@ -1,90 +1,14 @@
-"""Energies of a lattice and their audit, hotness, and what indicates that the lattice breaks up."""
-
-from typing import NamedTuple
+"""What indicates that a lattice breaks up, and what is said of it."""
 
 import numpy as np
 
 from quintet.components.particle_dynamics.build import CLOSE, place_at_start
 from quintet.components.particle_dynamics.params import Drive, Lattice
-from quintet.components.particle_dynamics.state import Whole
-from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
 
 CHECKED = 20  # steps between two checks for lost points
 INTACT = 0.95  # share of the bonds below which the lattice is broken
 MISSING = 0.01  # of the energy put in, above which the audit warns
-# Of m a² ω², for each point: energies that are rounding, and the least that is audited.
-ROUNDING, AUDITED = 1e-20, 1e-9
-
-
-class Energies(NamedTuple):
-    """Energies of a lattice."""
-
-    kinetic: float  # J
-    potential: float  # J, of pairs and tethers
-
-
-class Balance(NamedTuple):
-    """What was put into a lattice since the start."""
-
-    work: float  # J, of the drive
-    heat: Array  # (b,) J, from the bath to each bathed point
-    dissipated: float  # J
-
-
-def energies(mass: float, velocity: Array, pairs: Array, tethers: Array) -> Energies:
-    """Sum the energies of points, of the pairs of each, and of tethers (twice their energies)."""
-    kinetic = 0.5 * mass * float((velocity**2).sum())
-    return Energies(kinetic, float(pairs.sum() + 0.5 * tethers.sum()))
-
-
-def heat_of_baths(heat: Array, bath: Whole, count: int) -> Array:
-    """Heat (count,) J from each bath, of heat (b,) J to points and the baths (b,) of these."""
-    return np.bincount(bath, heat, count).astype(np.float64)[:count]
-
-
-def audit(now: Energies, initial: float, balance: Balance, baths: Array, least: float) -> float:
-    """Energy missing in the balance, over what was put in since the start.
-
-    Parameters
-    ----------
-    now : Energies
-    initial : float, J
-        Their sum at the start.
-    balance : Balance
-    baths : (any,) float array, J
-        Heat of each bath.
-    least : float, J
-        Energy that is small for the lattice.
-    """
-    put_in = float(balance.work + balance.heat.sum())
-    gained = now.kinetic + now.potential - initial + balance.dissipated
-    size = abs(balance.work) + float(np.abs(baths).sum())
-    return (gained - put_in) / max(size, now.kinetic, least)
-
-
-def outer_work(balance: Balance, wall: Whole) -> float:
-    """Energy [J] of drive, damping and baths so far, except a wall that a partner heats."""
-    heat = float(balance.heat.sum() - balance.heat[wall].sum())
-    return balance.work - balance.dissipated + heat
-
-
-def hotness(kinetic: Array, since: float, least: float) -> tuple[Array, Array]:
-    """Mean kinetic energy (n,) J, and its ratio to that of the hottest point.
-
-    The ratio is 0 if the hottest point has at most a least energy [J], which is rounding.
-
-    Parameters
-    ----------
-    kinetic : (n,) float array, J s
-        Integrals over time.
-    since : float, s
-        Their duration.
-    least : float, J
-    """
-    mean = kinetic / since if since > 0.0 else np.zeros(len(kinetic))
-    highest = mean.max()
-    return mean, mean / highest if highest > least else np.zeros(len(mean))
 
 
 class Losses:

@@ -65,7 +65,7 @@ def run(made, seconds):
 
 
 def energy(made):
-    return sum(made._energies())
+    return sum(made.budget.energies())
 
 
 def test_a_driven_and_damped_bar_accounts_for_its_energy_over_15_s():
@@ -217,10 +217,10 @@ def test_heat_flows_through_the_wall_that_a_partner_holds():
     for _ in range(400):
         made.step(made.stable_dt())
         joules += made.stable_dt() * made.give({"wall_heat.heat_flow"})["wall_heat.heat_flow"].sum()
-    into_bar, out = made._integrals()[[2, 1]]
+    into_bar, out = made.budget.integrals()[[2, 1]]
     assert joules == pytest.approx(-into_bar, rel=1e-12)
     assert into_bar > 0.0 > out
-    assert made.totals().internal + made.totals().kinetic - made.initial == pytest.approx(
+    assert made.totals().internal + made.totals().kinetic - made.budget.initial == pytest.approx(
         into_bar + out, abs=5e-3 * into_bar
     )
 
