@@ -32,6 +32,7 @@ MANIFEST = Manifest(
     title="Lattices of mass points, driven and heated",
     params=ParticleLatticeParams,
     component="quintet.components.particle_dynamics.component:ParticleLattice",
+    ranks=True,
     ports=ports,
     shows=SHOWS,
     plan=plan,

@@ -21,7 +21,7 @@ from quintet.coupler.reference.sections import (
 from quintet.interfaces.component import port_text
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import Key
-from quintet.interfaces.manifest import known_kinds
+from quintet.interfaces.manifest import find, known_kinds
 from quintet.interfaces.params import unknown
 
 PLACE = re.compile(r"(<!-- describe ([^>]+?) -->\n).*?(<!-- described -->)", re.DOTALL)
@@ -85,6 +85,8 @@ def lines(reference: Reference, width: int | None) -> Iterator[str]:
     for verb, ports in zip(("takes", "gives"), sides, strict=True):
         for port in ports:
             yield from _wrapped(f"{verb} {port_text(port)}", width, "")
+    if reference.name in known_kinds() and find(reference.name).ranks:
+        yield "may own several MPI ranks (key `ranks`)"
     for section in reference.sections:
         yield ""
         same = first_line(section.about) == reference.title

@@ -175,3 +175,8 @@ def test_a_kind_is_described_with_its_ports(capsys):
     _, out, _ = said(capsys, "sph_solid")
     assert "gives glued_load (force [N, impulse])\n" in out, "of the glued ones of its cases"
     assert "takes glued (velocity [m/s, impulse])\n" in out
+
+
+def test_a_kind_that_may_own_several_ranks_says_so(capsys):
+    assert "several MPI ranks" in said(capsys, "particle_lattice")[1]
+    assert "several MPI ranks" not in said(capsys, "sph_solid")[1]
