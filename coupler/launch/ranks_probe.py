@@ -1,5 +1,6 @@
 """The processes of a component of several MPI ranks, watched as one."""
 
+import math
 from dataclasses import dataclass, field
 
 from quintet.coupler.launch.process_probe import IDLE, ProcessProbe
@@ -26,11 +27,12 @@ class RanksProbe(ProcessProbe):
         return launched and all(rank.alive() for rank in self.ranks)
 
     def ending(self) -> str:
-        """Describe how the first that is not alive ended."""
-        for rank in self.ranks:
-            if not rank.alive():
-                return f"{rank.name}: {rank.ending()}"
-        return ProcessProbe.ending(self)
+        """Describe how the first that ended did; others may end as they miss it."""
+        ended = [rank for rank in self.ranks if not rank.alive() or _ended_at(rank) < math.inf]
+        if not ended:
+            return ProcessProbe.ending(self)
+        first = min(ended, key=_ended_at)
+        return f"{first.name}: {first.ending()}"
 
     def stopped(self) -> bool:
         """Whether a rank was stopped; asked again and again."""
@@ -85,3 +87,11 @@ class RanksProbe(ProcessProbe):
         for rank in self.ranks:
             rank.kill()
         ProcessProbe.kill(self)
+
+
+def _ended_at(rank: ProcessProbe) -> float:
+    """When the exit status of a rank was written, s since the epoch; inf if it was not."""
+    try:
+        return rank.exit_file.stat().st_mtime if rank.exit_file else math.inf
+    except OSError:
+        return math.inf

@@ -140,7 +140,10 @@ def _rank(scene: Scene, name: str, measured: Mapping[str, Load]) -> Rank:
     plan = scene.components[name]
     load = measured.get(name) or planned_load(plan, scene.file)
     arguments = [plan.kind, *(w for place in scene.import_folders for w in ("--look-in", place))]
-    return Rank(Program(name, plan.threads, seconds=load.on(plan.threads)), arguments)
+    if plan.ranks > 1:
+        arguments += ["--ranks", str(plan.ranks), "--first", str(scene.first_rank(name))]
+    seconds = load.on(plan.ranks * plan.threads)
+    return Rank(Program(name, plan.threads, plan.ranks, seconds), arguments)
 
 
 def _options(request: Request, scene: Scene, script: Path) -> Sequence[str]:

@@ -140,7 +140,7 @@ def _step(job: Job) -> str:
     return f"""{_netmod(job)}SLURM_HOSTFILE=$places srun --mpi={job.mpi} {options} \\
     --distribution=arbitrary --ntasks=${{#nodes[@]}} bash "$script" --rank "${{what[@]}}"
 status=$?
-rm -f "$places" "$out"/log/*.exit"""
+rm -f "$places" "$out"/log/*.exit*"""
 
 
 def _netmod(job: Job) -> str:
@@ -167,9 +167,11 @@ threads() {
 component() {
     trap '' TERM
     threads "$2"
+    end=$out/log/$1.exit
+    case " $* " in *" --ranks "*) end=$end.$SLURM_PROCID ;; esac
     "${python[@]}" -m mpi4py -m quintet.interfaces.serving.process "${@:3}" \\
         --name "$1" --mpi --log "$out/log/$1.log"
-    echo $? > "$out/log/$1.exit"
+    echo $? > "$end"
     exit 0
 }
 
@@ -185,7 +187,7 @@ last_snapshot() { ls -v "$out"/snapshot-*.h5 2> /dev/null | tail -n 1; }
 before=$(last_snapshot)
 what=("${begin[@]}")
 if [ "${1-}" = --resume ]; then what=(--resume "$out"); fi
-rm -f "$out"/log/*.exit
+rm -f "$out"/log/*.exit*
 hosts=($(scontrol show hostnames "$SLURM_JOB_NODELIST"))
 places=$(mktemp)
 for node in "${nodes[@]}"; do echo "${hosts[node]}"; done > "$places"

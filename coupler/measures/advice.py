@@ -12,7 +12,8 @@ memory bandwidth, which components that compute at once share.
 A component that ran with p > 1 threads shows its share: its processor time over its computing time
 is the mean number k of cores that it used, so that 1 / k = s + (1 - s) / p. Other programs on the
 cores make k too small, and with k < 1 nothing is learned from it, as from a run with one thread;
-then s is what the kind plans (`Plan.serial`).
+then s is what the kind plans (`Plan.serial`). The cores of a component are its ranks times their
+threads; which of both shortens it more is not in the law.
 """
 
 from collections.abc import Mapping
@@ -41,6 +42,8 @@ class Load:
         Whether the share was measured, not planned.
     ranks : int
         Among which the component is divided, at these seconds.
+    divisible : bool
+        Whether its kind can own several ranks.
     """
 
     seconds: float
@@ -48,6 +51,7 @@ class Load:
     serial: float = 1.0
     measured: bool = False
     ranks: int = 1
+    divisible: bool = False
 
     @property
     def cores(self) -> int:
@@ -235,6 +239,7 @@ def _row(load: Load, cores: int, seconds: float) -> dict[str, Any]:
         "advised_seconds": seconds,
         "serial": load.serial,
         "serial_measured": load.measured,
+        "divisible": load.divisible,
     }
 
 
@@ -242,7 +247,12 @@ def loads_of(advised: Mapping[str, Any]) -> dict[str, Load]:
     """Loads of components, of an advice as it stands in results.json."""
     return {
         name: Load(
-            row["seconds"], row["threads"], row["serial"], row["serial_measured"], row["ranks"]
+            row["seconds"],
+            row["threads"],
+            row["serial"],
+            row["serial_measured"],
+            row["ranks"],
+            row["divisible"],
         )
         for name, row in advised["components"].items()
     }
@@ -270,6 +280,8 @@ def _change(name: str, row: Mapping[str, Any]) -> str:
     then = _cores(row["advised_ranks"], row["advised_threads"])
     if now == then:
         return ""
+    if row["divisible"] and row["advised_ranks"] == 1 < row["advised_threads"]:
+        then += f" or {row['advised_threads']} ranks"
     source = "measured" if row["serial_measured"] else "planned"
     return f"{name} {then} instead of {now} (serial share {row['serial']:.2g}, {source})"
 

@@ -162,10 +162,11 @@ def advise(scene: Scene, participants: Mapping[str, Participant]) -> dict[str, A
 
 
 def _load(plan: ComponentPlan, participant: Participant) -> Load:
-    times = participant.timing
+    times = participant.timing  # of its rank 0, where it has several
     share = serial_share(times.compute, times.cpu, plan.threads)
     planned = serial_of(plan) if share is None else share
-    return Load(times.compute, plan.threads, planned, share is not None)
+    measured, divisible = share is not None, plan.manifest.ranks
+    return Load(times.compute, plan.threads, planned, measured, plan.ranks, divisible)
 
 
 def machine() -> dict[str, Any]:

@@ -23,9 +23,15 @@ def planned_seconds(component: ComponentPlan, file: SceneFile) -> float:
 
 
 def planned_load(component: ComponentPlan, file: SceneFile) -> Load:
-    """The same on the threads that the scene has."""
-    alone = Load(planned_seconds(component, file), 1, serial_of(component))
-    return Load(alone.on(component.threads), component.threads, alone.serial)
+    """The same on the ranks and threads that the scene has."""
+    alone = Load(planned_seconds(component, file), serial=serial_of(component))
+    return Load(
+        alone.on(component.ranks * component.threads),
+        component.threads,
+        alone.serial,
+        ranks=component.ranks,
+        divisible=component.manifest.ranks,
+    )
 
 
 def serial_of(component: ComponentPlan) -> float:

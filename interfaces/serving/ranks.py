@@ -22,6 +22,8 @@ from quintet.interfaces.serving.serve import LONGEST_WAIT, Answer, Server
 FAILURES = ("failed", "unable")  # answers of a rank that could not carry out an order
 LOOKING = 0.05  # s between two looks at what other ranks say
 DECIDING = 1.0  # s for rank 0 to fail at the same order as another rank
+NOTICING = 2.0  # s for the coupler to notice that a rank has died
+MPI_ERROR = "mpi4py.MPI.Exception: "
 
 
 class LeadingLine:
@@ -55,6 +57,8 @@ class LeadingLine:
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """Answer for all ranks."""
+        if header["order"] in FAILURES and MPI_ERROR in header["traceback"]:
+            time.sleep(NOTICING)  # most likely another rank has died: the coupler names that one
         with self._lock:
             if self._over:
                 return

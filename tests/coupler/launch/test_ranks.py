@@ -2,13 +2,12 @@
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
+from chain_scene import write
 from started import Started
 
 from quintet.coupler.cli import main
@@ -17,34 +16,7 @@ from quintet.coupler.report.diff import compare
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 
-TOYS = Path(__file__).parents[1] / "toy_scenes" / "toy_ranks.py"
-SCENE = """
-name = "chain"
-end = {end}
-window = 2e-3
-patience = 2.0
-transport = "{transport}"
-[components.chain]
-kind = "toy_ranks:Chain"
-ranks = {ranks}
-{keys}
-[components.pusher]
-kind = "toy_ranks:Pusher"
-[[links]]
-kind = "direct"
-pairs = [["chain.motion", "pusher.motion"], ["pusher.push", "chain.push"]]
-[output]
-snapshots = 0.05
-"""
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
-
-
-def write(folder, transport, ranks, end=0.2, keys=""):
-    folder.mkdir(exist_ok=True)
-    shutil.copy(TOYS, folder)
-    path = folder / "scene.toml"
-    path.write_text(SCENE.format(transport=transport, ranks=ranks, end=end, keys=keys))
-    return path
 
 
 def run(path, *arguments):

@@ -1,5 +1,6 @@
 """A scene runs as jobs of a real SLURM, on two nodes, as far as its limits of time."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -7,6 +8,7 @@ import sys
 import time
 
 import pytest
+from chain_scene import write as write_chain
 from slurm_cluster import Cluster, lacking
 from started import write_scene
 
@@ -108,6 +110,29 @@ def test_a_component_that_is_killed_on_the_other_node_is_named(cluster, tmp_path
     fault = results(tmp_path / "run")["fault"]
     assert fault["component"] == "ping" and "by signal 9 (SIGKILL)" in fault["cause"]
     assert who in fault["cause"]
+
+
+def test_a_component_of_two_ranks_on_two_nodes_gives_the_bits_of_one(cluster, tmp_path):
+    alone = write_chain(tmp_path / "alone", "memory", 1)
+    subprocess.run([*QUINTET, "run", str(alone), "--out", str(tmp_path / "one")], check=True)
+    _launch(cluster, tmp_path, write_chain(tmp_path / "chain", "mpi", 2))
+    cluster.wait(100.0)
+    assert results(tmp_path / "run")["status"] == "done", _output(tmp_path)
+    assert compare(tmp_path / "one", tmp_path / "run") is None
+    assert not list((tmp_path / "run/log").glob("*.exit*"))
+
+
+def test_a_rank_that_is_killed_on_the_other_node_is_named(cluster, tmp_path):
+    scene = write_chain(tmp_path / "chain", "mpi", 2, end=1000.0, keys="pause = 1e-3")
+    _launch(cluster, tmp_path, scene)
+    _wait_for_windows(tmp_path)
+    log = (tmp_path / "run/log/chain.rank1.log").read_text()
+    subprocess.run(["kill", "-KILL", re.search(r"process (\d+)", log)[1]])
+    cluster.wait(100.0)
+    fault = results(tmp_path / "run")["fault"]
+    host = "n2" if cluster.other_host else os.uname().nodename
+    assert fault["component"] == "chain" and fault["cause"].startswith(f"rank 1 on {host}: ")
+    assert "by signal 9 (SIGKILL)" in fault["cause"], fault
 
 
 def test_who_cancels_a_job_gets_a_snapshot_and_no_other_job(cluster, tmp_path):

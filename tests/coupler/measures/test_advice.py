@@ -9,6 +9,7 @@ from quintet.coupler.measures.advice import (
     advice,
     advised_cores,
     duration,
+    loads_of,
     sentences,
     serial_share,
     stages,
@@ -113,6 +114,9 @@ def test_ranks_are_kept_and_their_threads_are_advised():
     row = advised["components"]["wide"]
     assert (row["advised_ranks"], row["advised_threads"]) == (2, 4)
     assert "wide 2 ranks of 4 threads instead of 2 ranks of 1 thread" in sentences(advised)[-1]
+    lone = advice(Stage(("wide",), False), {"wide": Load(50.0, 1, 0.05, divisible=True)}, 8)
+    assert "wide 8 threads or 8 ranks instead of 1 thread" in sentences(lone)[-1]
+    assert loads_of(advised) == {"wide": Load(50.0, 1, 0.05, ranks=2)}
 
 
 def test_times_before_a_run_are_items_times_steps_over_the_planned_rate(monkeypatch):
