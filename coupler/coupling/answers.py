@@ -85,7 +85,7 @@ ANSWERS: dict[str, dict[str, Rule]] = {
     "load": {"stable": NUMBER},
     "conclude": {"warnings": (_are_texts, "texts by subject")},
     "view": {"totals": (_are_totals, "totals")},
-    "finish": {"memory": COUNT},
+    "finish": {"memory": COUNT, "cpu": TIME},  # cpu: of ranks that have not answered before
 }
 
 

@@ -36,7 +36,7 @@ class Timing:
     """Where a component's time went."""
 
     compute: float = 0.0  # s, as the component itself measured
-    cpu: float = 0.0  # s of processor time in its windows, all threads
+    cpu: float = 0.0  # s of processor time in its windows, all threads and ranks
     wait: float = 0.0  # s that the coupler waited for it
     build: float = 0.0  # s of its construction, with what that compiles
     prepare: float = 0.0  # s, what it did before its first window, such as compiling
@@ -44,7 +44,7 @@ class Timing:
     steps: int = 0
     windows: int = 0  # that were ordered, repetitions counted
     items: int = 0
-    memory: int = 0  # bytes, the most that its process held; of one apart that ended well
+    memory: int = 0  # bytes, the most that its processes held; of one apart that ended well
     recent: deque[float] = field(default_factory=lambda: deque(maxlen=50))
 
     @property

@@ -254,7 +254,9 @@ def finish(participants: dict[str, Participant]) -> None:
     for participant in participants.values():
         participant.send_order("finish")
     for participant in participants.values():
-        participant.timing.memory = int(participant.receive().header["memory"])
+        used = participant.receive().header
+        participant.timing.memory = int(used["memory"])
+        participant.timing.cpu += float(used["cpu"])
 
 
 def end_all(

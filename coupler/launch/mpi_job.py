@@ -298,10 +298,15 @@ def end_ranks(job: dict[str, object], starter: Starter) -> None:
     A rank that is killed as MPI begins has told nobody of the files that it maps.
     """
     pids = list(marked(STARTER, str(starter.pid)))
-    used = {path for pid in pids for path in (*shared_files(pid), *_launcher_files(pid))}
+    used = {path for pid in pids for path in files_of(pid)}
     files = {path for path in used if starter.precedes(path)}
     end_marked(STARTER, str(starter.pid))
     _unlink({*job.get("shared", []), *job.get("launcher", []), *files})  # type: ignore[misc]
+
+
+def files_of(pid: int) -> list[str]:
+    """Files of an MPI job that a process of it, or of its launcher, leaves if it is killed."""
+    return [*shared_files(pid), *_launcher_files(pid)]
 
 
 def _launcher_files(pid: int) -> Iterator[str]:

@@ -1,8 +1,13 @@
 """The processes of a component of several MPI ranks, watched as one."""
 
+import contextlib
 import math
+import os
 from dataclasses import dataclass, field
 
+import psutil
+
+from quintet.coupler.launch.mpi_job import files_of
 from quintet.coupler.launch.process_probe import IDLE, ProcessProbe
 
 # In whose calls a rank waits for others, or for orders.
@@ -49,6 +54,9 @@ class RanksProbe(ProcessProbe):
 
     def read(self) -> None:
         """Find out what the ranks did since the last reading, now and then."""
+        if not self.ranks:  # those of their launcher's children
+            ProcessProbe.read(self)
+            return
         for rank in self.ranks:
             rank.read()
         doing = [rank.activity for rank in self.ranks if rank.pid]
@@ -83,10 +91,25 @@ class RanksProbe(ProcessProbe):
         ProcessProbe.end(self, grace)
 
     def kill(self) -> None:
-        """Kill the processes."""
+        """Kill the processes; remove the files of those that have not told of them."""
+        started = _descendants(self.process.pid) if self.process else []
+        files = {path for process in started for path in files_of(process.pid)}
         for rank in self.ranks:
             rank.kill()
         ProcessProbe.kill(self)
+        for process in started:
+            with contextlib.suppress(psutil.Error):
+                process.kill()
+        for path in files:
+            with contextlib.suppress(OSError):
+                os.unlink(path)
+
+
+def _descendants(pid: int) -> list[psutil.Process]:
+    try:
+        return psutil.Process(pid).children(recursive=True)
+    except psutil.Error:
+        return []
 
 
 def _ended_at(rank: ProcessProbe) -> float:

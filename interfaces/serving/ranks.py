@@ -22,6 +22,7 @@ from quintet.interfaces.serving.serve import LONGEST_WAIT, Answer, Server
 FAILURES = ("failed", "unable")  # answers of a rank that could not carry out an order
 LOOKING = 0.05  # s between two looks at what other ranks say
 DECIDING = 1.0  # s for rank 0 to fail at the same order as another rank
+TELLING = 5.0  # s for all ranks to tell what they used
 NOTICING = 2.0  # s for the coupler to notice that a rank has died
 MPI_ERROR = "mpi4py.MPI.Exception: "
 
@@ -44,6 +45,7 @@ class LeadingLine:
         self._orders, self._answered = 0, 0  # how many were received, and answered
         self._failed_at = 0  # the last order that this rank could not carry out
         self._over = False  # a failure was reported, or the line is closed
+        self._used: list[Mapping[str, Any]] = []  # by other ranks, at the end
         self._lock = threading.Lock()
         threading.Thread(target=self._watch, name="ranks", daemon=True).start()
 
@@ -59,6 +61,8 @@ class LeadingLine:
         """Answer for all ranks."""
         if header["order"] in FAILURES and MPI_ERROR in header["traceback"]:
             time.sleep(NOTICING)  # most likely another rank has died: the coupler names that one
+        if "memory" in header:
+            header = self._of_all(header)
         with self._lock:
             if self._over:
                 return
@@ -66,6 +70,14 @@ class LeadingLine:
                 self._failed_at = self._orders
             self._line.send(header, fields)
             self._answered = self._orders
+
+    def _of_all(self, header: Mapping[str, Any]) -> dict[str, Any]:
+        """Add what the other ranks used to the last answer."""
+        limit = time.monotonic() + TELLING
+        while len(self._used) < len(self._others) and time.monotonic() < limit:
+            time.sleep(LOOKING)
+        used = [header, *self._used]
+        return {**header, **{key: sum(rank[key] for rank in used) for key in ("memory", "cpu")}}
 
     def spread(self, state: Fields) -> Fields:
         """Give a state, which this rank has whole, to all ranks; return it."""
@@ -84,13 +96,16 @@ class LeadingLine:
             for line, host in zip(self._others, self._hosts, strict=True):
                 try:
                     if line.peek() is not None:
-                        self._judge(line.receive(LOOKING), host)
+                        self._hear(line.receive(LOOKING), host)
                 except QuintetError:  # it is dead, which the coupler sees
                     return
 
-    def _judge(self, report: Message, host: str) -> None:
-        """Report the failure of a rank, unless this one fails at the same order."""
+    def _hear(self, report: Message, host: str) -> None:
+        """Note what a rank used; report its failure, unless this one fails at the same order."""
         header = report.header
+        if report.order == "used":
+            self._used.append(header)
+            return
         limit = time.monotonic() + DECIDING
         while self._answered < int(header["at"]) and time.monotonic() < limit:
             time.sleep(LOOKING)
@@ -107,7 +122,7 @@ class FollowingLine:
 
     def __init__(self, line: MpiLine, rank: int) -> None:
         self._line, self._rank = line, rank
-        self._orders = 0
+        self._orders, self._cpu = 0, 0.0
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
         """Receive the next order."""
@@ -116,9 +131,13 @@ class FollowingLine:
         return message
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
-        """Tell rank 0 of a failure, and of nothing else."""
+        """Tell rank 0 of a failure, and at the end of what this rank used."""
         if header["order"] in FAILURES:
             self._line.send({**header, "at": self._orders, "rank": self._rank}, {})
+        elif "memory" in header:
+            self._line.send({"order": "used", "memory": header["memory"], "cpu": self._cpu}, {})
+        else:
+            self._cpu += header.get("cpu", 0.0)
 
     def spread(self, _: Fields) -> Fields:
         """Return the state that rank 0 has."""

@@ -83,7 +83,7 @@ class Server:
             "load": self._load,
             "view": self._view,
             "conclude": lambda _: ({"warnings": _texts(self.component.final_warnings())}, {}),
-            "finish": lambda _: ({"memory": peak_memory()}, {}),
+            "finish": lambda _: ({"memory": peak_memory(), "cpu": 0.0}, {}),
         }
 
     def handle(self, message: Message) -> Answer:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -39,6 +40,9 @@ def test_several_ranks_give_the_bits_of_one(tmp_path, of_one_rank, transport, ra
     assert started.process.returncode == 0, started.err
     assert compare(of_one_rank, started.folder) is None
     assert f"chain (toy_ranks:Chain, {ranks} ranks)" in started.out
+    used = started.results["timing"]["components"]
+    assert used["chain"]["memory"] > 0.7 * ranks * used["pusher"]["memory"], "of all ranks"
+    assert used["chain"]["cpu"] > 0.0
     assert not started.left_processes(5.0) and (started.folder / "log" / "chain.rank1.log").exists()
 
 
@@ -104,3 +108,17 @@ def test_a_kind_that_computes_on_one_rank_refuses_more(tmp_path):
 def test_memory_refuses_several_ranks(tmp_path):
     with pytest.raises(SceneError, match="ranks must be 1 over the transport memory"):
         load(str(write(tmp_path / "run", "memory", 2)))
+
+
+@pytest.mark.zenoh
+def test_ranks_that_are_killed_as_they_start_leave_nothing(tmp_path):
+    """They have told nobody yet of the files that they share."""
+    scene = write(tmp_path / "run", "zenoh", 3)
+    for n in range(4):
+        started = Started(scene, out=tmp_path / f"out{n}")
+        log = started.folder / "log" / "chain.log"
+        started.wait_until(lambda log=log: log.is_file() and "process" in log.read_text())
+        time.sleep(0.1 * n)
+        started.process.send_signal(signal.SIGINT)
+        started.out, started.err = started.process.communicate(timeout=30)
+        assert not started.left_processes(5.0) and not started.left_in_shared_memory()
