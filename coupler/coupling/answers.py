@@ -69,6 +69,7 @@ NUMBER: Rule = _is_number, "a number"
 TIME: Rule = _is_time, "a time in s"
 SUMS: Rule = _is_sums, "sums of fields"
 ANSWERS: dict[str, dict[str, Rule]] = {
+    "describe": {"seconds": TIME},
     "bind": {"items": COUNT},
     "prepare": {"stable": NUMBER, "seconds": TIME},
     "advance": {

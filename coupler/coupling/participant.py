@@ -269,6 +269,6 @@ def describe_all(participants: Mapping[str, Participant]) -> dict[str, Fields]:
     described: dict[str, Fields] = {}
     for name, participant in participants.items():
         answer = participant.call("describe")
-        participant.timing.build = float(answer.header.get("seconds", 0.0))
+        participant.timing.build = float(answer.header["seconds"])
         described[name] = answer.fields
     return described

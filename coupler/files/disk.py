@@ -34,9 +34,7 @@ REASONS = {
 
 def disk_error(path: Path, error: Exception, needed: int = 0) -> DiskError:
     """Say why a file could not be written, on which disk it lies, and what it needs [bytes]."""
-    number, path = getattr(error, "errno", None), path.with_name(path.name.removesuffix(PART))
-    if said := re.search(r"errno = (\d+)", str(error)):  # of HDF5, in the text alone
-        number = int(said[1])
+    number, path = number_of(error), path.with_name(path.name.removesuffix(PART))
     disk = disk_of(path)
     if number not in REASONS:
         reason = os.strerror(number) if number else str(error)
@@ -50,6 +48,12 @@ def disk_error(path: Path, error: Exception, needed: int = 0) -> DiskError:
         f"{path}: it cannot be written, as the disk at {disk} {REASONS[number]}{left}. Make room "
         "there."
     )
+
+
+def number_of(error: BaseException | None) -> int | None:
+    """Number of the system's error; HDF5 has it in its text alone."""
+    said = re.search(r"errno = (\d+)", str(error))
+    return int(said[1]) if said else getattr(error, "errno", None)
 
 
 def disk_of(path: Path) -> Path:

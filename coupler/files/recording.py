@@ -13,17 +13,18 @@ from typing import Any, NamedTuple, Self
 import h5py
 import numpy as np
 
-from quintet.coupler.files.disk import reporting_disk
+from quintet.coupler.files.disk import number_of, reporting_disk
 from quintet.coupler.files.hdf5 import OF_DATASET, OF_FILE, create, room
 from quintet.coupler.files.run_files import RECORDING as NAME
 from quintet.interfaces.component import Array, Fields, Port, fields_of
-from quintet.interfaces.errors import PortError, SceneError
+from quintet.interfaces.errors import DiskError, PortError, SceneError
 from quintet.interfaces.params import unknown
 from quintet.interfaces.ports import from_json, to_json
 from quintet.interfaces.recordings import (
     MARKS,
     ROW_CHECKS,
     CheckedFile,
+    damaged,
     field_check,
     marks_check,
     readable,
@@ -89,9 +90,14 @@ class Recorder(_Closed):
                 ports = from_json(str(group.attrs["ports"]))
                 recorder._tracks[name] = _Track(group, name, ports)
         tracks = recorder._tracks.values()
-        with room(recorder._file, sum(track.largest() for track in tracks)):
-            for track in tracks:
-                track.go_on(rows)
+        try:
+            with room(recorder._file, sum(track.largest() for track in tracks)):
+                for track in tracks:
+                    track.go_on(rows)
+        except DiskError as error:
+            if number_of(error.__cause__) is not None:
+                raise
+            raise damaged(path, "what HDF5 knows of a data set") from error
         return recorder
 
     def component(self, name: str, ports: tuple[Port, ...], static: Fields) -> None:

@@ -40,7 +40,7 @@ def value_at(table: Table, path: str) -> tuple[Any, str]:
         elif isinstance(at, dict) and part in at:
             at = at[part]
         else:
-            known = at if isinstance(at, dict) else map(str, range(len(at or ())))
-            reason = unknown(path, part, known if isinstance(at, (dict, list)) else ())
+            numbers = range(len(at)) if isinstance(at, list) else ()
+            reason = unknown(path, part, at if isinstance(at, dict) else map(str, numbers))
             return None, reason.replace("is not known", "has no value in the scene", 1)
     return at, ""

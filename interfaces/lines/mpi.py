@@ -23,13 +23,19 @@ SENDING = 600.0  # s that a large message may take until the receiver has asked 
 @functools.cache
 def world() -> Any:
     """Return a duplicate of COMM_WORLD, apart from communicators of the solvers."""
-    return MPI.COMM_WORLD.Dup()
+    return _with_errors(MPI.COMM_WORLD.Dup())
+
+
+def _with_errors(communicator: Any) -> Any:
+    """Have a communicator raise errors: a rank that dies must not end those that name it."""
+    communicator.Set_errhandler(MPI.ERRORS_RETURN)
+    return communicator
 
 
 def communicator_of(first: int, count: int) -> Any:
     """Communicator of some ranks in a row; called by all ranks of the job, or by these alone."""
     group = world().Get_group().Range_incl([(first, first + count - 1, 1)])
-    return world().Create_group(group)
+    return _with_errors(world().Create_group(group))
 
 
 class MpiLine(FramedLine):
@@ -46,18 +52,29 @@ class MpiLine(FramedLine):
         self._frames: list[Array] = []
 
     def _put(self, frame: bytearray) -> None:
-        request = self._comm.Isend([frame, MPI.BYTE], self.rank, TAG)
-        wait(lambda: request.Test() or None, SENDING, self._reason)
+        try:
+            request = self._comm.Isend([frame, MPI.BYTE], self.rank, TAG)
+            wait(lambda: request.Test() or None, SENDING, self._reason)
+        except MPI.Exception as error:
+            raise self._failure(error) from error
 
     def _poll(self) -> Frame | None:
         status = MPI.Status()
-        message = self._comm.Improbe(self.rank, TAG, status)
-        if message is None:
-            return None
-        frame = self._buffer(status.Get_count(MPI.BYTE))
-        request = message.Irecv([frame, MPI.BYTE])
-        wait(lambda: request.Test() or None, SENDING, self._reason)
+        try:
+            message = self._comm.Improbe(self.rank, TAG, status)
+            if message is None:
+                return None
+            frame = self._buffer(status.Get_count(MPI.BYTE))
+            request = message.Irecv([frame, MPI.BYTE])
+            wait(lambda: request.Test() or None, SENDING, self._reason)
+        except MPI.Exception as error:
+            raise self._failure(error) from error
         return frame
+
+    def _failure(self, error: Exception) -> LineError:
+        """MPI fails where another rank has died: its network layer may notice first."""
+        text = " ".join(str(error).split())
+        return LineError(f"the connection to {self.other} is broken: {text:.200}")
 
     def _buffer(self, size: int) -> Array:
         """Return a frame that is not referenced any more, or a new one.

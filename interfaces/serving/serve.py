@@ -271,6 +271,8 @@ class Server:
 
     def _rewind(self, message: Message) -> Answer:
         states, at = self._kept, depth(message)
+        if at not in states:
+            raise OrderError(f"rewind needs a state that was kept; found none at depth {at}.")
         state = states.pop(at) if message.header.get("last") else states[at]
         self.restore(self._spread(state))
         return {}, {}
