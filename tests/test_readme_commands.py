@@ -42,9 +42,9 @@ def folder(tmp_path):
         ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True
     )
     for name in filter(None, names.stdout.split("\0")):
-        if (ROOT / name).is_file():
+        if (ROOT / name).exists():
             (made / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, made / name)
+            shutil.copy2(ROOT / name, made / name, follow_symlinks=False)
     return made
 
 

@@ -189,9 +189,10 @@ def by_pip(tmp_path_factory):
     bin = folder / "venv/bin"
     env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
-    left_out = shutil.ignore_patterns(".*", "build", "runs", "tests", "*.egg-info")
-    shutil.copytree(ROOT, folder / "quintet", ignore=left_out)
-    packages = [f"{folder / 'quintet'}[mpi]", swings(folder), moorings(folder)]
+    hidden = [path.name for path in ROOT.glob(".*") if path.name != ".package"]
+    left_out = shutil.ignore_patterns(*hidden, "build", "runs", "tests", "*.egg-info")
+    shutil.copytree(ROOT, folder / "quintet", ignore=left_out, symlinks=True)
+    packages = [f"{folder / 'quintet'}[mpi,zenoh]", swings(folder), moorings(folder)]
     subprocess.run([bin / "pip", "install", "--quiet", *packages], check=True, env=env)
 
     def quintet(*words, seconds=120):
