@@ -70,6 +70,9 @@ class LeadingLine:
                 self._failed_at = self._orders
             self._line.send(header, fields)
             self._answered = self._orders
+        if "memory" in header:  # the last answer: from now on ranks may end
+            for line in self._others:
+                line.send({"order": "over"}, {})
 
     def _of_all(self, header: Mapping[str, Any]) -> dict[str, Any]:
         """Add what the other ranks used to the last answer."""
@@ -136,6 +139,7 @@ class FollowingLine:
             self._line.send({**header, "at": self._orders, "rank": self._rank}, {})
         elif "memory" in header:
             self._line.send({"order": "used", "memory": header["memory"], "cpu": self._cpu}, {})
+            self._line.receive(2.0 * TELLING)  # until rank 0 has answered
         else:
             self._cpu += header.get("cpu", 0.0)
 
