@@ -140,6 +140,9 @@ def _step(job: Job) -> str:
     return f"""{_netmod(job)}SLURM_HOSTFILE=$places srun --mpi={job.mpi} {options} \\
     --distribution=arbitrary --ntasks=${{#nodes[@]}} bash "$script" --rank "${{what[@]}}"
 status=$?
+# The step's status may be that of a component which srun has killed as the coupler ended.
+said=$(grep -o '"status": [0-9]*' "$out/log/mpi.json" 2> /dev/null | grep -o '[0-9]*$')
+status=${{said:-$status}}
 rm -f "$places" "$out"/log/*.exit*"""
 
 
