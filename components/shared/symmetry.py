@@ -16,12 +16,10 @@ changes nothing for any other, so that nothing is lost through the plane.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from quintet.components.shared.numba_options import FAST
-from quintet.components.shared.search.cells import Whole, grid_around, sorted_into
-from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
+from quintet.components.shared.search.cells import Whole
+from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_among
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
@@ -169,26 +167,6 @@ def neighbours_and_images(
         Of the points that are no images; their neighbours may be images.
     """
     first, second = np.flatnonzero(first_group), np.flatnonzero(~first_group)
-    grid = grid_around(points[first], reach)
-    first, second = (group[sorted_into(points[group], grid)[2]] for group in (first, second))
-    row = np.concatenate([first, second])
-    lists = neighbours_within(reach, points[row], len(first), team, query_points, buffer)
-    at = np.empty(len(row), np.int64)
-    at[row] = np.arange(len(row))
-    if query_points is None:
-        wanted = at[:rows]
-    else:
-        wanted = np.concatenate([at[:split], len(first) + np.arange(len(query_points))])
-    begin, middle, end = (places[wanted] for places in (lists.begin, lists.middle, lists.end))
-    team.run(rename, len(wanted), begin, end, row, lists.list)
-    return NeighbourLists(lists.list, begin, middle, end)
-
-
-@njit(**FAST)
-def rename(
-    first: int, last: int, begin: Whole, end: Whole, row: Whole, neighbour: NDArray[np.int32]
-) -> None:
-    """Write rows of the solver over those of the search, in lists [first, last)."""
-    for i in range(first, last):
-        for k in range(begin[i], end[i]):
-            neighbour[k] = row[neighbour[k]]
+    others = points[split:rows] if query_points is None else query_points
+    looking = np.concatenate([points[:split], others])
+    return neighbours_among(reach, points, first, second, looking, split, team, buffer)

@@ -89,4 +89,5 @@ MANIFEST = Manifest(
     bench="quintet.components.sph_fluid.bench:cases",
     conform="quintet.components.sph_fluid.conform:cases",
     shows=SHOWS,
+    ranks=True,
 )

@@ -54,8 +54,8 @@ class SphFluid(Component):
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)
         self.boundary.start(self.state)
-        self.symmetry = features.symmetry_planes(params)
-        self.lists = FluidLists(params, self.samples)
+        self.ranks, self.symmetry = features.ranks(params, resources, self.samples)
+        self.lists = FluidLists(params, self.samples, self.ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
         precision, joined = features.precision(params), (self.boundary, self.symmetry)
         self.pairs = Interaction(params, *joined, precision, self.samples)
@@ -63,7 +63,7 @@ class SphFluid(Component):
         self.courant = features.courant_limit(params)
         self.films: Films = NoFilms()  # before there are surfaces
         self.filter = features.shepard_filter(params)
-        self.gauges = features.gauges(params, self.symmetry)
+        self.gauges = features.gauges(params, self.symmetry, self.ranks)
 
     def describe(self) -> Fields:
         """Request how surfaces are to be sampled."""
@@ -81,7 +81,7 @@ class SphFluid(Component):
 
     def prime(self, fields: Fields) -> None:
         """Refuse bodies that begin out of place; remove fluid inside them, where a scene asks."""
-        if not len(self.samples.row):
+        if not len(self.samples.volume):
             return
         features.refuse_misplaced(self.params, self.samples.body, fields["surface.position"])
         if self.params.remove_inside_bodies:
@@ -104,10 +104,11 @@ class SphFluid(Component):
 
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
-        if len(self.samples.row):
+        if len(self.samples.volume):
             if self.params.dimensions == 2:
                 fields = in_plane(fields, self.params)
             self.samples.move(self.state, fields)
+            self.ranks.follow_samples(fields)
             self.boundary.follow_samples(self.state, fields)
             self.symmetry.require_before(fields["surface.position"])
 
@@ -116,15 +117,15 @@ class SphFluid(Component):
         if not self.samples.placed:
             raise OrderError("step: surface samples must be placed first. Call take before it.")
         if self.lists.need_rebuild(self.state, self.boundary, dt):
-            diagnostics.refuse_dense(self.state, self.params)
+            diagnostics.refuse_dense(self.state, self.params, self.ranks)
             self.lists.sort(self.state)
             self._list()
         if self.filter:
             self.filter.apply(self.state, self.lists.arrays, self.team)
         rows, rate = self.boundary.rows_with_density_rate(self.state), self.pairs.rates.rate
         if self.state.steps % judgement.EVERY == 0:
-            isolated = not len(self.samples.row) and not self.params.boundary.wall_velocity
-            judgement.note(self.state, self.params, self.totals(), isolated)
+            isolated = not len(self.samples.volume) and not self.params.boundary.wall_velocity
+            judgement.note(self.state, self.params, self.totals(), isolated, self.ranks)
         task = StepTask(dt, rows, rate, self._compute_rates, partial(self._apply_forces, dt))
         self._finish(self.integration.step(self.state, task, self.team), dt)
 
@@ -146,16 +147,25 @@ class SphFluid(Component):
     def _apply_forces(self, dt: float) -> None:
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         self.pairs.push_samples(self.state, self.team)
+        if len(self.samples.volume):
+            self.ranks.gather_forces(self.state)
         self.films.advance(self.state, self.lists.arrays, dt)
         self.pairs.move_with_neighbours(self.state, dt, self.team)
 
     def _finish(self, moved: Moved, dt: float) -> None:
         state = self.state
-        if any(failures for _, failures in moved):
-            raise StepError(diagnostics.failure(state, self.params, dt))
+        shift2, failures, fastest, approach = self.ranks.greatest(
+            max(shift2 for shift2, _ in moved),
+            max(failures for _, failures in moved),
+            state.largest_acceleration,
+            state.largest_approach,
+        )
+        if failures:
+            raise StepError(diagnostics.failure(self.ranks.whole(state), self.params, dt))
         self.symmetry.reflect_crossed(state)
         self.symmetry.write_images(state)
-        state.moved = math.sqrt(max(shift2 for shift2, _ in moved))
+        state.moved = math.sqrt(shift2)
+        state.largest_acceleration, state.largest_approach = fastest, approach
         state.last_dt, state.steps = dt, state.steps + 1
 
     def give(self, wanted: Keys) -> Fields:
@@ -169,11 +179,12 @@ class SphFluid(Component):
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
-        return self.state.save() | {"placed": np.array(self.samples.placed)}
+        return self.ranks.whole(self.state).save() | {"placed": np.array(self.samples.placed)}
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
+        self.ranks.load(self.state)
         self.samples.find_rows(self.state)
         self.boundary.load(self.state)
         self.films.load(self.state)
@@ -182,14 +193,14 @@ class SphFluid(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left."""
-        totals = diagnostics.totals(self.state, self.params, self.constants)
+        totals = diagnostics.totals(self.state, self.params, self.constants, self.ranks)
         if len(self.state.reference):
             totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
         return totals
 
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
-        return view(self.state)
+        return view(self.ranks.whole(self.state))
 
     def notes(self) -> tuple[str, ...]:
         """What was not as a scene may have meant it: masses, films that are missing."""
@@ -198,7 +209,7 @@ class SphFluid(Component):
     def warnings(self) -> dict[str, str]:
         """Compression, fluid that leaves its tank, and energy from nowhere."""
         mass = self.constants.mass * self.params.slab_thickness
-        return judgement.warnings(self.state, self.params, mass)
+        return judgement.warnings(self.state, self.params, mass, self.ranks)
 
     def walls(self) -> Fields:
         """Return the tank's closed faces, and the obstacles in it."""
@@ -206,4 +217,4 @@ class SphFluid(Component):
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""
-        return self.state.particles
+        return self.ranks.fluid(self.state) + self.ranks.boundary(self.state)

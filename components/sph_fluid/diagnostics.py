@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.components.sph_fluid.laws import TAIT, Constants
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
@@ -14,17 +15,28 @@ MACH = 0.5  # of the speed of sound: what strikes the fluid faster is refused
 FEW = 1e-3  # of the fluid: so many particles may be denser for no such reason
 
 
-def totals(state: State, params: SphFluidParams, constants: Constants) -> Totals:
-    """Mass, momentum and energies of the fluid that is left."""
+def totals(state: State, params: SphFluidParams, constants: Constants, ranks: Ranks) -> Totals:
+    """Mass, momentum and energies of the fluid that is left on all ranks."""
     mass, rows = constants.mass * params.slab_thickness, slice(state.fluid)
-    points, velocity = state.position_density[rows, :3], state.velocity_pressure[rows, :3]
+    x, y, z = state.position_density[rows, :3].T
+    u, v, w = state.velocity_pressure[rows, :3].T
+    g = params.gravity
+    # Written out: what a library makes of several columns depends on how many rows there are.
+    columns = [
+        *(u, v, w),
+        *(y * w - z * v, z * u - x * w, x * v - y * u),
+        u * u + v * v + w * w,
+        x * g[0] + y * g[1] + z * g[2],
+        _elastic(state.position_density[rows, 3], params, constants),
+    ]
+    sums = mass * ranks.sums(state, columns)
     return Totals(
-        mass=mass * len(points),
-        momentum=mass * velocity.sum(axis=0),
-        angular_momentum=mass * np.cross(points, velocity).sum(axis=0),
-        kinetic=0.5 * mass * float(np.einsum("nd,nd->", velocity, velocity)),
-        potential=-mass * float((points @ np.array(params.gravity)).sum()),
-        internal=mass * float(_elastic(state.position_density[rows, 3], params, constants).sum()),
+        mass=mass * ranks.fluid(state),
+        momentum=sums[:3],
+        angular_momentum=sums[3:6],
+        kinetic=0.5 * float(sums[6]),
+        potential=-float(sums[7]),
+        internal=float(sums[8]),
     )
 
 
@@ -33,14 +45,13 @@ def _elastic(density: Array, params: SphFluidParams, constants: Constants) -> Ar
     ratio = density / constants.density
     if not params.negative_pressure:
         ratio = np.maximum(ratio, 1.0)
-    power = TAIT - 1
-    return np.asarray(
-        constants.stiffness / constants.density * ((ratio**power - 1.0) / power + 1.0 / ratio - 1.0)
-    )
+    cube = ratio * ratio * ratio
+    power = (cube * cube - 1.0) / (TAIT - 1)
+    return np.asarray(constants.stiffness / constants.density * (power + 1.0 / ratio - 1.0))
 
 
 def failure(state: State, params: SphFluidParams, dt: float) -> str:
-    """Say which particle a step [s] failed on, and what to do."""
+    """Say which particle of a state of all rows a step [s] failed on, and what to do."""
     worst = _worst(state, params.spacing, dt)
     x, y, z, density = state.position_density[worst].tolist()
     speed = math.hypot(*state.velocity_pressure[worst, :3].tolist())
@@ -65,22 +76,24 @@ def _worst(state: State, spacing: float, dt: float) -> int:
     return int(np.argmax(speed) if fast else np.argmin(position[:, 3]))
 
 
-def refuse_dense(state: State, params: SphFluidParams) -> None:
+def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:
     """Raise where the fluid was struck faster than a weakly compressible one can be.
 
     A surface that meets it with a velocity u raises its pressure by ρ₀c₀u, whatever moves: that of
     u = c₀/2 is a density that nothing slower reaches. Single drops of spray that walls squeeze are
     let go.
     """
-    density = state.position_density[: state.fluid, 3]
-    worst = int(np.argmax(density))
     most = params.density * (1.0 + TAIT * MACH) ** (1.0 / TAIT)
-    if not density[worst] > most or np.count_nonzero(density > most) <= FEW * len(density):
+    dense = np.count_nonzero(state.position_density[: state.fluid, 3] > most)
+    (dense,) = ranks.count(dense)
+    if dense <= FEW * ranks.fluid(state):
         return
+    whole = ranks.whole(state)
+    worst = int(np.argmax(whole.position_density[: whole.fluid, 3]))
     raise StepError(
         f"step {state.steps}: what strikes the fluid must be slower than half its sound_speed "
         f"({MACH * params.sound_speed:.3g} m/s), a tenth to be right, so that its density stays "
-        f"below {most:.4g} kg/m3; {_met(state, worst)} Raise sound_speed to ten times the largest "
+        f"below {most:.4g} kg/m3; {_met(whole, worst)} Raise sound_speed to ten times the largest "
         "velocity, or slow what moves."
     )
 

@@ -15,7 +15,10 @@ from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, Sy
 from quintet.components.sph_fluid.integration.method import Integration
 from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precision
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
+from quintet.components.sph_fluid.ranks.one import OneRank
 from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import Resources
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
@@ -55,6 +58,28 @@ def contact_stiffness(params: SphFluidParams) -> "ContactStiffness":
     from quintet.components.sph_fluid.boundary.contact_potential import ContactStiffness
 
     return ContactStiffness(params)
+
+
+def ranks(
+    params: SphFluidParams, resources: Resources, samples: Samples
+) -> tuple[Ranks, SymmetryPlanes]:
+    """The ranks that share the fluid, and its planes of symmetry, with copies of others' rows."""
+    communicator = resources.communicator
+    if communicator is None or communicator.size == 1:
+        return OneRank(), symmetry_planes(params)
+    # Only a fluid of several ranks loads mpi4py.
+    from quintet.components.shared.symmetry import Plane
+    from quintet.components.sph_fluid.ranks.halo import HaloAndImages
+    from quintet.components.sph_fluid.ranks.refusal import refuse_what_needs_one_rank
+    from quintet.components.sph_fluid.ranks.several import Keys, SeveralRanks
+
+    refuse_what_needs_one_rank(params, communicator.size)
+    keys, edge = Keys(), params.boundary
+    planes = [Plane.of_face(face, edge.tank) for face in sorted(set(edge.symmetry)) if edge.tank]
+    return (
+        SeveralRanks(communicator, keys, samples),
+        HaloAndImages(communicator, keys, planes),
+    )
 
 
 def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
@@ -165,7 +190,7 @@ def integration(params: SphFluidParams) -> Integration:
     return Extrapolated(params)
 
 
-def gauges(params: SphFluidParams, symmetry: SymmetryPlanes) -> "Gauges | None":
+def gauges(params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks) -> "Gauges | None":
     """What is measured."""
     asked = params.gauges
     if not (asked.pressure_gauges or asked.level_gauges or asked.front_gauge or asked.motion_gauge):
@@ -173,4 +198,4 @@ def gauges(params: SphFluidParams, symmetry: SymmetryPlanes) -> "Gauges | None":
     # Left out of scenes without gauges.
     from quintet.components.sph_fluid.gauges.gauges import Gauges
 
-    return Gauges(params, symmetry)
+    return Gauges(params, symmetry, ranks)

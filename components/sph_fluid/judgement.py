@@ -9,6 +9,7 @@ or of walls that do not hold it.
 import numpy as np
 
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Totals
 
@@ -35,7 +36,9 @@ TINY = 1e-300  # kg
 FIRST, LEAST, GAINED, KINETIC, COMPRESSED, LEAKED, JUDGED, HIGHEST, RELEASED, SHEARED = range(10)
 
 
-def note(state: State, params: SphFluidParams, totals: Totals, isolated: bool) -> None:
+def note(
+    state: State, params: SphFluidParams, totals: Totals, isolated: bool, ranks: Ranks
+) -> None:
     """Take down what the present state shows; `isolated` if nothing outside moves."""
     judged, fluid = state.judged, slice(state.fluid)
     energy = totals.kinetic + totals.potential + totals.internal
@@ -55,9 +58,9 @@ def note(state: State, params: SphFluidParams, totals: Totals, isolated: bool) -
     change = state.position_density[fluid, 3] / params.density - 1.0
     if params.negative_pressure:
         change = np.abs(change)
-    count = np.count_nonzero(change > DENSE)
-    judged[COMPRESSED] = max(judged[COMPRESSED], count / max(state.fluid, 1))
-    judged[LEAKED] = max(judged[LEAKED], float(_outside(state, params) + _lost(state, params)))
+    dense, outside = ranks.count(np.count_nonzero(change > DENSE), _outside(state, params))
+    judged[COMPRESSED] = max(judged[COMPRESSED], dense / max(ranks.fluid(state), 1))
+    judged[LEAKED] = max(judged[LEAKED], float(outside + _lost(state, params)))
 
 
 def _is_open_above_alone(params: SphFluidParams) -> bool:
@@ -160,7 +163,7 @@ def _of_viscosity(
     }
 
 
-def warnings(state: State, params: SphFluidParams, mass: float) -> dict[str, str]:
+def warnings(state: State, params: SphFluidParams, mass: float, ranks: Ranks) -> dict[str, str]:
     """Reasons why the results may be wrong, by subject; `mass` [kg] of a particle."""
     judged, texts = state.judged, dict[str, str]()
     if judged[COMPRESSED] > MOST_DENSE:
@@ -169,7 +172,7 @@ def warnings(state: State, params: SphFluidParams, mass: float) -> dict[str, str
             f"did not, so that its flow is that of a gas. Raise sound_speed (now "
             f"{params.sound_speed:g} m/s) to ten times the largest velocity."
         )
-    leaked, fluid = judged[LEAKED], state.fluid + state.lost
+    leaked, fluid = judged[LEAKED], ranks.fluid(state) + state.lost
     if leaked > max(MOST_LOST * fluid, FEWEST):
         texts["loss"] = (
             f"the fluid must stay in the tank; {leaked:.0f} of {fluid} particles are beyond its "

@@ -104,8 +104,11 @@ class State:
         return self.fluid + samples[np.argsort(self.sample[samples])]
 
     def save(self) -> dict[str, NDArray[Any]]:
-        """Copy out everything."""
-        return {part.name: np.array(getattr(self, part.name)) for part in fields(self)}
+        """Copy out everything but what stands behind the particles: images, and copies."""
+        saved = {part.name: np.array(getattr(self, part.name)) for part in fields(self)}
+        for name in ("position_density", "velocity_pressure"):
+            saved[name] = saved[name][: self.particles]
+        return saved
 
     @classmethod
     def load(cls, saved: Fields) -> "State":

@@ -1,4 +1,4 @@
-"""Rows of all ranks on rank 0, in the order of their persistent ids."""
+"""Rows of all ranks on rank 0."""
 
 from typing import Any
 
@@ -23,29 +23,43 @@ class Collection:
 
     def __init__(self, communicator: Any, ids: Whole) -> None:
         self._communicator = communicator
-        counts = np.empty(communicator.size, np.int64)
-        wait(communicator.Iallgather(np.array([len(ids)], np.int64), counts))
-        self._counts = counts
-        self._ids = self._received(np.ascontiguousarray(ids, np.int64))
+        self._counts = _counts(communicator, ids)
+        self._ids = _received(communicator, np.ascontiguousarray(ids, np.int64), self._counts)
 
     def gather(self, rows: Array) -> Array:
         """All rows (n, *shape) on rank 0, by their ids; on others their own (k, *shape).
 
         The dtype is float64, int64 or uint64.
         """
-        received = self._received(np.ascontiguousarray(rows))
+        received = _received(self._communicator, np.ascontiguousarray(rows), self._counts)
         if self._communicator.rank:
             return rows
         gathered = np.empty_like(received)
         gathered[self._ids] = received
         return gathered
 
-    def _received(self, rows: Array) -> Array:
-        """Rows of all ranks, one rank after another; on others than rank 0 nothing."""
-        shape, width = rows.shape[1:], int(np.prod(rows.shape[1:]))
-        count = int(self._counts.sum()) if self._communicator.rank == 0 else 0
-        received = np.empty((count, *shape), rows.dtype)
-        counts = (self._counts * width).tolist()
-        target = [received.reshape(-1), counts] if self._communicator.rank == 0 else None
-        wait(self._communicator.Igatherv(rows.reshape(-1), target))
-        return received
+
+def collect(communicator: Any, rows: Array) -> Array:
+    """Rows (n, *shape) of all ranks on rank 0, one rank after another; on others none.
+
+    Each rank gives its own (k, *shape), of one dtype: float64, int64 or uint64.
+    """
+    rows = np.ascontiguousarray(rows)
+    return _received(communicator, rows, _counts(communicator, rows))
+
+
+def _counts(communicator: Any, rows: Array) -> Whole:
+    """How many rows each rank has."""
+    counts = np.empty(communicator.size, np.int64)
+    wait(communicator.Iallgather(np.array([len(rows)], np.int64), counts))
+    return counts
+
+
+def _received(communicator: Any, rows: Array, counts: Whole) -> Array:
+    """Rows of all ranks, one rank after another; on others than rank 0 nothing."""
+    shape, width = rows.shape[1:], int(np.prod(rows.shape[1:]))
+    count = int(counts.sum()) if communicator.rank == 0 else 0
+    received = np.empty((count, *shape), rows.dtype)
+    target = [received.reshape(-1), (counts * width).tolist()] if communicator.rank == 0 else None
+    wait(communicator.Igatherv(rows.reshape(-1), target))
+    return received

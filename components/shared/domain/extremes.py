@@ -1,4 +1,4 @@
-"""Largest and smallest numbers of all ranks: exact, whatever the number of ranks."""
+"""Extremes and sums without rounding over all ranks: the same, whatever the number of ranks."""
 
 from typing import Any
 
@@ -22,6 +22,11 @@ def least(communicator: Any, numbers: Array) -> Array:
 def counted(communicator: Any, numbers: Array) -> Array:
     """Sums over all ranks of whole numbers (k,), on every rank."""
     return _reduced(communicator, np.asarray(numbers, np.int64), MPI.SUM)
+
+
+def added(communicator: Any, numbers: Array) -> Array:
+    """Sums over all ranks of floats whose sums are exact (`shared.exact_sums`), on every rank."""
+    return _reduced(communicator, np.asarray(numbers, np.float64), MPI.SUM)
 
 
 def _reduced(communicator: Any, numbers: Array, operation: Any) -> Array:

@@ -33,16 +33,20 @@ def migrate(
     tuple of (m, *shape) arrays
         In the same order, bit for bit.
     """
-    columns = [_bits(ids), *(_bits(array) for array in arrays)]
-    packed = np.concatenate(columns, axis=1)
-    rows_of = [np.flatnonzero(owner == rank) for rank in range(communicator.size)]
-    received = np.concatenate(send_rows(communicator, [packed[rows] for rows in rows_of]))
-    received = received[np.argsort(received[:, 0])]
-    cuts = np.cumsum([column.shape[1] for column in columns])[:-1]
-    first, *others = np.split(received, cuts, axis=1)
-    parts = zip(others, arrays, strict=True)
-    moved = tuple(_numbers(part, array) for part, array in parts)
-    return first[:, 0].copy(), moved
+    here = owner == communicator.rank
+    columns = [_bits(array) for array in (ids, *arrays)]
+    widths = [column.shape[1] for column in columns]
+    leaving = [np.flatnonzero((owner == rank) & ~here) for rank in range(communicator.size)]
+    packed = [np.concatenate([c[rows] for c in columns], axis=1) for rows in leaving]
+    arrived = np.concatenate(send_rows(communicator, packed))
+    parts = np.split(arrived, np.cumsum(widths)[:-1], axis=1)
+    joined = [
+        np.concatenate([array[here], _numbers(part, array)])
+        for array, part in zip((ids, *arrays), parts, strict=True)
+    ]
+    order = np.argsort(joined[0], kind="stable")  # two sorted runs where ids rose
+    first, *others = (array.take(order, axis=0) for array in joined)
+    return first, tuple(others)
 
 
 def _bits(array: Array) -> Whole:

@@ -69,8 +69,8 @@ class Searched(NamedTuple):
 
 @njit(**FAST)
 def search(
-    first: int, last: int, query_points: Points, cell: Whole, searched: Searched, reach2: float,
-    per_row: int, lists: Lists,
+    first: int, last: int, query_points: Points, cell: Whole, both: int, searched: Searched,
+    name: NDArray[np.int32] | None, reach2: float, per_row: int, lists: Lists,
 ) -> bool:  # fmt: skip
     """List the neighbours of some points.
 
@@ -79,8 +79,12 @@ def search(
     first, last : int
         Rows of the points that look.
     query_points, cell : (m, 3) float array, m, and (m,) int array
-        All points that look, the first group before the second, and their cells.
+        All points that look, and their cells.
+    both : int
+        How many of these, the first, look for both groups; others for the first group alone.
     searched : Searched
+    name : (n,) int32 array, or None
+        What lists call each searched point; None: its row.
     reach2 : float, m2
     per_row : int
         Neighbours that each row has space for, taken together.
@@ -104,7 +108,7 @@ def search(
             x, y, z = query_points[i, 0], query_points[i, 1], query_points[i, 2]
             cx, cy, cz = c % nx, (c // nx) % ny, c // (nx * ny)
             low, high = max(cx - REACH, 0), min(cx + REACH, nx - 1)
-            for group in range(2 if i < split else 1):
+            for group in range(2 if i < both else 1):
                 start = start_one if group == 0 else start_two
                 base = group * split
                 for kz in range(max(cz - REACH, 0), min(cz + REACH, nz - 1) + 1):
@@ -116,7 +120,10 @@ def search(
                         for j in range(np.uint64(begin), np.uint64(end)):
                             dx, dy, dz = x - points[0, j], y - points[1, j], z - points[2, j]
                             # Always written, kept if near: no branch to mispredict.
-                            listed[k] = np.int32(j)
+                            if name is None:
+                                listed[k] = np.int32(j)
+                            else:
+                                listed[k] = name[j]
                             k += int(dx * dx + dy * dy + dz * dz < reach2)
                 if group == 0:
                     middle_of[i] = k
@@ -156,21 +163,62 @@ def neighbours_within(
         A list for each point of the first group, then for each of the second or query point.
     """
     grid = grid or grid_around(points[:split], reach)
-    cell_one, start_one, _ = sorted_into(points[:split], grid)
-    cell_two, start_two, _ = sorted_into(points[split:], grid)
-    if query_points is not None:
-        cell_two = np.empty(len(query_points), np.int64)
-        number_cells(query_points, grid, cell_two)
-    cell = np.concatenate([cell_one, cell_two])
-    rows = len(cell)
+    _, start_one, _ = sorted_into(points[:split], grid)
+    _, start_two, _ = sorted_into(points[split:], grid)
     start = points if query_points is None else np.concatenate([points[:split], query_points])
-    searched = Searched(np.ascontiguousarray(points.T), split, start_one, start_two, grid)
+    columns = np.ascontiguousarray(points.T)
+    searched = Searched(columns, split, start_one, start_two, grid)
+    return _lists(start, split, searched, None, reach, team, buffer)
+
+
+def neighbours_among(
+    reach: float, points: Points, first: Whole, second: Whole, query_points: Points, both: int,
+    team: Team, buffer: NDArray[np.int32] | None = None, grid: Grid | None = None,
+) -> NeighbourLists:  # fmt: skip
+    """List what is nearer than a reach, of points in any order.
+
+    Parameters
+    ----------
+    reach : float, m
+    points : (n, 3) float array, m
+    first, second : (k,) and (m,) int arrays
+        Rows of the points of each group, in the order in which lists have those of a cell.
+    query_points : (q, 3) float array, m
+        Points that look.
+    both : int
+        How many of these, the first, look for both groups; others for the first group alone.
+    team, buffer, grid
+        As of `neighbours_within`.
+
+    Returns
+    -------
+    NeighbourLists
+        A list for each point that looks.
+    """
+    grid = grid or grid_around(points.take(first, 0), reach)
+    _, start_one, order_one = sorted_into(points.take(first, 0), grid)
+    _, start_two, order_two = sorted_into(points.take(second, 0), grid)
+    row = np.concatenate([first[order_one], second[order_two]])
+    columns, name = np.ascontiguousarray(points.take(row, 0).T), row.astype(np.int32)
+    searched = Searched(columns, len(first), start_one, start_two, grid)
+    return _lists(query_points, both, searched, name, reach, team, buffer)
+
+
+def _lists(
+    query_points: Points, both: int, searched: Searched, name: NDArray[np.int32] | None,
+    reach: float, team: Team, buffer: NDArray[np.int32] | None,
+) -> NeighbourLists:  # fmt: skip
+    """Lists of points that look, the first of them for both groups."""
+    rows = len(query_points)
+    cell = np.empty(rows, np.int64)
+    number_cells(query_points, searched.grid, cell)
     begin, middle, end = (np.empty(rows, np.int64) for _ in range(3))
     if buffer is None or len(buffer) > MOST * rows:
         buffer = np.empty(0, np.int32)
     while True:
         per_row = len(buffer) // rows
         lists = Lists(begin, middle, end, buffer)
-        if all(team.run(search, rows, start, cell, searched, reach * reach, per_row, lists)):
+        numbers = (cell, both, searched, name, reach * reach, per_row, lists)
+        if all(team.run(search, rows, query_points, *numbers)):
             return NeighbourLists(buffer, begin, middle, end)
         buffer = np.empty(rows * max(FEWEST, 2 * per_row), np.int32)

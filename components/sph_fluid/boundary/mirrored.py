@@ -59,7 +59,7 @@ class MirroredBoundary:
 
     def join(self, state: State, static: Fields) -> None:
         """Make room for mirror points; find which samples the contact potential is chosen for."""
-        count = len(self.samples.row)
+        count = len(self.samples.volume)
         state.mirror_point = np.concatenate([state.mirror_point, np.zeros((count, 3))])
         self.by_potential = samples_by_potential(static)
         if len(self.by_potential):
@@ -68,7 +68,7 @@ class MirroredBoundary:
 
     def follow_samples(self, state: State, fields: Fields) -> None:
         """Follow mirror points; set the stiffness of the potential where samples are now."""
-        state.mirror_point[self.samples.row - state.fluid] = fields["surface.mirror"]
+        state.mirror_point[self.samples.row - state.fluid] = fields["surface.mirror"][self.samples.number]
         if len(self.by_potential):
             rows, body = self.samples.row[self.by_potential], self.samples.body[self.by_potential]
             self.stable_dt = self.stiffness.write(state, rows, body)

@@ -18,10 +18,11 @@ def _no_numbers() -> Array:
 
 @dataclass(slots=True)
 class Samples:
-    """Those of one fluid, in the order of their port."""
+    """Those of one fluid, in the order of their port; where they stand, those of this rank."""
 
-    row: Whole = field(default_factory=_no_rows)  # (samples,) in the state
-    listed: Whole = field(default_factory=_no_rows)  # (samples,) in the lists
+    number: Whole = field(default_factory=_no_rows)  # (k,) in the port
+    row: Whole = field(default_factory=_no_rows)  # (k,) in the state
+    listed: Whole = field(default_factory=_no_rows)  # (k,) in the lists
     body: Array = field(default_factory=_no_numbers)  # (samples,) number
     volume: Array = field(default_factory=_no_numbers)  # (samples,) m3
     placed: bool = True  # whether they have been told where they are
@@ -37,9 +38,10 @@ class Samples:
     def find_rows(self, state: State) -> None:
         """Find their rows again."""
         self.row = state.sample_rows()
+        self.number = state.sample[self.row - state.fluid]
 
     def move(self, state: State, fields: Fields) -> None:
         """Put them where they are in the coming step."""
-        state.position_density[self.row, :3] = fields["surface.position"]
-        state.velocity_pressure[self.row, :3] = fields["surface.velocity"]
+        state.position_density[self.row, :3] = fields["surface.position"][self.number]
+        state.velocity_pressure[self.row, :3] = fields["surface.velocity"][self.number]
         self.placed = True

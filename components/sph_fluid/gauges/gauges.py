@@ -18,8 +18,10 @@ The front is half a spacing ahead of the furthest particle with 1/(V W(0)) neigh
 """
 
 import math
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
@@ -28,6 +30,7 @@ from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.gauges.kernels import add_around, fill_columns, furthest
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
 
@@ -41,8 +44,8 @@ DEEP = 4.0  # spacings, of the share of volume along a column that is no drop
 class Gauges:
     """The gauges of one fluid that are switched on."""
 
-    def __init__(self, params: SphFluidParams, symmetry: SymmetryPlanes) -> None:
-        self.params, self.constants = params, constants(params)
+    def __init__(self, params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks) -> None:
+        self.params, self.constants, self.ranks = params, constants(params), ranks
         self.points = np.array(params.gauges.pressure_gauges).reshape(-1, 3)  # (m, 3) m
         self.spots = np.array(params.gauges.level_gauges).reshape(-1, 2)  # (m, 2) m
         if params.dimensions == 2:
@@ -74,11 +77,8 @@ class Gauges:
     def _pressure(self, state: State) -> Array:
         sums = np.empty((len(self.image_points), 3))
         weight = self.params.density * np.array(self.params.gravity)
-        position, velocity = (
-            state.position_density[: state.particles],
-            state.velocity_pressure[: state.particles],
-        )
-        add_around(self.image_points, state.fluid, position, velocity, self.constants, weight, sums)
+        position, velocity, split = self.ranks.near(state, partial(self._near, self.image_points))
+        add_around(self.image_points, split, position, velocity, self.constants, weight, sums)
         share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T
         least = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
         filled = np.maximum(share, least)
@@ -89,14 +89,24 @@ class Gauges:
     def _height(self, state: State) -> Array:
         z, spacing = state.position_density[: state.fluid, 2], self.params.spacing
         reach, rise = SUPPORT * self.constants.smoothing.length, FINE * spacing
-        bottom = z.min() - reach
-        count = math.ceil((z.max() + reach - bottom) / rise) + 1
+        highest, depth = self.ranks.greatest(float(z.max()), float(-z.min()))
+        bottom = -depth - reach
+        count = math.ceil((highest + reach - bottom) / rise) + 1
         share = np.empty((len(self.above), count))
-        fill_columns(
-            self.above, bottom, rise, state.fluid, state.position_density, self.constants, share
-        )
+        position, _, split = self.ranks.near(state, partial(self._near, self.above))
+        fill_columns(self.above, bottom, rise, split, position, self.constants, share)
         whole = share.reshape(-1, len(self.spots), count).sum(axis=0)
         return np.array([self._surface(row, bottom, rise) for row in whole])
+
+    def _near(self, places: Array, points: Array) -> NDArray[np.bool_]:
+        """Whether points (n, 3 or more) m are near to one of some places (m, 2 or 3) m."""
+        reach, near = SUPPORT * self.constants.smoothing.length, np.zeros(len(points), bool)
+        for place in places:
+            beside = np.ones(len(points), bool)
+            for axis in range(len(place)):
+                beside &= np.abs(points[:, axis] - place[axis]) <= reach
+            near |= beside
+        return near
 
     def _surface(self, share: Array, bottom: float, rise: float) -> float:
         most = min(1.0, float(share.max()))
@@ -122,20 +132,21 @@ class Gauges:
                 axis, 1.0 / self.lone, state.fluid, state.position_density, lists, self.constants
             )
         # At the start there are no lists, and no spray either.
-        front = ahead if math.isfinite(ahead) else float(along.max())
+        ahead, furthest_of_all = self.ranks.greatest(ahead, float(along.max()))
+        front = ahead if math.isfinite(ahead) else furthest_of_all
         return np.array([front + 0.5 * self.params.spacing])
 
     def _motion(self, state: State) -> Fields:
-        points, velocity = (
-            state.position_density[: state.fluid, :3],
-            state.velocity_pressure[: state.fluid, :3],
-        )
-        squares = np.einsum("nd,nd->n", velocity, velocity)
+        x, y, z = state.position_density[: state.fluid, :3].T
+        u, v, w = state.velocity_pressure[: state.fluid, :3].T
+        squares = u * u + v * v + w * w
+        sums, count = self.ranks.sums(state, [x, y, z, squares]), self.ranks.fluid(state)
+        (fastest,) = self.ranks.greatest(float(squares.max()))
         particle_mass = self.constants.mass * self.params.slab_thickness  # kg
-        centre, mass = points.mean(axis=0), particle_mass * len(points)
+        centre, mass = sums[:3] / count, particle_mass * count
         return {
-            "motion_gauge.speed": np.sqrt(squares.max(keepdims=True)),
-            "motion_gauge.kinetic": 0.5 * particle_mass * squares.sum(keepdims=True),
+            "motion_gauge.speed": np.sqrt([fastest]),
+            "motion_gauge.kinetic": 0.5 * particle_mass * sums[3:],
             "motion_gauge.potential": np.array([-mass * float(centre @ self.params.gravity)]),
             "motion_gauge.centre": centre[np.newaxis],
         }

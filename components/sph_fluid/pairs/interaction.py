@@ -82,7 +82,7 @@ class Interaction:
         """Push the samples as they pushed the fluid in the last pass."""
         row = self.samples.row
         if len(row):
-            rows = (row, self.samples.listed)
+            rows = (self.samples.number, row, self.samples.listed)
             team.run(sample_forces, len(row), *rows, *self.given, state.force)
 
     def move_with_neighbours(self, state: State, dt: float, team: Team) -> None:
@@ -107,5 +107,5 @@ def relative_volume(samples: Samples, state: State, params: SphFluidParams) -> A
         return np.zeros(0)
     volumes = np.ones(len(state.position_density))
     volumes[state.fluid : state.particles] = wall
-    volumes[samples.row] = share
+    volumes[samples.row] = share[samples.number]
     return volumes

@@ -84,7 +84,7 @@ def filter_density(
 
 @njit(**FAST)
 def sample_forces(
-    first: int, last: int, row: Whole, listed: Whole, particles: Particles,
+    first: int, last: int, number: Whole, row: Whole, listed: Whole, particles: Particles,
     boundary: BoundaryRows, lists: Lists, law: PairLaw, force: Array,
 ) -> None:  # fmt: skip
     """Write the force on surface samples: pair by pair, minus that on the fluid.
@@ -92,9 +92,10 @@ def sample_forces(
     Parameters
     ----------
     first, last : int
-        Samples to write.
-    row, listed : (samples,) int array
-        Where they stand among the particles, and where the lists have what is around them.
+        Which of the samples of this rank to write.
+    number, row, listed : (k,) int array
+        Of these: which of all they are, where they stand among the particles, and where the lists
+        have what is around them.
     particles, boundary, lists, law
     force : (samples, 3) float array, N
         Written.
@@ -135,7 +136,7 @@ def sample_forces(
                 dot * per_r2, slope, per_r2, per_density, terms,
             )  # fmt: skip
         for d in range(3):
-            force[s, d] = constants.mass * constants.mass * on_sample[d]
+            force[number[s], d] = constants.mass * constants.mass * on_sample[d]
 
 
 @njit(**FAST)

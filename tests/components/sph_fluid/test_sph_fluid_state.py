@@ -87,7 +87,7 @@ fluid.take({f"surface.{key}": array for key, array in moved.items()})
 fluid.step(fluid.stable_dt())
 assert not [name for name in sys.modules if name.endswith(".contact_potential")]
 (signature,) = pair_kernels.sample_forces.signatures
-law = dict(zip(signature[7].fields, signature[7].types))
+law = dict(zip(signature[8].fields, signature[8].types))
 terms = dict(zip(law["boundary"].fields, law["boundary"].types))
 assert str(terms["contact"].types[0]) == "none", terms
 """

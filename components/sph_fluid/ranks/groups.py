@@ -1,0 +1,54 @@
+"""The rows of a state as two groups of columns: the fluid's, and those of walls and samples."""
+
+import numpy as np
+
+from quintet.components.sph_fluid.state import Array, State, Whole
+
+Columns = dict[str, Array]
+
+
+def fluid_columns(state: State) -> Columns:
+    """What the state has of each fluid particle, by the names of its arrays."""
+    rows = slice(state.fluid)
+    columns = {
+        "position_density": state.position_density[rows],
+        "velocity_pressure": state.velocity_pressure[rows],
+        "previous_density_rate": state.previous_density_rate[rows],
+        "identity": state.identity,
+    }
+    if len(state.acceleration):
+        columns["acceleration"] = state.acceleration
+    if len(state.minus_rho_div_u):
+        columns["minus_rho_div_u"] = state.minus_rho_div_u[rows]
+    return columns
+
+
+def boundary_columns(state: State, are_mirrored: bool) -> Columns:
+    """What the state has of each wall or sample particle, by the names of its arrays."""
+    rows = slice(state.fluid, state.particles)
+    columns = {
+        "position_density": state.position_density[rows],
+        "velocity_pressure": state.velocity_pressure[rows],
+        "previous_density_rate": state.previous_density_rate[rows],
+        "sample": state.sample,
+    }
+    if are_mirrored:
+        columns["mirror_point"] = state.mirror_point
+    if len(state.minus_rho_div_u):
+        columns["minus_rho_div_u"] = state.minus_rho_div_u[rows]
+    return columns
+
+
+def taken(columns: Columns, rows: Whole) -> Columns:
+    """Some rows of all columns, in this order."""
+    return {name: column.take(rows, axis=0) for name, column in columns.items()}
+
+
+def put(state: State, fluid: Columns, boundary: Columns) -> None:
+    """Put other rows in place of those that a state has."""
+    alone = {"identity": fluid, "acceleration": fluid, "sample": boundary, "mirror_point": boundary}
+    for name, columns in alone.items():
+        if name in columns:
+            setattr(state, name, columns[name])
+    for name in fluid.keys() & boundary.keys():
+        setattr(state, name, np.concatenate([fluid[name], boundary[name]]))

@@ -1,0 +1,82 @@
+"""What a fluid asks of its ranks, be it one or several."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.geometry.bounds import Bounds
+from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import StepError
+
+STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
+
+
+class NearRows(NamedTuple):
+    """Rows of the fluid and of the boundary that are near to something, in their order."""
+
+    position: Array  # (n, 4) m, m, m, kg/m3
+    velocity: Array  # (n, 4) m/s, m/s, m/s, Pa m6/kg2
+    split: int  # how many, the first, are fluid
+
+
+class Ranks(Protocol):
+    """The ranks of one fluid; of several, each calls every method, in the same order."""
+
+    def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
+        """Bring particles that are near into near rows; drop those that left the domain."""
+
+    def follow_samples(self, fields: Fields) -> None:
+        """Note where the samples were placed."""
+
+    def load(self, state: State) -> None:
+        """Take over a state of all rows that was loaded."""
+
+    def fluid(self, state: State) -> int:
+        """Number of fluid particles of all ranks."""
+
+    def boundary(self, state: State) -> int:
+        """Number of wall and sample particles of all ranks."""
+
+    def greatest(self, *numbers: float) -> tuple[float, ...]:
+        """Largest of all ranks of each number."""
+
+    def count(self, *numbers: int) -> tuple[int, ...]:
+        """Sum over all ranks of each number of rows."""
+
+    def sums(self, state: State, columns: Sequence[Array]) -> Array:
+        """Sums (k,) of columns (fluid,) over the fluid of all ranks; they have no order."""
+
+    def gather_forces(self, state: State) -> None:
+        """Bring the forces on all samples to rank 0."""
+
+    def whole(self, state: State) -> State:
+        """All rows on rank 0; on others their own."""
+
+    def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
+        """Rows of all ranks that are near, or more, on rank 0; on others none."""
+
+
+def in_domain(points: Array, walls: Bounds | None) -> Whole:
+    """Rows (k,) of points (n, 3 or more) m that are in the tank or not far outside of it."""
+    inside = np.ones(len(points), bool)
+    if walls is not None:
+        low, high = np.array(walls)
+        stray = STRAY * float((high - low).max())
+        for axis in range(3):
+            along = points[:, axis]
+            inside &= (along > low[axis] - stray) & (along < high[axis] + stray)
+    return np.flatnonzero(inside)
+
+
+def refuse_none(left: int) -> None:
+    """Raise if no fluid is left."""
+    if not left:
+        raise StepError("step: all fluid has left the domain. Check the walls and gravity.")
+
+
+def places(state: State) -> Array:
+    """Where all rows and mirror points are, as neighbour lists are made from it; (any, 3) m."""
+    return np.concatenate([state.position_density[:, :3], state.mirror_point])

@@ -1,0 +1,67 @@
+"""All of a fluid on one rank."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.exact_sums import bounds, sum_parts, total
+from quintet.components.shared.geometry.bounds import Bounds
+from quintet.components.shared.search.cells import grid_around, sorted_into
+from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, places, refuse_none
+from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import Fields
+
+
+class OneRank:
+    """A fluid whose state is all there is."""
+
+    def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
+        """Bring particles that are near into near rows; drop those that left the domain."""
+        split = state.fluid
+        inside = in_domain(state.position_density[:split], walls)
+        refuse_none(len(inside))
+        fluid = state.position_density.take(inside, axis=0)
+        boundary = state.position_density[split : state.particles]
+        grid = grid_around(fluid, reach)
+        state.lost += split - len(inside)
+        state.keep(inside[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
+        state.reference, state.moved = places(state), 0.0
+
+    def follow_samples(self, fields: Fields) -> None:
+        """Nothing to do: they stand in the state."""
+
+    def load(self, state: State) -> None:
+        """Nothing to do: the state is all."""
+
+    def fluid(self, state: State) -> int:
+        """Those of the state."""
+        return state.fluid
+
+    def boundary(self, state: State) -> int:
+        """Those of the state."""
+        return state.particles - state.fluid
+
+    def greatest(self, *numbers: float) -> tuple[float, ...]:
+        """Return the numbers."""
+        return numbers
+
+    def count(self, *numbers: int) -> tuple[int, ...]:
+        """Return the numbers."""
+        return numbers
+
+    def sums(self, state: State, columns: Sequence[Array]) -> Array:
+        """Sum the columns."""
+        return total(sum_parts(columns, bounds(columns), state.fluid))
+
+    def gather_forces(self, state: State) -> None:
+        """Nothing to do: all are here."""
+
+    def whole(self, state: State) -> State:
+        """Return the state."""
+        return state
+
+    def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
+        """Return all rows: what is far adds nothing to a sum."""
+        rows = slice(state.particles)
+        return NearRows(state.position_density[rows], state.velocity_pressure[rows], state.fluid)

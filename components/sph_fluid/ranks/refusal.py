@@ -1,0 +1,25 @@
+"""What of a fluid cannot be shared out yet."""
+
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.interfaces.errors import SceneError
+
+
+def refuse_what_needs_one_rank(params: SphFluidParams, ranks: int) -> None:
+    """Raise where a fluid on several ranks has a part that computes on one.
+
+    Raises
+    ------
+    SceneError
+        With the key, and what to do.
+    """
+    edge = params.boundary
+    wrong = {
+        "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
+        "precision": (params.precision, params.precision != "float64", "float64"),
+    }
+    for key, (value, is_wrong, right) in wrong.items():
+        if is_wrong:
+            raise SceneError(
+                f"{key} must be {right} of a fluid on {ranks} ranks; found {value}. Change it, or "
+                "take one rank."
+            )

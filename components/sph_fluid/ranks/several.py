@@ -1,0 +1,224 @@
+"""A fluid shared out among several ranks."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.domain.collection import collect
+from quintet.components.shared.domain.extremes import added, counted, greatest, least
+from quintet.components.shared.domain.layers import cut_between_layers, owners
+from quintet.components.shared.domain.migration import migrate
+from quintet.components.shared.exact_sums import bounds, sum_parts, total
+from quintet.components.shared.geometry.bounds import Bounds
+from quintet.components.shared.search.cells import Grid, grid_between, number_cells
+from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.ranks.boundary_order import BoundaryOrder
+from quintet.components.sph_fluid.ranks.groups import (
+    boundary_columns,
+    fluid_columns,
+    put,
+    taken,
+)
+from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, places, refuse_none
+from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
+
+CELL = 32  # bits of a key below the number of the cell
+
+
+def _no_keys() -> Whole:
+    return np.zeros(0, np.int64)
+
+
+@dataclass(slots=True)
+class Keys:
+    """Numbers that rise in the order in which one rank would have the rows of this one."""
+
+    fluid: Whole = field(default_factory=_no_keys)
+    boundary: Whole = field(default_factory=_no_keys)
+
+
+class SeveralRanks:
+    """A fluid of which each rank has all until it is sorted for the first time, then its part.
+
+    Parameters
+    ----------
+    communicator : mpi4py communicator
+    keys : Keys
+        Written.
+    samples : Samples
+    """
+
+    def __init__(self, communicator: Any, keys: Keys, samples: Samples) -> None:
+        self._communicator, self._keys, self._samples = communicator, keys, samples
+        self._shared = False  # whether each rank has its part alone
+        self._fluid = 0  # of all ranks
+
+    def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
+        """Bring rows to the ranks that own their cells, and near ones into near rows."""
+        if not self._shared:
+            self._share_out(state)
+        fluid, boundary = fluid_columns(state), boundary_columns(state, self._mirrored)
+        inside = in_domain(fluid["position_density"], walls)
+        (left,) = self.count(len(inside))
+        refuse_none(left)
+        state.lost, self._fluid = state.lost + self._fluid - left, left
+        keys = self._keys.fluid[inside]
+        fluid = taken(fluid, inside)
+        grid = self._grid(fluid["position_density"], reach)
+        number = np.empty(len(inside), np.int64)
+        number_cells(fluid["position_density"], grid, number)
+        cells = _places_of(number, grid)
+        cuts = cut_between_layers(self._communicator, cells, np.ones(len(cells), np.int64))
+        keys, (number, *columns) = migrate(
+            self._communicator, owners(cuts, cells), keys, (number, *fluid.values())
+        )
+        by_cell = np.argsort(number, kind="stable")
+        fluid = taken(dict(zip(fluid, columns, strict=True)), by_cell)
+        self._keys.fluid = _keys_in(number[by_cell])
+
+        place = self._order.sort(grid)
+        looking = boundary["mirror_point" if self._mirrored else "position_density"]
+        owner = owners(cuts, _cells_around(looking, grid))
+        self._keys.boundary, (self._number, *columns) = migrate(
+            self._communicator, owner, place[self._number], (self._number, *boundary.values())
+        )
+        put(state, fluid, dict(zip(boundary, columns, strict=True)))
+        state.reference, state.moved = places(state), 0.0
+
+    def _share_out(self, state: State) -> None:
+        """Keep but a part of a state of which every rank has all."""
+        rank, size = self._communicator.rank, self._communicator.size
+        fluid, boundary = state.fluid, state.particles - state.fluid
+        self._fluid, self._mirrored = fluid, len(state.mirror_point) > 0
+        self._order = BoundaryOrder(state.position_density[fluid:], state.sample)
+        keys = self._keys
+        keys.fluid = np.arange(rank * fluid // size, (rank + 1) * fluid // size)
+        keys.boundary = np.arange(rank * boundary // size, (rank + 1) * boundary // size)
+        self._number = keys.boundary.copy()
+        if len(state.reference):
+            mirrors = fluid + boundary + keys.boundary[: len(state.mirror_point)]
+            rows = np.concatenate([keys.fluid, fluid + keys.boundary, mirrors])
+            state.reference = state.reference.take(rows, axis=0)
+        columns = boundary_columns(state, self._mirrored)
+        put(state, taken(fluid_columns(state), keys.fluid), taken(columns, keys.boundary))
+        self._shared = True
+
+    def _grid(self, fluid: Array, reach: float) -> Grid:
+        """Cells around the fluid of all ranks."""
+        points = fluid[:, :3]
+        low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
+        lowest, highest = least(self._communicator, low), greatest(self._communicator, high)
+        return grid_between(lowest, highest, reach)
+
+    def follow_samples(self, fields: Fields) -> None:
+        """Note where the samples were placed."""
+        if self._shared:
+            self._order.follow(fields["surface.position"])
+
+    def load(self, state: State) -> None:
+        """Keep a part of a state of all rows, if it has lists; else all until they are made."""
+        self._shared = False
+        if len(state.reference):
+            self._share_out(state)
+
+    def fluid(self, state: State) -> int:
+        """Number of fluid particles of all ranks."""
+        return self._fluid if self._shared else state.fluid
+
+    def boundary(self, state: State) -> int:
+        """Number of wall and sample particles of all ranks."""
+        return len(self._order) if self._shared else state.particles - state.fluid
+
+    def greatest(self, *numbers: float) -> tuple[float, ...]:
+        """Largest of all ranks of each number."""
+        return tuple(greatest(self._communicator, np.array(numbers, float)).tolist())
+
+    def count(self, *numbers: int) -> tuple[int, ...]:
+        """Sum over all ranks of each number of rows."""
+        if not self._shared:
+            return numbers
+        return tuple(counted(self._communicator, np.array(numbers)).tolist())
+
+    def sums(self, state: State, columns: Sequence[Array]) -> Array:
+        """Sums (k,) of columns (fluid,) over the fluid of all ranks; they have no order."""
+        largest = greatest(self._communicator, bounds(columns))
+        parts = sum_parts(columns, largest, self.fluid(state))
+        return total(added(self._communicator, parts) if self._shared else parts)
+
+    def gather_forces(self, state: State) -> None:
+        """Bring the forces on all samples to rank 0."""
+        number = collect(self._communicator, self._samples.number)
+        force = collect(self._communicator, state.force.take(self._samples.number, axis=0))
+        if self._communicator.rank == 0:
+            state.force[number] = force
+
+    def whole(self, state: State) -> State:
+        """All rows on rank 0; on others their own."""
+        if not self._shared:
+            return state
+        fluid, boundary = fluid_columns(state), boundary_columns(state, self._mirrored)
+        split, end = state.fluid, state.particles
+        reference = state.reference
+        fluid["reference"], boundary["reference"] = reference[:split], reference[split:end]
+        if self._mirrored:
+            boundary["mirror_reference"] = reference[end:]
+        fluid, boundary = self._collected(fluid, boundary)
+        if self._communicator.rank:
+            return state
+        parts = [columns.pop("reference") for columns in (fluid, boundary)]
+        parts += [boundary.pop("mirror_reference")] if self._mirrored else []
+        whole = State.load(state.save())
+        put(whole, fluid, boundary)
+        whole.reference = np.concatenate(parts)
+        return whole
+
+    def _collected(self, *groups: dict[str, Array]) -> list[dict[str, Array]]:
+        """Columns of the fluid and of the boundary of all ranks on rank 0, in order."""
+        of_all = []
+        for keys, columns in zip((self._keys.fluid, self._keys.boundary), groups, strict=True):
+            order = np.argsort(collect(self._communicator, keys), kind="stable")
+            parts = {name: collect(self._communicator, part) for name, part in columns.items()}
+            of_all.append({name: part.take(order, axis=0) for name, part in parts.items()})
+        return of_all
+
+    def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
+        """Rows of all ranks that are near, on rank 0; on others none."""
+        rows = np.flatnonzero(is_near(state.position_density[: state.particles]))
+        if self._shared:
+            keys = np.concatenate([self._keys.fluid, self._keys.boundary])[rows]
+            keys += np.where(rows < state.fluid, np.int64(-1) << 62, 0)  # the fluid first
+            found = [state.position_density.take(rows, 0), state.velocity_pressure.take(rows, 0)]
+            keys, position, velocity = (
+                collect(self._communicator, part) for part in (keys, *found)
+            )
+            order = np.argsort(keys, kind="stable")
+            return NearRows(position[order], velocity[order], int(np.count_nonzero(keys < 0)))
+        found = [state.position_density.take(rows, 0), state.velocity_pressure.take(rows, 0)]
+        return NearRows(*found, int(np.count_nonzero(rows < state.fluid)))
+
+
+def _places_of(number: Whole, grid: Grid) -> Whole:
+    """Layers (n, 3) of numbered cells, along the axes of their grid."""
+    x, rest = number % grid.nx, number // grid.nx
+    return np.column_stack([x, rest % grid.ny, rest // grid.ny])
+
+
+def _cells_around(points: Array, grid: Grid) -> Whole:
+    """Layers (n, 3) of the cells of points (n, 3 or more) m, beyond the grid too."""
+    axes = (grid.first, grid.second, grid.third)
+    starts = (grid.x, grid.y, grid.z)
+    layers = [
+        np.floor((points[:, axis] - start) * grid.per_metre)
+        for axis, start in zip(axes, starts, strict=True)
+    ]
+    return np.clip(np.column_stack(layers), -1e9, 1e9).astype(np.int64)
+
+
+def _keys_in(number: Whole) -> Whole:
+    """Keys (n,) of rows that are sorted by the number of their cell."""
+    begins = np.searchsorted(number, number)
+    return (number << CELL) + np.arange(len(number)) - begins

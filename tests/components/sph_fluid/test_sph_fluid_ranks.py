@@ -1,0 +1,51 @@
+"""A fluid shared out among real MPI ranks: the same bits on any number of them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.mpi
+PROGRAM = Path(__file__).with_name("fluid_on_ranks.py")
+NAMES = ("dam", "symmetric", "body", "spilling")
+STEPS = 120  # with lists made again, and rows that change their rank
+
+
+def differences(folder, first, second):
+    """Names of the arrays that differ in a bit."""
+    one, other = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
+    assert set(one.files) == set(other.files)
+    return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, on_ranks):
+    """Runs on 1 and 2 ranks."""
+    folder = tmp_path_factory.mktemp("fluids")
+    for ranks in (1, 2):
+        on_ranks(PROGRAM, ranks, folder, STEPS, 0, ",".join(NAMES))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def resumed(folder, on_ranks):
+    """Runs on 1 and 3 ranks that go on from the states of 1 and 2."""
+    for ranks, earlier in ((1, 1), (3, 2)):
+        on_ranks(PROGRAM, ranks, folder, 40, earlier, ",".join(NAMES))
+    return folder
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_two_ranks_compute_what_one_does_to_the_bit(name, folder):
+    assert differences(folder, f"{name}-1", f"{name}-2") == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
+    assert differences(resumed, f"{name}-1-1", f"{name}-3-2") == []
+
+
+def test_the_cases_lose_fluid_and_move_it(folder):
+    assert np.load(folder / "spilling-1.npz")["lost"] > 0
+    for name in NAMES:
+        assert np.load(folder / f"{name}-1.npz")["view velocity"].max() > 0.5
