@@ -76,7 +76,7 @@ class SphFluid(Component):
                 require_one_metre(self.params)
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
-            self.films = features.lubrication_films(self.params, self.samples)
+            self.films = features.lubrication_films(self.params, self.samples, self.ranks)
             self.films.join(self.state, static)
 
     def prime(self, fields: Fields) -> None:

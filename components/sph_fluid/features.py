@@ -92,14 +92,14 @@ def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
     return Symmetry(params)
 
 
-def lubrication_films(params: SphFluidParams, samples: Samples) -> Films:
+def lubrication_films(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Films:
     """Films in narrow gaps: from the start, where they are needed, or never."""
     if params.boundary.lubrication_films == "auto":
         # Left out of scenes that say whether they want films.
         from quintet.components.sph_fluid.boundary.selective_films import SelectiveFilms
 
-        return SelectiveFilms(params, samples, partial(make_films, params, samples))
-    return make_films(params, samples) if params.boundary.lubrication_films else NoFilms()
+        return SelectiveFilms(params, samples, ranks, partial(make_films, params, samples, ranks))
+    return make_films(params, samples, ranks) if params.boundary.lubrication_films else NoFilms()
 
 
 def refuse_misplaced(params: SphFluidParams, body: Array, position: Array) -> None:
@@ -128,12 +128,12 @@ def remove_inside_bodies(
     return remove(state, samples, position, params)
 
 
-def make_films(params: SphFluidParams, samples: Samples) -> "LubricationFilms":
+def make_films(params: SphFluidParams, samples: Samples, ranks: Ranks) -> "LubricationFilms":
     """Films in narrow gaps."""
     # Left out of scenes without films.
     from quintet.components.sph_fluid.boundary.lubrication import LubricationFilms
 
-    return LubricationFilms(params, samples)
+    return LubricationFilms(params, samples, ranks)
 
 
 def pressure_parts(params: SphFluidParams, boundary: BoundaryMethod) -> list[PressurePart]:

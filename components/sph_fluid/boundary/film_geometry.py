@@ -1,8 +1,10 @@
 """Which samples face another surface across a narrow gap; imported only by a scene that asks."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.sph_fluid.boundary.film_search import near
 from quintet.components.sph_fluid.boundary.kernels.films import (
@@ -16,6 +18,7 @@ from quintet.components.sph_fluid.boundary.kernels.films import (
 )
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.laws import Constants
+from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State, Whole
 
 BESIDE = 1.2  # spacings, between neighbours in a film: those on its square lattice
@@ -31,8 +34,8 @@ class Films:
 
     sample: Whole  # (m,) number of the sample
     facing: Whole  # (m,) sample that it faces; -1 for a wall
-    row: Whole  # (m,) its row in the boundary
-    across: Whole  # (m,) row in the boundary of what it faces
+    row: Whole  # (m,) its row of `Faces`
+    across: Whole  # (m,) row of `Faces` of what it faces
     area: Array  # (m,) m2, of its cell in the face
     own_share: Array  # (m,) Σ V W of its own body's samples, around the middle of that cell
     rim: Array  # (m,) whether it is at the film's rim
@@ -41,23 +44,46 @@ class Films:
     near: Whole  # rows of the film
 
 
-def find_films(state: State, samples: Samples, spacing: float, constants: Constants) -> Films:
-    """Find where samples face walls, or samples of a body with a lower number.
+class Faces(NamedTuple):
+    """All samples, and the walls' outermost layer, of all ranks and in their order."""
+
+    position: Array  # (n, 3) m
+    normal: Array  # (n, 3) m, to the mirror point
+    outermost: NDArray[np.bool_]  # (n,) whether it is next to the surface
+    sample: Whole  # (n,) number of the sample; -1 for walls
+    rank: Whole  # (n,) that owns it
+    row: Whole  # (n,) in the boundary of that rank
+
+
+def find_faces(state: State, ranks: Ranks, spacing: float) -> Faces:
+    """Find what films may lie between.
 
     As the neighbour lists do, it goes by where all was when they were made, so that a state that
     is loaded finds the same films.
     """
     position = state.reference[state.fluid : state.particles]
-    normal = state.reference[state.particles :] - position  # to mirror points
+    normal = state.reference[state.particles :] - position
     outermost = np.einsum("nd,nd->n", normal, normal) < (OUTERMOST * spacing) ** 2
-    rows = np.flatnonzero(state.sample >= 0)
-    rows = rows[np.argsort(state.sample[rows])]
+    rows = np.flatnonzero(outermost | (state.sample >= 0))
+    numbers = np.column_stack([outermost[rows], state.sample[rows], rows])
+    numbers = np.column_stack([numbers, np.full(len(rows), ranks.rank)]).astype(float)
+    columns = np.concatenate([position[rows], normal[rows], numbers], axis=1)
+    of_all = ranks.all_rows(ranks.boundary_keys(state)[rows], columns)
+    outer, sample, row, rank = of_all[:, 6:].T.astype(np.int64)
+    return Faces(of_all[:, :3].copy(), of_all[:, 3:6].copy(), outer > 0, sample, rank, row)
+
+
+def find_films(faces: Faces, samples: Samples, spacing: float, constants: Constants) -> Films:
+    """Find where samples face walls, or samples of a body with a lower number."""
+    position, normal, outermost, sample, *_ = faces
+    rows = np.flatnonzero(sample >= 0)
+    rows = rows[np.argsort(sample[rows])]
     first = rows[outermost[rows]]
     low, high = position[first].min(axis=0), position[first].max(axis=0)
     margin = 4.0 * spacing
     around = ((position > low - margin) & (position < high + margin)).all(axis=1)
     second = np.flatnonzero(outermost & around)
-    owner = np.where(state.sample >= 0, samples.body[np.maximum(state.sample, 0)], -1.0)
+    owner = np.where(sample >= 0, samples.body[np.maximum(sample, 0)], -1.0)
     partner = np.full(len(first), -1)
     furthest = BEYOND * spacing * float(np.hypot(WIDEST + OUTERMOST, ASIDE))
     find_partners(
@@ -84,11 +110,11 @@ def find_films(state: State, samples: Samples, spacing: float, constants: Consta
     _, which, members = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
     listed = table[np.arange(MOST) < count[:, None]]
     return Films(
-        sample=state.sample[mine],
-        facing=state.sample[theirs],
+        sample=sample[mine],
+        facing=sample[theirs],
         row=mine,
         across=theirs,
-        area=samples.volume[state.sample[mine]] / np.abs(below),
+        area=samples.volume[sample[mine]] / np.abs(below),
         own_share=own_share,
         rim=at_rim(position[mine], begin, listed, RIM * spacing),
         size=spacing * np.sqrt(members[which.reshape(-1)]),

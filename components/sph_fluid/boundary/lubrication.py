@@ -24,18 +24,23 @@ particles leave, as many of them as there are in the gap, and nothing is pressed
 import numpy as np
 
 from quintet.components.shared.search.neighbours import Lists
-from quintet.components.sph_fluid.boundary.film_geometry import Films, find_films
+from quintet.components.sph_fluid.boundary.film_geometry import (
+    Films,
+    find_faces,
+    find_films,
+)
+from quintet.components.sph_fluid.boundary.film_rows import FilmRows
 from quintet.components.sph_fluid.boundary.kernels.films import (
     WIDEST,
     FilmPlaces,
     face_normals,
     solve_reynolds,
-    write_fluid_share,
 )
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.laws import Constants
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import State
 from quintet.interfaces.component import Fields
 
@@ -48,13 +53,14 @@ SWEEPS = 20  # over the film in each step; it starts from the last step's pressu
 class LubricationFilms:
     """The films of one fluid."""
 
-    def __init__(self, params: SphFluidParams, samples: Samples) -> None:
+    def __init__(self, params: SphFluidParams, samples: Samples, ranks: Ranks) -> None:
         self.params, self.samples, self.constants = params, samples, constants(params)
+        self.ranks = ranks
         self.notes: list[str] = []
 
     def join(self, state: State, static: Fields) -> None:
         """Make room for films at all samples."""
-        state.film = np.zeros((len(self.samples.row), 3))
+        state.film = np.zeros((len(self.samples.volume), 3))
 
     def load(self, state: State) -> None:
         """Nothing to do: films are found with the lists."""
@@ -63,31 +69,32 @@ class LubricationFilms:
         """Find the films of a state with new lists."""
         if len(state.film):
             spacing = self.params.spacing
-            self.films = find_films(state, self.samples, spacing, self.constants)
+            faces = find_faces(state, self.ranks, spacing)
+            self.films = find_films(faces, self.samples, spacing, self.constants)
+            self.rows = FilmRows(self.films, faces, self.ranks)
 
     def advance(self, state: State, lists: Lists, dt: float) -> None:
         """Advance the films by a step [s], and add their push to the samples' force."""
         if len(state.film):
-            advance(self.films, state, lists, dt, self.params, self.constants)
+            advance(self.films, self.rows, state, lists, dt, self.params, self.constants)
 
 
 def advance(
-    films: Films, state: State, lists: Lists, dt: float, params: SphFluidParams,
+    films: Films, rows: FilmRows, state: State, lists: Lists, dt: float, params: SphFluidParams,
     constants: Constants,
 ) -> None:  # fmt: skip
     """Advance films by a step [s]; add their push to the samples' force."""
     spacing, density = params.spacing, params.density
-    position, mirror = state.position_density[state.fluid :], state.mirror_point
-    off, back = (mirror[row] - position[row, :3] for row in (films.row, films.across))
+    own, facing = rows.now(state)
+    off, back = own[:, 5:] - own[:, :3], facing[:, 5:] - facing[:, :3]
     across = face_normals(off, back)
     below, beyond = (np.einsum("nd,nd->n", vectors, across) for vectors in (off, back))
-    foot = position[films.row, :3] + 0.5 * below[:, None] * across
-    gap = np.einsum("nd,nd->n", foot - position[films.across, :3], across) - 0.5 * beyond
+    foot = own[:, :3] + 0.5 * below[:, None] * across
+    gap = np.einsum("nd,nd->n", foot - facing[:, :3], across) - 0.5 * beyond
     width = np.maximum(gap, params.boundary.roughness)
     weight = density * np.array(params.gravity)
-    term = state.velocity_pressure[state.fluid + films.row, 3]
-    outside = term * position[films.row, 3] ** 2
-    outside = np.where(outside > 0.0, outside + (foot - position[films.row, :3]) @ weight, 0.0)
+    outside = own[:, 4] * own[:, 3] ** 2
+    outside = np.where(outside > 0.0, outside + (foot - own[:, :3]) @ weight, 0.0)
     outside = np.minimum(outside, density * (LARGEST * params.sound_speed) ** 2)
     driving = max(float(outside[films.rim].max(initial=0.0)), 1.0)
     bound = width * films.size * np.sqrt(2.0 / (density * driving))
@@ -102,8 +109,7 @@ def advance(
     solve_reynolds(places, spacing**2 / dt, (x, y, z), SWEEPS, pressure, share)
     state.film[:] = 0.0
     state.film[films.sample] = np.stack([pressure, share, width], axis=1)
-    wet = np.empty(len(gap))
-    write_fluid_share(films.row, foot, state.fluid, state.position_density, lists, constants, wet)
+    wet = rows.fluid_share(state, foot, lists, constants)
     left = 2.0 * np.maximum(1.0 - films.own_share - wet, 0.0)
     left *= np.clip((WIDEST - width / spacing) / FADING, 0.0, 1.0)
     force = (pressure * left * films.area)[:, None] * across

@@ -14,6 +14,7 @@ from quintet.components.sph_fluid.boundary.nearby_bodies import (
 )
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import State
 from quintet.interfaces.component import Fields
 
@@ -26,9 +27,10 @@ class SelectiveFilms:
     """The films of one fluid, once a body needs one; a note where there can be none."""
 
     def __init__(
-        self, params: SphFluidParams, samples: Samples, make_films: Callable[[], Films]
+        self, params: SphFluidParams, samples: Samples, ranks: Ranks, make_films: Callable[[], Films]
     ) -> None:
         self.params, self.samples, self._make_films = params, samples, make_films
+        self.ranks = ranks
         self.lacking = params.boundary.why_no_films(params.dimensions)
         self.films: Films | None = None
         self.notes: list[str] = []
@@ -44,7 +46,7 @@ class SelectiveFilms:
 
     def resize(self, state: State, lists: Lists) -> None:
         """Begin, once a body is near enough; find the films of a state with new lists."""
-        if self.films is None and len(self.samples.row):
+        if self.films is None and len(self.samples.volume):
             self._look(state, lists)
         if self.films is not None:
             self.films.resize(state, lists)
@@ -54,11 +56,13 @@ class SelectiveFilms:
         begin, _, end, _ = lists
         number, body = bodies_of(self.samples)
         listed = self.samples.listed
-        wet = np.bincount(body, end[listed] > begin[listed], len(number)) > 0.0
+        # Where all was when the lists were made, so that a state that is loaded finds the same.
+        columns = [state.reference[self.samples.row], (end > begin)[listed, np.newaxis]]
+        of_all = self.ranks.all_rows(self.samples.number, np.concatenate(columns, axis=1))
+        places, spacing = of_all[:, :3], self.params.spacing
+        wet = np.bincount(body, of_all[:, 3], len(number)) > 0.0
         if not wet.any():
             return
-        # Where all was when the lists were made, so that a state that is loaded finds the same.
-        places, spacing = state.reference[self.samples.row], self.params.spacing
         boxes = bounds(places, body, len(number))
         if not self.lacking:
             reach = (WIDEST + INSET) * spacing

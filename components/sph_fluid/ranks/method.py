@@ -25,6 +25,8 @@ class NearRows(NamedTuple):
 class Ranks(Protocol):
     """The ranks of one fluid; of several, each calls every method, in the same order."""
 
+    rank: int  # number of this one
+
     def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
 
@@ -51,6 +53,12 @@ class Ranks(Protocol):
 
     def gather_forces(self, state: State) -> None:
         """Bring the forces on all samples to rank 0."""
+
+    def boundary_keys(self, state: State) -> Whole:
+        """Numbers (boundary,) that rise in the order in which one rank would have its rows."""
+
+    def all_rows(self, keys: Whole, rows: Array) -> Array:
+        """Rows of all ranks on every rank, in the order of their keys; own ones (k, ...)."""
 
     def whole(self, state: State) -> State:
         """All rows on rank 0; on others their own."""

@@ -9,12 +9,14 @@ from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, places, refuse_none
-from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 
 
 class OneRank:
     """A fluid whose state is all there is."""
+
+    rank = 0
 
     def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
@@ -56,6 +58,14 @@ class OneRank:
 
     def gather_forces(self, state: State) -> None:
         """Nothing to do: all are here."""
+
+    def boundary_keys(self, state: State) -> Whole:
+        """Its rows."""
+        return np.arange(state.particles - state.fluid)
+
+    def all_rows(self, keys: Whole, rows: Array) -> Array:
+        """Return the rows."""
+        return rows
 
     def whole(self, state: State) -> State:
         """Return the state."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.collection import collect
+from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import added, counted, greatest, least
 from quintet.components.shared.domain.layers import cut_between_layers, owners
 from quintet.components.shared.domain.migration import migrate
@@ -54,6 +55,7 @@ class SeveralRanks:
 
     def __init__(self, communicator: Any, keys: Keys, samples: Samples) -> None:
         self._communicator, self._keys, self._samples = communicator, keys, samples
+        self.rank = communicator.rank
         self._shared = False  # whether each rank has its part alone
         self._fluid = 0  # of all ranks
 
@@ -155,6 +157,18 @@ class SeveralRanks:
         force = collect(self._communicator, state.force.take(self._samples.number, axis=0))
         if self._communicator.rank == 0:
             state.force[number] = force
+
+    def boundary_keys(self, state: State) -> Whole:
+        """Numbers (boundary,) that rise in the order in which one rank would have its rows."""
+        return self._keys.boundary
+
+    def all_rows(self, keys: Whole, rows: Array) -> Array:
+        """Rows of all ranks on every rank, in the order of their keys; own ones (k, ...)."""
+        if not self._shared:
+            return rows
+        order = np.argsort(np.concatenate(share(self._communicator, keys)))
+        of_all = np.concatenate(share(self._communicator, rows.reshape(-1)))
+        return of_all.reshape(-1, *rows.shape[1:])[order]
 
     def whole(self, state: State) -> State:
         """All rows on rank 0; on others their own."""

@@ -5,6 +5,7 @@ import pytest
 from fluid_params import fluid_params
 from sampled_bodies import BOX, fill, mirrors
 
+from quintet.components.sph_fluid.boundary.film_geometry import find_faces
 from quintet.components.sph_fluid.boundary.film_search import near
 from quintet.components.sph_fluid.boundary.kernels.films import face_normals, write_fluid_share
 from quintet.components.sph_fluid.component import SphFluid
@@ -80,9 +81,10 @@ def test_body_water_and_what_lies_across_press_the_whole_face() -> None:
     film, state = one.films.films, one.state
     wet = np.empty(len(film.row))
     place = state.position_density[state.fluid :]
-    foot = place[film.row, :3] - [0.5 * SPACING, 0.0, 0.0]  # on the right block's left face
+    row = find_faces(state, one.ranks, SPACING).row[film.row]
+    foot = place[row, :3] - [0.5 * SPACING, 0.0, 0.0]  # on the right block's left face
     lists, numbers = one.lists.arrays, one.constants
-    write_fluid_share(film.row, foot, state.fluid, state.position_density, lists, numbers, wet)
+    write_fluid_share(row, foot, state.fluid, state.position_density, lists, numbers, wet)
     rows = np.flatnonzero(state.sample >= 0)
     left = rows[place[rows, 0] < 0.06]
     apart = np.linalg.norm(foot[:, None] - place[left, :3], axis=2) / one.constants.smoothing.length
