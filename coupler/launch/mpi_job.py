@@ -311,11 +311,11 @@ def files_of(pid: int) -> list[str]:
 
 def _launcher_files(pid: int) -> Iterator[str]:
     """Files in which a process of the launcher keeps the layout of the machine."""
-    for link in Path(f"/proc/{pid}/fd").glob("*"):
-        with contextlib.suppress(OSError):
-            path = link.readlink()
-            if path.name.startswith(LAUNCHER_FILE):
-                yield str(path)
+    with contextlib.suppress(OSError):  # it may end meanwhile
+        for link in os.scandir(f"/proc/{pid}/fd"):
+            path = os.readlink(link.path)
+            if os.path.basename(path).startswith(LAUNCHER_FILE):
+                yield path
 
 
 def _unlink(paths: Iterable[str]) -> None:
