@@ -116,6 +116,7 @@ class SphFluid(Component):
         """Advance by dt [s]."""
         if not self.samples.placed:
             raise OrderError("step: surface samples must be placed first. Call take before it.")
+        self.ranks.begin_step()
         if self.lists.need_rebuild(self.state, self.boundary, dt):
             diagnostics.refuse_dense(self.state, self.params, self.ranks)
             self.lists.sort(self.state)
@@ -167,6 +168,7 @@ class SphFluid(Component):
         state.moved = math.sqrt(shift2)
         state.largest_acceleration, state.largest_approach = fastest, approach
         state.last_dt, state.steps = dt, state.steps + 1
+        self.ranks.end_step()
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""

@@ -1,8 +1,9 @@
-"""Space shared out by cuts between layers of cells, so that each rank has as much work.
+"""Space shared out by cuts between rows of cells, so that each rank has as much work.
 
 The cuts are those of a recursive bisection (Berger & Bokhari, IEEE Trans. Comput. C-36 (1987) 570)
-across the longest extent of what is to be shared, each found from one histogram over the layers.
-They go on to infinity: whatever lies anywhere has an owner.
+across the longest extent of what is to be shared, each found from one histogram. A cut runs between
+two layers of cells, with a step in it between two rows of one layer. It goes on to infinity:
+whatever lies anywhere has an owner.
 """
 
 from typing import Any, NamedTuple
@@ -18,16 +19,18 @@ FAR = 1 << 40  # layers
 
 
 class Cut(NamedTuple):
-    """Ranks `first` to `last` - 1 part here: those from `second` on own from a layer on."""
+    """Ranks `first` to `last` - 1 part here: those from `second` on own from a row of cells on."""
 
     first: int
     second: int
     last: int
     axis: int
-    layer: int
+    layer: int  # along the axis
+    beside: int  # the axis along which the layer is parted
+    row: int  # along that one
 
 
-def cut_between_layers(communicator: Any, cells: Whole, weights: Whole) -> list[Cut]:
+def cut_between_rows(communicator: Any, cells: Whole, weights: Whole) -> list[Cut]:
     """Cut space so that all ranks have about the same weight, and each has a cell or more.
 
     Parameters
@@ -58,8 +61,9 @@ def owners(cuts: list[Cut], cells: Whole, start: Whole | None = None) -> Whole:
     """Rank (n,) that owns what is in each cell (n, 3); `start` (n,): the part that each is in."""
     owner = np.zeros(len(cells), np.int64) if start is None else start.copy()
     for cut in cuts:
-        beyond = (owner == cut.first) & (cells[:, cut.axis] >= cut.layer)
-        owner[beyond] = cut.second
+        along, beside = cells[:, cut.axis], cells[:, cut.beside]
+        beyond = (along > cut.layer) | ((along == cut.layer) & (beside >= cut.row))
+        owner[beyond & (owner == cut.first)] = cut.second
     return owner
 
 
@@ -67,35 +71,45 @@ def _cut_all(
     communicator: Any, parts: list[tuple[int, int]], part_of: Whole, cells: Whole, weights: Whole
 ) -> list[Cut]:
     """Cut each part, ranks (first, last), once."""
-    of_part = [part_of == first for first, _ in parts]
+    of_part = [np.flatnonzero(part_of == first) for first, _ in parts]
     low = [cells[rows].min(axis=0, initial=FAR) for rows in of_part]
     high = [cells[rows].max(axis=0, initial=-FAR) for rows in of_part]
     lowest = least(communicator, np.array(low)).tolist()
     highest = greatest(communicator, np.array(high)).tolist()
     axes, histograms = [], []
     for (first, last), rows, lower, upper in zip(parts, of_part, lowest, highest, strict=True):
-        extents = [b - a for a, b in zip(lower, upper, strict=True)]
-        axis = extents.index(max(extents))
-        if extents[axis] < 1:
+        extents = [b - a + 1 for a, b in zip(lower, upper, strict=True)]
+        if max(extents) == 1:
             raise StepError(
                 f"ranks: each must own a cell of fluid or more; there is one cell left for the "
                 f"{last - first} ranks from {first} on. Take fewer ranks than {communicator.size}."
             )
-        layers = cells[rows, axis] - lower[axis]
-        axes.append(axis)
-        histograms.append(np.bincount(layers, weights[rows], extents[axis] + 1).astype(np.int64))
+        *_, beside, axis = np.argsort(extents, kind="stable").tolist()
+        along = cells[rows, axis] - lower[axis]
+        place = along * extents[beside] + cells[rows, beside] - lower[beside]
+        axes.append((axis, beside, extents[beside]))
+        length = extents[axis] * extents[beside]
+        histograms.append(np.bincount(place, weights[rows], length).astype(np.int64))
     ends = np.cumsum([len(histogram) for histogram in histograms])[:-1]
     sums = np.split(counted(communicator, np.concatenate(histograms)), ends)
     cuts = []
-    for (first, last), axis, lower, histogram in zip(parts, axes, lowest, sums, strict=True):
+    for (first, last), (axis, beside, width), lower, histogram in zip(
+        parts, axes, lowest, sums, strict=True
+    ):
         second = first + (last - first) // 2
-        layer = _nearest(histogram, (second - first) / (last - first))
-        cuts.append(Cut(first, second, last, axis, lower[axis] + layer))
+        layer, row = divmod(_nearest(histogram, second - first, last - first), width)
+        place = lower[axis] + layer, beside, lower[beside] + row
+        cuts.append(Cut(first, second, last, axis, *place))
     return cuts
 
 
-def _nearest(histogram: Whole, share: float) -> int:
-    """How many of the first layers have about a share of the weight; neither all nor none."""
+def _nearest(histogram: Whole, few: int, count: int) -> int:
+    """How many of the first rows of cells have about few/count of the weight.
+
+    Each side has as many rows that weigh anything as ranks, if there are so many; else one.
+    """
     sums = np.concatenate([[0], np.cumsum(histogram)])
-    layer = int(np.argmin(np.abs(sums - share * sums[-1])))
-    return min(max(layer, 1), len(histogram) - 1)
+    row = int(np.argmin(np.abs(sums - (few / count) * sums[-1])))
+    heavy = np.flatnonzero(histogram)
+    before, behind = (few, count - few) if len(heavy) >= count else (1, 1)
+    return min(max(row, int(heavy[before - 1]) + 1), int(heavy[-behind]))

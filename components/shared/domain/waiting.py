@@ -15,6 +15,15 @@ SOON = 200  # polls, some 50 µs, in which another rank answers that is as far
 OFTEN = 1000  # polls between two looks at the clock
 
 
+class Waited:
+    """How long this process has waited for others."""
+
+    seconds = 0.0
+
+
+WAITED = Waited()
+
+
 def wait(*requests: Any) -> None:
     """Wait until all requests are done; other processes may use the core meanwhile.
 
@@ -24,10 +33,11 @@ def wait(*requests: Any) -> None:
         If they are not done within a day.
     """
     waiting, polls = list(requests), 0
-    began = time.monotonic()
+    began = time.perf_counter()
     while not MPI.Request.Testall(waiting):
         polls += 1
         if polls > SOON:
             os.sched_yield()
-        if polls % OFTEN == 0 and time.monotonic() - began > LONGEST:
+        if polls % OFTEN == 0 and time.perf_counter() - began > LONGEST:
             raise LineError(f"another rank must answer within {LONGEST:g} s; it did not.")
+    WAITED.seconds += time.perf_counter() - began

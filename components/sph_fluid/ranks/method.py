@@ -27,6 +27,12 @@ class Ranks(Protocol):
 
     rank: int  # number of this one
 
+    def begin_step(self) -> None:
+        """Begin to measure how long this rank computes."""
+
+    def end_step(self) -> None:
+        """Stop measuring."""
+
     def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
 

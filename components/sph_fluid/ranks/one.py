@@ -18,6 +18,12 @@ class OneRank:
 
     rank = 0
 
+    def begin_step(self) -> None:
+        """Nothing to do: nobody shares the work."""
+
+    def end_step(self) -> None:
+        """Nothing to do: nobody shares the work."""
+
     def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
         split = state.fluid

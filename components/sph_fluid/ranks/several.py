@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from quintet.components.shared.domain.collection import collect
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import added, counted, greatest, least
-from quintet.components.shared.domain.layers import cut_between_layers, owners
+from quintet.components.shared.domain.layers import cut_between_rows, owners
 from quintet.components.shared.domain.migration import migrate
+from quintet.components.shared.domain.work import Work
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.search.cells import Grid, grid_between, number_cells
@@ -55,9 +56,17 @@ class SeveralRanks:
 
     def __init__(self, communicator: Any, keys: Keys, samples: Samples) -> None:
         self._communicator, self._keys, self._samples = communicator, keys, samples
-        self.rank = communicator.rank
+        self.rank, self._work = communicator.rank, Work()
         self._shared = False  # whether each rank has its part alone
         self._fluid = 0  # of all ranks
+
+    def begin_step(self) -> None:
+        """Begin to measure how long this rank computes."""
+        self._work.begin()
+
+    def end_step(self) -> None:
+        """Stop measuring."""
+        self._work.end()
 
     def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
         """Bring rows to the ranks that own their cells, and near ones into near rows."""
@@ -74,7 +83,7 @@ class SeveralRanks:
         number = np.empty(len(inside), np.int64)
         number_cells(fluid["position_density"], grid, number)
         cells = _places_of(number, grid)
-        cuts = cut_between_layers(self._communicator, cells, np.ones(len(cells), np.int64))
+        cuts = cut_between_rows(self._communicator, cells, self._work.weights(len(cells)))
         keys, (number, *columns) = migrate(
             self._communicator, owners(cuts, cells), keys, (number, *fluid.values())
         )
