@@ -30,6 +30,7 @@ MANIFEST = Manifest(
     component="quintet.components.meshless_gas.component:MeshlessGas",
     ports=ports,
     shows=SHOWS,
+    ranks=True,
     plan=plan,
     initial=initial,
     complete=complete,

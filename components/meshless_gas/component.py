@@ -56,7 +56,10 @@ class MeshlessGas(Component):
         axis = features.axis_terms(params, self.friction, self.team)
         particles = features.particles(params, self.motion)
         self.parts = [self.friction, self.motion, *axis, *particles]  # in the order of their terms
-        self.scheme = SpatialScheme(params, self.motion, self.parts, self.fluxes, self.team)
+        self.ranks = features.ranks(resources)
+        self.scheme = SpatialScheme(
+            params, self.motion, self.parts, self.fluxes, self.team, self.ranks
+        )
         self.wall_loads = features.walls(params, self.motion, self.friction)
         self.monitor = features.monitor(
             params, self.wall_loads, self.fluxes.primitive, domain.cloud.nodes
@@ -116,19 +119,23 @@ class MeshlessGas(Component):
             state.entered -= dt * part.given()
         state.time += dt
         scheme.update_stable_step(state.time)
-        state.change = diagnostics.density_change(state, self.motion.domain, work, self.team)
+        domain = self.motion.domain
+        state.change = diagnostics.density_change(state, domain, work, self.team, self.ranks)
         self.monitor.update(work.primitive, state.change, state.time)
 
     def _advance(self, dt: float, old: float, new: float) -> None:
         """Advance all nodes by a stage; those of walls of symmetry move along them."""
         domain, state, work = self.motion.domain, self.state, self.fluxes
-        wrong = self.team.run(
-            advance, len(domain.inner), domain.inner, work.start, work.residual, dt,
+        own = self.ranks.share(domain).inner
+        wrong = max(self.team.run(
+            advance, len(own), own, work.start, work.residual, dt,
             self.scheme.steps, old, new, self.params.gas.gamma, state.conservative, work.primitive,
             fewest=LIGHT,
-        )  # fmt: skip
-        if max(wrong) >= 0:
-            node = domain.inner[max(wrong)]
+        ))  # fmt: skip
+        self.ranks.gather(domain, work.primitive, state.conservative)
+        wrong = int(self.ranks.greatest(wrong + self.ranks.first(domain) if wrong >= 0 else -1))
+        if wrong >= 0:
+            node = domain.inner[wrong]
             sided = sidedness(
                 domain.cloud, domain.stencils, np.array([node]), self.params.planar, self.team
             )
@@ -189,7 +196,7 @@ class MeshlessGas(Component):
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""
-        self.scheme.write_gradients()
+        self.scheme.write_gradients(self.motion.domain.every)
         return view.view(self.state, self.motion.domain, self.fluxes, self.params)
 
     def walls(self) -> Fields:

@@ -10,6 +10,7 @@ from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.sidedness import UNEVEN
+from quintet.components.meshless_gas.ranks.one import Ranks
 from quintet.components.meshless_gas.state import Fluxes, State, conserved
 from quintet.components.meshless_gas.thread_grain import LIGHT, WHOLESALE
 from quintet.components.shared.threads import Team
@@ -50,13 +51,17 @@ def balance(
     }
 
 
-def density_change(state: State, domain: Domain, fluxes: Fluxes, team: Team) -> float:
+def density_change(
+    state: State, domain: Domain, fluxes: Fluxes, team: Team, ranks: Ranks
+) -> float:
     """Root mean square of the relative change of densities in the nodes' own steps."""
-    changes = fluxes.changes[: len(domain.inner)]
+    changes, own = fluxes.changes[: len(domain.inner)], ranks.share(domain).inner
+    first = ranks.first(domain)
     team.run(
-        write_changes, len(changes), domain.inner, fluxes.residual, fluxes.bounds,
-        state.conservative, changes, fewest=LIGHT,
+        write_changes, len(own), own, fluxes.residual, fluxes.bounds, state.conservative,
+        changes[first : first + len(own)], fewest=LIGHT,
     )  # fmt: skip
+    ranks.gather_values(domain, changes)
     return float(np.sqrt(changes.mean()))
 
 

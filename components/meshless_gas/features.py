@@ -17,8 +17,20 @@ from quintet.components.meshless_gas.parts import (
     WallFriction,
     Walls,
 )
+from quintet.components.meshless_gas.ranks.one import OneRank, Ranks
 from quintet.components.shared.threads import Team
-from quintet.interfaces.component import Array
+from quintet.interfaces.component import Array, Resources
+
+
+def ranks(resources: Resources) -> Ranks:
+    """The ranks that share out the nodes."""
+    communicator = resources.communicator
+    if communicator is None or communicator.size == 1:
+        return OneRank()
+    # Only a gas of several ranks loads mpi4py.
+    from quintet.components.meshless_gas.ranks.several import SeveralRanks
+
+    return SeveralRanks(communicator)
 
 
 def node_motion(params: MeshlessGasParams, team: Team) -> NodeMotion:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from quintet.components.meshless_gas.clouds.cloud import Whole
 from quintet.components.meshless_gas.kernels.boundaries import boundary_flows, write_boundaries
 from quintet.components.meshless_gas.kernels.ghosts import (
     write_ghost_gradients,
@@ -17,6 +18,7 @@ from quintet.components.meshless_gas.kernels.residuals import write_residuals
 from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import NodeMotion, Part, Stage
+from quintet.components.meshless_gas.ranks.one import Ranks
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.thread_grain import LIGHT, SUMS
 from quintet.components.shared.threads import Team
@@ -33,8 +35,10 @@ class SpatialScheme:
         parts: Sequence[Part],
         work: Fluxes,
         team: Team,
+        ranks: Ranks,
     ) -> None:
         self.motion, self.parts, self.work, self.team = motion, parts, work, team
+        self.ranks = ranks
         self.gamma, self.gas_constant = params.gas.gamma, params.gas.gas_constant
         self.shortest_step = 0.0  # s, stable for all nodes at a Courant number of 1
         # What is None is not compiled.
@@ -66,11 +70,11 @@ class SpatialScheme:
         for part in self.parts:
             part.add_flows(domain, work.primitive, work.flows)
 
-    def write_gradients(self) -> None:
-        """Write gradients at all nodes and ghosts."""
+    def write_gradients(self, nodes: Whole) -> None:
+        """Write gradients at some nodes, and at all ghosts those of the nodes behind."""
         domain, work, cloud = self.motion.domain, self.work, self.motion.domain.cloud
         self.team.run(
-            write_gradients, len(domain.every), domain.every, work.primitive, *domain.stencils,
+            write_gradients, len(nodes), nodes, work.primitive, *domain.stencils,
             self.planar, work.gradients, work.lowest, fewest=SUMS,
         )  # fmt: skip
         self.team.run(
@@ -80,8 +84,8 @@ class SpatialScheme:
 
     def write_rates(self, dt: float, stage: Stage) -> None:
         """Write the rates of change of density, momentum and energy in a stage of a step [s]."""
-        domain, work = self.motion.domain, self.work
-        self.write_gradients()
+        domain, work = self.ranks.share(self.motion.domain), self.work
+        self.write_gradients(domain.every)
         self.motion.flatten(work.gradients)
         self.team.run(
             write_residuals, len(domain.inner), domain.inner, domain.cloud.positions,
@@ -93,7 +97,7 @@ class SpatialScheme:
 
     def update_stable_step(self, time: float) -> None:
         """Find the stable step of each node, and the shortest, at a time [s]."""
-        domain, work = self.motion.domain, self.work
+        domain, work = self.ranks.share(self.motion.domain), self.work
         self.team.run(
             write_sound, len(work.sound), work.primitive, self.gamma, work.sound, fewest=LIGHT
         )
@@ -104,6 +108,7 @@ class SpatialScheme:
         self.shortest_step = min(shortest)
         for part in self.parts:
             self.shortest_step = part.shorten(domain, work, self.shortest_step)
+        self.shortest_step = self.ranks.least(self.shortest_step)
         if not (0.0 < self.shortest_step < math.inf):
             raise StepError(
                 f"the gas must have a stable step at t = {time:.6g} s; found "

@@ -36,7 +36,7 @@ OFF = 1e-3  # speeds of sound by which velocities are moved off the kinks of the
 
 def flow_limit(gas: MeshlessGas) -> tuple[float, int]:
     """Return the largest Courant number of a flow as it is now, and the node that limits it."""
-    gas.scheme.write_gradients()
+    gas.scheme.write_gradients(gas.motion.domain.every)
     bounds = gas.fluxes.bounds
     rows = gas.motion.domain.inner[np.argsort(bounds[gas.motion.domain.inner], kind="stable")]
     least = bounds[rows[0]]
