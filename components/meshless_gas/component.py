@@ -56,9 +56,9 @@ class MeshlessGas(Component):
         axis = features.axis_terms(params, self.friction, self.team)
         particles = features.particles(params, self.motion)
         self.parts = [self.friction, self.motion, *axis, *particles]  # in the order of their terms
-        self.ranks = features.ranks(resources)
+        self.all_ranks = features.ranks(resources)
         self.scheme = SpatialScheme(
-            params, self.motion, self.parts, self.fluxes, self.team, self.ranks
+            params, self.motion, self.parts, self.fluxes, self.team, self.all_ranks
         )
         self.wall_loads = features.walls(params, self.motion, self.friction)
         self.monitor = features.monitor(
@@ -120,20 +120,22 @@ class MeshlessGas(Component):
         state.time += dt
         scheme.update_stable_step(state.time)
         domain = self.motion.domain
-        state.change = diagnostics.density_change(state, domain, work, self.team, self.ranks)
+        state.change = diagnostics.density_change(state, domain, work, self.team, self.all_ranks)
         self.monitor.update(work.primitive, state.change, state.time)
 
     def _advance(self, dt: float, old: float, new: float) -> None:
         """Advance all nodes by a stage; those of walls of symmetry move along them."""
         domain, state, work = self.motion.domain, self.state, self.fluxes
-        own = self.ranks.share(domain).inner
+        own = self.all_ranks.share(domain).inner
         wrong = max(self.team.run(
             advance, len(own), own, work.start, work.residual, dt,
             self.scheme.steps, old, new, self.params.gas.gamma, state.conservative, work.primitive,
             fewest=LIGHT,
         ))  # fmt: skip
-        self.ranks.gather(domain, work.primitive, state.conservative)
-        wrong = int(self.ranks.greatest(wrong + self.ranks.first(domain) if wrong >= 0 else -1))
+        self.all_ranks.gather(domain, work.primitive, state.conservative)
+        wrong = int(
+            self.all_ranks.greatest(wrong + self.all_ranks.first(domain) if wrong >= 0 else -1)
+        )
         if wrong >= 0:
             node = domain.inner[wrong]
             sided = sidedness(

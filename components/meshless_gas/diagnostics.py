@@ -9,8 +9,8 @@ from quintet.components.meshless_gas.exact_states import states_at
 from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.sidedness import UNEVEN
 from quintet.components.meshless_gas.ranks.one import Ranks
+from quintet.components.meshless_gas.sidedness import UNEVEN
 from quintet.components.meshless_gas.state import Fluxes, State, conserved
 from quintet.components.meshless_gas.thread_grain import LIGHT, WHOLESALE
 from quintet.components.shared.threads import Team
@@ -51,9 +51,7 @@ def balance(
     }
 
 
-def density_change(
-    state: State, domain: Domain, fluxes: Fluxes, team: Team, ranks: Ranks
-) -> float:
+def density_change(state: State, domain: Domain, fluxes: Fluxes, team: Team, ranks: Ranks) -> float:
     """Root mean square of the relative change of densities in the nodes' own steps."""
     changes, own = fluxes.changes[: len(domain.inner)], ranks.share(domain).inner
     first = ranks.first(domain)

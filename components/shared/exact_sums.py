@@ -57,7 +57,7 @@ def total(parts: Array) -> Array:
 # As written: the optimiser must not simplify (x + s) - s.
 @njit(**EXACT)
 def add_parts(column: Array, first: float, second: float, third: float, sums: Array) -> None:
-    """Add the parts of numbers (n,) to three sums; each part is cut off by adding a large number."""
+    """Add the parts of numbers (n,) to three sums; adding a large number cuts each part off."""
     high, middle, low = sums[0], sums[1], sums[2]
     for i in range(column.shape[0]):
         x = column[i]

@@ -54,8 +54,8 @@ class SphFluid(Component):
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)
         self.boundary.start(self.state)
-        self.ranks, self.symmetry = features.ranks(params, resources, self.samples)
-        self.lists = FluidLists(params, self.samples, self.ranks)
+        self.all_ranks, self.symmetry = features.ranks(params, resources, self.samples)
+        self.lists = FluidLists(params, self.samples, self.all_ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
         precision, joined = features.precision(params), (self.boundary, self.symmetry)
         self.pairs = Interaction(params, *joined, precision, self.samples)
@@ -63,7 +63,7 @@ class SphFluid(Component):
         self.courant = features.courant_limit(params)
         self.films: Films = NoFilms()  # before there are surfaces
         self.filter = features.shepard_filter(params)
-        self.gauges = features.gauges(params, self.symmetry, self.ranks)
+        self.gauges = features.gauges(params, self.symmetry, self.all_ranks)
 
     def describe(self) -> Fields:
         """Request how surfaces are to be sampled."""
@@ -76,7 +76,7 @@ class SphFluid(Component):
                 require_one_metre(self.params)
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
-            self.films = features.lubrication_films(self.params, self.samples, self.ranks)
+            self.films = features.lubrication_films(self.params, self.samples, self.all_ranks)
             self.films.join(self.state, static)
 
     def prime(self, fields: Fields) -> None:
@@ -108,7 +108,7 @@ class SphFluid(Component):
             if self.params.dimensions == 2:
                 fields = in_plane(fields, self.params)
             self.samples.move(self.state, fields)
-            self.ranks.follow_samples(fields)
+            self.all_ranks.follow_samples(fields)
             self.boundary.follow_samples(self.state, fields)
             self.symmetry.require_before(fields["surface.position"])
 
@@ -116,9 +116,9 @@ class SphFluid(Component):
         """Advance by dt [s]."""
         if not self.samples.placed:
             raise OrderError("step: surface samples must be placed first. Call take before it.")
-        self.ranks.begin_step()
+        self.all_ranks.begin_step()
         if self.lists.need_rebuild(self.state, self.boundary, dt):
-            diagnostics.refuse_dense(self.state, self.params, self.ranks)
+            diagnostics.refuse_dense(self.state, self.params, self.all_ranks)
             self.lists.sort(self.state)
             self._list()
         if self.filter:
@@ -126,7 +126,7 @@ class SphFluid(Component):
         rows, rate = self.boundary.rows_with_density_rate(self.state), self.pairs.rates.rate
         if self.state.steps % judgement.EVERY == 0:
             isolated = not len(self.samples.volume) and not self.params.boundary.wall_velocity
-            judgement.note(self.state, self.params, self.totals(), isolated, self.ranks)
+            judgement.note(self.state, self.params, self.totals(), isolated, self.all_ranks)
         task = StepTask(dt, rows, rate, self._compute_rates, partial(self._apply_forces, dt))
         self._finish(self.integration.step(self.state, task, self.team), dt)
 
@@ -149,26 +149,26 @@ class SphFluid(Component):
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         self.pairs.push_samples(self.state, self.team)
         if len(self.samples.volume):
-            self.ranks.gather_forces(self.state)
+            self.all_ranks.gather_forces(self.state)
         self.films.advance(self.state, self.lists.arrays, dt)
         self.pairs.move_with_neighbours(self.state, dt, self.team)
 
     def _finish(self, moved: Moved, dt: float) -> None:
         state = self.state
-        shift2, failures, fastest, approach = self.ranks.greatest(
+        shift2, failures, fastest, approach = self.all_ranks.greatest(
             max(shift2 for shift2, _ in moved),
             max(failures for _, failures in moved),
             state.largest_acceleration,
             state.largest_approach,
         )
         if failures:
-            raise StepError(diagnostics.failure(self.ranks.whole(state), self.params, dt))
+            raise StepError(diagnostics.failure(self.all_ranks.whole(state), self.params, dt))
         self.symmetry.reflect_crossed(state)
         self.symmetry.write_images(state)
         state.moved = math.sqrt(shift2)
         state.largest_acceleration, state.largest_approach = fastest, approach
         state.last_dt, state.steps = dt, state.steps + 1
-        self.ranks.end_step()
+        self.all_ranks.end_step()
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
@@ -181,12 +181,12 @@ class SphFluid(Component):
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
-        return self.ranks.whole(self.state).save() | {"placed": np.array(self.samples.placed)}
+        return self.all_ranks.whole(self.state).save() | {"placed": np.array(self.samples.placed)}
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
-        self.ranks.load(self.state)
+        self.all_ranks.load(self.state)
         self.samples.find_rows(self.state)
         self.boundary.load(self.state)
         self.films.load(self.state)
@@ -195,14 +195,14 @@ class SphFluid(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left."""
-        totals = diagnostics.totals(self.state, self.params, self.constants, self.ranks)
+        totals = diagnostics.totals(self.state, self.params, self.constants, self.all_ranks)
         if len(self.state.reference):
             totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
         return totals
 
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
-        return view(self.ranks.whole(self.state))
+        return view(self.all_ranks.whole(self.state))
 
     def notes(self) -> tuple[str, ...]:
         """What was not as a scene may have meant it: masses, films that are missing."""
@@ -211,7 +211,7 @@ class SphFluid(Component):
     def warnings(self) -> dict[str, str]:
         """Compression, fluid that leaves its tank, and energy from nowhere."""
         mass = self.constants.mass * self.params.slab_thickness
-        return judgement.warnings(self.state, self.params, mass, self.ranks)
+        return judgement.warnings(self.state, self.params, mass, self.all_ranks)
 
     def walls(self) -> Fields:
         """Return the tank's closed faces, and the obstacles in it."""
@@ -219,4 +219,4 @@ class SphFluid(Component):
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""
-        return self.ranks.fluid(self.state) + self.ranks.boundary(self.state)
+        return self.all_ranks.fluid(self.state) + self.all_ranks.boundary(self.state)

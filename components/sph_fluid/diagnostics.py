@@ -84,8 +84,7 @@ def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:
     let go.
     """
     most = params.density * (1.0 + TAIT * MACH) ** (1.0 / TAIT)
-    dense = np.count_nonzero(state.position_density[: state.fluid, 3] > most)
-    (dense,) = ranks.count(dense)
+    (dense,) = ranks.count(int((state.position_density[: state.fluid, 3] > most).sum()))
     if dense <= FEW * ranks.fluid(state):
         return
     whole = ranks.whole(state)

@@ -58,7 +58,7 @@ def note(
     change = state.position_density[fluid, 3] / params.density - 1.0
     if params.negative_pressure:
         change = np.abs(change)
-    dense, outside = ranks.count(np.count_nonzero(change > DENSE), _outside(state, params))
+    dense, outside = ranks.count(int((change > DENSE).sum()), _outside(state, params))
     judged[COMPRESSED] = max(judged[COMPRESSED], dense / max(ranks.fluid(state), 1))
     judged[LEAKED] = max(judged[LEAKED], float(outside + _lost(state, params)))
 

@@ -1,14 +1,18 @@
 """``quintet bench KIND``: throughput of a component in items stepped per second.
 
-Rates are per second of processor time, summed over all threads, so that they are those of one
-thread; the rate per second of wall time stands beside them.
+Rates are per second of processor time, summed over all threads and ranks without what these wait
+for each other, so that they are those of one thread; the rate per second of wall time stands beside
+them.
 """
 
 import argparse
+import contextlib
 import json
 import os
+import signal
 import tempfile
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -30,15 +34,29 @@ def run_kind(options: argparse.Namespace) -> int:
     threads = options.threads or usual_threads()
     if wrong := [count for count in threads if count < 1]:
         raise SceneError(f"--threads must be a whole number from 1; found {wrong[0]}.")
+    ranks = options.ranks or (1,)
+    refuse_ranks(options.name, ranks)
     rates, wanted = [], JsonFile(options.json, ("name", "case", "rate"))
     for number, case in cases:
-        for count in threads:
-            print(f"{case.name}, threads: {count} ... ", end="", flush=True)
-            rates.append(run_case(options.name, number, count))
+        for several, count in product(ranks, threads):
+            said = f"ranks: {several}, " if options.ranks else ""
+            print(f"{case.name}, {said}threads: {count} ... ", end="", flush=True)
+            rates.append(run_case(options.name, number, count, several))
             print(f"{rates[-1]['rate']:.3g} {rates[-1]['unit']} a thread", flush=True)
     console().print(table(rates))
     wanted.write(rates)
     return 0
+
+
+def refuse_ranks(kind: str, ranks: Sequence[int]) -> None:
+    """Raise where a number of ranks is none, or more than a kind can have."""
+    if wrong := [count for count in ranks if count < 1]:
+        raise SceneError(f"--ranks must be a whole number from 1; found {wrong[0]}.")
+    if max(ranks) > 1 and not find(kind).ranks:
+        raise SceneError(
+            f"--ranks must be 1, for kind {kind} computes on one rank; found {max(ranks)}. Give it "
+            "threads."
+        )
 
 
 def select_cases(kind: str, name: str) -> list[tuple[int, BenchCase]]:
@@ -63,16 +81,24 @@ def usual_threads() -> Sequence[int]:
     return (1, 2) if len(os.sched_getaffinity(0)) > 1 else (1,)
 
 
-def run_case(kind: str, number: int, threads: int) -> Found:
-    """Measure a case in a child process, with memory and compiled kernels of its own."""
+def run_case(kind: str, number: int, threads: int, ranks: int = 1) -> Found:
+    """Measure a case in child processes, with memory and compiled kernels of their own."""
     with tempfile.TemporaryDirectory() as folder:
         log, file = Path(folder) / "log", Path(folder) / "found.json"
         line = ["-m", "quintet.coupler.bench.worker", kind, str(number), str(threads), str(file)]
-        process = start(line, log, threads)
+        launcher: list[str] = []
+        if ranks > 1:
+            # Start-up: only a component of several ranks needs it.
+            from quintet.coupler.launch.mpi_job import find_launcher
+
+            line = ["-m", "mpi4py", *line, str(ranks)]
+            launcher = [*find_launcher(), "-n", str(ranks)]
+        process = start(line, log, threads, launcher=launcher)
         try:
             status = process.wait()
         finally:
-            process.kill()
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)  # ranks too
         if status:
             lines = "\n".join(f"    {text}" for text in tail(log))
             raise QuintetError(f"bench {kind}: it ended with status {status}:\n{lines}")
@@ -80,22 +106,26 @@ def run_case(kind: str, number: int, threads: int) -> Found:
 
 
 def table(rates: Sequence[Found]) -> Table:
-    """One row for each case and number of threads."""
+    """One row for each case and number of ranks and threads; ranks if any case has several."""
     screen_table = Table(box=None, pad_edge=False)
-    heads = ("case", "items", "threads", "per CPU-s", "per s", "speed-up", "unit", "bytes/item")
+    several = any(row["ranks"] > 1 for row in rates)
+    cores = ("ranks", "threads") if several else ("threads",)
+    rest = ("waits",) if several else ()
+    heads = ("case", "items", *cores, "per CPU-s", "per s", "speed-up", "unit", "bytes/item", *rest)
     for head in heads:
         screen_table.add_column(head, justify="left" if head in ("case", "unit") else "right")
-    alone = {row["case"]: row["wall_rate"] for row in rates if row["threads"] == 1}
+    alone = {row["case"]: row["wall_rate"] for row in rates if row["threads"] == row["ranks"] == 1}
     for row in rates:
         ratio = row["wall_rate"] / alone[row["case"]] if row["case"] in alone else 0.0
         screen_table.add_row(
             row["case"],
             str(row["items"]),
-            str(row["threads"]),
+            *(str(row[name]) for name in cores),
             f"{row['rate']:.3g}",
             f"{row['wall_rate']:.3g}",
             f"{ratio:.2f}" if ratio else "",
             row["unit"],
             f"{row['bytes_per_item']:.0f}",
+            *(f"{row['waits']:.1%}" for _ in rest),
         )
     return screen_table

@@ -1,6 +1,8 @@
 """Worker process of a benchmark: measures one case.
 
-``python -m quintet.coupler.bench.worker KIND NUMBER THREADS FILE`` writes its result into FILE.
+``python -m quintet.coupler.bench.worker KIND NUMBER THREADS FILE`` writes its result into FILE. As
+ranks of an MPI job, started with their number as a last argument, its processes measure a component
+that they share out; rank 0 writes what holds for all.
 The component is made twice. The first compiles all kernels and is dropped; what the process's
 resident memory grows by until the second has made its lists and come through its first steps is
 the component's own.
@@ -18,27 +20,68 @@ from typing import Any
 from quintet.interfaces.component import Component, fields_of
 from quintet.interfaces.manifest import BenchCase, Manifest, find, look_in
 from quintet.interfaces.serving.process import build
+from quintet.interfaces.waited import WAITED
 
 
-def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]:
+class Job:
+    """The processes of a benchmark; this one, if it is no MPI job."""
+
+    rank, size = 0, 1
+    communicator: Any = None
+
+    def sums(self, *numbers: float) -> tuple[float, ...]:
+        """Sums over all processes."""
+        return numbers
+
+    def waited(self) -> float:
+        """How long [s] this process has waited for others."""
+        return 0.0
+
+
+class MpiJob(Job):
+    """The ranks of an MPI job that share a component out."""
+
+    def __init__(self) -> None:
+        # Only a component of several ranks needs it.
+        from mpi4py import MPI
+
+        self.communicator = MPI.COMM_WORLD
+        self.rank, self.size = self.communicator.rank, self.communicator.size
+
+    def sums(self, *numbers: float) -> tuple[float, ...]:
+        """Sums over all processes."""
+        return tuple(self.communicator.allreduce(number) for number in numbers)
+
+    def waited(self) -> float:
+        """How long [s] this process has waited for others."""
+        return WAITED.seconds
+
+
+def measure(manifest: Manifest, case: BenchCase, threads: int, ranks: Job) -> dict[str, Any]:
     """Time one case; return its entry of ``quintet bench --json``."""
     order = {"params": case.params, "threads": threads}
-    component = begin(manifest, order, case)
+    component = begin(manifest, order, case, ranks)
     advance(component, case.warm, case)
     del component
     before = resident()
-    component = begin(manifest, order, case)
+    component = begin(manifest, order, case, ranks)
     advance(component, case.warm, case)
-    growth = resident() - before
+    (growth,) = ranks.sums(resident() - before)
     items = component.items()
-    spent, began = time.process_time(), time.perf_counter()
+    waited, spent, began = ranks.waited(), time.process_time(), time.perf_counter()
     advance(component, case.steps, case)
-    wall, cpu = time.perf_counter() - began, time.process_time() - spent
+    # A rank that waits polls.
+    idle = ranks.waited() - waited
+    cpu = time.process_time() - spent - idle
+    wall = time.perf_counter() - began
+    cpu, idle = ranks.sums(cpu, idle)
     return {
         "name": manifest.kind,
         "case": case.name,
         "items": items,
+        "ranks": ranks.size,
         "threads": threads,
+        "waits": idle / (wall * ranks.size),  # share of the time of all ranks, for each other
         "rate": items * case.steps / cpu,  # per second of processor time, that of all threads
         "wall_rate": items * case.steps / wall,
         "unit": case.unit,
@@ -49,9 +92,9 @@ def measure(manifest: Manifest, case: BenchCase, threads: int) -> dict[str, Any]
     }
 
 
-def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase) -> Component:
+def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase, ranks: Job) -> Component:
     """Make the component with the ports and fields of the case."""
-    component = build(manifest, order)
+    component = build(manifest, order, ranks.communicator)
     joined = frozenset(key.partition(".")[0] for key in (*case.static, *case.fields))
     component.bind(case.static, joined)
     component.take(case.fields)
@@ -76,8 +119,9 @@ def resident() -> int:
 
 
 if __name__ == "__main__":
-    kind, number, threads, file = sys.argv[1:]
+    kind, number, threads, file, *several = sys.argv[1:]
     look_in([str(Path.cwd())] if ":" in kind else [])
-    known = find(kind)
-    result = measure(known, known.cases()[int(number)], int(threads))
-    Path(file).write_text(json.dumps(result))
+    known, job = find(kind), MpiJob() if several else Job()
+    result = measure(known, known.cases()[int(number)], int(threads), job)
+    if job.rank == 0:
+        Path(file).write_text(json.dumps(result))

@@ -6,6 +6,7 @@ from pathlib import Path
 from quintet.coupler.cli.options import FOR_PROGRAMS, PRESET, Command, add_settings
 
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
+RANKS = "MPI ranks that share the component out, may be repeated; 1 if not given"
 PARAMS = "its parameters in TOML, in place of cases; a table conform in it has what it takes"
 
 
@@ -15,6 +16,7 @@ def add_commands(command: Command) -> None:
     speed.add_argument("name", help="the word exchange, or a kind of component")
     speed.add_argument("--case", default="", help="one of the component's cases; all if not given")
     speed.add_argument("--threads", type=int, action="append", metavar="N", help=THREADS)
+    speed.add_argument("--ranks", type=int, action="append", metavar="N", help=RANKS)
     speed.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)
     speed.add_argument(
         "--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given"

@@ -7,21 +7,13 @@ from typing import Any
 from mpi4py import MPI
 
 from quintet.interfaces.errors import LineError
+from quintet.interfaces.waited import WAITED
 
 # s; ranks that others wait for may compute long. One that is dead or hangs is noticed earlier, by
 # the coupler, which then ends all ranks of the component.
 LONGEST = 86400.0
 SOON = 200  # polls, some 50 µs, in which another rank answers that is as far
 OFTEN = 1000  # polls between two looks at the clock
-
-
-class Waited:
-    """How long this process has waited for others."""
-
-    seconds = 0.0
-
-
-WAITED = Waited()
 
 
 def wait(*requests: Any) -> None:

@@ -5,7 +5,7 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.domain.waiting import WAITED
+from quintet.interfaces.waited import WAITED
 
 Whole = NDArray[np.int64]
 PER_SECOND = 1e10  # unit of weights: 0.1 ns of a step

@@ -68,7 +68,9 @@ class MirroredBoundary:
 
     def follow_samples(self, state: State, fields: Fields) -> None:
         """Follow mirror points; set the stiffness of the potential where samples are now."""
-        state.mirror_point[self.samples.row - state.fluid] = fields["surface.mirror"][self.samples.number]
+        state.mirror_point[self.samples.row - state.fluid] = fields["surface.mirror"][
+            self.samples.number
+        ]
         if len(self.by_potential):
             rows, body = self.samples.row[self.by_potential], self.samples.body[self.by_potential]
             self.stable_dt = self.stiffness.write(state, rows, body)

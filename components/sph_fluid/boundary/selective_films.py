@@ -27,7 +27,11 @@ class SelectiveFilms:
     """The films of one fluid, once a body needs one; a note where there can be none."""
 
     def __init__(
-        self, params: SphFluidParams, samples: Samples, ranks: Ranks, make_films: Callable[[], Films]
+        self,
+        params: SphFluidParams,
+        samples: Samples,
+        ranks: Ranks,
+        make_films: Callable[[], Films],
     ) -> None:
         self.params, self.samples, self._make_films = params, samples, make_films
         self.ranks = ranks

@@ -1,16 +1,19 @@
 """The rows of a state as two groups of columns: the fluid's, and those of walls and samples."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
-from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.components.sph_fluid.state import State, Whole
 
-Columns = dict[str, Array]
+Columns = dict[str, NDArray[Any]]
 
 
 def fluid_columns(state: State) -> Columns:
     """What the state has of each fluid particle, by the names of its arrays."""
     rows = slice(state.fluid)
-    columns = {
+    columns: Columns = {
         "position_density": state.position_density[rows],
         "velocity_pressure": state.velocity_pressure[rows],
         "previous_density_rate": state.previous_density_rate[rows],
@@ -26,7 +29,7 @@ def fluid_columns(state: State) -> Columns:
 def boundary_columns(state: State, are_mirrored: bool) -> Columns:
     """What the state has of each wall or sample particle, by the names of its arrays."""
     rows = slice(state.fluid, state.particles)
-    columns = {
+    columns: Columns = {
         "position_density": state.position_density[rows],
         "velocity_pressure": state.velocity_pressure[rows],
         "previous_density_rate": state.previous_density_rate[rows],

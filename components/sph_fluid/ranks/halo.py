@@ -4,6 +4,7 @@ A rank has copies of all rows within reach of the box around the points that it 
 ranks' parts of space are boxes too, so that these are hardly more than it needs.
 """
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -144,7 +145,8 @@ class HaloAndImages:
 
     def write_values(self, values: NDArray[np.floating], rows: int) -> None:
         """Write copies and images of values (rows + copies + images,)."""
-        self._exchange(values.reshape(-1, 1))
+        column: Array = values.reshape(-1, 1)  # type: ignore[assignment]
+        self._exchange(column)
         self._images.write_values(values, rows + self._copies)
 
     def reflect_crossed(self, state: State) -> None:
@@ -183,7 +185,7 @@ def _merged(keys: Whole, copies: Array) -> Whole:
 def _blocks(parts: list[Array], first: int) -> tuple[list[Whole], int]:
     """Rows into which blocks go, one after another from a first row on, and the next row."""
     ends = first + np.cumsum([0, *map(len, parts)])
-    return [np.arange(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)], int(ends[-1])
+    return [np.arange(a, b) for a, b in pairwise(ends)], int(ends[-1])
 
 
 def _renamed(origin: Whole, row: Whole) -> Whole:

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.collection import collect
+from quintet.components.shared.domain.cuts import cut_between_rows, owners
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import added, counted, greatest, least
-from quintet.components.shared.domain.layers import cut_between_rows, owners
 from quintet.components.shared.domain.migration import migrate
 from quintet.components.shared.domain.work import Work
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
@@ -59,6 +59,7 @@ class SeveralRanks:
         self.rank, self._work = communicator.rank, Work()
         self._shared = False  # whether each rank has its part alone
         self._fluid = 0  # of all ranks
+        self._number: Whole = _no_keys()  # (boundary,) of this rank's rows, in `BoundaryOrder`
 
     def begin_step(self) -> None:
         """Begin to measure how long this rank computes."""
@@ -211,17 +212,16 @@ class SeveralRanks:
     def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
         """Rows of all ranks that are near, on rank 0; on others none."""
         rows = np.flatnonzero(is_near(state.position_density[: state.particles]))
-        if self._shared:
-            keys = np.concatenate([self._keys.fluid, self._keys.boundary])[rows]
-            keys += np.where(rows < state.fluid, np.int64(-1) << 62, 0)  # the fluid first
-            found = [state.position_density.take(rows, 0), state.velocity_pressure.take(rows, 0)]
-            keys, position, velocity = (
-                collect(self._communicator, part) for part in (keys, *found)
-            )
-            order = np.argsort(keys, kind="stable")
-            return NearRows(position[order], velocity[order], int(np.count_nonzero(keys < 0)))
-        found = [state.position_density.take(rows, 0), state.velocity_pressure.take(rows, 0)]
-        return NearRows(*found, int(np.count_nonzero(rows < state.fluid)))
+        position = state.position_density.take(rows, 0)
+        velocity = state.velocity_pressure.take(rows, 0)
+        if not self._shared:
+            return NearRows(position, velocity, int((rows < state.fluid).sum()))
+        keys = np.concatenate([self._keys.fluid, self._keys.boundary])[rows]
+        keys += np.where(rows < state.fluid, np.int64(-1) << 62, 0)  # the fluid first
+        keys = collect(self._communicator, keys)
+        position, velocity = (collect(self._communicator, part) for part in (position, velocity))
+        order = np.argsort(keys, kind="stable")
+        return NearRows(position[order], velocity[order], int((keys < 0).sum()))
 
 
 def _places_of(number: Whole, grid: Grid) -> Whole:

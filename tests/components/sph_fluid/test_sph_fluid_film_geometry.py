@@ -81,7 +81,7 @@ def test_body_water_and_what_lies_across_press_the_whole_face() -> None:
     film, state = one.films.films, one.state
     wet = np.empty(len(film.row))
     place = state.position_density[state.fluid :]
-    row = find_faces(state, one.ranks, SPACING).row[film.row]
+    row = find_faces(state, one.all_ranks, SPACING).row[film.row]
     foot = place[row, :3] - [0.5 * SPACING, 0.0, 0.0]  # on the right block's left face
     lists, numbers = one.lists.arrays, one.constants
     write_fluid_share(row, foot, state.fluid, state.position_density, lists, numbers, wet)

@@ -68,3 +68,21 @@ def test_the_cases_of_every_kind_are_valid(kind):
     assert cases
     for case in cases:
         assert not read(known.params, case.params, case.name)[1]
+
+
+@pytest.mark.mpi
+def test_ranks_that_share_a_component_are_compared_with_one(tmp_path, capsys):
+    file = tmp_path / "found.json"
+    arguments = ("--case", "vortex, 10k nodes, 9 neighbours", "--threads", 1, "--json", file)
+    assert bench("meshless_gas", *arguments, "--ranks", 1, "--ranks", 2) == 0
+    one, two = json.loads(file.read_text())
+    assert (one["ranks"], two["ranks"], one["waits"]) == (1, 2, 0.0)
+    assert two["items"] == one["items"] and 0.0 < two["waits"] < 1.0
+    assert "ranks" in capsys.readouterr().out
+
+
+def test_ranks_of_a_kind_that_has_one_are_refused(capsys, beside_the_toys):
+    assert bench(KIND, "--ranks", 2) == 2
+    assert f"for kind {KIND} computes on one rank; found 2" in capsys.readouterr().err
+    assert bench(KIND, "--ranks", 0) == 2
+    assert "--ranks must be a whole number from 1; found 0." in capsys.readouterr().err

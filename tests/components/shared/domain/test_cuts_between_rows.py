@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from quintet.components.shared.domain import layers
-from quintet.components.shared.domain.layers import cut_between_rows, owners
+from quintet.components.shared.domain import cuts
+from quintet.components.shared.domain.cuts import cut_between_rows, owners
 from quintet.interfaces.errors import StepError
 
 
@@ -18,7 +18,7 @@ class Alone:
 @pytest.fixture(autouse=True)
 def all_rows_here(monkeypatch):
     for name in ("greatest", "least", "counted"):
-        monkeypatch.setattr(layers, name, lambda _, numbers: numbers)
+        monkeypatch.setattr(cuts, name, lambda _, numbers: numbers)
 
 
 def box(*sides):
