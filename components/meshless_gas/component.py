@@ -126,9 +126,9 @@ class MeshlessGas(Component):
     def _advance(self, dt: float, old: float, new: float) -> None:
         """Advance all nodes by a stage; those of walls of symmetry move along them."""
         domain, state, work = self.motion.domain, self.state, self.fluxes
-        own = self.all_ranks.share(domain).inner
+        nodes = self.all_ranks.share(domain).inner
         wrong = max(self.team.run(
-            advance, len(own), own, work.start, work.residual, dt,
+            advance, len(nodes), nodes, work.start, work.residual, dt,
             self.scheme.steps, old, new, self.params.gas.gamma, state.conservative, work.primitive,
             fewest=LIGHT,
         ))  # fmt: skip

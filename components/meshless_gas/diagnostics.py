@@ -53,11 +53,11 @@ def balance(
 
 def density_change(state: State, domain: Domain, fluxes: Fluxes, team: Team, ranks: Ranks) -> float:
     """Root mean square of the relative change of densities in the nodes' own steps."""
-    changes, own = fluxes.changes[: len(domain.inner)], ranks.share(domain).inner
+    changes, nodes = fluxes.changes[: len(domain.inner)], ranks.share(domain).inner
     first = ranks.first(domain)
     team.run(
-        write_changes, len(own), own, fluxes.residual, fluxes.bounds, state.conservative,
-        changes[first : first + len(own)], fewest=LIGHT,
+        write_changes, len(nodes), nodes, fluxes.residual, fluxes.bounds, state.conservative,
+        changes[first : first + len(nodes)], fewest=LIGHT,
     )  # fmt: skip
     ranks.gather_values(domain, changes)
     return float(np.sqrt(changes.mean()))

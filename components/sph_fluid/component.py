@@ -54,7 +54,7 @@ class SphFluid(Component):
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.boundary = features.boundary_method(params, self.samples)
         self.boundary.start(self.state)
-        self.all_ranks, self.symmetry = features.ranks(params, resources, self.samples)
+        self.all_ranks, self.symmetry = features.ranks(params, resources)
         self.lists = FluidLists(params, self.samples, self.all_ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
         precision, joined = features.precision(params), (self.boundary, self.symmetry)
@@ -149,7 +149,7 @@ class SphFluid(Component):
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         self.pairs.push_samples(self.state, self.team)
         if len(self.samples.volume):
-            self.all_ranks.gather_forces(self.state)
+            self.all_ranks.gather_forces(self.state, self.samples.number)
         self.films.advance(self.state, self.lists.arrays, dt)
         self.pairs.move_with_neighbours(self.state, dt, self.team)
 

@@ -60,9 +60,7 @@ def contact_stiffness(params: SphFluidParams) -> "ContactStiffness":
     return ContactStiffness(params)
 
 
-def ranks(
-    params: SphFluidParams, resources: Resources, samples: Samples
-) -> tuple[Ranks, SymmetryPlanes]:
+def ranks(params: SphFluidParams, resources: Resources) -> tuple[Ranks, SymmetryPlanes]:
     """The ranks that share the fluid, and its planes of symmetry, with copies of others' rows."""
     communicator = resources.communicator
     if communicator is None or communicator.size == 1:
@@ -77,7 +75,7 @@ def ranks(
     keys, edge = Keys(), params.boundary
     planes = [Plane.of_face(face, edge.tank) for face in sorted(set(edge.symmetry)) if edge.tank]
     return (
-        SeveralRanks(communicator, keys, samples),
+        SeveralRanks(communicator, keys),
         HaloAndImages(communicator, keys, planes),
     )
 

@@ -39,6 +39,7 @@ MANIFEST = Manifest(
     component="quintet.components.sph_solid.component:SphSolid",
     ports=ports,
     shows=SHOWS,
+    ranks=True,
     plan=plan,
     bench="quintet.components.sph_solid.bench:cases",
     conform="quintet.components.sph_solid.conform:cases",

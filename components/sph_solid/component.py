@@ -9,7 +9,7 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
 from quintet.components.sph_solid.build import gauged, initial_state, materials, pair_law
 from quintet.components.sph_solid.diagnostics import failure, totals
-from quintet.components.sph_solid.features import pair_sums
+from quintet.components.sph_solid.features import pair_sums, ranks
 from quintet.components.sph_solid.gauges import bodies, gauges, levels
 from quintet.components.sph_solid.glue import add_work, glued_rows, pull, release, write_forces
 from quintet.components.sph_solid.judgement import ENERGY_EVERY, Judge
@@ -24,6 +24,7 @@ from quintet.components.sph_solid.method import viscosity_note
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS
+from quintet.components.sph_solid.ranks.method import extremes
 from quintet.components.sph_solid.state import Array, State
 from quintet.components.sph_solid.view import view
 from quintet.interfaces.component import (
@@ -38,6 +39,7 @@ from quintet.interfaces.errors import StepError
 
 FEWEST = 500  # particles that are worth handing to another thread
 LOAD = "glued_load.force"
+NEEDED_BY_TOTALS = ("position", "velocity", "volume", "material", "energy", "glue")
 
 
 class SphSolid(Component):
@@ -60,7 +62,8 @@ class SphSolid(Component):
         self.state = initial_state(params, laws, numbers)
         self.judge = Judge(self.state, laws, params)
         self.gauged = gauged(self.state.position, params)
-        self.lists = SolidLists(params, self.team)
+        self.all_ranks = ranks(params, resources)
+        self.lists = SolidLists(params, self.team, self.all_ranks)
         self.sums = pair_sums(params, self.team)
         self.is_carried = False  # whether a mesh carries the glued particles
         self._begin()
@@ -69,10 +72,12 @@ class SphSolid(Component):
         """Return positions and masses of glued particles."""
         if not self.params.glued:
             return {}
-        rows = glued_rows(self.state)
+        state, rows = self.state, glued_rows(self.state)
+        columns = np.column_stack([state.position[rows], self.materials.mass(state)[rows]])
+        of_all = self.all_ranks.all_rows(state.glue[rows], columns)
         return {
-            "glued_load.position": self.state.position[rows],
-            "glued_load.mass": self.materials.mass(self.state)[rows],
+            "glued_load.position": of_all[:, :3].copy(),
+            "glued_load.mass": of_all[:, 3].copy(),
         }
 
     def bind(self, static: Fields, joined: Keys) -> None:
@@ -87,15 +92,17 @@ class SphSolid(Component):
         """Set which particles are still glued, and their velocities in the coming step."""
         state = self.state
         if "glue_activity.active" in fields:
-            release(state, fields["glue_activity.active"], self.materials.mass(state))
+            active, mass = fields["glue_activity.active"], self.materials.mass(state)
+            release(state, active, mass, self.all_ranks)
         if "glued.velocity" in fields:
             state.pulled[:] = fields["glued.velocity"] * state.active[:, None]
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]; stresses follow the motion in the step's middle."""
         state, rows = self.state, self.rows
+        self.all_ranks.begin_step()
         if state.steps % ENERGY_EVERY == 0:
-            self.judge.note(state, self.materials.mass(state), self.sums, self.params.gravity)
+            self._judge()
         pull(state)
         add_work(state, dt)
         displaced = self.team.run(
@@ -104,7 +111,8 @@ class SphSolid(Component):
             rows.motion,
         )  # fmt: skip
         ends = np.array(displaced)
-        spread = self.lists.spread(ends[:, :3].min(axis=0), ends[:, 3:].max(axis=0))
+        low, high = extremes(self.all_ranks, ends[:, :3], ends[:, 3:])
+        spread = self.lists.spread(low, high)
         if self.lists.may_miss(state, spread, rows.place[: state.particles], dt):
             self._search(dt)
         self._write_gradients()
@@ -128,12 +136,22 @@ class SphSolid(Component):
         state.time += dt
         state.steps += 1
         add_work(state, dt)
-        if not math.isfinite(sum(squares)):
-            raise StepError(failure(state, self.params, dt))
+        wrong = float(not math.isfinite(sum(squares)))
+        if self.all_ranks.greatest(np.array([wrong]))[0]:
+            raise StepError(failure(self.all_ranks.whole(state), self.params, dt))
+        self.all_ranks.end_step()
+
+    def _judge(self) -> None:
+        """Take down signs of wrong results, which are judged of all particles on rank 0."""
+        whole = self.all_ranks.whole(self.state)
+        if not self.all_ranks.rank:
+            mass = self.materials.mass(whole)
+            self.judge.note(whole, mass, self.sums, self.params.gravity)
+        self.all_ranks.agree(self.state, whole)
 
     def warnings(self) -> Mapping[str, str]:
         """Reasons why the results may be wrong: energy that appears, numerical fracture."""
-        return self.judge.warnings(self.state)
+        return self.judge.warnings(self.state, self.all_ranks)
 
     def notes(self) -> tuple[str, ...]:
         """Settings that would be better for a slow impact."""
@@ -144,7 +162,7 @@ class SphSolid(Component):
         """Find accelerations and the stable step at the start, where nothing is strained."""
         state = self.state
         self.lists.widen(state, 0.0)
-        self.lists.sort(state, state.position)
+        self.all_ranks.sort(state, state.position)
         self._list()
         self.rows.fill(state, state.position, state.failed)
         self._write_gradients()
@@ -156,13 +174,14 @@ class SphSolid(Component):
         """Sort particles by their places in the middle of a step of dt [s], and list neighbours."""
         state = self.state
         self.lists.reflect(state)
-        low, high = state.velocity.min(axis=0), state.velocity.max(axis=0)
+        low, high = extremes(self.all_ranks, state.velocity, state.velocity)
         spread = dt * self.lists.spread(low, high)
         middle = state.position + 0.5 * dt * state.velocity
-        if self.lists.is_unstable(spread) or not np.isfinite(middle).all():
-            raise StepError(failure(state, self.params, dt))
+        wrong = float(self.lists.is_unstable(spread) or not np.isfinite(middle).all())
+        if self.all_ranks.greatest(np.array([wrong]))[0]:
+            raise StepError(failure(self.all_ranks.whole(state), self.params, dt))
         self.lists.widen(state, spread)
-        self.lists.sort(state, middle)
+        self.all_ranks.sort(state, middle)
         self._list()
         self.rows.fill(state, state.reference, state.failed)
 
@@ -190,10 +209,11 @@ class SphSolid(Component):
         images.write_vectors(rows.motion, count)
         images.write_tensors(rows.stress, count)
         forces = Forces(state.acceleration, state.heating)
-        state.bound = self.sums.write_accelerations(rows, self.law, forces)
+        bound = self.sums.write_accelerations(rows, self.law, forces)
+        state.bound = -float(self.all_ranks.greatest(np.array([-bound]))[0])
         if len(self.fixed_rows):
             state.acceleration[self.fixed_rows] *= self.moves
-        write_forces(state, self.materials.mass(state))
+        write_forces(state, self.materials.mass(state), self.all_ranks)
         if any(self.params.gravity):
             state.acceleration += self.params.gravity
             state.acceleration[self.fixed_rows] *= self.moves
@@ -204,6 +224,10 @@ class SphSolid(Component):
         """Copy out forces on glued particles, and readings of bodies, gauges and levels."""
         state, values = self.state, dict[str, Array]()
         ports_wanted = {key.partition(".")[0] for key in wanted}
+        if ports_wanted - {LOAD.partition(".")[0]}:
+            state = self.all_ranks.whole(state)
+        if self.all_ranks.rank:  # rank 0 answers
+            return dict.fromkeys(wanted, np.zeros(0))
         if "bodies" in ports_wanted:
             values.update(bodies(state, self.materials.mass(state), self.params))
         if "gauges" in ports_wanted:
@@ -218,16 +242,19 @@ class SphSolid(Component):
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
-        return self.state.save()
+        return self.all_ranks.whole(self.state).save()
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
         self.state = State.load(state)
+        self.all_ranks.load(self.state)
         self._list()
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, without the motion of particles that a mesh carries."""
-        state = self.state
+        state = self.all_ranks.whole(self.state, NEEDED_BY_TOTALS)
+        if self.all_ranks.rank:  # rank 0 answers
+            return Totals()
         carried = glued_rows(state, attached=True)[: None if self.is_carried else 0]
         sums = totals(state, self.materials.mass(state), carried, self.params.gravity)
         if self.params.axisymmetric:  # the other half of a ring moves the other way
@@ -236,8 +263,8 @@ class SphSolid(Component):
 
     def view(self) -> Fields:
         """Particles in the order of their birth, with stress, strain and damage."""
-        return view(self.state)
+        return view(self.all_ranks.whole(self.state))
 
     def items(self) -> int:
         """Count the particles."""
-        return self.state.particles
+        return self.all_ranks.particles(self.state)

@@ -2,10 +2,27 @@
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.method import method
+from quintet.components.sph_solid.neighbours import symmetry_planes
 from quintet.components.sph_solid.pair_sums import CurrentSums, PairSums
 from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.ranks.method import Ranks
+from quintet.components.sph_solid.ranks.one import OneRank
+from quintet.interfaces.component import Resources
 
 PENALTY = 1.0  # α of Ganzenmüller's force against motion that no deformation sees
+
+
+def ranks(params: SphSolidParams, resources: Resources) -> Ranks:
+    """The ranks that share the particles, with planes of symmetry."""
+    communicator, planes = resources.communicator, symmetry_planes(params)
+    if communicator is None or communicator.size == 1:
+        return OneRank(planes)
+    # Only a solid of several ranks loads mpi4py.
+    from quintet.components.sph_solid.ranks.refusal import refuse_what_needs_one_rank
+    from quintet.components.sph_solid.ranks.several import SeveralRanks
+
+    refuse_what_needs_one_rank(params, communicator.size)
+    return SeveralRanks(communicator, planes)
 
 
 def pair_sums(params: SphSolidParams, team: Team) -> PairSums:

@@ -5,23 +5,28 @@ Their rows in ports keep the order of the start. All functions do nothing withou
 
 import numpy as np
 
+from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.state import Array, State, Whole
 
 
 def glued_rows(state: State, attached: bool = False) -> Whole:
-    """Rows of all particles that were glued at the start, or of those still attached."""
+    """Rows of particles that were glued at the start, or of those still attached; in port order.
+
+    Which of all they are is in `state.glue`: one rank has all, of several each has its own.
+    """
     rows = np.flatnonzero(state.glue >= 0)
     rows = rows[np.argsort(state.glue[rows])]
-    return rows[state.active > 0.0] if attached else rows
+    return rows[state.active[state.glue[rows]] > 0.0] if attached else rows
 
 
-def release(state: State, active: Array, mass: Array) -> None:
+def release(state: State, active: Array, mass: Array, ranks: Ranks) -> None:
     """Set which are attached (glued,), with masses (n,) kg; released ones bring their motion."""
-    freed = np.flatnonzero(active < state.active)
-    if len(freed):
-        rows = glued_rows(state)[freed]
-        squares = (state.velocity[rows] ** 2).sum(axis=1)
-        state.work += 0.5 * float(mass[rows] @ squares)
+    if (active < state.active).any():
+        rows = glued_rows(state)
+        rows = rows[(active < state.active)[state.glue[rows]]]
+        columns = np.column_stack([mass[rows], (state.velocity[rows] ** 2).sum(axis=1)])
+        masses, squares = np.ascontiguousarray(ranks.all_rows(state.glue[rows], columns).T)
+        state.work += 0.5 * float(masses @ squares)
     state.active[:] = active
 
 
@@ -29,7 +34,7 @@ def pull(state: State) -> None:
     """Give attached particles the velocities of this step."""
     if len(state.active):
         rows = glued_rows(state, attached=True)
-        state.velocity[rows], state.acceleration[rows] = state.pulled[state.active > 0.0], 0.0
+        state.velocity[rows], state.acceleration[rows] = state.pulled[state.glue[rows]], 0.0
 
 
 def add_work(state: State, dt: float) -> None:
@@ -38,9 +43,9 @@ def add_work(state: State, dt: float) -> None:
         state.work -= 0.5 * dt * float((state.force * state.pulled).sum())
 
 
-def write_forces(state: State, mass: Array) -> None:
+def write_forces(state: State, mass: Array, ranks: Ranks) -> None:
     """Write the forces [N] of attached particles, without gravity, of masses (n,) kg."""
     if len(state.active):
         rows = glued_rows(state)
-        force = mass[rows, None] * state.acceleration[rows]
+        force = ranks.all_rows(state.glue[rows], mass[rows, None] * state.acceleration[rows])
         state.force[:] = force * state.active[:, None]

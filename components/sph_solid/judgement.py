@@ -22,6 +22,7 @@ from quintet.components.sph_solid.glue import glued_rows
 from quintet.components.sph_solid.method import method, viscosity_warning
 from quintet.components.sph_solid.pair_sums import PairSums
 from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.params import Vector
 
@@ -109,13 +110,13 @@ class Judge:
             heat += float((internal - stored_energy(state, rows, self.laws[k])).sum())
         state.viscous[:] = heat, min(heat, state.viscous[1])
 
-    def warnings(self, state: State) -> dict[str, str]:
+    def warnings(self, state: State, ranks: Ranks) -> dict[str, str]:
         """Reasons why the results may be wrong, by subject."""
         viscosity = viscosity_warning(self.params)
         texts = {"viscosity": viscosity} if viscosity else {}
         turned = float((state.ranges[:, 1] - state.ranges[:, 0]).max())
         stiff = state.volume * state.sound**2 * self.density[state.material]
-        least = STILL * float(stiff.sum())
+        least = STILL * float(ranks.sums(state, [stiff])[0])
         if turned > max(least, NEGLIGIBLE * float(np.abs(state.ranges).max())):
             texts |= _of_energy(state, turned, self.params)
         if state.torn[0] > FEWEST_LOST * len(self.bonds):

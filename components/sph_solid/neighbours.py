@@ -3,25 +3,15 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from quintet.components.shared.search.cells import grid_around, sorted_into
-from quintet.components.shared.search.neighbours import (
-    Lists,
-    NeighbourLists,
-    neighbours_within,
-)
+from quintet.components.shared.search.neighbours import Lists, NeighbourLists
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
-from quintet.components.shared.symmetry import (
-    ODD_OF_SIX,
-    Plane,
-    SymmetryImages,
-    neighbours_and_images,
-)
+from quintet.components.shared.symmetry import ODD_OF_SIX, Plane
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.kernels.motion import meets_unlisted
 from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.state import Array, Rows, State, Whole
 
 # The cost of a step is least with a skin of about this times the root of what particles approach
@@ -38,7 +28,7 @@ WIDER = 0.1  # of its radius, that a ring may move
 class SolidLists:
     """Neighbours of every particle, among particles and their images."""
 
-    def __init__(self, params: SphSolidParams, team: Team) -> None:
+    def __init__(self, params: SphSolidParams, team: Team, ranks: Ranks) -> None:
         self.support = SUPPORT * params.length
         self.team = team
         settings = method(params)
@@ -48,12 +38,8 @@ class SolidLists:
         self.width = (
             16 if params.artificial_stress > 0.0 else 12 if settings.kernel_correction else 8
         )
-        planes = [
-            Plane(plane.axis + ("-" if plane.side == "+" else "+"), "xyz".index(plane.axis),
-                  plane.position, 1.0 if plane.side == "+" else -1.0)
-            for plane in params.symmetry
-        ]  # fmt: skip
-        self.images = SymmetryImages(planes)
+        planes = ranks.images.planes
+        self.ranks, self.images = ranks, ranks.images
         axis = [Plane("x-", 0, 0.0, 1.0)] if params.axisymmetric else []
         self.mirrors = [*planes, *axis]  # what moves towards one meets what moves the other way
         self.is_axisymmetric = params.axisymmetric
@@ -98,21 +84,29 @@ class SolidLists:
         places = np.ascontiguousarray(middle[:, :3]), state.position + dt * state.velocity
         moved = [place - state.reference for place in places]
         if not self.mirrors:
-            moved = [shift - shift.mean(axis=0) for shift in moved]
+            columns = [column for shift in moved for column in shift.T]
+            mean = self.ranks.sums(state, columns) / self.ranks.particles(state)
+            moved = [moved[0] - mean[:3], moved[1] - mean[3:]]
         furthest = np.maximum(*((shift * shift).sum(axis=1) for shift in moved))
         skin = state.reach - self.support
         fast = np.flatnonzero(furthest > 0.25 * skin * skin)
-        if len(fast) > FEW:
+        # The fast ones of all ranks, and then this rank's own particles.
+        columns = [place[fast] for place in (*places, state.reference)]
+        of_all = self.ranks.all_rows(state.identity[fast], np.concatenate(columns, axis=1))
+        if len(of_all) > FEW:
             return True
         for plane in self.mirrors:
-            for place in places:
-                depth = plane.inward * (place[fast, plane.axis] - plane.position)
+            for place in (of_all[:, :3], of_all[:, 3:6]):
+                depth = plane.inward * (place[:, plane.axis] - plane.position)
                 if (depth < self.support).any():
                     return True
         if self.is_axisymmetric:  # rings have their cuts of the radius that they had
             if (np.abs(moved[1][fast, 0]) > WIDER * state.reference[fast, 0]).any():
                 return True
-        return meets_unlisted(fast, *places, state.reference, self.support, skin)
+        parts = zip(np.split(of_all, 3, axis=1), (*places, state.reference), strict=True)
+        arrays = [np.concatenate(part) for part in parts]
+        meets = meets_unlisted(np.arange(len(of_all)), *arrays, self.support, skin)
+        return bool(self.ranks.greatest(np.array([float(meets)]))[0])
 
     def is_unstable(self, spread: float) -> bool:
         """Whether no stable step lets two particles approach each other by so much [m]."""
@@ -123,12 +117,6 @@ class SolidLists:
         share = min(max(SKIN * math.sqrt(spread / self.support), LEAST), MOST)
         # Made in a step's middle, they hold to its end at least.
         state.reach = self.support + max(share * self.support, 0.51 * spread)
-
-    def sort(self, state: State, places: Array) -> None:
-        """Bring particles that are near, by places (n, 3 or more) m, into near rows."""
-        order = sorted_into(places, grid_around(places, state.reach))[2]
-        state.reference = np.ascontiguousarray(places[:, :3])
-        state.reorder(order)
 
     def reflect(self, state: State) -> None:
         """Let what has passed a plane of symmetry, or an axis, change places with its image."""
@@ -143,18 +131,11 @@ class SolidLists:
 
     def make(self, state: State) -> Rows:
         """List what is near, from where all was when it was sorted; make room for pairs."""
-        self.points = points = self.images.find(state.reference, state.reach)
-        count, buffer = state.particles, self.near.list
-        if len(points) == count:
-            self.near = neighbours_within(state.reach, points, count, self.team, None, buffer)
-        else:
-            all_alike: NDArray[np.bool_] = np.ones(len(points), bool)
-            self.near = neighbours_and_images(
-                points, all_alike, count, count, state.reach, self.team, None, buffer
-            )
+        self.points, self.near = self.ranks.neighbours(state, self.team, self.near.list)
+        count = state.particles
         if self.are_for_good and self.joined.any():
             self._part(state)
-        return Rows.empty(count, len(points) - count, self.corrected, self.width)
+        return Rows.empty(count, len(self.points) - count, self.corrected, self.width)
 
     def group(self, state: State) -> Whole:
         """Number (n,) of the bodies that are one with that of each particle."""
@@ -162,7 +143,7 @@ class SolidLists:
 
     def _part(self, state: State) -> None:
         """Let particles of bodies that are not one be no neighbours: each is its own instead."""
-        group = np.zeros(len(self.points), np.int64)
+        group = np.zeros(len(self.points))
         group[: state.particles] = self.group(state)
         self.images.write_values(group, state.particles)
         counts = self.near.end - self.near.begin
@@ -172,6 +153,15 @@ class SolidLists:
         )
         other = group[self.near.list[entry]] != group[row]
         self.near.list[entry[other]] = row[other]
+
+
+def symmetry_planes(params: SphSolidParams) -> list[Plane]:
+    """Planes of symmetry of the bodies."""
+    return [
+        Plane(plane.axis + ("-" if plane.side == "+" else "+"), "xyz".index(plane.axis),
+              plane.position, 1.0 if plane.side == "+" else -1.0)
+        for plane in params.symmetry
+    ]  # fmt: skip
 
 
 def joined(params: SphSolidParams) -> Whole:

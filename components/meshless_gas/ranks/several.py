@@ -30,9 +30,9 @@ class SeveralRanks:
         """Return a domain of which `inner` and `every` are the nodes that this rank computes."""
         if self._share is None or self._domain is not domain:
             first, last = self._part(domain, self._communicator.rank)
-            own = domain.inner[first:last]
-            needed = _needed(domain, own)
-            self._domain, self._share = domain, domain._replace(inner=own, every=needed)
+            nodes = domain.inner[first:last]
+            needed = _needed(domain, nodes)
+            self._domain, self._share = domain, domain._replace(inner=nodes, every=needed)
             self._buffers = {}
         return self._share
 
@@ -47,8 +47,8 @@ class SeveralRanks:
 
     def gather(self, domain: Domain, *arrays: Array) -> None:
         """Bring rows of nodes that are advanced, of arrays (n, 5), from the rank that did it."""
-        own = self.share(domain).inner
-        rows = np.concatenate([array.take(own, axis=0) for array in arrays], axis=1)
+        nodes = self.share(domain).inner
+        rows = np.concatenate([array.take(nodes, axis=0) for array in arrays], axis=1)
         received = self._gathered(domain, rows)
         parts = np.split(received, len(arrays), axis=1)
         for array, part in zip(arrays, parts, strict=True):
@@ -79,15 +79,15 @@ class SeveralRanks:
         return float(greatest(self._communicator, np.array([number]))[0])
 
 
-def _needed(domain: Domain, own: Array) -> Array:
+def _needed(domain: Domain, nodes: Array) -> Array:
     """Nodes whose gradients the fluxes of some nodes need: these, and all neighbours.
 
     A ghost has the gradient of the node that it is an image of.
     """
     cloud = domain.cloud
     is_needed = np.zeros(len(cloud.positions), bool)
-    is_needed[own] = True
-    is_needed[domain.stencils.neighbours[own]] = True
+    is_needed[nodes] = True
+    is_needed[domain.stencils.neighbours[nodes]] = True
     ghosts = np.flatnonzero(is_needed[cloud.nodes :])
     is_needed[cloud.owner[ghosts]] = True
     return domain.every[is_needed[domain.every]]

@@ -50,10 +50,12 @@ def cut_between_rows(communicator: Any, cells: Whole, weights: Whole) -> list[Cu
     parts = [(0, communicator.size)]
     part_of = np.zeros(len(cells), np.int64)  # first rank of the part that holds each row
     while parts := [part for part in parts if part[1] - part[0] > 1]:
-        made = _cut_all(communicator, parts, part_of, cells, weights)
-        cuts += made
-        part_of = owners(made, cells, part_of)
-        parts = [half for cut in made for half in ((cut.first, cut.second), (cut.second, cut.last))]
+        level = _cut_all(communicator, parts, part_of, cells, weights)
+        cuts += level
+        part_of = owners(level, cells, part_of)
+        parts = [
+            half for cut in level for half in ((cut.first, cut.second), (cut.second, cut.last))
+        ]
     return cuts
 
 

@@ -1,5 +1,6 @@
 """Rows that move to the rank that owns them now."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -33,20 +34,33 @@ def migrate(
     tuple of (m, *shape) arrays
         In the same order, bit for bit.
     """
+    first, *others = move(communicator, owner, (ids, *arrays))
+    order = np.argsort(first, kind="stable")  # two sorted runs where ids rose
+    return first[order], tuple(array.take(order, axis=0) for array in others)
+
+
+def move(communicator: Any, owner: Whole, arrays: Sequence[NDArray[Any]]) -> list[NDArray[Any]]:
+    """Send rows to their owners; return those that stay here, then those that arrived.
+
+    Parameters
+    ----------
+    communicator : mpi4py communicator
+    owner : (k,) int array
+        Rank that owns each row from now on.
+    arrays : sequence of (k, *shape) arrays
+        Of 8-byte numbers, float64, int64 or uint64; the same ones on every rank.
+    """
     here = owner == communicator.rank
-    columns = [_bits(array) for array in (ids, *arrays)]
-    widths = [column.shape[1] for column in columns]
+    columns = [_bits(array) for array in arrays]
+    ends = np.cumsum([column.shape[1] for column in columns])[:-1]
     leaving = [np.flatnonzero((owner == rank) & ~here) for rank in range(communicator.size)]
     packed = [np.concatenate([c[rows] for c in columns], axis=1) for rows in leaving]
     arrived = np.concatenate(send_rows(communicator, packed))
-    parts = np.split(arrived, np.cumsum(widths)[:-1], axis=1)
-    joined = [
+    parts = np.split(arrived, ends, axis=1)
+    return [
         np.concatenate([array[here], _numbers(part, array)])
-        for array, part in zip((ids, *arrays), parts, strict=True)
+        for array, part in zip(arrays, parts, strict=True)
     ]
-    order = np.argsort(joined[0], kind="stable")  # two sorted runs where ids rose
-    first, *others = (array.take(order, axis=0) for array in joined)
-    return first, tuple(others)
 
 
 def _bits(array: Array) -> Whole:

@@ -39,8 +39,8 @@ class FilmRows:
         pressure = state.velocity_pressure[rows, 3:]
         columns = [state.position_density[rows], pressure, state.mirror_point[self._rows]]
         of_all = self._ranks.all_rows(self._keys, np.concatenate(columns, axis=1))
-        own, across = (of_all[side] for side in self._sides)
-        return own, across
+        near_side, far_side = (of_all[side] for side in self._sides)
+        return near_side, far_side
 
     def fluid_share(self, state: State, foot: Array, lists: Lists, constants: Constants) -> Array:
         """Σ V W (m,) of the fluid around the feet (m, 3) m of all films."""

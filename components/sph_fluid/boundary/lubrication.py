@@ -85,16 +85,16 @@ def advance(
 ) -> None:  # fmt: skip
     """Advance films by a step [s]; add their push to the samples' force."""
     spacing, density = params.spacing, params.density
-    own, facing = rows.now(state)
-    off, back = own[:, 5:] - own[:, :3], facing[:, 5:] - facing[:, :3]
+    near_side, far_side = rows.now(state)
+    off, back = near_side[:, 5:] - near_side[:, :3], far_side[:, 5:] - far_side[:, :3]
     across = face_normals(off, back)
     below, beyond = (np.einsum("nd,nd->n", vectors, across) for vectors in (off, back))
-    foot = own[:, :3] + 0.5 * below[:, None] * across
-    gap = np.einsum("nd,nd->n", foot - facing[:, :3], across) - 0.5 * beyond
+    foot = near_side[:, :3] + 0.5 * below[:, None] * across
+    gap = np.einsum("nd,nd->n", foot - far_side[:, :3], across) - 0.5 * beyond
     width = np.maximum(gap, params.boundary.roughness)
     weight = density * np.array(params.gravity)
-    outside = own[:, 4] * own[:, 3] ** 2
-    outside = np.where(outside > 0.0, outside + (foot - own[:, :3]) @ weight, 0.0)
+    outside = near_side[:, 4] * near_side[:, 3] ** 2
+    outside = np.where(outside > 0.0, outside + (foot - near_side[:, :3]) @ weight, 0.0)
     outside = np.minimum(outside, density * (LARGEST * params.sound_speed) ** 2)
     driving = max(float(outside[films.rim].max(initial=0.0)), 1.0)
     bound = width * films.size * np.sqrt(2.0 / (density * driving))

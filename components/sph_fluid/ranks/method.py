@@ -57,8 +57,8 @@ class Ranks(Protocol):
     def sums(self, state: State, columns: Sequence[Array]) -> Array:
         """Sums (k,) of columns (fluid,) over the fluid of all ranks; they have no order."""
 
-    def gather_forces(self, state: State) -> None:
-        """Bring the forces on all samples to rank 0."""
+    def gather_forces(self, state: State, number: Whole) -> None:
+        """Bring the forces on all samples to rank 0; `number` (k,) are those of this rank."""
 
     def boundary_keys(self, state: State) -> Whole:
         """Numbers (boundary,) that rise in the order in which one rank would have its rows."""

@@ -62,7 +62,7 @@ class OneRank:
         """Sum the columns."""
         return total(sum_parts(columns, bounds(columns), state.fluid))
 
-    def gather_forces(self, state: State) -> None:
+    def gather_forces(self, state: State, number: Whole) -> None:
         """Nothing to do: all are here."""
 
     def boundary_keys(self, state: State) -> Whole:

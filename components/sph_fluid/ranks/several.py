@@ -8,15 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.collection import collect
-from quintet.components.shared.domain.cuts import cut_between_rows, owners
+from quintet.components.shared.domain.cuts import owners
 from quintet.components.shared.domain.exchange import share
-from quintet.components.shared.domain.extremes import added, counted, greatest, least
+from quintet.components.shared.domain.extremes import added, counted, greatest
 from quintet.components.shared.domain.migration import migrate
+from quintet.components.shared.domain.sorting import cells_around, grid_of_all, sort_by_cell
 from quintet.components.shared.domain.work import Work
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.geometry.bounds import Bounds
-from quintet.components.shared.search.cells import Grid, grid_between, number_cells
-from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.ranks.boundary_order import BoundaryOrder
 from quintet.components.sph_fluid.ranks.groups import (
     boundary_columns,
@@ -27,8 +26,6 @@ from quintet.components.sph_fluid.ranks.groups import (
 from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, places, refuse_none
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
-
-CELL = 32  # bits of a key below the number of the cell
 
 
 def _no_keys() -> Whole:
@@ -51,11 +48,10 @@ class SeveralRanks:
     communicator : mpi4py communicator
     keys : Keys
         Written.
-    samples : Samples
     """
 
-    def __init__(self, communicator: Any, keys: Keys, samples: Samples) -> None:
-        self._communicator, self._keys, self._samples = communicator, keys, samples
+    def __init__(self, communicator: Any, keys: Keys) -> None:
+        self._communicator, self._keys = communicator, keys
         self.rank, self._work = communicator.rank, Work()
         self._shared = False  # whether each rank has its part alone
         self._fluid = 0  # of all ranks
@@ -80,25 +76,19 @@ class SeveralRanks:
         state.lost, self._fluid = state.lost + self._fluid - left, left
         keys = self._keys.fluid[inside]
         fluid = taken(fluid, inside)
-        grid = self._grid(fluid["position_density"], reach)
-        number = np.empty(len(inside), np.int64)
-        number_cells(fluid["position_density"], grid, number)
-        cells = _places_of(number, grid)
-        cuts = cut_between_rows(self._communicator, cells, self._work.weights(len(cells)))
-        keys, (number, *columns) = migrate(
-            self._communicator, owners(cuts, cells), keys, (number, *fluid.values())
+        grid = grid_of_all(self._communicator, fluid["position_density"], reach)
+        weights = self._work.weights(len(keys))
+        self._keys.fluid, columns, cuts = sort_by_cell(
+            self._communicator, grid, fluid["position_density"], keys, weights, [*fluid.values()]
         )
-        by_cell = np.argsort(number, kind="stable")
-        fluid = taken(dict(zip(fluid, columns, strict=True)), by_cell)
-        self._keys.fluid = _keys_in(number[by_cell])
-
+        fluid = dict(zip(fluid, columns, strict=True))
         place = self._order.sort(grid)
         looking = boundary["mirror_point" if self._mirrored else "position_density"]
-        owner = owners(cuts, _cells_around(looking, grid))
-        self._keys.boundary, (self._number, *columns) = migrate(
+        owner = owners(cuts, cells_around(looking, grid))
+        self._keys.boundary, (self._number, *others) = migrate(
             self._communicator, owner, place[self._number], (self._number, *boundary.values())
         )
-        put(state, fluid, dict(zip(boundary, columns, strict=True)))
+        put(state, fluid, dict(zip(boundary, others, strict=True)))
         state.reference, state.moved = places(state), 0.0
 
     def _share_out(self, state: State) -> None:
@@ -118,13 +108,6 @@ class SeveralRanks:
         columns = boundary_columns(state, self._mirrored)
         put(state, taken(fluid_columns(state), keys.fluid), taken(columns, keys.boundary))
         self._shared = True
-
-    def _grid(self, fluid: Array, reach: float) -> Grid:
-        """Cells around the fluid of all ranks."""
-        points = fluid[:, :3]
-        low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
-        lowest, highest = least(self._communicator, low), greatest(self._communicator, high)
-        return grid_between(lowest, highest, reach)
 
     def follow_samples(self, fields: Fields) -> None:
         """Note where the samples were placed."""
@@ -161,12 +144,12 @@ class SeveralRanks:
         parts = sum_parts(columns, largest, self.fluid(state))
         return total(added(self._communicator, parts) if self._shared else parts)
 
-    def gather_forces(self, state: State) -> None:
-        """Bring the forces on all samples to rank 0."""
-        number = collect(self._communicator, self._samples.number)
-        force = collect(self._communicator, state.force.take(self._samples.number, axis=0))
+    def gather_forces(self, state: State, number: Whole) -> None:
+        """Bring the forces on all samples to rank 0; `number` (k,) are those of this rank."""
+        force = collect(self._communicator, state.force.take(number, axis=0))
+        numbers = collect(self._communicator, number)
         if self._communicator.rank == 0:
-            state.force[number] = force
+            state.force[numbers] = force
 
     def boundary_keys(self, state: State) -> Whole:
         """Numbers (boundary,) that rise in the order in which one rank would have its rows."""
@@ -222,26 +205,3 @@ class SeveralRanks:
         position, velocity = (collect(self._communicator, part) for part in (position, velocity))
         order = np.argsort(keys, kind="stable")
         return NearRows(position[order], velocity[order], int((keys < 0).sum()))
-
-
-def _places_of(number: Whole, grid: Grid) -> Whole:
-    """Layers (n, 3) of numbered cells, along the axes of their grid."""
-    x, rest = number % grid.nx, number // grid.nx
-    return np.column_stack([x, rest % grid.ny, rest // grid.ny])
-
-
-def _cells_around(points: Array, grid: Grid) -> Whole:
-    """Layers (n, 3) of the cells of points (n, 3 or more) m, beyond the grid too."""
-    axes = (grid.first, grid.second, grid.third)
-    starts = (grid.x, grid.y, grid.z)
-    layers = [
-        np.floor((points[:, axis] - start) * grid.per_metre)
-        for axis, start in zip(axes, starts, strict=True)
-    ]
-    return np.clip(np.column_stack(layers), -1e9, 1e9).astype(np.int64)
-
-
-def _keys_in(number: Whole) -> Whole:
-    """Keys (n,) of rows that are sorted by the number of their cell."""
-    begins = np.searchsorted(number, number)
-    return (number << CELL) + np.arange(len(number)) - begins

@@ -4,6 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fluid_params import fluid_params
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("fluid_on_ranks.py")
@@ -49,3 +54,16 @@ def test_the_cases_lose_fluid_and_move_it(folder):
     assert np.load(folder / "spilling-1.npz")["lost"] > 0
     for name in NAMES:
         assert np.load(folder / f"{name}-1.npz")["view velocity"].max() > 0.5
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("boundary.method", "potential"), ("precision", "float32")]
+)
+def test_what_needs_one_rank_is_refused_on_several(key, value):
+    class Several:
+        size = 2
+
+    box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    params = fluid_params(spacing=0.1, sound_speed=50.0, fluid=[box], **{key: value})
+    with pytest.raises(SceneError, match=rf"{key} must be .* on 2 ranks; found {value}"):
+        SphFluid(params, Resources(communicator=Several()))

@@ -143,7 +143,7 @@ def test_lists_that_are_kept_miss_no_pair(axisymmetric, monkeypatch):
             continue
         fresh = SphSolid(params)
         fresh.load(made.save())
-        fresh.lists.sort(fresh.state, fresh.state.position)
+        fresh.all_ranks.sort(fresh.state, fresh.state.position)
         numbers = np.empty(made.items(), np.int64)
         numbers[made.state.identity] = image_counts(made.state.reference[:, 0], params.length)
         with monkeypatch.context() as patch:

@@ -1,0 +1,83 @@
+"""What a solid asks of its ranks, be it one or several."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.search.neighbours import NeighbourLists
+from quintet.components.shared.symmetry import Plane
+from quintet.components.shared.threads import Team
+from quintet.components.sph_solid.state import Array, State, Whole
+
+
+class Images(Protocol):
+    """What stands behind a rank's own rows: images, and before these copies of others' rows."""
+
+    @property
+    def planes(self) -> list[Plane]:
+        """Planes of symmetry."""
+
+    def write_positions(self, array: Array, rows: int) -> None:
+        """Write those of positions in columns 0 to 2."""
+
+    def write_vectors(self, array: Array, rows: int) -> None:
+        """Write those of vectors in columns 0 to 2."""
+
+    def write_tensors(self, array: Array, rows: int) -> None:
+        """Write those of tensors."""
+
+    def write_values(self, array: Array, rows: int) -> None:
+        """Write those of values."""
+
+
+class Ranks(Protocol):
+    """The ranks of one solid; of several, each calls every method, in the same order."""
+
+    rank: int  # number of this one
+
+    @property
+    def images(self) -> Images:
+        """What stands behind own rows."""
+
+    def begin_step(self) -> None:
+        """Begin to measure how long this rank computes."""
+
+    def end_step(self) -> None:
+        """Stop measuring."""
+
+    def sort(self, state: State, places: Array) -> None:
+        """Bring particles that are near, by places (n, 3 or more) m, into near rows."""
+
+    def neighbours(
+        self, state: State, team: Team, buffer: NDArray[np.int32]
+    ) -> tuple[Array, NeighbourLists]:
+        """All points (any, 3) m that lists are made of, by row, and the lists of own particles."""
+
+    def load(self, state: State) -> None:
+        """Take over a state of all particles that was loaded."""
+
+    def particles(self, state: State) -> int:
+        """Number of particles of all ranks."""
+
+    def greatest(self, numbers: Array) -> Array:
+        """Largest of all ranks of each number (k,)."""
+
+    def sums(self, state: State, columns: Sequence[Array]) -> Array:
+        """Sums (k,) of columns (n,) over the particles of all ranks; they have no order."""
+
+    def all_rows(self, keys: Whole, rows: Array) -> Array:
+        """Rows of all ranks on every rank, in the order of their keys; own ones (k, ...)."""
+
+    def whole(self, state: State, names: Sequence[str] = ()) -> State:
+        """All particles on rank 0, or these arrays of them; on others their own."""
+
+    def agree(self, state: State, whole: State) -> None:
+        """Take over from rank 0 what was judged there of the whole."""
+
+
+def extremes(ranks: Ranks, low: Array, high: Array) -> tuple[Array, Array]:
+    """Smallest (3,) of rows (n, 3) of all ranks, and largest of others."""
+    negative_and_high = ranks.greatest(np.concatenate([-low.min(axis=0), high.max(axis=0)]))
+    return -negative_and_high[:3], negative_and_high[3:]

@@ -1,0 +1,103 @@
+"""What test_sph_solid_ranks.py runs on several ranks; rank 0 writes what came out."""
+
+import json
+import sys
+
+import numpy as np
+from mpi4py import MPI
+from pydantic import TypeAdapter
+
+from quintet.components.sph_solid.component import SphSolid
+from quintet.components.sph_solid.params import SphSolidParams
+from quintet.interfaces.component import Resources, outputs_of
+
+WORLD = MPI.COMM_WORLD
+ORIGIN = [0.0, 0.0, 0.0]
+PLATE = {"lowest": ORIGIN, "highest": [0.08, 0.08, 0.02], "material": "steel"}
+BALL = {
+    "lowest": [0.02, 0.02, 0.02],
+    "highest": [0.06, 0.06, 0.06],
+    "velocity": [300.0, 100.0, -2000.0],
+    "material": "aluminium",
+}
+COMMON = {"spacing": 0.005, "total_lagrangian": False}
+PARAMS = {
+    "impact": {
+        **COMMON,
+        "bodies": [PLATE, BALL],
+        "gauges": [[0.04, 0.04, 0.01], [0.04, 0.04, 0.04]],
+        "levels": [{"body": 1, "place": [0.04, 0.04]}],
+        "gravity": [0.0, 0.0, -9.81],
+    },
+    "quarter": {  # between two planes of symmetry
+        **COMMON,
+        "bodies": [PLATE, {**BALL, "lowest": [0.0, 0.0, 0.02], "velocity": [0.0, 0.0, -3000.0]}],
+        "symmetry": [{"axis": "x"}, {"axis": "y"}],
+        "kernel_correction": True,
+    },
+    "glued": {
+        **COMMON,
+        "bodies": [PLATE, {**BALL, "velocity": [0.0, 0.0, -500.0]}],
+        "glued": [{"lowest": ORIGIN, "highest": [0.02, 0.08, 0.02]}],
+        "fixed": [{"lowest": [0.07, 0.0, 0.0], "highest": [0.08, 0.08, 0.02]}],
+        "artificial_stress": 0.3,
+    },
+}
+
+
+def make(name):
+    params = TypeAdapter(SphSolidParams).validate_json(json.dumps(PARAMS[name]))
+    return SphSolid(params, Resources(communicator=WORLD if WORLD.size > 1 else None))
+
+
+def fields(solid):
+    """Motion of the mesh that carries the glued particles, some of which it lets go."""
+    state = solid.state
+    if not len(state.active):
+        return {}
+    number = np.arange(len(state.active))
+    velocity = np.zeros((len(number), 3))
+    velocity[:, 2] = -20.0 * np.sin(3e5 * state.time) * number / len(number)
+    active = np.where(number < 5 * (state.steps // 30), 0.0, 1.0)
+    return {"glued.velocity": velocity, "glue_activity.active": active}
+
+
+def go(solid, steps):
+    for _ in range(steps):
+        solid.take(fields(solid))
+        solid.step(solid.stable_dt())
+
+
+def results(solid):
+    totals = solid.totals()
+    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
+    numbers += [*totals.momentum, *totals.angular_momentum]
+    warned = np.array(sorted(solid.warnings()), dtype=str)
+    seen = {f"view {name}": array for name, array in solid.view().items()}
+    return {**outputs_of(solid), **seen, "totals": np.array(numbers), "warned": warned}
+
+
+def run(name, steps, folder, earlier):
+    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
+    solid = make(name)
+    described = solid.describe()
+    joined = frozenset({"glued", "glue_activity", "glued_load"} if described else ())
+    solid.bind({}, joined)
+    if earlier:
+        solid.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
+    go(solid, steps)
+    state, reached = solid.save(), results(solid)
+    if WORLD.rank == 0:
+        path = f"{folder}/{name}-{WORLD.size}"
+        np.savez(f"{path}-state.npz", **state)
+        reached |= {f"described {key}": array for key, array in described.items()}
+        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **state)
+
+
+def main(folder, steps, earlier, names):
+    for name in names.split(","):
+        run(name, int(steps), folder, int(earlier))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
