@@ -39,7 +39,8 @@ from quintet.interfaces.errors import StepError
 
 FEWEST = 500  # particles that are worth handing to another thread
 LOAD = "glued_load.force"
-NEEDED_BY_TOTALS = ("position", "velocity", "volume", "material", "energy", "glue")
+NEEDED_BY_LEVELS = ("body", "failed", "position")
+NO_LEVELS = dict.fromkeys(("levels.highest", "levels.lowest"), np.zeros(0))  # rank 0 answers
 
 
 class SphSolid(Component):
@@ -102,7 +103,8 @@ class SphSolid(Component):
         state, rows = self.state, self.rows
         self.all_ranks.begin_step()
         if state.steps % ENERGY_EVERY == 0:
-            self._judge()
+            mass = self.materials.mass(state)
+            self.judge.note(state, mass, self.sums, self.params.gravity, self.all_ranks)
         pull(state)
         add_work(state, dt)
         displaced = self.team.run(
@@ -140,14 +142,6 @@ class SphSolid(Component):
         if self.all_ranks.greatest(np.array([wrong]))[0]:
             raise StepError(failure(self.all_ranks.whole(state), self.params, dt))
         self.all_ranks.end_step()
-
-    def _judge(self) -> None:
-        """Take down signs of wrong results, which are judged of all particles on rank 0."""
-        whole = self.all_ranks.whole(self.state)
-        if not self.all_ranks.rank:
-            mass = self.materials.mass(whole)
-            self.judge.note(whole, mass, self.sums, self.params.gravity)
-        self.all_ranks.agree(self.state, whole)
 
     def warnings(self) -> Mapping[str, str]:
         """Reasons why the results may be wrong: energy that appears, numerical fracture."""
@@ -224,18 +218,16 @@ class SphSolid(Component):
         """Copy out forces on glued particles, and readings of bodies, gauges and levels."""
         state, values = self.state, dict[str, Array]()
         ports_wanted = {key.partition(".")[0] for key in wanted}
-        if ports_wanted - {LOAD.partition(".")[0]}:
-            state = self.all_ranks.whole(state)
-        if self.all_ranks.rank:  # rank 0 answers
-            return dict.fromkeys(wanted, np.zeros(0))
         if "bodies" in ports_wanted:
-            values.update(bodies(state, self.materials.mass(state), self.params))
+            mass = self.materials.mass(state)
+            values.update(bodies(state, mass, self.params, self.all_ranks))
         if "gauges" in ports_wanted:
-            row = np.empty(state.particles, np.int64)
-            row[state.identity] = np.arange(state.particles)
-            values.update(gauges(state, row[self.gauged], self.materials.density))
+            values.update(
+                gauges(self.all_ranks.rows_of(state, self.gauged), self.materials.density)
+            )
         if "levels" in ports_wanted:
-            values.update(levels(state, self.params))
+            whole = self.all_ranks.whole(state, NEEDED_BY_LEVELS)
+            values.update(levels(whole, self.params) if not self.all_ranks.rank else NO_LEVELS)
         if LOAD in wanted:
             values[LOAD] = state.force.copy()
         return {key: values[key] for key in wanted}
@@ -252,11 +244,10 @@ class SphSolid(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, without the motion of particles that a mesh carries."""
-        state = self.all_ranks.whole(self.state, NEEDED_BY_TOTALS)
-        if self.all_ranks.rank:  # rank 0 answers
-            return Totals()
+        state = self.state
         carried = glued_rows(state, attached=True)[: None if self.is_carried else 0]
-        sums = totals(state, self.materials.mass(state), carried, self.params.gravity)
+        mass, gravity = self.materials.mass(state), self.params.gravity
+        sums = totals(state, mass, carried, gravity, self.all_ranks)
         if self.params.axisymmetric:  # the other half of a ring moves the other way
             sums.momentum[:2], sums.angular_momentum[:] = 0.0, 0.0
         return sums

@@ -3,13 +3,14 @@
 import numpy as np
 
 from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.component import Totals
 from quintet.interfaces.params import Vector
 
 
-def totals(state: State, mass: Array, carried: Whole, gravity: Vector) -> Totals:
-    """Mass, momentum and energies; a mesh carries mass and motion of glued particles.
+def totals(state: State, mass: Array, carried: Whole, gravity: Vector, ranks: Ranks) -> Totals:
+    """Mass, momentum and energies of all ranks; a mesh carries mass and motion of glued particles.
 
     Parameters
     ----------
@@ -18,22 +19,29 @@ def totals(state: State, mass: Array, carried: Whole, gravity: Vector) -> Totals
     carried : (k,) int array
         Rows of glued particles.
     gravity : Vector, m/s2
+    ranks : Ranks
     """
     free = mass.copy()
     free[carried] = 0.0
-    momentum = free[:, None] * state.velocity
+    x, y, z = state.position.T
+    u, v, w = (free[:, None] * state.velocity).T
+    kinetic = u * state.velocity[:, 0] + v * state.velocity[:, 1] + w * state.velocity[:, 2]
+    fallen = x * gravity[0] + y * gravity[1] + z * gravity[2]
+    turning = (y * w - z * v, z * u - x * w, x * v - y * u)
+    columns = [free, u, v, w, *turning, kinetic, free * fallen, mass * state.energy]
+    sums = ranks.sums(state, columns)
     return Totals(
-        mass=float(free.sum()),
-        momentum=momentum.sum(axis=0),
-        angular_momentum=np.cross(state.position, momentum).sum(axis=0),
-        kinetic=0.5 * float((momentum * state.velocity).sum()),
-        potential=-float(free @ (state.position @ np.array(gravity))),
-        internal=float((mass * state.energy).sum()),
+        mass=float(sums[0]),
+        momentum=sums[1:4],
+        angular_momentum=sums[4:7],
+        kinetic=0.5 * float(sums[7]),
+        potential=-float(sums[8]),
+        internal=float(sums[9]),
     )
 
 
 def failure(state: State, params: SphSolidParams, dt: float) -> str:
-    """Say which particle a step [s] failed on, and what to do."""
+    """Say which particle of a state of all ranks a step [s] failed on, and what to do."""
     finite = np.isfinite(state.position).all(axis=1) & np.isfinite(state.velocity).all(axis=1)
     finite &= np.isfinite(state.acceleration).all(axis=1)
     speed = np.where(finite, np.abs(state.velocity).max(axis=1), np.inf)  # squares may overflow

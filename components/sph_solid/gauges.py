@@ -3,53 +3,53 @@
 import numpy as np
 
 from quintet.components.sph_solid.params import SphSolidParams
-from quintet.components.sph_solid.state import Array, State, Whole
+from quintet.components.sph_solid.ranks.method import Ranks
+from quintet.components.sph_solid.state import Array, State
 from quintet.components.sph_solid.view import von_mises
 from quintet.interfaces.component import Fields
 
 
-def bodies(state: State, mass: Array, params: SphSolidParams) -> Fields:
-    """Motion, energies and extent of each body, in the fields of the port `bodies`."""
-    count = len(params.bodies)
-
-    def total(values: Array) -> Array:
-        """Sums (bodies,) of values (n,) times masses."""
-        return np.bincount(state.body, mass * values, count).astype(np.float64)
-
-    whole = total(np.ones(len(mass)))
-
-    def mean(values: Array) -> Array:
-        """Means (bodies, k) of values (n, k)."""
-        return np.stack([total(column) / whole for column in values.T], axis=1)
-
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, state.body, state.position)
-    np.maximum.at(high, state.body, state.position)
-    half = 0.5 * params.spacing
+def bodies(state: State, mass: Array, params: SphSolidParams, ranks: Ranks) -> Fields:
+    """Motion, energies and extent of each body of all ranks, in the fields of the port `bodies`."""
+    sums, extents = [], []
+    for number in range(len(params.bodies)):
+        rows = np.flatnonzero(state.body == number)
+        masses, velocity = mass[rows], state.velocity[rows]
+        position = state.position[rows]
+        squares = velocity * velocity
+        columns = [masses, *(masses * column for column in (*position.T, *velocity.T))]
+        columns += [masses * (squares[:, 0] + squares[:, 1] + squares[:, 2])]
+        columns += [masses * state.energy[rows], masses * state.failed[rows]]
+        sums.append(ranks.sums(state, columns))
+        low = position.min(axis=0, initial=np.inf)
+        high = position.max(axis=0, initial=-np.inf)
+        extents.append(ranks.greatest(np.concatenate([-low, high])))
+    of_bodies, extent = np.array(sums), np.array(extents)
+    whole, half = of_bodies[:, 0], 0.5 * params.spacing
     return {
-        "bodies.position": mean(state.position),
-        "bodies.velocity": mean(state.velocity),
-        "bodies.kinetic": 0.5 * total((state.velocity**2).sum(axis=1)),
-        "bodies.internal": total(state.energy),
-        "bodies.failed": total(state.failed) / whole,
-        "bodies.lowest": low - half,
-        "bodies.highest": high + half,
+        "bodies.position": of_bodies[:, 1:4] / whole[:, None],
+        "bodies.velocity": of_bodies[:, 4:7] / whole[:, None],
+        "bodies.kinetic": 0.5 * of_bodies[:, 7],
+        "bodies.internal": of_bodies[:, 8].copy(),
+        "bodies.failed": of_bodies[:, 9] / whole,
+        "bodies.lowest": -extent[:, :3] - half,
+        "bodies.highest": extent[:, 3:] + half,
     }
 
 
-def gauges(state: State, rows: Whole, density: Array) -> Fields:
-    """Motion and stress of the particles in some rows, in the fields of the port `gauges`."""
-    deviator, pressure = state.deviator[rows], state.pressure[rows]
+def gauges(state: State, density: Array) -> Fields:
+    """Motion and stress of some particles, in the fields of the port `gauges`."""
+    deviator, pressure = state.deviator, state.pressure
     return {
-        "gauges.position": state.position[rows],
-        "gauges.velocity": state.velocity[rows],
+        "gauges.position": state.position,
+        "gauges.velocity": state.velocity,
         "gauges.stress": deviator[:, :3] - pressure[:, None],
         "gauges.pressure": pressure,
         "gauges.von_mises": von_mises(deviator),
-        "gauges.density": density[state.material[rows]] * state.density_ratio[rows],
-        "gauges.plastic_strain": state.strain[rows],
-        "gauges.failed": state.failed[rows],
-        "gauges.temperature": state.temperature[rows],
+        "gauges.density": density[state.material] * state.density_ratio,
+        "gauges.plastic_strain": state.strain,
+        "gauges.failed": state.failed,
+        "gauges.temperature": state.temperature,
     }
 
 

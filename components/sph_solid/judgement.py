@@ -34,6 +34,7 @@ STILL = 1e-14  # of V ρc²: strains of 1e-7 are rounding too
 MOST_GAINED = 0.03  # of the energy turned over
 MOST_HEATED = 0.22  # of the energy turned over, in elastic bodies, by the artificial viscosity
 FEWEST_LOST = 1e-3  # of all bonds
+NEEDED_BY_BONDS = ("identity", "position", "body", "failed", "temperature", "material")
 
 
 def note_energies(state: State, kinetic: float, potential: float, internal: float) -> None:
@@ -89,15 +90,20 @@ class Judge:
         self.density = np.array([law.density for law in laws])
         self.can_tear = not method(params).total_lagrangian
 
-    def note(self, state: State, mass: Array, sums: PairSums, gravity: Vector) -> None:
+    def note(
+        self, state: State, mass: Array, sums: PairSums, gravity: Vector, ranks: Ranks
+    ) -> None:
         """Take down energies and lost bonds, with masses (n,) kg."""
-        now = totals(state, mass, glued_rows(state, attached=True), gravity)
+        now = totals(state, mass, glued_rows(state, attached=True), gravity, ranks)
         note_energies(state, now.kinetic, now.potential, now.internal)
-        self._note_viscous(state, mass, sums)
+        self._note_viscous(state, sums, ranks)
         if state.steps % BONDS_EVERY == 0 and self.can_tear:
-            note_torn(state, self.bonds, self.laws, self.params)
+            whole = ranks.whole(state, NEEDED_BY_BONDS)
+            if not ranks.rank:
+                note_torn(whole, self.bonds, self.laws, self.params)
+            ranks.agree(state.torn)
 
-    def _note_viscous(self, state: State, mass: Array, sums: PairSums) -> None:
+    def _note_viscous(self, state: State, sums: PairSums, ranks: Ranks) -> None:
         """Take down the heat [J] of viscosity in elastic bodies.
 
         The energy that they store in contact is in their internal energy, and no heat.
@@ -107,7 +113,8 @@ class Judge:
         for k in np.flatnonzero(self.is_elastic):
             rows = np.flatnonzero(state.material == k)
             internal = self.laws[k].density * state.volume[rows] * state.energy[rows]
-            heat += float((internal - stored_energy(state, rows, self.laws[k])).sum())
+            unstored = internal - stored_energy(state, rows, self.laws[k])
+            heat += float(ranks.sums(state, [unstored])[0])
         state.viscous[:] = heat, min(heat, state.viscous[1])
 
     def warnings(self, state: State, ranks: Ranks) -> dict[str, str]:

@@ -1,6 +1,6 @@
 """All arrays of bodies of particles: what is remembered, and what pairs are computed from."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -76,6 +76,12 @@ OF_ALL = (
     "steps", "work",
 )  # fmt: skip
 OF_PARTICLES = tuple(part.name for part in fields(State) if part.name not in OF_ALL)
+
+
+def chosen(state: State, rows: Whole) -> State:
+    """Some particles of a state, in this order."""
+    arrays: dict[str, Any] = {name: getattr(state, name)[rows] for name in OF_PARTICLES}
+    return replace(state, **arrays)
 
 
 @dataclass(slots=True)

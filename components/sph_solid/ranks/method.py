@@ -73,8 +73,11 @@ class Ranks(Protocol):
     def whole(self, state: State, names: Sequence[str] = ()) -> State:
         """All particles on rank 0, or these arrays of them; on others their own."""
 
-    def agree(self, state: State, whole: State) -> None:
-        """Take over from rank 0 what was judged there of the whole."""
+    def agree(self, numbers: Array) -> None:
+        """Take over numbers, in their array, from rank 0."""
+
+    def rows_of(self, state: State, identities: Whole) -> State:
+        """Particles that were born with some numbers, in that order, on every rank."""
 
 
 def extremes(ranks: Ranks, low: Array, high: Array) -> tuple[Array, Array]:

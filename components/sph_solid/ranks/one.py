@@ -10,7 +10,7 @@ from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
 from quintet.components.shared.symmetry import Plane, SymmetryImages, neighbours_and_images
 from quintet.components.shared.threads import Team
-from quintet.components.sph_solid.state import Array, State, Whole
+from quintet.components.sph_solid.state import Array, State, Whole, chosen
 
 
 class OneRank:
@@ -68,5 +68,11 @@ class OneRank:
         """Return the state."""
         return state
 
-    def agree(self, state: State, whole: State) -> None:
-        """Nothing to do: the state is the whole."""
+    def agree(self, numbers: Array) -> None:
+        """Nothing to do: this is rank 0."""
+
+    def rows_of(self, state: State, identities: Whole) -> State:
+        """Particles that were born with some numbers, in that order."""
+        row = np.empty(state.particles, np.int64)
+        row[state.identity] = np.arange(state.particles)
+        return chosen(state, row[identities])

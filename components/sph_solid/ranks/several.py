@@ -18,9 +18,7 @@ from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_among
 from quintet.components.shared.symmetry import Plane
 from quintet.components.shared.threads import Team
-from quintet.components.sph_solid.state import OF_PARTICLES, Array, State, Whole
-
-JUDGED = ("ranges", "sums", "viscous", "torn")
+from quintet.components.sph_solid.state import OF_PARTICLES, Array, State, Whole, chosen
 
 
 class SeveralRanks:
@@ -123,11 +121,17 @@ class SeveralRanks:
         in_order: dict[str, Any] = {name: a.take(order, axis=0) for name, a in arrays.items()}
         return replace(state, **in_order)
 
-    def agree(self, state: State, whole: State) -> None:
-        """Take over from rank 0 what was judged there of the whole."""
-        numbers = np.concatenate([np.ravel(getattr(whole, name)) for name in JUDGED])
+    def agree(self, numbers: Array) -> None:
+        """Take over numbers, in their array, from rank 0."""
         wait(self._communicator.Ibcast(numbers, 0))
-        for name in JUDGED:
-            array = getattr(state, name)
-            array[...] = numbers[: array.size].reshape(array.shape)
-            numbers = numbers[array.size :]
+
+    def rows_of(self, state: State, identities: Whole) -> State:
+        """Particles that were born with some numbers, in that order, on every rank."""
+        # One particle may have several numbers in the list.
+        each = [np.flatnonzero(state.identity == number) for number in identities]
+        part = chosen(state, np.concatenate(each))
+        numbers = np.repeat(np.arange(len(each)), [len(rows) for rows in each])
+        arrays: dict[str, Any] = {
+            name: self.all_rows(numbers, getattr(part, name)) for name in OF_PARTICLES
+        }
+        return replace(part, **arrays)
