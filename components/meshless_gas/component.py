@@ -112,7 +112,7 @@ class MeshlessGas(Component):
             self.motion.sum_loads(share)
             state.entered += share * dt * work.flows
             state.work += share * dt * (float(work.flows[4]) - self.motion.partner_power())
-            self._advance(dt, old, new)
+            self._advance(dt, old, new, number == len(STAGES) - 1)
             scheme.apply_boundaries()
         for part in self.parts:
             part.end(dt)
@@ -123,7 +123,7 @@ class MeshlessGas(Component):
         state.change = diagnostics.density_change(state, domain, work, self.team, self.all_ranks)
         self.monitor.update(work.primitive, state.change, state.time)
 
-    def _advance(self, dt: float, old: float, new: float) -> None:
+    def _advance(self, dt: float, old: float, new: float, is_last: bool) -> None:
         """Advance all nodes by a stage; those of walls of symmetry move along them."""
         domain, state, work = self.motion.domain, self.state, self.fluxes
         nodes = self.all_ranks.share(domain).inner
@@ -132,7 +132,9 @@ class MeshlessGas(Component):
             self.scheme.steps, old, new, self.params.gas.gamma, state.conservative, work.primitive,
             fewest=LIGHT,
         ))  # fmt: skip
-        self.all_ranks.gather(domain, work.primitive, state.conservative)
+        self.all_ranks.gather(domain, work.primitive)
+        if is_last or len(domain.mirrored):  # else nothing needs those of other ranks
+            self.all_ranks.gather(domain, state.conservative)
         wrong = int(
             self.all_ranks.greatest(wrong + self.all_ranks.first(domain) if wrong >= 0 else -1)
         )
