@@ -74,6 +74,7 @@ class SphFluid(Component):
         if "surface.volume" in static:
             if self.params.dimensions == 2:
                 require_one_metre(self.params)
+            self.all_ranks.join(static)
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
             self.films = features.lubrication_films(self.params, self.samples, self.all_ranks)

@@ -36,6 +36,9 @@ class Ranks(Protocol):
     def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
 
+    def join(self, static: Fields) -> None:
+        """Refuse samples that links bring if they need one rank."""
+
     def follow_samples(self, fields: Fields) -> None:
         """Note where the samples were placed."""
 

@@ -36,6 +36,9 @@ class OneRank:
         state.keep(inside[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         state.reference, state.moved = places(state), 0.0
 
+    def join(self, static: Fields) -> None:
+        """Nothing to refuse."""
+
     def follow_samples(self, fields: Fields) -> None:
         """Nothing to do: they stand in the state."""
 

@@ -26,6 +26,7 @@ from quintet.components.sph_fluid.ranks.groups import (
 from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, places, refuse_none
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import SceneError
 
 
 def _no_keys() -> Whole:
@@ -108,6 +109,15 @@ class SeveralRanks:
         columns = boundary_columns(state, self._mirrored)
         put(state, taken(fluid_columns(state), keys.fluid), taken(columns, keys.boundary))
         self._shared = True
+
+    def join(self, static: Fields) -> None:
+        """Refuse samples under the contact potential, whose stiffness is that of whole bodies."""
+        if np.any(static.get("surface.contact", 0.0)):
+            raise SceneError(
+                "links: the contact potential must be chosen for no samples of a fluid on "
+                f"{self._communicator.size} ranks; a link chooses it. Leave it out, or take one "
+                "rank."
+            )
 
     def follow_samples(self, fields: Fields) -> None:
         """Note where the samples were placed."""

@@ -13,6 +13,7 @@ from sampled_bodies import BOX, fill, mirrors
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.errors import StepError
 
 WORLD = MPI.COMM_WORLD
 SPACING, SIZE = 0.05, np.full(3, 0.2)  # m
@@ -72,7 +73,8 @@ PARAMS = {
 def make(name):
     params = fluid_params(spacing=SPACING, **({"sound_speed": 40.0} | PARAMS[name]))
     communicator = WORLD if WORLD.size > 1 else None
-    return SphFluid(params, Resources(communicator=communicator))
+    threads = 2 if name == "dam" and WORLD.size > 1 else 1
+    return SphFluid(params, Resources(threads, communicator=communicator))
 
 
 class Body:
@@ -107,6 +109,15 @@ def go(fluid, body, steps):
             body.time += dt
 
 
+def failure(fluid):
+    """What a step says that no fluid bears."""
+    try:
+        fluid.step(0.05)
+    except StepError as error:
+        return str(error)
+    return "nothing"
+
+
 def results(fluid):
     totals = fluid.totals()
     numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
@@ -129,6 +140,7 @@ def run(name, steps, folder, earlier):
         fluid.load(state)
     go(fluid, body, steps)
     state, reached = fluid.save(), results(fluid)
+    reached["failure"] = np.array(failure(fluid))
     if WORLD.rank == 0:
         path = f"{folder}/{name}-{WORLD.size}"
         time = {} if body is None else {"time": np.array(body.time)}

@@ -16,6 +16,12 @@ NAMES = ("dam", "symmetric", "body", "spilling")
 STEPS = 120  # with lists made again, and rows that change their rank
 
 
+class Several:
+    """Stands for a communicator of two ranks, of which none is asked."""
+
+    size, rank = 2, 0
+
+
 def differences(folder, first, second):
     """Names of the arrays that differ in a bit."""
     one, other = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
@@ -50,6 +56,23 @@ def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
     assert differences(resumed, f"{name}-1-1", f"{name}-3-2") == []
 
 
+def test_a_step_that_fails_is_told_as_on_one_rank(folder):
+    """The arrays above hold the same sentences."""
+    for name in NAMES:
+        assert "particle" in str(np.load(folder / f"{name}-2.npz")["failure"])
+
+
+def test_samples_under_the_contact_potential_are_refused_on_several_ranks():
+    box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    method = {"boundary.method": "mdbc", "boundary.lubrication_films": False}
+    params = fluid_params(spacing=0.1, sound_speed=50.0, fluid=[box], **method)
+    fluid = SphFluid(params, Resources(communicator=Several()))
+    static = {"normal": np.eye(3)[2:], "volume": np.full(1, 1e-3), "body": np.zeros(1)}
+    static = {f"surface.{key}": value for key, value in static.items()}
+    with pytest.raises(SceneError, match="contact potential must be chosen for no samples"):
+        fluid.bind(static | {"surface.contact": np.ones(1)}, frozenset({"surface"}))
+
+
 def test_the_cases_lose_fluid_and_move_it(folder):
     assert np.load(folder / "spilling-1.npz")["lost"] > 0
     for name in NAMES:
@@ -60,9 +83,6 @@ def test_the_cases_lose_fluid_and_move_it(folder):
     ("key", "value"), [("boundary.method", "potential"), ("precision", "float32")]
 )
 def test_what_needs_one_rank_is_refused_on_several(key, value):
-    class Several:
-        size = 2
-
     box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     params = fluid_params(spacing=0.1, sound_speed=50.0, fluid=[box], **{key: value})
     with pytest.raises(SceneError, match=rf"{key} must be .* on 2 ranks; found {value}"):
