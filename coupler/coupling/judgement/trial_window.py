@@ -152,7 +152,7 @@ def _require_undone(coupling: Coupling, before: Mapping[str, Fields]) -> None:
     for name, participant in coupling.components.items():
         gives, now = coupling.exchange.gives[name], participant.call("give").fields
         for key, array in before[name].items():
-            if gives[key].centring == "instant" and not np.array_equal(now[key], array):
+            if gives[key].centring == "instant" and not np.array_equal(now.get(key, ()), array):
                 raise ComponentFailed(
                     name,
                     participant.window,
