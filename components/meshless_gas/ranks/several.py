@@ -6,7 +6,7 @@ import numpy as np
 
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.shared.domain.extremes import greatest, least
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
 
 
@@ -68,7 +68,8 @@ class SeveralRanks:
         received, size = self._buffers[width], self._communicator.size
         parts = [self._part(domain, rank) for rank in range(size)]
         counts = [width * (last - first) for first, last in parts]
-        wait(self._communicator.Iallgatherv(rows.reshape(-1), [received.reshape(-1), counts]))
+        target, others = [received.reshape(-1), counts], received.nbytes - rows.nbytes
+        wait_for_all(self._communicator.Iallgatherv(rows.reshape(-1), target), others)
         return received
 
     def least(self, number: float) -> float:

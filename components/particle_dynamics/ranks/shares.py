@@ -15,7 +15,7 @@ from quintet.components.particle_dynamics.state import (
 )
 from quintet.components.shared.domain.bisection import bisect
 from quintet.components.shared.domain.collection import Collection
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
 
@@ -73,7 +73,7 @@ class Shares:
             return self._baths.gather(rows)
         if name == "energies":
             rows = rows.copy()
-            wait(self._communicator.Ibcast(rows, self._drives))
+            wait_for_all(self._communicator.Ibcast(rows, self._drives))
         return rows
 
     def model_of(self, layout: Layout) -> Model:

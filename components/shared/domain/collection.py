@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
 
 Whole = NDArray[np.int64]
@@ -51,7 +51,7 @@ def collect(communicator: Any, rows: Array) -> Array:
 def _counts(communicator: Any, rows: Array) -> Whole:
     """How many rows each rank has."""
     counts = np.empty(communicator.size, np.int64)
-    wait(communicator.Iallgather(np.array([len(rows)], np.int64), counts))
+    wait_for_all(communicator.Iallgather(np.array([len(rows)], np.int64), counts))
     return counts
 
 
@@ -61,5 +61,6 @@ def _received(communicator: Any, rows: Array, counts: Whole) -> Array:
     count = int(counts.sum()) if communicator.rank == 0 else 0
     received = np.empty((count, *shape), rows.dtype)
     target = [received.reshape(-1), (counts * width).tolist()] if communicator.rank == 0 else None
-    wait(communicator.Igatherv(rows.reshape(-1), target))
+    others = max(received.nbytes - rows.nbytes, 0)  # on rank 0 alone
+    wait_for_all(communicator.Igatherv(rows.reshape(-1), target), others)
     return received

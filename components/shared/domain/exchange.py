@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
+from quintet.interfaces.waited import TRAFFIC
 
 
 def send_rows(communicator: Any, rows: Sequence[Array]) -> list[Array]:
@@ -26,10 +27,13 @@ def send_rows(communicator: Any, rows: Sequence[Array]) -> list[Array]:
     shape, width = rows[0].shape[1:], int(np.prod(rows[0].shape[1:]))
     counts = np.array([len(part) for part in rows], np.int64)
     coming = np.empty_like(counts)
-    wait(communicator.Ialltoall(counts, coming))
+    wait_for_all(communicator.Ialltoall(counts, coming))
     sent = np.ascontiguousarray(np.concatenate(rows))
     received = np.empty((int(coming.sum()), *shape), sent.dtype)
-    wait(
+    away = np.delete(counts, communicator.rank)
+    TRAFFIC.messages += int(np.count_nonzero(away))
+    TRAFFIC.message_bytes += int(away.sum()) * width * sent.itemsize
+    wait_for_all(
         communicator.Ialltoallv(
             [sent.reshape(-1), (counts * width).tolist()],
             [received.reshape(-1), (coming * width).tolist()],
@@ -41,7 +45,9 @@ def send_rows(communicator: Any, rows: Sequence[Array]) -> list[Array]:
 def share(communicator: Any, values: Array) -> list[Array]:
     """Let every rank have the values (k,) of each; k may differ, the dtype not."""
     counts = np.empty(communicator.size, np.int64)
-    wait(communicator.Iallgather(np.array([len(values)], np.int64), counts))
+    wait_for_all(communicator.Iallgather(np.array([len(values)], np.int64), counts))
     received = np.empty(int(counts.sum()), values.dtype)
-    wait(communicator.Iallgatherv(np.ascontiguousarray(values), [received, counts.tolist()]))
+    values = np.ascontiguousarray(values)
+    request = communicator.Iallgatherv(values, [received, counts.tolist()])
+    wait_for_all(request, received.nbytes - values.nbytes)
     return np.split(received, np.cumsum(counts)[:-1])

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
 
 
@@ -31,5 +31,5 @@ def added(communicator: Any, numbers: Array) -> Array:
 
 def _reduced(communicator: Any, numbers: Array, operation: Any) -> Array:
     result = np.empty_like(numbers)
-    wait(communicator.Iallreduce(np.ascontiguousarray(numbers), result, operation))
+    wait_for_all(communicator.Iallreduce(np.ascontiguousarray(numbers), result, operation))
     return result

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from quintet.components.shared.domain.waiting import wait
 from quintet.interfaces.component import Array
+from quintet.interfaces.waited import TRAFFIC
 
 Whole = NDArray[np.int64]
 TAG = 23
@@ -39,6 +40,7 @@ class Halo:
         self._received = _Buffers(received, widths)
         self._communicator = communicator
         self._requests: list[Any] = []
+        self._bytes = sum(buffer.nbytes for buffer in self._sent.buffers.values())
 
     def begin(self, *arrays: Array) -> None:
         """Send rows of C-contiguous float64 arrays (n, width); they may change afterwards."""
@@ -48,6 +50,8 @@ class Halo:
         receive, send = self._communicator.Irecv, self._communicator.Isend
         self._requests = [receive(b, rank, TAG) for rank, b in self._received.buffers.items()]
         self._requests += [send(b, rank, TAG) for rank, b in self._sent.buffers.items()]
+        TRAFFIC.messages += len(self._sent.buffers)
+        TRAFFIC.message_bytes += self._bytes
 
     def finish(self, *arrays: Array) -> None:
         """Wait for the rows of the others and write them into the same arrays."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.exchange import share
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
 
 Whole = NDArray[np.int64]
@@ -34,7 +34,9 @@ class Replication:
     def gather(self, rows: Array) -> Array:
         """All rows (n, width) of float64, by their ids."""
         sent = np.ascontiguousarray(rows).reshape(-1)
-        wait(self._communicator.Iallgatherv(sent, [self._received.reshape(-1), self._counts]))
+        target = [self._received.reshape(-1), self._counts]
+        others = self._received.nbytes - sent.nbytes
+        wait_for_all(self._communicator.Iallgatherv(sent, target), others)
         gathered = np.empty_like(self._received)
         gathered[self._ids] = self._received
         return gathered

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.exchange import send_rows
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
 
 Whole = NDArray[np.int64]
@@ -43,7 +43,7 @@ def sum_of_all(communicator: Any, cells: Whole, sums: Array) -> Array:
     all_cells = np.concatenate(send_rows(communicator, [cells, *(cells[:0] for _ in nothing)]))
     all_sums = np.concatenate(send_rows(communicator, [sums, *(sums[:0] for _ in nothing)]))
     total = in_order(all_cells, all_sums)
-    wait(communicator.Ibcast(total, 0))
+    wait_for_all(communicator.Ibcast(total, 0))
     return total
 
 

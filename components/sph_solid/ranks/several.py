@@ -12,7 +12,7 @@ from quintet.components.shared.domain.copies import CopiesAndImages, Group
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import added, greatest
 from quintet.components.shared.domain.sorting import grid_of_all, sort_by_cell
-from quintet.components.shared.domain.waiting import wait
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.components.shared.domain.work import Work
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_among
@@ -123,7 +123,7 @@ class SeveralRanks:
 
     def agree(self, numbers: Array) -> None:
         """Take over numbers, in their array, from rank 0."""
-        wait(self._communicator.Ibcast(numbers, 0))
+        wait_for_all(self._communicator.Ibcast(numbers, 0))
 
     def rows_of(self, state: State, identities: Whole) -> State:
         """Particles that were born with some numbers, in that order, on every rank."""

@@ -1,5 +1,6 @@
 """Rows on several real ranks: halos, gathering, moving; the same bits on any number of ranks."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,52 @@ def test_sums_extremes_and_counts_are_those_of_all_rows(results):
         assert result["sum"] == pytest.approx(values.sum(axis=0), abs=1e-12)
         assert result["extremes"].tolist() == [values.max(), values.min()]
         assert result["count"] == len(values)
+
+
+COUNTING = """
+import json, sys, time
+import numpy as np
+from mpi4py import MPI
+from quintet.components.shared.domain.exchange import send_rows, share
+from quintet.components.shared.domain.extremes import least
+from quintet.components.shared.domain.halo import Halo
+from quintet.interfaces.waited import TRAFFIC, WAITED
+
+def counts():
+    return [TRAFFIC.messages, TRAFFIC.message_bytes, TRAFFIC.collectives, TRAFFIC.gathered_bytes]
+
+rank, rows = MPI.COMM_WORLD.rank, [np.arange(4), np.arange(4)]
+rows[rank] = np.arange(0)
+found = [counts()]
+halo = Halo(MPI.COMM_WORLD, rows, rows, (3, 1))
+for _ in range(5):
+    halo.exchange(np.zeros((4, 3)), np.zeros((4, 1)))
+found.append(counts())
+least(MPI.COMM_WORLD, np.zeros(7))
+found.append(counts())
+share(MPI.COMM_WORLD, np.zeros(10 + 5 * rank))
+found.append(counts())
+send_rows(MPI.COMM_WORLD, [np.zeros((3 - rank, 2)), np.zeros((6, 2))])
+found.append(counts())
+if rank:
+    time.sleep(0.5)
+least(MPI.COMM_WORLD, np.zeros(7))
+found = MPI.COMM_WORLD.gather((found, WAITED.seconds, WAITED.processor))
+if rank == 0:
+    print(json.dumps(found))
+"""
+
+
+def test_what_a_rank_sends_and_waits_for_is_counted(tmp_path, on_ranks):
+    program = tmp_path / "counting.py"
+    program.write_text(COUNTING)
+    (zero, waited, polled), (one, *_) = json.loads(on_ranks(program, 2))
+    none, after_halo = [0, 0, 0, 0], [5, 5 * 4 * 4 * 8, 0, 0]
+    assert zero[:3] == one[:3] == [none, after_halo, [5, 640, 1, 0]]
+    assert (zero[3], one[3]) == ([5, 640, 3, 15 * 8], [5, 640, 3, 10 * 8])
+    # Rank 0 sends 6 rows of two numbers, rank 1 the 2 that go to rank 0.
+    assert (zero[4], one[4]) == ([6, 640 + 96, 5, 120], [6, 640 + 32, 5, 80])
+    assert 0.5 <= waited and 0.0 < polled <= waited + 0.01
 
 
 WAITING = """
