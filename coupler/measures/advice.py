@@ -271,7 +271,7 @@ def sentences(advised: Mapping[str, Any]) -> list[str]:
     said = f"{head}: {', '.join(changes)}: {gain} (Amdahl's law)" if changes else ""
     return [
         *([f"Waits: {'; '.join(waited)}"] if waited else []),
-        said or f"{head}: threads as they are",
+        said or f"{head}: as they are, {', '.join(_now(name, row) for name, row in rows.items())}",
     ]
 
 
@@ -284,6 +284,10 @@ def _change(name: str, row: Mapping[str, Any]) -> str:
         then += f" or {row['advised_threads']} ranks"
     source = "measured" if row["serial_measured"] else "planned"
     return f"{name} {then} instead of {now} (serial share {row['serial']:.2g}, {source})"
+
+
+def _now(name: str, row: Mapping[str, Any]) -> str:
+    return f"{name} {_cores(row['ranks'], row['threads'])}"
 
 
 def _cores(ranks: int, threads: int) -> str:

@@ -106,7 +106,8 @@ def test_advice_says_who_should_get_what_and_how_the_share_is_known():
         "90 s (Amdahl's law)"
     )
     best = {"slow": Load(36.0, 3, 0.1), "fast": Load(10.0)}
-    assert sentences(advice(AT_ONCE, best, 4))[-1] == "Advice for 4 cores: threads as they are"
+    said = sentences(advice(AT_ONCE, best, 4))[-1]
+    assert said == "Advice for 4 cores: as they are, slow 3 threads, fast 1 thread"
 
 
 def test_ranks_are_kept_and_their_threads_are_advised():
