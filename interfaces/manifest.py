@@ -46,6 +46,7 @@ class BenchCase:
     unit: str  # of the rate: "particle-steps/s"
     static: Fields = field(default_factory=dict)  # what its partners tell it once
     fields: Fields = field(default_factory=dict)  # what it takes before each step
+    series: str = ""  # that of cases that differ in their number of items alone
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,6 @@ def cases() -> tuple[BenchCase, ...]:
     """Return the benchmark, and smaller and larger ones that show how the cost grows."""
     sizes = {"small": (21, 21, 22), "common": (27, 27, 28), "large": (46, 46, 47)}
     return tuple(
-        BenchCase(f"lattice, {name}", lattice(*size), 20, 200, "sphere-steps/s")
+        BenchCase(f"lattice, {name}", lattice(*size), 20, 200, "sphere-steps/s", series="lattice")
         for name, size in sizes.items()
     )

@@ -24,8 +24,9 @@ def block(nx: int, ny: int, nz: int) -> dict[str, Any]:
 
 def cases() -> tuple[BenchCase, ...]:
     """Blocks that fit into a processor's cache, and that do not."""
+    series = "struck block"
     sizes = {"6k": (18, 18, 18), "55k": (38, 38, 38), "262k": (64, 64, 64)}
     return tuple(
-        BenchCase(f"struck block, {name}", block(*size), 20, 100, "element-steps/s")
+        BenchCase(f"{series}, {name}", block(*size), 20, 100, "element-steps/s", series=series)
         for name, size in sizes.items()
     )

@@ -28,10 +28,10 @@ def vortex(nodes: int, **keys: Any) -> dict[str, Any]:
 
 def cases() -> tuple[BenchCase, ...]:
     """Clouds that fit into a processor's cache, and that do not; first order; boxes in space."""
-    space = {"dimensions": 3, "neighbours": 14}
+    space, plane = {"dimensions": 3, "neighbours": 14}, "vortex, 9 neighbours"
     return (
-        BenchCase("vortex, 10k nodes, 9 neighbours", vortex(100), 20, 60, UNIT),
-        BenchCase("vortex, 64k nodes, 9 neighbours", vortex(253), 10, 30, UNIT),
+        BenchCase("vortex, 10k nodes, 9 neighbours", vortex(100), 20, 60, UNIT, series=plane),
+        BenchCase("vortex, 64k nodes, 9 neighbours", vortex(253), 10, 30, UNIT, series=plane),
         BenchCase("vortex, 64k nodes, first order", vortex(253, order=1), 10, 30, UNIT),
         BenchCase("box, 64k nodes, 14 neighbours", vortex(40, **space), 5, 15, UNIT),
         BenchCase(

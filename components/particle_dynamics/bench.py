@@ -30,6 +30,7 @@ def cases() -> tuple[BenchCase, ...]:
             20,
             max(50, 2_000_000 // (size[0] * size[1] * size[2]) // 10),
             "point-steps/s",
+            series="lattice",
         )
         for name, size in sizes.items()
     )

@@ -1,8 +1,9 @@
 """What the throughput of the fluid is measured on.
 
 The dam break has the particles of the one that other codes were measured with: 106 200 of fluid
-and one layer of 36 221 in the walls. Channels, in which a dam breaks across, are the same all
-along and grow in length alone: equal rates mean that the cost grows with the number of particles.
+and one layer of 36 221 in the walls; a small one has half of its edges. Channels, in which a dam
+breaks across, are the same all along and grow in length alone: equal rates mean that the cost grows
+with the number of particles.
 In the coupled case a cube of samples stands still in the front of the column.
 """
 
@@ -31,13 +32,22 @@ NOTCHED: list[dict[str, Any]] = [
 def cases() -> tuple[BenchCase, ...]:
     """All cases; the dam falls long enough for its neighbour lists to be made again."""
     dam = tank((159, 59, 60), (60, 59, 30), 20.0)
+    small = tank((80, 30, 30), (30, 30, 15), 20.0)
     mirrored = dam | {"boundary": dam["boundary"] | {"method": "mdbc"}}
     channels = [
-        BenchCase(f"channel, {name}", tank((length, 40, 25), (length, 20, 20), 10.0), 3, 120, UNIT)
+        BenchCase(
+            f"channel, {name}",
+            tank((length, 40, 25), (length, 20, 20), 10.0),
+            3,
+            120,
+            UNIT,
+            series="channel",
+        )
         for name, length in LENGTHS.items()
     ]
     return (
-        BenchCase("dam break", dam, 10, 600, UNIT),
+        BenchCase("dam break", dam, 10, 600, UNIT, series="dam break"),
+        BenchCase("dam break, 22k", small, 10, 600, UNIT, series="dam break"),
         BenchCase("dam break, XSPH", dam | {"xsph": 0.5}, 10, 600, UNIT),
         BenchCase("dam break, diffusion", dam | {"density_diffusion": 0.1}, 10, 600, UNIT),
         BenchCase("dam break, mdbc", mirrored | ALL, 10, 600, UNIT),

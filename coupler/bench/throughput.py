@@ -11,13 +11,15 @@ import json
 import os
 import signal
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from rich.table import Table
 
+from quintet.coupler.bench.scaling import ENOUGH, network_entry, scalings_of
+from quintet.coupler.bench.scaling_report import KEYS, refuse, report
 from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.launch.processes import start, tail
 from quintet.coupler.report.show import console
@@ -36,16 +38,43 @@ def run_kind(options: argparse.Namespace) -> int:
         raise SceneError(f"--threads must be a whole number from 1; found {wrong[0]}.")
     ranks = options.ranks or (1,)
     refuse_ranks(options.name, ranks)
-    rates, wanted = [], JsonFile(options.json, ("name", "case", "rate"))
+    modelled = wants_model(options, ranks, [case.series or case.name for _, case in cases])
+    rates, wanted = [], JsonFile(options.json, KEYS)
+    network = network_here() if max(ranks) > 1 else None
     for number, case in cases:
         for several, count in product(ranks, threads):
             said = f"ranks: {several}, " if options.ranks else ""
             print(f"{case.name}, {said}threads: {count} ... ", end="", flush=True)
             rates.append(run_case(options.name, number, count, several))
+            rates[-1]["network"] = network
             print(f"{rates[-1]['rate']:.3g} {rates[-1]['unit']} a thread", flush=True)
     console().print(table(rates))
     wanted.write(rates)
+    if modelled:
+        wanted.write([*rates, *report(scalings_of(rates, options), options)])
     return 0
+
+
+def wants_model(options: argparse.Namespace, ranks: Sequence[int], series: Collection[str]) -> bool:
+    """Whether a model of cost is fitted; raise where it is asked for and cannot be."""
+    refuse(options)
+    if options.series and options.series not in series:
+        raise SceneError(unknown(f"--series {options.series}", options.series, series))
+    enough = len(set(ranks)) >= ENOUGH and 1 in ranks
+    if options.plot and not enough:
+        raise SceneError(
+            f"--plot needs a model of cost, and that {ENOUGH} numbers of ranks, 1 among them; "
+            f"found {', '.join(map(str, ranks))}. Give --ranks 1 --ranks 2 --ranks 4."
+        )
+    return enough
+
+
+def network_here() -> Found:
+    """Latency, bandwidth and cores of this host."""
+    # Start-up: only a component of several ranks needs it.
+    from quintet.coupler.bench.ping_pong import measure_network
+
+    return network_entry(measure_network())
 
 
 def refuse_ranks(kind: str, ranks: Sequence[int]) -> None:
@@ -59,8 +88,8 @@ def refuse_ranks(kind: str, ranks: Sequence[int]) -> None:
         )
 
 
-def select_cases(kind: str, name: str) -> list[tuple[int, BenchCase]]:
-    """Find the cases of a kind, or the one that is named."""
+def select_cases(kind: str, names: Collection[str]) -> list[tuple[int, BenchCase]]:
+    """Find the cases of a kind, or those that are named."""
     look_in([str(Path.cwd())] if ":" in kind else [])
     try:
         cases = find(kind).cases()
@@ -70,10 +99,10 @@ def select_cases(kind: str, name: str) -> list[tuple[int, BenchCase]]:
         raise SceneError(f"bench {kind}: it cannot be imported ({error}).") from error
     if not cases:
         raise SceneError(f"bench {kind}: it declares no case. Name a function as Manifest.bench.")
-    if name and name not in [case.name for case in cases]:
-        known = [case.name for case in cases]
-        raise SceneError(unknown(f"bench {kind}: case {name}", name, known))
-    return [(n, case) for n, case in enumerate(cases) if name in ("", case.name)]
+    known = [case.name for case in cases]
+    if wrong := [name for name in names if name not in known]:
+        raise SceneError(unknown(f"bench {kind}: case {wrong[0]}", wrong[0], known))
+    return [(n, case) for n, case in enumerate(cases) if not names or case.name in names]
 
 
 def usual_threads() -> Sequence[int]:

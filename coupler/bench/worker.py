@@ -20,7 +20,7 @@ from typing import Any
 from quintet.interfaces.component import Component, fields_of
 from quintet.interfaces.manifest import BenchCase, Manifest, find, look_in
 from quintet.interfaces.serving.process import build
-from quintet.interfaces.waited import WAITED
+from quintet.interfaces.waited import TRAFFIC, WAITED
 
 
 class Job:
@@ -33,9 +33,9 @@ class Job:
         """Sums over all processes."""
         return numbers
 
-    def waited(self) -> float:
-        """How long [s] this process has waited for others."""
-        return 0.0
+    def largest(self, *numbers: float) -> tuple[float, ...]:
+        """Largest of each over all processes."""
+        return numbers
 
 
 class MpiJob(Job):
@@ -52,9 +52,9 @@ class MpiJob(Job):
         """Sums over all processes."""
         return tuple(self.communicator.allreduce(number) for number in numbers)
 
-    def waited(self) -> float:
-        """How long [s] this process has waited for others."""
-        return WAITED.seconds
+    def largest(self, *numbers: float) -> tuple[float, ...]:
+        """Largest of each over all processes."""
+        return tuple(max(self.communicator.allgather(number)) for number in numbers)
 
 
 def measure(manifest: Manifest, case: BenchCase, threads: int, ranks: Job) -> dict[str, Any]:
@@ -63,21 +63,25 @@ def measure(manifest: Manifest, case: BenchCase, threads: int, ranks: Job) -> di
     component = begin(manifest, order, case, ranks)
     advance(component, case.warm, case)
     del component
-    before = resident()
+    empty = resident()
     component = begin(manifest, order, case, ranks)
     advance(component, case.warm, case)
-    (growth,) = ranks.sums(resident() - before)
+    (growth,) = ranks.sums(resident() - empty)
     items = component.items()
-    waited, spent, began = ranks.waited(), time.process_time(), time.perf_counter()
+    before, spent, began = Counts(), time.process_time(), time.perf_counter()
     advance(component, case.steps, case)
-    # A rank that waits polls.
-    idle = ranks.waited() - waited
-    cpu = time.process_time() - spent - idle
+    after = Counts()
+    # A rank that waits polls, and where ranks share cores it does so in a part of its time.
+    computed = time.process_time() - spent - (after.waited - before.waited)
     wall = time.perf_counter() - began
-    cpu, idle = ranks.sums(cpu, idle)
+    cpu, idle = ranks.sums(computed, after.idle - before.idle)
+    (most,) = ranks.largest(computed)
+    per_step = [(b - a) / case.steps for a, b in zip(before.sent, after.sent, strict=True)]
+    messages, halo, collectives, gathered = ranks.largest(*per_step)
     return {
         "name": manifest.kind,
         "case": case.name,
+        "series": case.series or case.name,
         "items": items,
         "ranks": ranks.size,
         "threads": threads,
@@ -87,9 +91,27 @@ def measure(manifest: Manifest, case: BenchCase, threads: int, ranks: Job) -> di
         "unit": case.unit,
         "cpu_seconds": cpu,
         "wall_seconds": wall,
+        "imbalance": most * ranks.size / cpu,  # largest over mean of the ranks' processor times
+        "messages": messages,  # these four a step, of the rank with most
+        "halo_bytes": halo,
+        "collectives": collectives,
+        "gathered_bytes": gathered,
         "bytes_per_item": growth / items,
         "options": {"steps": case.steps, "warm": case.warm, "params": case.params},
     }
+
+
+class Counts:
+    """What this process has waited for others, and sent them, so far."""
+
+    def __init__(self) -> None:
+        self.idle, self.waited = WAITED.seconds, WAITED.processor
+        self.sent = (
+            TRAFFIC.messages,
+            TRAFFIC.message_bytes,
+            TRAFFIC.collectives,
+            TRAFFIC.gathered_bytes,
+        )
 
 
 def begin(manifest: Manifest, order: dict[str, Any], case: BenchCase, ranks: Job) -> Component:

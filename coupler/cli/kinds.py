@@ -4,7 +4,9 @@ import argparse
 from pathlib import Path
 
 from quintet.coupler.cli.options import FOR_PROGRAMS, PRESET, Command, add_settings
+from quintet.coupler.cli.scaling import add_model
 
+CASE = "one of the component's cases, may be repeated; all if not given"
 THREADS = "of the component, may be repeated; 1, and 2 where there are two cores, if not given"
 RANKS = "MPI ranks that share the component out, may be repeated; 1 if not given"
 PARAMS = "its parameters in TOML, in place of cases; a table conform in it has what it takes"
@@ -14,7 +16,7 @@ def add_commands(command: Command) -> None:
     """Add what tries a kind of component by itself."""
     speed = command("bench", bench, "measure the throughput of a component, or of the exchange")
     speed.add_argument("name", help="the word exchange, or a kind of component")
-    speed.add_argument("--case", default="", help="one of the component's cases; all if not given")
+    speed.add_argument("--case", action="append", default=[], metavar="NAME", help=CASE)
     speed.add_argument("--threads", type=int, action="append", metavar="N", help=THREADS)
     speed.add_argument("--ranks", type=int, action="append", metavar="N", help=RANKS)
     speed.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)
@@ -22,6 +24,7 @@ def add_commands(command: Command) -> None:
         "--transport", choices=["zenoh", "mpi"], help="of the exchange; both if not given"
     )
     speed.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
+    add_model(speed)
     laws = command("conform", conform, "check that a kind of component obeys the contract")
     laws.add_argument("kind", nargs="?", default="", help="an installed kind, or module:Class")
     laws.add_argument("--case", default="", help="one of the kind's cases; all if not given")

@@ -78,6 +78,10 @@ def test_ranks_that_share_a_component_are_compared_with_one(tmp_path, capsys):
     one, two = json.loads(file.read_text())
     assert (one["ranks"], two["ranks"], one["waits"]) == (1, 2, 0.0)
     assert two["items"] == one["items"] and 0.0 < two["waits"] < 1.0
+    assert (one["imbalance"], one["collectives"], one["gathered_bytes"]) == (1.0, 0.0, 0.0)
+    assert 1.0 <= two["imbalance"] < 2.0 and two["collectives"] >= 1.0
+    assert two["gathered_bytes"] > 5000 * 4 * 8  # half of the nodes, four numbers each
+    assert two["network"]["latency"] > 0.0 and two["network"]["bandwidth"] > 0.0
     assert "ranks" in capsys.readouterr().out
 
 
