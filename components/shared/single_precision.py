@@ -11,7 +11,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 from quintet.components.shared.numba_options import FAST
-from quintet.components.shared.search.cells import corners
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 
@@ -28,13 +27,6 @@ def rounded(numbers: Any) -> Any:
     if isinstance(numbers, tuple):
         return type(numbers)(*map(rounded, numbers))
     return np.asarray(numbers, np.float32)[()]
-
-
-def centre(points: Array) -> tuple[float, float, float]:
-    """Middle [m] of the box around points (n, 3 or more) m."""
-    low, high = corners(points)
-    x, y, z = (0.5 * (low + high)).tolist()
-    return x, y, z
 
 
 @njit(**FAST)

@@ -93,6 +93,13 @@ class SymmetryImages:
             array[images] = array[origin]
             array[images, odd[plane.axis]] *= -1.0
 
+    def write_all(self, rows: int, positions: Array, vectors: Array, *tensors: Array) -> None:
+        """Write the images of the first rows in positions, vectors and tensors."""
+        self.write_positions(positions, rows)
+        self.write_vectors(vectors, rows)
+        for tensor in tensors:
+            self.write_tensors(tensor, rows)
+
     def write_values(self, array: NDArray[np.generic], rows: int) -> None:
         """Write the images of the first rows, equal to their origins; (n + images, ...)."""
         for _, origin, images in self._images(rows):

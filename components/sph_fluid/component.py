@@ -57,8 +57,8 @@ class SphFluid(Component):
         self.all_ranks, self.symmetry = features.ranks(params, resources)
         self.lists = FluidLists(params, self.samples, self.all_ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
-        precision, joined = features.precision(params), (self.boundary, self.symmetry)
-        self.pairs = Interaction(params, *joined, precision, self.samples)
+        precision = features.precision(params, self.all_ranks)
+        self.pairs = Interaction(params, self.boundary, self.symmetry, precision, self.samples)
         self.integration = features.integration(params)
         self.courant = features.courant_limit(params)
         self.films: Films = NoFilms()  # before there are surfaces
@@ -122,7 +122,8 @@ class SphFluid(Component):
             diagnostics.refuse_dense(self.state, self.params, self.all_ranks)
             self.lists.sort(self.state)
             self._list()
-        if self.filter:
+        if self.filter and self.filter.is_due(self.state):
+            self.symmetry.write_images(self.state)
             self.filter.apply(self.state, self.lists.arrays, self.team)
         rows, rate = self.boundary.rows_with_density_rate(self.state), self.pairs.rates.rate
         if self.state.steps % judgement.EVERY == 0:
@@ -140,10 +141,11 @@ class SphFluid(Component):
 
     def _compute_rates(self) -> None:
         """Accelerations and rates of density, of the state as it is."""
-        self.symmetry.write_images(self.state)
         for part in self.pressure_parts:
+            if part.reads_images:
+                self.symmetry.write_images(self.state)
             part.write_pressure(self.state, self.lists.arrays, self.team)
-            self.symmetry.write_images(self.state)
+        self.symmetry.write_images(self.state)
         self.pairs.compute(self.state, self.lists.arrays, self.team)
 
     def _apply_forces(self, dt: float) -> None:
@@ -165,7 +167,6 @@ class SphFluid(Component):
         if failures:
             raise StepError(diagnostics.failure(self.all_ranks.whole(state), self.params, dt))
         self.symmetry.reflect_crossed(state)
-        self.symmetry.write_images(state)
         state.moved = math.sqrt(shift2)
         state.largest_acceleration, state.largest_approach = fastest, approach
         state.last_dt, state.steps = dt, state.steps + 1
@@ -175,6 +176,8 @@ class SphFluid(Component):
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
         outputs: dict[str, Array] = {}
         if self.gauges and not wanted <= LOADS:
+            if len(self.state.reference):
+                self.symmetry.write_images(self.state)
             outputs.update(self.gauges.read(self.state, self.lists.arrays))
         if wanted & LOADS:
             outputs["surface_load.force"] = self.state.force.copy()
@@ -198,6 +201,7 @@ class SphFluid(Component):
         """Mass, momentum and energies of the fluid that is left."""
         totals = diagnostics.totals(self.state, self.params, self.constants, self.all_ranks)
         if len(self.state.reference):
+            self.symmetry.write_images(self.state)
             totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
         return totals
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 class PressurePart(Protocol):
     """What writes pressures before a pass over pairs."""
 
+    reads_images: bool  # whether it reads more than the rows that it writes
+
     def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
         """Write p/ρ² of some rows of the state."""
 
@@ -165,14 +167,14 @@ def shepard_filter(params: SphFluidParams) -> "ShepardFilter | None":
     return ShepardFilter(params)
 
 
-def precision(params: SphFluidParams) -> Precision:
+def precision(params: SphFluidParams, ranks: Ranks) -> Precision:
     """In which precision pairs are computed."""
     if params.precision == "float64":
         return DoublePrecision()
     # Left out of scenes in double precision.
     from quintet.components.sph_fluid.pairs.single_precision import SinglePrecision
 
-    return SinglePrecision()
+    return SinglePrecision(ranks)
 
 
 def integration(params: SphFluidParams) -> Integration:

@@ -191,17 +191,13 @@ class SphSolid(Component):
     def _write_gradients(self) -> None:
         """Write gradients of velocity, from places and motion in the rows."""
         rows, count = self.rows, self.state.particles
-        self.lists.images.write_positions(rows.place, count)
-        self.lists.images.write_vectors(rows.motion, count)
+        self.lists.images.write_all(count, rows.place, rows.motion)
         self.sums.write_gradients(rows, self.law)
 
     def _write_accelerations(self) -> None:
         """Write accelerations, forces on glued particles and the next stable step."""
         state, rows, count = self.state, self.rows, self.state.particles
-        images = self.lists.images
-        images.write_positions(rows.place, count)
-        images.write_vectors(rows.motion, count)
-        images.write_tensors(rows.stress, count)
+        self.lists.images.write_all(count, rows.place, rows.motion, rows.stress)
         forces = Forces(state.acceleration, state.heating)
         bound = self.sums.write_accelerations(rows, self.law, forces)
         state.bound = -float(self.all_ranks.greatest(np.array([-bound]))[0])

@@ -128,10 +128,10 @@ class CopiesAndImages:
             self._halos[widths] = halo
         self._halos[widths].exchange(*arrays)
 
-    def write_positions(self, array: Array, rows: int) -> None:
-        """Write copies and images; see `SymmetryImages.write_positions`."""
-        self.exchange(array)
-        self.images.write_positions(array, rows + self.copies)
+    def write_all(self, rows: int, positions: Array, vectors: Array, *tensors: Array) -> None:
+        """Write copies, in one message to each rank, and images; see `SymmetryImages.write_all`."""
+        self.exchange(positions, vectors, *tensors)
+        self.images.write_all(rows + self.copies, positions, vectors, *tensors)
 
     def write_vectors(self, array: Array, rows: int) -> None:
         """Write copies and images; see `SymmetryImages.write_vectors`."""

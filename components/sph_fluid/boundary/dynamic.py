@@ -21,6 +21,7 @@ class DynamicBoundary:
 
     contact = NO_POTENTIAL
     stable_dt = math.inf
+    reads_images = False
 
     def __init__(self, samples: Samples) -> None:
         self.samples, self.mask = samples, np.zeros(0)

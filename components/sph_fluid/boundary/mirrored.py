@@ -39,6 +39,8 @@ if TYPE_CHECKING:  # compiled where a link asks for it
 class MirroredBoundary:
     """Walls and samples whose density is mirrored."""
 
+    reads_images = True
+
     def __init__(
         self,
         params: SphFluidParams,

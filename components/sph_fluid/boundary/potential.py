@@ -15,6 +15,8 @@ from quintet.interfaces.component import Fields
 class PotentialBoundary:
     """A boundary without density or pressure of its own."""
 
+    reads_images = False
+
     def __init__(self, params: SphFluidParams, samples: Samples) -> None:
         self.samples, self.stiffness = samples, ContactStiffness(params)
         self.contact, self.mask = self.stiffness.numbers, np.zeros(0)

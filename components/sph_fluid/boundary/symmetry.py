@@ -43,8 +43,7 @@ class Symmetry:
 
     def write_images(self, state: State) -> None:
         """Write the images of all particles as they are."""
-        self.images.write_positions(state.position_density, state.particles)
-        self.images.write_vectors(state.velocity_pressure, state.particles)
+        self.images.write_all(state.particles, state.position_density, state.velocity_pressure)
 
     def reflect_crossed(self, state: State) -> None:
         """Let fluid that passed a plane change places with its image."""

@@ -38,6 +38,8 @@ def courant_limit(damper: float) -> float:
 class AcousticDamper:
     """The damper of the fluid, and of walls that obey its equations."""
 
+    reads_images = False
+
     def __init__(self, params: SphFluidParams, boundary: BoundaryMethod) -> None:
         self.boundary, self.constants = boundary, constants(params)
         self.strength = params.acoustic_damper * params.sound_speed * params.smoothing_length
@@ -51,6 +53,8 @@ class AcousticDamper:
 
 class MirroredDamper:
     """The damper's part at mirrored walls and samples."""
+
+    reads_images = True
 
     def __init__(self, params: SphFluidParams) -> None:
         self.constants = constants(params)

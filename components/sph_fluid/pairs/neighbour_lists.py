@@ -44,7 +44,8 @@ class FluidLists:
             moved = max(moved, boundary.displacement(state))
         # Each of two goes to the middle of the step at its speed.
         coming = dt * longest(state.velocity_pressure[: state.fluid]) if self.middle else 0.0
-        moved, coming = self.ranks.greatest(moved, coming)
+        if self.middle or len(self.samples.volume):
+            moved, coming = self.ranks.greatest(moved, coming)
         return slack(self.reach - self.cutoff - coming, state.moved, moved) < 0.0
 
     def sort(self, state: State) -> None:

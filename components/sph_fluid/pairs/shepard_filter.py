@@ -17,10 +17,12 @@ class ShepardFilter:
     def __init__(self, params: SphFluidParams) -> None:
         self.every, self.constants = params.shepard_every, constants(params)
 
+    def is_due(self, state: State) -> bool:
+        """Whether the coming step begins with a filtered density."""
+        return state.steps % self.every == self.every - 1
+
     def apply(self, state: State, lists: Lists, team: Team) -> None:
-        """Filter the fluid's density where it is time, and compute pressures again."""
-        if state.steps % self.every != self.every - 1:
-            return
+        """Filter the fluid's density, and compute pressures again."""
         density, rows = np.empty(state.fluid), slice(state.fluid)
         arrays = (state.position_density, lists, self.constants, density)
         team.run(filter_density, state.fluid, *arrays)

@@ -56,10 +56,7 @@ class HaloAndImages:
 
     def write_images(self, state: State) -> None:
         """Write copies and images of all particles as they are."""
-        self._rows.exchange(state.position_density, state.velocity_pressure)
-        rows = state.particles + self._rows.copies
-        self._images.write_positions(state.position_density, rows)
-        self._images.write_vectors(state.velocity_pressure, rows)
+        self._rows.write_all(state.particles, state.position_density, state.velocity_pressure)
 
     def write_values(self, values: NDArray[np.floating], rows: int) -> None:
         """Write copies and images of values (rows + copies + images,)."""

@@ -15,7 +15,6 @@ def refuse_what_needs_one_rank(params: SphFluidParams, ranks: int) -> None:
     edge = params.boundary
     wrong = {
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
-        "precision": (params.precision, params.precision != "float64", "float64"),
     }
     for key, (value, is_wrong, right) in wrong.items():
         if is_wrong:

@@ -19,11 +19,8 @@ class Images(Protocol):
     def planes(self) -> list[Plane]:
         """Planes of symmetry."""
 
-    def write_positions(self, array: Array, rows: int) -> None:
-        """Write those of positions in columns 0 to 2."""
-
-    def write_vectors(self, array: Array, rows: int) -> None:
-        """Write those of vectors in columns 0 to 2."""
+    def write_all(self, rows: int, positions: Array, vectors: Array, *tensors: Array) -> None:
+        """Write those of positions and vectors, in columns 0 to 2, and of tensors."""
 
     def write_tensors(self, array: Array, rows: int) -> None:
         """Write those of tensors."""

@@ -59,6 +59,17 @@ PARAMS = {
         "density_diffusion": 0.1,
         "viscosity__artificial": 0.05,
     },
+    "single": {  # precision, with a plane of symmetry
+        "precision": "float32",
+        "boundary__method": "mdbc",
+        "boundary__walls": TANK,
+        "boundary__symmetry": ["y-"],
+        "fluid": [DAM],
+        "density_diffusion": 0.1,
+        "shepard_every": 9,
+        "viscosity__kinematic": 1e-3,
+        **GAUGES,
+    },
     "spilling": {  # over an edge, and out of the domain
         "boundary__method": "dbc",
         "boundary__walls": (ORIGIN, (0.5, 0.4, 0.4)),
