@@ -37,4 +37,5 @@ def cases() -> tuple[BenchCase, ...]:
         BenchCase("struck block, 51k", bar(37, 37, 37), 20, 60, unit, series=series),
         BenchCase("struck block, 51k, corrected", corrected, 20, 60, unit),
         BenchCase("struck block, 250k", bar(63, 63, 63), 10, 20, unit, series=series),
+        BenchCase("struck block, 300k", bar(67, 67, 67), 10, 20, unit),
     )

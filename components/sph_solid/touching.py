@@ -28,6 +28,7 @@ class Touching:
         """Take the neighbours of the start."""
         self.support, self.start, self.group = lists.support, state.reference, lists.group(state)
         self.listed = np.full_like(state.reference, np.inf)
+        self.ranks, self.contact = lists.ranks, lists.ranks.contact()
         self.planes = []
         for plane in lists.images.planes:
             depth = plane.inward * (state.reference[:, plane.axis] - plane.position)
@@ -35,10 +36,14 @@ class Touching:
 
     def add(self, rows: Rows, density: Array, forces: Forces) -> None:
         """Add forces of contact, of densities (n + images,) kg/m3 at the start."""
-        place = rows.place[: len(self.start), :3]
-        if not slack(SKIN * self.spacing, furthest(place, self.listed)) >= 0.0:
+        count = len(self.start)
+        place = rows.place[:count, :3]
+        is_old = float(not slack(SKIN * self.spacing, furthest(place, self.listed)) >= 0.0)
+        if self.ranks.greatest(np.array([is_old]))[0]:
             self._list(place)
-        push_apart(self.pairs, rows.place, rows.motion, density, self.spacing, forces)
+        columns = rows.place[:count], rows.motion[:count], density[:count, None]
+        place, motion, densities = self.contact.extend(*columns)
+        push_apart(self.pairs, place, motion, densities[:, 0], self.spacing, forces)
         for plane, mine in self.planes:
             push_off_plane(
                 mine, plane.axis, plane.position, plane.inward, rows.place, rows.motion, density,
@@ -46,34 +51,46 @@ class Touching:
             )  # fmt: skip
 
     def energy(self, state: State, density: Array, share: Array) -> float:
-        """Energy [J] that contact stores in particles, each with a share (n,) of its own part.
+        """Energy [J] that contact stores in particles of all ranks, each with a share (n,) of it.
 
         Densities (n,) kg/m3 are those at the start; two particles of a pair store half each.
         """
-        place, stiff = state.position, density * state.sound**2
-        i, j = self._pairs(place, 1.0).T
-        depth = 1.0 - np.linalg.norm(place[i] - place[j], axis=1) / self.spacing
-        volume = np.sqrt(state.volume[i] * state.volume[j])
-        shares = 0.5 * (share[i] + share[j])
-        stored = 0.25 * float((shares * (stiff[i] + stiff[j]) * volume * depth**2).sum())
+        place, count = state.position, state.particles
+        self._list(place)
+        stiff = density * state.sound**2
+        columns = np.column_stack([place, stiff, state.volume, share])
+        (extended,) = self.contact.extend(columns)
+        i, j = self.pairs.T
+        x, y, z = (extended[i, :3] - extended[j, :3]).T
+        depth = np.maximum(1.0 - np.sqrt(x * x + y * y + z * z) / self.spacing, 0.0)
+        stiffs, volumes, shares = extended[:, 3], extended[:, 4], extended[:, 5]
+        volume = np.sqrt(volumes[i] * volumes[j])
+        energy = 0.125 * (shares[i] + shares[j]) * (stiffs[i] + stiffs[j]) * volume * depth * depth
+        # Of each particle, in the order of its pairs, which is the same on any number of ranks.
+        of_both = np.bincount(self.pairs.ravel(), np.repeat(0.5 * energy, 2), len(extended))
+        stored = of_both[:count].astype(np.float64)  # of no pairs it counts integers
         for plane, rows in self.planes:
             apart = 2.0 * plane.inward * (place[rows, plane.axis] - plane.position)
             depth = np.maximum(1.0 - apart / self.spacing, 0.0)
-            energies = share[rows] * stiff[rows] * state.volume[rows] * depth**2
-            stored += 0.25 * float(energies.sum())
-        return stored
+            stored[rows] += 0.25 * share[rows] * stiff[rows] * state.volume[rows] * depth**2
+        return float(self.ranks.sums(state, [stored])[0])
 
     def _list(self, place: Array) -> None:
         self.listed = place.copy()
         # What is not finite touches nothing; the step will say so.
+        wrong = float(not np.isfinite(place).all())
+        is_wrong = self.ranks.greatest(np.array([wrong]))[0] > 0.0
         empty = np.zeros((0, 2), np.int64)
-        self.pairs = self._pairs(place, 1.0 + SKIN) if np.isfinite(place).all() else empty
+        self.pairs = empty if is_wrong else self._pairs(place, (1.0 + SKIN) * self.spacing)
 
     def _pairs(self, place: Array, reach: float) -> Whole:
-        """Pairs (p, 2) nearer than so many spacings, that were no neighbours, in their order."""
-        tree = cKDTree(place)
-        pairs = tree.query_pairs(reach * self.spacing, output_type="ndarray").astype(np.int64)
-        apart = self.start[pairs[:, 0]] - self.start[pairs[:, 1]]
+        """Rows of pairs (p, 2) nearer than a reach [m], that were no neighbours, in their order."""
+        points, row = self.contact.find(np.ascontiguousarray(place), reach)
+        pairs = cKDTree(points).query_pairs(reach, output_type="ndarray").astype(np.int64)
+        pairs = row[pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]]
+        start, group = self.contact.extend(self.start, self.group[:, None].astype(np.float64))
+        apart = start[pairs[:, 0]] - start[pairs[:, 1]]
         were_far = (apart * apart).sum(axis=1) >= self.support * self.support
-        pairs = pairs[were_far | (self.group[pairs[:, 0]] != self.group[pairs[:, 1]])]
-        return np.ascontiguousarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))])
+        other = group[pairs[:, 0], 0] != group[pairs[:, 1], 0]
+        some = (pairs < len(self.start)).any(axis=1)  # not two copies
+        return np.ascontiguousarray(pairs[(were_far | other) & some])

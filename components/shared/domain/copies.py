@@ -52,6 +52,8 @@ class CopiesAndImages:
         self._communicator = communicator
         self.images = SymmetryImages(planes)
         self.copies = 0  # rows that are copies
+        self._sent: list[Whole] = []  # rows that each rank gets; none before the first `copy`
+        self._received: list[Whole] = []  # rows into which its rows go
         self._halos: dict[tuple[int, ...], Halo] = {}  # by widths
 
     @property

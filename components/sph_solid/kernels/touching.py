@@ -21,22 +21,23 @@ TINY = 1e-12  # of the spacing: two in one place are pushed nowhere
 def push_apart(
     pairs: Whole, place: Array, motion: Array, density: Array, spacing: float, forces: Forces
 ) -> None:
-    """Add what pairs that touch push each other by.
+    """Add what pairs that touch push each other by, to the particles that have forces.
 
     Parameters
     ----------
     pairs : (p, 2) int array
         In ascending order, so that sums do not depend on which of them touch.
-    place, motion : (n + images, 4) float arrays
+    place, motion : (any, 4) float arrays
         As in `Rows`, with speeds of sound.
-    density : (n + images,) float array, kg/m3
+    density : (any,) float array, kg/m3
         At the start.
     spacing : float, m
         Δ.
     forces : Forces
-        Changed.
+        Of the first rows; changed.
     """
     acceleration, heating = forces
+    count = heating.shape[0]
     for q in range(pairs.shape[0]):
         i, j = pairs[q, 0], pairs[q, 1]
         dx, dy, dz = place[i, 0] - place[j, 0], place[i, 1] - place[j, 1], place[i, 2] - place[j, 2]
@@ -50,14 +51,16 @@ def push_apart(
         power = fx * (motion[i, 0] - motion[j, 0]) + fy * (motion[i, 1] - motion[j, 1])
         power += fz * (motion[i, 2] - motion[j, 2])
         per_i, per_j = 1.0 / (density[i] * place[i, 3]), 1.0 / (density[j] * place[j, 3])
-        acceleration[i, 0] += fx * per_i
-        acceleration[i, 1] += fy * per_i
-        acceleration[i, 2] += fz * per_i
-        acceleration[j, 0] -= fx * per_j
-        acceleration[j, 1] -= fy * per_j
-        acceleration[j, 2] -= fz * per_j
-        heating[i] -= 0.5 * power * per_i
-        heating[j] -= 0.5 * power * per_j
+        if i < count:
+            acceleration[i, 0] += fx * per_i
+            acceleration[i, 1] += fy * per_i
+            acceleration[i, 2] += fz * per_i
+            heating[i] -= 0.5 * power * per_i
+        if j < count:
+            acceleration[j, 0] -= fx * per_j
+            acceleration[j, 1] -= fy * per_j
+            acceleration[j, 2] -= fz * per_j
+            heating[j] -= 0.5 * power * per_j
 
 
 @njit(**EXACT)

@@ -29,6 +29,16 @@ class Images(Protocol):
         """Write those of values."""
 
 
+class Contact(Protocol):
+    """Particles that may touch those of a rank: its own, and copies of others behind them."""
+
+    def find(self, places: Array, reach: float) -> tuple[Array, Whole]:
+        """Own places (n, 3) m and those within a reach [m], in order; the row of each."""
+
+    def extend(self, *arrays: Array) -> list[Array]:
+        """Own rows (n, width) of arrays, then copies as they are now."""
+
+
 class Ranks(Protocol):
     """The ranks of one solid; of several, each calls every method, in the same order."""
 
@@ -51,6 +61,9 @@ class Ranks(Protocol):
         self, state: State, team: Team, buffer: NDArray[np.int32]
     ) -> tuple[Array, NeighbourLists]:
         """All points (any, 3) m that lists are made of, by row, and the lists of own particles."""
+
+    def contact(self) -> Contact:
+        """Find what may touch own particles, in the order that they have now."""
 
     def load(self, state: State) -> None:
         """Take over a state of all particles that was loaded."""

@@ -13,6 +13,18 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.state import Array, State, Whole, chosen
 
 
+class NoCopies:
+    """Particles that may touch, where all are own."""
+
+    def find(self, places: Array, reach: float) -> tuple[Array, Whole]:
+        """Return the places, and their rows."""
+        return places, np.arange(len(places))
+
+    def extend(self, *arrays: Array) -> list[Array]:
+        """Return the arrays."""
+        return list(arrays)
+
+
 class OneRank:
     """A solid whose state is all there is, with planes of symmetry."""
 
@@ -44,6 +56,10 @@ class OneRank:
         return points, neighbours_and_images(
             points, all_alike, count, count, state.reach, team, None, buffer
         )
+
+    def contact(self) -> NoCopies:
+        """All particles."""
+        return NoCopies()
 
     def load(self, state: State) -> None:
         """Nothing to do: the state is all."""

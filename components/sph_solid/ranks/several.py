@@ -18,6 +18,7 @@ from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_among
 from quintet.components.shared.symmetry import Plane
 from quintet.components.shared.threads import Team
+from quintet.components.sph_solid.ranks.contact import ContactCopies
 from quintet.components.sph_solid.state import OF_PARTICLES, Array, State, Whole, chosen
 
 
@@ -80,6 +81,10 @@ class SeveralRanks:
         count = state.particles
         lists = neighbours_among(reach, points, rows, nothing, places, count, team, buffer, grid)
         return points, lists
+
+    def contact(self) -> ContactCopies:
+        """Own particles, and copies of those that come near."""
+        return ContactCopies(self._communicator, self._keys)
 
     def load(self, state: State) -> None:
         """Keep a part of a state of all particles."""

@@ -20,6 +20,7 @@ BALL = {
     "velocity": [300.0, 100.0, -2000.0],
     "material": "aluminium",
 }
+RUBBER = {"density": 1000.0, "youngs_modulus": 1e7, "poissons_ratio": 0.4}
 COMMON = {"spacing": 0.005, "total_lagrangian": False}
 PARAMS = {
     "impact": {
@@ -34,6 +35,15 @@ PARAMS = {
         "bodies": [PLATE, {**BALL, "lowest": [0.0, 0.0, 0.02], "velocity": [0.0, 0.0, -3000.0]}],
         "symmetry": [{"axis": "x"}, {"axis": "y"}],
         "kernel_correction": True,
+    },
+    "lasting": {  # neighbours of the start, of bodies that touch and slide
+        "spacing": 0.005,
+        "total_lagrangian": True,
+        "bodies": [
+            {**PLATE, "material": RUBBER},
+            {**BALL, "material": RUBBER, "velocity": [12.0, 0.0, -8.0]},
+        ],
+        "symmetry": [{"axis": "y"}],
     },
     "glued": {
         **COMMON,

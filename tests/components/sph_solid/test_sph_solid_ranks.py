@@ -14,7 +14,7 @@ from quintet.interfaces.errors import SceneError
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("solid_on_ranks.py")
-NAMES = ("impact", "quarter", "glued")
+NAMES = ("impact", "quarter", "lasting", "glued")
 STEPS = 100  # with lists made again, and rows that change their rank
 
 
@@ -30,7 +30,7 @@ def folder(tmp_path_factory, on_ranks):
     """Runs on 1 and 2 ranks."""
     folder = tmp_path_factory.mktemp("solids")
     for ranks in (1, 2):
-        on_ranks(PROGRAM, ranks, folder, STEPS, 0, ",".join(NAMES))
+        on_ranks(PROGRAM, ranks, folder, STEPS, 0, ",".join(NAMES), seconds=300)
     return folder
 
 
@@ -38,7 +38,7 @@ def folder(tmp_path_factory, on_ranks):
 def resumed(folder, on_ranks):
     """Runs on 1 and 3 ranks that go on from the states of 1 and 2."""
     for ranks, earlier in ((1, 1), (3, 2)):
-        on_ranks(PROGRAM, ranks, folder, 30, earlier, ",".join(NAMES))
+        on_ranks(PROGRAM, ranks, folder, 30, earlier, ",".join(NAMES), seconds=300)
     return folder
 
 
@@ -52,12 +52,20 @@ def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
     assert differences(resumed, f"{name}-1-1", f"{name}-3-2") == []
 
 
-def test_a_solid_with_the_neighbours_of_the_start_is_refused_on_several_ranks():
+def test_bodies_with_the_neighbours_of_the_start_meet_and_slide(folder):
+    reached = np.load(folder / "lasting-2.npz")
+    plate = reached["view body"] == 0
+    assert reached["view velocity"][plate, 2].min() < -2.0
+    moved = reached["view points"][~plate, 0].mean() - 0.04
+    assert moved > 0.005  # further than a spacing
+
+
+def test_rings_are_refused_on_several_ranks():
     class Several:
         size = 2
 
     body = {"lowest": [0.0] * 3, "highest": [1.0] * 3, "material": "steel"}
-    table = {"spacing": 0.1, "bodies": [body], "total_lagrangian": True}
+    table = {"spacing": 0.1, "bodies": [body], "dimensions": 2, "axisymmetric": True}
     params = TypeAdapter(SphSolidParams).validate_json(json.dumps(table))
-    with pytest.raises(SceneError, match=r"total_lagrangian must be false of a solid on 2 ranks"):
+    with pytest.raises(SceneError, match=r"axisymmetric must be false of a solid on 2 ranks"):
         SphSolid(params, Resources(communicator=Several()))
