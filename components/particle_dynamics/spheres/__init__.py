@@ -25,5 +25,6 @@ MANIFEST = Manifest(
     plan=plan,
     initial=initial,
     bench="quintet.components.particle_dynamics.spheres.bench:cases",
+    ranks=True,
     conform="quintet.components.particle_dynamics.spheres.conform:cases",
 )

@@ -7,21 +7,31 @@ import numpy as np
 
 from quintet.components.particle_dynamics.integrators import LIMIT, STAGES
 from quintet.components.particle_dynamics.spheres import MANIFEST
-from quintet.components.particle_dynamics.spheres.build import build, initial_state
+from quintet.components.particle_dynamics.spheres.build import build
 from quintet.components.particle_dynamics.spheres.diagnostics import totals, warnings
-from quintet.components.particle_dynamics.spheres.features import Impacts, impacts
+from quintet.components.particle_dynamics.spheres.features import spheres_of
 from quintet.components.particle_dynamics.spheres.kernels import fly
 from quintet.components.particle_dynamics.spheres.params import ParticleSpheresParams
 from quintet.components.particle_dynamics.spheres.ports import SHOWS
-from quintet.components.particle_dynamics.spheres.state import DEEPEST, HEATED, TIME
+from quintet.components.particle_dynamics.spheres.state import DEEPEST, HEATED, TIME, Spheres, State
 from quintet.components.particle_dynamics.spheres.view import view
 from quintet.components.shared.geometry.surface_samples import rigid_answer, sphere
-from quintet.interfaces.component import Array, Component, Fields, Keys, Totals
+from quintet.interfaces.component import (
+    ONE_THREAD,
+    Array,
+    Component,
+    Fields,
+    Keys,
+    Resources,
+    Totals,
+)
 from quintet.interfaces.errors import StepError
 
+HEAT_FLOW = "heat.heat_flow"
 ROUNDING = 1e-9  # of a step, by which the time of a launch may be missed
 CLOSING = 0.25  # of the smallest diameter, by which two may come nearer in a step
 TOUCHING = 0.005  # of the smaller diameter: the largest overlap at the end of a step
+LOADS = {"load.force": "force", "load.torque": "torque", HEAT_FLOW: "heat"}  # rows of the state
 MOST_PARTS = 64  # into which a step is divided where several impacts of a sphere fall into it
 
 
@@ -32,22 +42,34 @@ class ParticleSpheres(Component):
     ----------
     params : ParticleSpheresParams
         Spheres, walls, gravity.
+    resources : Resources
+        With a communicator of several ranks each moves its share of the spheres.
     """
 
     Params: type[ParticleSpheresParams] = ParticleSpheresParams
     manifest = MANIFEST
     shows = SHOWS
 
-    def __init__(self, params: ParticleSpheresParams) -> None:
+    def __init__(self, params: ParticleSpheresParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
-        self.spheres = build(params.spheres)
-        self.impacts = impacts(params, self.spheres)
+        spheres = build(params.spheres)
         self.gravity = np.array(params.gravity)
-        self.stiff = (self.spheres.tether / self.spheres.mass)[:, None]  # (n, 1) 1/s2
-        self.frequency = math.sqrt(float(self.stiff.max()))  # rad/s, of the stiffest tether
+        self.frequency = math.sqrt(float((spheres.tether / spheres.mass).max()))  # rad/s
+        self.room = 2.0 * CLOSING * float(spheres.radius.min())  # m
         self.stages = np.array(STAGES[params.integrator])
-        self.state = initial_state(self.spheres)
+        self.rows, self.impacts = spheres_of(resources, params, spheres)
+        self.heat_flow = 0.0  # W, to all spheres
         self._launch(0.0)
+
+    @property
+    def spheres(self) -> Spheres:
+        """What never changes, of the spheres of this rank."""
+        return self.rows.spheres
+
+    @property
+    def state(self) -> State:
+        """What moves, of the spheres of this rank."""
+        return self.rows.state
 
     def _launch(self, until: float) -> None:
         """Give the first velocities to spheres that are launched by a time [s]."""
@@ -59,18 +81,18 @@ class ParticleSpheres(Component):
 
     def describe(self) -> Fields:
         """State radius and mass; for a gas also heat capacity and the size of parcels."""
-        spheres = self.spheres
+        spheres, whole = self.spheres, self.rows.whole
         return {
-            "motion.radius": spheres.radius.copy(),
-            "motion.mass": spheres.mass.copy(),
-            "spheres.mass": spheres.mass.copy(),
-            "spheres.heat_capacity": spheres.capacity.copy(),
-            "spheres.number": spheres.parcel.copy(),
+            "motion.radius": whole(spheres.radius),
+            "motion.mass": whole(spheres.mass),
+            "spheres.mass": whole(spheres.mass),
+            "spheres.heat_capacity": whole(spheres.capacity),
+            "spheres.number": whole(spheres.parcel),
         }
 
     def sample(self, request: Fields) -> Fields:
         """Sample the surfaces of the spheres as a partner requests."""
-        diameters = (2.0 * self.spheres.radius).tolist()
+        diameters = (2.0 * self.rows.whole(self.spheres.radius)).tolist()
         known = {diameter: partial(sphere, diameter) for diameter in set(diameters)}
         return rigid_answer("motion", request, [known[diameter] for diameter in diameters])
 
@@ -82,9 +104,9 @@ class ParticleSpheres(Component):
         if self.impacts is not None:
             closing = self.impacts.closing_speed(self.state.velocity)
             pull = self.impacts.closing_speed(self._acceleration())
-            room = 2.0 * CLOSING * float(self.spheres.radius.min())
             if closing + pull > 0.0:
-                limits.append(2.0 * room / (closing + math.sqrt(closing**2 + 2.0 * pull * room)))
+                root = math.sqrt(closing**2 + 2.0 * pull * self.room)
+                limits.append(2.0 * self.room / (closing + root))
         return min(limits)
 
     def _acceleration(self) -> Array:
@@ -96,32 +118,39 @@ class ParticleSpheres(Component):
         """Accelerations (n, 3) m/s2 of launched spheres, by gravity and tethers."""
         pull = self.gravity
         if self.frequency > 0.0:
-            pull = pull - self.stiff * (self.state.position - self.spheres.start)
+            stiff = (self.spheres.tether / self.spheres.mass)[:, None]  # 1/s2
+            pull = pull - stiff * (self.state.position - self.spheres.start)
         return np.asarray(pull * self.state.launched[:, None])
 
     def take(self, fields: Fields) -> None:
         """Set force [N], torque [N m] and heat [W] on each sphere; they are 0 if absent."""
-        self.state.force[:] = fields.get("load.force", 0.0)
-        self.state.torque[:] = fields.get("load.torque", 0.0)
-        self.state.heat[:] = fields.get("heat.heat_flow", 0.0)
+        self.heat_flow = 0.0
+        for port, name in LOADS.items():
+            loads = self.rows.here(fields[port]) if port in fields else 0.0
+            getattr(self.state, name)[:] = loads
+        if HEAT_FLOW in fields:
+            self.heat_flow = float(fields[HEAT_FLOW].sum())
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s], in parts where spheres would overlap by too much."""
         if self.impacts is None or not self.impacts.collide:
             self._advance(dt)
             return
-        start, parts = self.save(), 1
-        while not self._advance_in_parts(dt, parts, start, self.impacts) and parts < MOST_PARTS:
+        self.impacts.share_out()
+        start, parts = {k: array.copy() for k, array in self.state._asdict().items()}, 1
+        while not self._advance_in_parts(dt, parts, start["position"]) and parts < MOST_PARTS:
             parts *= 2
-            self.load(start)
+            for name, array in self.state._asdict().items():
+                array[:] = start[name]
         self.state.sums[TIME] = start["sums"][TIME] + dt
 
-    def _advance_in_parts(self, dt: float, parts: int, start: Fields, impacts: Impacts) -> bool:
+    def _advance_in_parts(self, dt: float, parts: int, start: Array) -> bool:
         """Advance by equal parts of dt; return whether none overlap by more than at the start."""
+        assert self.impacts
         for _ in range(parts):
             self._advance(dt / parts)
-            overlap = impacts.overlap(self.state.position)
-            if overlap > TOUCHING and overlap > impacts.overlap(start["position"]):
+            overlap = self.impacts.overlap(self.state.position)
+            if overlap > TOUCHING and overlap > self.impacts.overlap(start):
                 if parts < MOST_PARTS:
                     return False
                 self.state.sums[DEEPEST] = max(self.state.sums[DEEPEST], overlap)
@@ -138,43 +167,48 @@ class ParticleSpheres(Component):
             state.position, state.velocity, state.orientation, state.spin,
         )  # fmt: skip
         state.temperature[:] += dt * state.heat / spheres.capacity
-        state.sums[HEATED] += dt * float(state.heat.sum())
+        state.sums[HEATED] += dt * self.heat_flow
         state.sums[TIME] = end
-        finite = np.isfinite(state.velocity)
-        if not finite.all():
+        wrong = self.rows.not_finite(state.velocity)
+        if wrong < self.rows.count:
             raise StepError(
-                f"sphere {int(np.argmin(finite.all(axis=1)))}: its velocity must be finite; it is "
-                f"not, at {end:g} s. Check the loads on it."
+                f"sphere {wrong}: its velocity must be finite; it is not, at {end:g} s. Check the "
+                "loads on it."
             )
         if self.impacts is not None:
-            self.impacts.resolve(dt, state, self._acceleration())
+            self.impacts.resolve(dt, self._acceleration())
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out motion, temperature and size."""
-        state = self.state
+        state, whole = self.state, self.rows.whole
         values: dict[str, Array] = {
-            "motion.position": state.position,
-            "motion.velocity": state.velocity,
-            "motion.orientation": state.orientation,
-            "motion.angular_velocity": state.spin,
-            "spheres.position": state.position,
-            "spheres.velocity": state.velocity,
-            "spheres.temperature": state.temperature,
-            "spheres.diameter": 2.0 * self.spheres.radius,
-            "spheres.launched": state.launched.astype(float),
+            "position": state.position,
+            "velocity": state.velocity,
+            "orientation": state.orientation,
+            "angular_velocity": state.spin,
+            "temperature": state.temperature,
+            "diameter": 2.0 * self.spheres.radius,
+            "launched": state.launched.astype(float),
         }
         if "spheres.acceleration" in wanted:
-            values["spheres.acceleration"] = self._free_acceleration()
-        return {key: values[key].copy() for key in wanted}
+            values["acceleration"] = self._free_acceleration()
+        fields: dict[str, Array] = {}  # both ports have some fields; all ranks go in one order
+        for key in sorted(wanted):
+            name = key.partition(".")[2]
+            other = f"motion.{name}"
+            fields[key] = fields[other].copy() if other in fields else whole(values[name])
+        return fields
 
     def save(self) -> Fields:
         """Copy out all state."""
-        return {name: np.array(array, float) for name, array in self.state._asdict().items()}
+        rows = {name: np.asarray(array, float) for name, array in self.state._asdict().items()}
+        sums = rows.pop("sums").copy()
+        return {name: self.rows.whole(array) for name, array in rows.items()} | {"sums": sums}
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
-        for name, array in self.state._asdict().items():
-            array[:] = state[name]
+        self.rows.load(state)
+        self.heat_flow = float(state["heat"].sum())
 
     def warnings(self) -> dict[str, str]:
         """Warn of spheres that were pressed into each other, or into walls."""
@@ -182,12 +216,12 @@ class ParticleSpheres(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies; internal is heat, that of impacts included."""
-        return totals(self.spheres, self.state, self.gravity)
+        return totals(self.rows, self.gravity)
 
     def view(self) -> Fields:
         """Spheres with velocity and temperature."""
-        return view(self.spheres, self.state)
+        return view(self.rows)
 
     def items(self) -> int:
         """Count the spheres."""
-        return len(self.spheres.mass)
+        return self.rows.count

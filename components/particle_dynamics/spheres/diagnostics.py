@@ -1,33 +1,32 @@
 """Totals of spheres, and the warning of those pressed into each other."""
 
-import numpy as np
-
-from quintet.components.particle_dynamics.spheres.state import (
-    DEEPEST,
-    HEATED,
-    LOST,
-    Spheres,
-    State,
-)
+from quintet.components.particle_dynamics.spheres.ranks.method import Ranks
+from quintet.components.particle_dynamics.spheres.state import DEEPEST, HEATED, LOST, State
 from quintet.interfaces.component import Array, Totals
 
 OVERLAPPING = 0.01  # of the smaller diameter: spheres that overlap by more are wrong
 
 
-def totals(spheres: Spheres, state: State, gravity: Array) -> Totals:
-    """Mass, momentum and energies; internal is heat, that of impacts included."""
-    momentum = spheres.mass[:, None] * state.velocity
-    turning = spheres.inertia[:, None] * state.spin
-    moment = np.cross(state.position, momentum) + turning
-    kinetic = 0.5 * float((momentum * state.velocity).sum() + (turning * state.spin).sum())
-    stretched = ((state.position - spheres.start) ** 2).sum(axis=1)  # m2
-    fallen = float(spheres.mass @ (state.position @ gravity))
+def totals(ranks: Ranks, gravity: Array) -> Totals:
+    """Mass, momentum and energies of all ranks; internal is heat, that of impacts included."""
+    spheres, state = ranks.spheres, ranks.state
+    mass, inertia = spheres.mass, spheres.inertia
+    x, y, z = state.position.T
+    u, v, w = (mass[:, None] * state.velocity).T
+    p, q, r = (inertia[:, None] * state.spin).T
+    moment = y * w - z * v + p, z * u - x * w + q, x * v - y * u + r
+    moving = u * state.velocity[:, 0] + v * state.velocity[:, 1] + w * state.velocity[:, 2]
+    turning = p * state.spin[:, 0] + q * state.spin[:, 1] + r * state.spin[:, 2]
+    stretched = spheres.tether * ((state.position - spheres.start) ** 2).sum(axis=1)  # J
+    fallen = mass * (x * gravity[0] + y * gravity[1] + z * gravity[2])  # J
+    columns = [mass, u, v, w, *moment, moving + turning, stretched, fallen]
+    sums = ranks.sums(columns)
     return Totals(
-        mass=float(spheres.mass.sum()),
-        momentum=momentum.sum(axis=0),
-        angular_momentum=moment.sum(axis=0),
-        kinetic=kinetic,
-        potential=0.5 * float(spheres.tether @ stretched) - fallen,
+        mass=float(sums[0]),
+        momentum=sums[1:4],
+        angular_momentum=sums[4:7],
+        kinetic=0.5 * float(sums[7]),
+        potential=0.5 * float(sums[8]) - float(sums[9]),
         internal=float(state.sums[LOST] + state.sums[HEATED]),
     )
 

@@ -91,6 +91,119 @@ def fly(
 
 
 @njit(**EXACT)
+def largest(vectors: Array) -> float:
+    """Largest absolute value of the components of vectors (n, 3)."""
+    greatest = 0.0
+    for i in range(vectors.shape[0]):
+        for k in range(3):
+            greatest = max(greatest, abs(vectors[i, k]))
+    return greatest
+
+
+@njit(**EXACT)
+def sum_rounded(vectors: Array, unit: float) -> tuple[float, float, float]:
+    """Sums of vectors (n, 3), each component rounded to the last bit of a larger number."""
+    x, y, z = 0.0, 0.0, 0.0
+    for i in range(vectors.shape[0]):
+        x += (vectors[i, 0] + unit) - unit
+        y += (vectors[i, 1] + unit) - unit
+        z += (vectors[i, 2] + unit) - unit
+    return x, y, z
+
+
+@njit(**EXACT)
+def furthest_from(vectors: Array, middle: Array) -> float:
+    """Largest distance of vectors (n, 3) from one (3,)."""
+    square = 0.0
+    for i in range(vectors.shape[0]):
+        x, y = vectors[i, 0] - middle[0], vectors[i, 1] - middle[1]
+        z = vectors[i, 2] - middle[2]
+        square = max(square, x * x + y * y + z * z)
+    return math.sqrt(square)
+
+
+@njit(**EXACT)
+def fastest_into_walls(rates: Array, walls: Array) -> float:
+    """Largest component of rates (n, 3) towards a wall (w, 4); 0 if all point away."""
+    fastest = 0.0
+    for i in range(rates.shape[0]):
+        for w in range(walls.shape[0]):
+            speed = 0.0
+            for k in range(3):
+                speed -= walls[w, k] * rates[i, k]
+            fastest = max(fastest, speed)
+    return fastest
+
+
+@njit(**EXACT)
+def deepest_in_walls(position: Array, radius: Array, walls: Array) -> float:
+    """Largest depth of a sphere in a wall (w, 4) over its diameter [1]; 0 if none is in one."""
+    deepest = 0.0
+    for i in range(position.shape[0]):
+        for w in range(walls.shape[0]):
+            height = -walls[w, 3]
+            for k in range(3):
+                height += walls[w, k] * position[i, k]
+            deepest = max(deepest, 0.5 - height / (2.0 * radius[i]))
+    return deepest
+
+
+@njit(**EXACT)
+def mark_impacts(
+    position: Array, velocity: Array, radius: Array, mass: Array, moves: Array, walls: Array,
+    begin: Whole, other: Whole, marks: Array,
+) -> int:  # fmt: skip
+    """Mark spheres that `bounce_from_walls` or `bounce` would change first.
+
+    Parameters
+    ----------
+    position, velocity, radius, mass, moves
+        As of `bounce`; of this rank's spheres, then of copies.
+    walls : (w, 4) float array, 1 and m
+    begin, other : (m + 1,) and (any,) int array
+        Pairs of the m spheres of this rank, as of `bounce`.
+    marks : (n,) bool array
+        Written, where True.
+
+    Returns
+    -------
+    int
+        Number of impacts.
+    """
+    impacts = 0
+    for i in range(begin.shape[0] - 1):
+        for w in range(walls.shape[0]):
+            height, speed = -walls[w, 3], 0.0
+            for k in range(3):
+                height += walls[w, k] * position[i, k]
+                speed -= walls[w, k] * velocity[i, k]
+            if radius[i] - height > 0.0 and speed > 0.0 and moves[i]:
+                marks[i] = True
+                impacts += 1
+        for place in range(begin[i], begin[i + 1]):
+            j, reach = other[place], radius[i] + radius[other[place]]
+            r, v = difference(position, i, j), difference(velocity, i, j)
+            if dot(r, r) < reach * reach and dot(r, v) < 0.0:
+                if moves[i] / mass[i] + moves[j] / mass[j] > 0.0:
+                    marks[i] = marks[j] = True
+                    impacts += 1
+    return impacts
+
+
+@njit(**EXACT)
+def list_marked(begin: Whole, other: Whole, marks: Array, first: Whole, second: Whole) -> int:
+    """Write pairs (any,) with a marked sphere; return how many there are, also beyond the room."""
+    count = 0
+    for i in range(begin.shape[0] - 1):
+        for place in range(begin[i], begin[i + 1]):
+            if marks[i] or marks[other[place]]:
+                if count < first.shape[0]:
+                    first[count], second[count] = i, other[place]
+                count += 1
+    return count
+
+
+@njit(**EXACT)
 def bounce_from_walls(
     dt: float, position: Array, velocity: Array, acceleration: Array, radius: Array, mass: Array,
     moves: Array, walls: Array, restitution: float,

@@ -1,14 +1,15 @@
 """What a picture shows of spheres."""
 
-from quintet.components.particle_dynamics.spheres.state import Spheres, State
+from quintet.components.particle_dynamics.spheres.ranks.method import Ranks
 from quintet.interfaces.component import Fields
 
 
-def view(spheres: Spheres, state: State) -> Fields:
-    """Spheres with velocity and temperature."""
+def view(ranks: Ranks) -> Fields:
+    """Spheres of all ranks with velocity and temperature."""
+    state = ranks.state
     return {
-        "points": state.position.copy(),
-        "radius": spheres.radius.copy(),
-        "velocity": state.velocity.copy(),
-        "temperature": state.temperature.copy(),
+        "points": ranks.whole(state.position),
+        "radius": ranks.whole(ranks.spheres.radius),
+        "velocity": ranks.whole(state.velocity),
+        "temperature": ranks.whole(state.temperature),
     }

@@ -86,6 +86,27 @@ def list_pairs(
     return k
 
 
+def pairs_near(position: Array, radius: Array, width: float, skin: float, room: Pairs) -> Pairs:
+    """List pairs whose surfaces are nearer than a skin.
+
+    Parameters
+    ----------
+    position, radius : (n, 3) and (n,) float array, m
+    width, skin : float, m
+        As of `list_pairs`.
+    room : Pairs
+        Of as many spheres; written, and returned if it is large enough.
+    """
+    keys = keys_of(position, np.arange(len(position)), width)
+    order = np.argsort(keys, kind="stable")
+    arguments = position, radius, order, keys[order], width, skin
+    count = list_pairs(*arguments, *room)
+    if count > len(room.other):
+        room = room._replace(other=np.zeros(GROWTH * count, np.int64))
+        list_pairs(*arguments, *room)
+    return room
+
+
 class NearPairs:
     """The pairs of one set of spheres, listed again when they have moved by half of the skin."""
 
@@ -102,11 +123,5 @@ class NearPairs:
         return self.pairs
 
     def _list(self, position: Array) -> None:
-        keys = keys_of(position, np.arange(len(position)), self.width)
-        order = np.argsort(keys, kind="stable")
-        arguments = position, self.radius, order, keys[order], self.width, self.skin
-        count = list_pairs(*arguments, *self.pairs)
-        if count > len(self.pairs.other):
-            self.pairs = self.pairs._replace(other=np.zeros(GROWTH * count, np.int64))
-            list_pairs(*arguments, *self.pairs)
+        self.pairs = pairs_near(position, self.radius, self.width, self.skin, self.pairs)
         self.listed[:] = position

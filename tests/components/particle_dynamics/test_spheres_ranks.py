@@ -1,0 +1,95 @@
+"""Spheres shared out among real MPI ranks: the same bits on any number of them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.mpi
+PROGRAM = Path(__file__).with_name("spheres_on_ranks.py")
+NAMES = ("gas", "pile", "too long steps", "row", "streams", "tethered", "parcels")
+STEPS = 15  # with lists made again, and rows that change their rank
+
+
+def differences(folder, first, second):
+    """Names of the arrays that differ in a bit."""
+    one, other = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
+    assert set(one.files) == set(other.files)
+    return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, on_ranks):
+    """Runs on 1 and 2 ranks."""
+    folder = tmp_path_factory.mktemp("spheres")
+    for ranks in (1, 2):
+        on_ranks(PROGRAM, ranks, folder, STEPS, 0, ",".join(NAMES))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def resumed(folder, on_ranks):
+    """Runs on 1 and 3 ranks that go on from the states of 1 and 2."""
+    for ranks, earlier in ((1, 1), (3, 2)):
+        on_ranks(PROGRAM, ranks, folder, 5, earlier, ",".join(NAMES), STEPS)
+    return folder
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_two_ranks_compute_what_one_does_to_the_bit(name, folder):
+    assert differences(folder, f"{name}-1", f"{name}-2") == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
+    assert differences(resumed, f"{name}-1-1", f"{name}-3-2") == []
+
+
+def test_the_cases_have_impacts_and_what_they_report(folder, resumed):
+    for name in ("gas", "pile", "too long steps", "row", "streams"):
+        assert np.load(resumed / f"{name}-3-2.npz")["sums"][1] > 0.0  # J, lost in impacts
+    for name in NAMES:
+        assert str(np.load(folder / f"{name}-2.npz")["failure"]).startswith(
+            "sphere 3: its velocity"
+        )
+
+
+REFUSED = """
+from mpi4py import MPI
+from quintet.components.particle_dynamics.spheres.component import ParticleSpheres
+from quintet.components.particle_dynamics.spheres.params import *
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError
+
+sphere = Sphere(centre=(0.0, 0.0, 0.0), radius=0.01, density=1e3)
+try:
+    params = ParticleSpheresParams(spheres=(sphere,))
+    ParticleSpheres(params, Resources(communicator=MPI.COMM_WORLD))
+except SceneError as error:
+    print(error)
+"""
+
+
+def test_more_ranks_than_spheres_are_refused(tmp_path, on_ranks):
+    program = tmp_path / "refused.py"
+    program.write_text(REFUSED)
+    assert "each must own a sphere; there are 1 for 2 ranks" in on_ranks(program, 2)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("name", NAMES)
+def test_any_number_of_ranks_computes_a_thousand_steps_to_the_bit(name, tmp_path, on_ranks):
+    for ranks in (1, 2, 3, 4):
+        on_ranks(PROGRAM, ranks, tmp_path, 1000, 0, name, seconds=580)
+        assert differences(tmp_path, f"{name}-1", f"{name}-{ranks}") == []
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("name", NAMES)
+def test_random_windows_are_resumed_on_other_numbers_of_ranks_to_the_bit(name, tmp_path, on_ranks):
+    steps = np.random.default_rng(23).choice(np.arange(1, 400), 11, replace=False)
+    windows = ",".join(map(str, sorted(steps.tolist())))
+    for ranks in (4, 1):
+        on_ranks(PROGRAM, ranks, tmp_path, windows, 0, name, seconds=580)
+    for ranks, earlier in ((1, 4), (2, 4), (3, 4), (4, 1)):
+        on_ranks(PROGRAM, ranks, tmp_path, windows, earlier, name, seconds=580)
