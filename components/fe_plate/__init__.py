@@ -34,4 +34,5 @@ MANIFEST = Manifest(
     plan=plan,
     bench="quintet.components.fe_plate.bench:cases",
     conform="quintet.components.fe_plate.conform:cases",
+    ranks=True,
 )

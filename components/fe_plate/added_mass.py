@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from quintet.components.fe_plate.kernels.nodes import kinetic_energy
-from quintet.components.fe_plate.state import Array, Model, State, Whole
+from quintet.components.fe_plate.ranks.method import Ranks, Rows
+from quintet.components.fe_plate.state import Array, Model, State
 
 
 class AddedMass:
@@ -11,39 +11,41 @@ class AddedMass:
 
     Parameters
     ----------
-    nodes : (k,) int array
-        Of the surface.
+    surface : Rows
+        Its nodes.
     mass : (n,) float array, kg
-        Of all nodes, without it.
+        Of this rank's nodes, without it.
     """
 
-    def __init__(self, nodes: Whole, mass: Array) -> None:
-        self.nodes, self.mass = nodes, mass
-        self.added = np.zeros(len(nodes))  # kg
+    def __init__(self, surface: Rows, mass: Array) -> None:
+        self.surface, self.mass = surface, mass
+        self.added = np.zeros(surface.size)  # kg, on all ranks
 
     def total(self) -> Array:
-        """Mass (n,) kg of all nodes with it."""
+        """Mass (n,) kg of this rank's nodes with it."""
         total = self.mass.copy()
-        total[self.nodes] += self.added
+        total[self.surface.rows] += self.added[self.surface.ids]
         return total
 
-    def replace(self, added: Array, model: Model, state: State) -> float:
+    def replace(self, added: Array, model: Model, state: State, ranks: Ranks) -> float:
         """Replace the added mass (k,) kg; return the kinetic energy [J] that it brings.
 
         Released mass keeps the nodes' mean velocity of the last step.
         """
-        rows, before = self.nodes, self.mass[self.nodes] + self.added
-        after = self.mass[rows] + added
-        mean = state.mean_velocity[rows]
-        rest = (before / after)[:, None] * (state.velocity[rows] - mean)
-        changed = after != before
-        energy = kinetic_energy(model, state)
-        state.velocity[rows[changed]] = (mean + rest)[changed]
+        rows, ids = self.surface.rows, self.surface.ids
+        before = self.mass[rows] + self.added[ids]
+        after = self.mass[rows] + added[ids]
+        mean, old = state.mean_velocity[rows], state.velocity[rows]
+        rest = (before / after)[:, None] * (old - mean)
+        new = np.where((after != before)[:, None], mean + rest, old)
+        state.velocity[rows] = new
         model.inverse_mass[rows] = 1.0 / after
         self.added = np.array(added)
-        return kinetic_energy(model, state) - energy
+        brought = 0.5 * (after * (new * new).sum(axis=1) - before * (old * old).sum(axis=1))
+        return float(ranks.sums([brought])[0])
 
     def restore(self, added: Array, model: Model) -> None:
         """Restore a saved added mass (k,) kg."""
         self.added = np.array(added)
-        model.inverse_mass[self.nodes] = 1.0 / (self.mass[self.nodes] + self.added)
+        rows, ids = self.surface.rows, self.surface.ids
+        model.inverse_mass[rows] = 1.0 / (self.mass[rows] + self.added[ids])

@@ -25,8 +25,12 @@ def block(nx: int, ny: int, nz: int) -> dict[str, Any]:
 def cases() -> tuple[BenchCase, ...]:
     """Blocks that fit into a processor's cache, and that do not."""
     series = "struck block"
+    unit = "element-steps/s"
     sizes = {"6k": (18, 18, 18), "55k": (38, 38, 38), "262k": (64, 64, 64)}
-    return tuple(
-        BenchCase(f"{series}, {name}", block(*size), 20, 100, "element-steps/s", series=series)
-        for name, size in sizes.items()
+    return (
+        *(
+            BenchCase(f"{series}, {name}", block(*size), 20, 100, unit, series=series)
+            for name, size in sizes.items()
+        ),
+        BenchCase(f"{series}, 1M", block(100, 100, 100), 10, 20, unit, series=series),
     )

@@ -20,6 +20,8 @@ from quintet.components.fe_plate.state import (
     Parted,
     Places,
     Resistance,
+    Sizes,
+    Span,
     State,
     Whole,
     state_at_rest,
@@ -39,14 +41,21 @@ class Structure(NamedTuple):
     parted: Parted
     places: Places  # of the elements' points
     laws: list[Solid]  # of the parts
-    first: list[int]  # block of each part, and the end of all
+    inner: list[Span]  # blocks whose nodes this rank moves
+    border: list[Span]  # others
     volume: Array  # (e,) m3
     mass: Array  # (n,) kg, without added mass
     coupled: Whole  # (f,) numbers of the outer faces that partners see
     pressed: list[Whole]  # for each pressure the outer faces that it acts on
+    face_places: Places  # of the elements of all outer faces
     element_mass: Array  # (e,) kg
     resistance: Resistance
     shortest: float  # m, least edge of cubes, or squares, as large as the elements
+
+    def corners(self, elements: Whole | slice) -> Index:
+        """Nodes (k, 8) at the corners of some elements, where `mesh` need not have them."""
+        point = self.places.point[elements, 0]
+        return self.model.corner[point // self.places.point.shape[1]]
 
 
 def structure(
@@ -64,7 +73,9 @@ def structure(
     place, element, first = in_blocks(grid.part, len(laws), LANES // points)
     corner = grid.corner[element].astype(np.uint32)
     point_volume = _point_volumes(grid, corner, volume[element], points, depth)
-    target, filled, parted = targets(corner, place, first, ends, nodes)
+    spans = [Span(part, *pair) for part, pair in enumerate(pairwise(first))]
+    filled = filled_places(place, first[-1], LANES // points)
+    target, parted = targets(corner, filled, spans, ends, nodes)
     model = Model(
         corner=corner,
         target=target,
@@ -75,12 +86,14 @@ def structure(
         free=_free_axes(grid, params),
         gravity=np.array(params.gravity),
         walls=_walls(params.rigid_walls),
+        moving=nodes,
     )
+    places = _places(place, point_volume, points)
     coupled, pressed = _loaded_faces(grid, params)
     shortest = float(volume.min() ** (1.0 / params.dimensions))
     return Structure(
-        grid, model, parted, _places(place, point_volume, points), laws, first, volume, mass,
-        coupled, pressed, element_mass, _resistance(params), shortest,
+        grid, model, parted, places, laws, spans, [], volume, mass, coupled, pressed,
+        places.subset(grid.owner), element_mass, _resistance(params), shortest,
     )  # fmt: skip
 
 
@@ -182,46 +195,77 @@ def in_blocks(part: Whole, parts: int, size: int) -> tuple[Whole, Whole, list[in
     return np.concatenate(place), np.concatenate(element), first
 
 
-def targets(
-    corner: Index, place: Whole, first: list[int], ends: Callable[[int], list[int]], nodes: int
-) -> tuple[Index, Index, Parted]:
-    """Rows of forces that corners act on, places of each block that are filled, and parted nodes.
+def filled_places(place: Whole, blocks: int, size: int) -> Index:
+    """Places of each block (blocks,) that elements fill, from the place of each element."""
+    return np.bincount(place // size, minlength=blocks).astype(np.uint32)
 
-    A node all of whose elements one thread steps is acted on at once; of others each corner has a
-    row of its own, in the order of the elements, so that the sum is the same.
+
+def targets(
+    corner: Index,
+    filled: Index,
+    spans: Sequence[Span],
+    ends: Callable[[int], list[int]],
+    nodes: int,
+    order: Whole | None = None,
+) -> tuple[Index, Parted]:
+    """Rows of forces that corners act on, and parted nodes.
+
+    A node all of whose elements one thread steps one after another is acted on at once; of others
+    each corner has a row of its own, in the order of the elements, so that the sum is the same.
+
+    Parameters
+    ----------
+    corner : (places, 8) int array
+    filled : (b,) int array
+    spans : sequence of Span
+        All blocks, in their order.
+    ends : function
+        Ends of the shares of a number of blocks, from 0 on.
+    nodes : int
+    order : (b,) int array
+        Numbers that rise in the order in which one rank has the blocks; if it is another one.
     """
-    used = np.zeros(len(corner), bool)
-    used[place] = True
-    size = len(corner) // first[-1]
-    filled = used.reshape(-1, size).sum(axis=1).astype(np.uint32)
-    shares = [a + end for a, b in pairwise(first) for end in ends(b - a)[1:]]
     none: Whole = np.zeros(0, np.int64)
-    if len(shares) == len(first) - 1:  # whole parts
-        return corner, filled, Parted(none, none)
-    share = np.repeat(np.searchsorted(shares, np.arange(first[-1]), "right"), size)
+    shares = [span.first + end for span in spans for end in ends(span.last - span.first)[1:]]
+    if order is None and len(shares) == len(spans):  # whole parts
+        return corner, Parted(none, none)
+    blocks = len(filled)
+    size = len(corner) // blocks
+    used = (np.arange(size) < filled[:, None]).ravel()
+    share = np.repeat(np.searchsorted(shares, np.arange(blocks), "right"), size)
     flat, number = corner[used].ravel(), np.repeat(share[used], 8)
     lowest, highest = np.full(nodes, len(shares)), np.zeros(nodes, np.int64)
     np.minimum.at(lowest, flat, number)
     np.maximum.at(highest, flat, number)
     is_parted = lowest < highest
     at = np.flatnonzero(is_parted[corner.ravel()] & np.repeat(used, 8))
+    if order is not None:
+        at = at[np.argsort(order[at // (8 * size)], kind="stable")]
     at = at[np.argsort(corner.ravel()[at], kind="stable")]
     target = corner.copy()
     target.ravel()[at] = nodes + np.arange(len(at))
     node = np.flatnonzero(is_parted)
     begin = nodes + np.searchsorted(corner.ravel()[at], np.append(node, nodes))
-    return target, filled, Parted(node, begin)
+    return target, Parted(node, begin)
 
 
 def initial_state(params: FePlateParams, built: Structure) -> State:
     """Temperatures and velocities that the parts have at the start; nothing is strained."""
-    model, first, node = built.model, built.first, built.mesh.node
-    springs = first[-1] if points_of(params) == 1 else 0  # blocks
-    rows = max(len(node), int(model.target.max()) + 1)
-    state = state_at_rest(node, first[-1], springs, rows, len(model.walls))
-    for k, part in enumerate(params.parts):
-        state.points[first[k] : first[k + 1], TEMPERATURE] = built.laws[k].temperature
-        state.velocity[np.unique(built.mesh.corner[built.mesh.part == k])] = part.velocity
+    model, node = built.model, built.mesh.node
+    blocks, nodes = len(model.filled), len(node)
+    sizes = Sizes(
+        springs=blocks if points_of(params) == 1 else 0,
+        forces=max(nodes, int(model.target.max()) + 1),
+        walls=len(model.walls),
+        pressed=nodes if params.pressures else 0,
+        damped=nodes if params.mass_damping else 0,
+    )
+    state = state_at_rest(node, blocks, sizes)
+    size = len(model.corner) // blocks  # elements of a block
+    for part, first, last in (*built.inner, *built.border):
+        state.points[first:last, TEMPERATURE] = built.laws[part].temperature
+        corners = model.corner[first * size : last * size]
+        state.velocity[np.unique(corners)] = params.parts[part].velocity
     state.velocity[:] *= model.free
     state.mean_velocity[:] = state.velocity
     return state

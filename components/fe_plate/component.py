@@ -9,22 +9,22 @@ from quintet.components.fe_plate import MANIFEST
 from quintet.components.fe_plate.added_mass import AddedMass
 from quintet.components.fe_plate.build import initial_state, structure
 from quintet.components.fe_plate.diagnostics import inside_out, motion, not_finite, totals
-from quintet.components.fe_plate.features import Pressures, stepping_kernel
+from quintet.components.fe_plate.features import Pressures, Stepped, ranks, stepping_kernel
 from quintet.components.fe_plate.gauges import measured, readings
 from quintet.components.fe_plate.judgement import EVERY, Judge
 from quintet.components.fe_plate.kernels.flow import HUGE
 from quintet.components.fe_plate.kernels.nodes import (
+    add_damped,
     kick,
     kick_and_drift,
-    kinetic_energy,
     sum_parted,
 )
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.points import integration_notes, points_of
 from quintet.components.fe_plate.ports import SHOWS
-from quintet.components.fe_plate.state import Accumulated, Array
+from quintet.components.fe_plate.state import Accumulated, Array, Places
 from quintet.components.fe_plate.supports import supports
-from quintet.components.fe_plate.view import view
+from quintet.components.fe_plate.view import shown, view
 from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
@@ -64,21 +64,28 @@ class FePlate(Component):
     def __init__(self, params: FePlateParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.team = Team(resources.threads, FEWEST, SHARES)
-        self.built = built = structure(params, self.team.ends)
-        self.mesh, self.model, self.places = built.mesh, built.model, built.places
-        self.measured = measured(self.mesh, params.gauges)
-        self.faces = self.mesh.side[built.coupled]  # (f, 4) nodes
-        self.owner = self.mesh.owner[built.coupled]  # (f,) elements
+        self.all_ranks = ranks(resources, self.team.ends)
+        whole = structure(params, self.team.ends)
+        self.built = built = self.all_ranks.share_out(whole)
+        self.mesh = self.all_ranks.mesh_to_show(whole.mesh)
+        self.notes_of_mesh = whole.mesh.notes
+        self.model, self.places = built.model, built.places
+        self.measured = measured(whole.mesh, params.gauges, self.all_ranks)
+        self.faces = whole.mesh.side[whole.coupled]  # (f, 4) nodes
+        self.owners = self.all_ranks.elements_of(whole.mesh.owner[whole.coupled])  # of the f faces
         self.surface = np.unique(self.faces[self.faces >= 0])  # nodes
         rows = np.searchsorted(self.surface, self.faces)
         self.corner = np.where(self.faces < 0, -1, rows)  # (f, 4) among these; -1 ends an edge
+        self.start = whole.mesh.node[self.surface]  # (k, 3) m
+        self.on_surface = self.all_ranks.nodes_of(self.surface)
         self.state = initial_state(params, built)
         self.kernel = stepping_kernel(points_of(params))
         self.pressures = Pressures(params.pressures, built)
-        self.added_mass = AddedMass(self.surface, built.mass)
+        self.added_mass = AddedMass(self.on_surface, built.mass)
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
         self.glued = False  # whether particles are glued to it
-        self.half_kick = np.zeros((len(self.surface), 3))  # m/s, that velocities at an end lack
+        # m/s, that velocities at an end lack, of nodes of the surface that this rank moves.
+        self.half_kick = np.zeros_like(self.loads[self.on_surface.ids])
         self.accumulated = Accumulated()
         self.bound = self._write_forces(0.0)  # s
         self.judge = Judge(params, built, bool(len(self.state.springs)))
@@ -86,7 +93,7 @@ class FePlate(Component):
     def describe(self) -> Fields:
         """Return places of the surface's nodes at the start, and the corners of its faces."""
         mesh = {
-            "start": self.mesh.node[self.surface],
+            "start": self.start,
             "corner": self.corner.astype(np.float64),
         }
         if self.params.dimensions == 2:
@@ -109,7 +116,9 @@ class FePlate(Component):
         self.judge.closed = not self.glued
         if "node_load.added_mass" in static:
             added = static["node_load.added_mass"]
-            self.accumulated.brought += self.added_mass.replace(added, self.model, self.state)
+            self.accumulated.brought += self.added_mass.replace(
+                added, self.model, self.state, self.all_ranks
+            )
 
     def stable_dt(self) -> float:
         """Return a share of the proven bound."""
@@ -121,66 +130,78 @@ class FePlate(Component):
         self.loads[:] = 0.0 if force is None else force
         added = fields.get("node_mass.added")
         if added is not None and not np.array_equal(added, self.added_mass.added):
-            self.accumulated.brought += self.added_mass.replace(added, self.model, self.state)
+            self.accumulated.brought += self.added_mass.replace(
+                added, self.model, self.state, self.all_ranks
+            )
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         total, damping = self.accumulated, self.params.mass_damping
+        rows, loads = self.on_surface.rows, self.loads[self.on_surface.ids]
         self.state.load[:] = 0.0
-        self.state.load[self.surface] = self.loads
+        self.state.load[rows] = loads
         self.pressures.add(self.state, total.time)
         if self.glued:
-            self._kick_early(dt)
+            self._kick_early(dt, loads)
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
         if total.steps % EVERY == 0:
             self._note_energies()
         total.steps += 1
         if damping:
-            total.damp((1.0 - decay) * kinetic_energy(self.model, self.state))
-        work = kick_and_drift(self.model, self.state, dt, damping)
+            add_damped(self.model, self.state, 1.0 - decay)
+        kick_and_drift(self.model, self.state, dt, damping)
         total.time += dt
-        total.work += work
         if self.params.pressures:
-            mean = self.state.mean_velocity[self.surface]
-            total.outside += work - dt * float((mean * self.loads).sum())
+            mean = self.state.mean_velocity[rows]
+            self.state.partner_work[rows] += dt * (mean * loads).sum(axis=1)
         self.bound = self._write_forces(dt)
         if damping:
-            total.damp((1.0 / decay - 1.0) * kinetic_energy(self.model, self.state))
+            add_damped(self.model, self.state, 1.0 / decay - 1.0)
         if self.glued:
-            self.state.velocity[self.surface] -= self.half_kick
+            self.state.velocity[rows] -= self.half_kick
 
     def _note_energies(self) -> None:
         """Take down the energies of the state between two steps, and the work done on it."""
-        work = self.accumulated.done() + float(self.state.wall_work.sum())
-        self.judge.note(self.state, *self._motion(), work, self.accumulated.steps == 0)
+        works, total = self.state.works(self.model.moving), self.accumulated
+        self.judge.note(
+            self.state, self._motion(), works, total.brought, self.all_ranks, total.steps == 0
+        )
 
-    def _kick_early(self, dt: float) -> None:
+    def _kick_early(self, dt: float, loads: Array) -> None:
         """Apply the partners' loads in the step's first half, and not in its second one.
 
         Forces of glued particles are those at the step's begin: half a step late they would feed
         energy in.
         """
-        rows = self.surface
-        push = 0.5 * dt * self.model.inverse_mass[rows, None] * self.loads * self.model.free[rows]
+        rows = self.on_surface.rows
+        push = 0.5 * dt * self.model.inverse_mass[rows, None] * loads * self.model.free[rows]
         self.state.velocity[rows] += push
         self.half_kick = push
 
     def _write_forces(self, dt: float) -> float:
         """Advance the elements by a step and the nodes' velocities by half; return the bound."""
-        built, bound = self.built, math.inf
-        for law, first, last in zip(built.laws, built.first, built.first[1:], strict=False):
-            shares = self.team.run(
-                self.kernel, last - first, first, self.model, self.state, law, built.resistance, dt
-            )
-            bound = min(bound, *(stable for stable, _, _ in shares))
-            least, worst = min((volume, place) for _, volume, place in shares)
-            if not least > SMALLEST:
-                raise inside_out(built, worst, least, self.accumulated.time)
+        built, shares, time = self.built, list[Stepped](), self.accumulated.time
+        self.all_ranks.begin(self.state)
+        for spans in (built.inner, built.border):
+            if spans is built.border:
+                self.all_ranks.finish(self.state)
+            for part, first, last in spans:
+                shares += self.team.run(
+                    self.kernel, last - first, first, self.model, self.state, built.laws[part],
+                    built.resistance, dt,
+                )  # fmt: skip
+        here, place = min((volume, place) for _, volume, place in shares)
+        extremes = np.array([min(stable for stable, _, _ in shares), here])
+        bound, least = self.all_ranks.least(extremes).tolist()
+        if not least > SMALLEST:
+            raise inside_out(built, place if here == least else -1, least, time, self.all_ranks)
         sum_parted(built.parted, self.state.forces)
         ahead = 2.0 * min(bound, 1.0)  # s
         squares, closing = kick(self.model, self.state, dt, self.params.mass_damping, ahead)
-        if not math.isfinite(squares):
-            raise not_finite(built, self.state, self.accumulated.time)
+        wrong = float(not math.isfinite(squares))
+        closing, wrong = self.all_ranks.greatest(np.array([closing, wrong])).tolist()
+        if wrong:
+            raise not_finite(built, self.state, time, self.all_ranks)
         if bound >= HUGE:  # all elements have eroded
             return math.inf
         # A step squashes an element that meets a wall by a small share of its edge.
@@ -195,29 +216,32 @@ class FePlate(Component):
             (MEAN_VELOCITY, self.state.mean_velocity),
         ):
             if key in wanted:
-                values[key] = array[self.surface]
+                values[key] = self.on_surface.gather(array[self.on_surface.rows])
         if ACTIVE in wanted:
-            values[ACTIVE] = self.places.active(self.state)[self.owner]
-        return values | readings(self.measured, self.built, self.state, wanted)
+            owners = Places(
+                self.places.point[self.owners.rows], self.places.share[self.owners.rows]
+            )
+            values[ACTIVE] = self.owners.gather(owners.active(self.state))
+        return values | readings(self.measured, self.built, self.state, wanted, self.all_ranks)
 
     def save(self) -> Fields:
         """Copy out all state."""
-        saved = {name: array.copy() for name, array in self.state.to_save().items()}
+        saved = self.all_ranks.whole(self.state)
         saved["accumulated"] = np.array([*astuple(self.accumulated), self.bound])
         saved["judge"] = self.judge.save()
-        saved["loads"], saved["half_kick"] = self.loads.copy(), self.half_kick.copy()
+        saved["loads"] = self.loads.copy()
+        saved["half_kick"] = self.on_surface.gather(self.half_kick.copy())
         return saved | {"added_mass": self.added_mass.added.copy()}
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
         self.state.forces[:] = 0.0
-        for name, array in self.state.to_save().items():
-            array[:] = state[name]
+        self.all_ranks.restore(self.state, state)
         self.loads[:] = state["loads"]
-        self.half_kick = np.array(state["half_kick"])
+        self.half_kick = np.array(state["half_kick"][self.on_surface.ids])
         self.added_mass.restore(state["added_mass"], self.model)
-        time, work, outside, damped, brought, steps, self.bound = state["accumulated"].tolist()
-        self.accumulated = Accumulated(time, work, outside, damped, brought, int(steps))
+        time, brought, steps, self.bound = state["accumulated"].tolist()
+        self.accumulated = Accumulated(time, brought, int(steps))
         self.judge.load(state["judge"])
 
     def totals(self) -> Totals:
@@ -226,16 +250,17 @@ class FePlate(Component):
         Internal is strain, plastic work and stabilisation; work is that of pressures, rigid walls
         and mass damping.
         """
-        mass, work = self.added_mass.total(), self.accumulated.outside
-        return totals(self.state, self.built, mass, self._motion(), work)
+        mass = self.added_mass.total()[: self.model.moving]
+        return totals(self.state, self.built, mass, self._motion(), self.all_ranks)
 
-    def _motion(self) -> tuple[float, float]:
-        """Kinetic and potential energy [J]."""
-        velocity = self.state.velocity
+    def _motion(self) -> list[Array]:
+        """Kinetic and potential energies [J] of the nodes that this rank moves."""
+        moving = self.model.moving
+        velocity = self.state.velocity[:moving]
         if self.glued:
             velocity = velocity.copy()
-            velocity[self.surface] += self.half_kick
-        return motion(self.state, self.added_mass.total(), velocity, self.model.gravity)
+            velocity[self.on_surface.rows] += self.half_kick
+        return motion(self.state, self.added_mass.total()[:moving], velocity, self.model.gravity)
 
     def warnings(self) -> dict[str, str]:
         """Energy that appears, hourglassing, and motion that bulk viscosity takes."""
@@ -243,16 +268,19 @@ class FePlate(Component):
 
     def notes(self) -> tuple[str, ...]:
         """Sizes of meshes from files and what of them is left out; integration in thin parts."""
-        return (*self.mesh.notes, *integration_notes(self.params))
+        return (*self.notes_of_mesh, *integration_notes(self.params))
 
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""
-        return view(self.mesh, self.places, self.state)
+        nodes, elements = self.all_ranks.nodes, self.all_ranks.elements
+        motion_of = np.hstack([self.state.position[nodes.rows], self.state.velocity[nodes.rows]])
+        gathered = nodes.gather(motion_of), elements.gather(shown(self.places, self.state))
+        return {} if self.all_ranks.rank else view(self.mesh, *gathered)
 
     def walls(self) -> Fields:
         """Return rigid walls, clamped faces and planes of symmetry."""
-        return supports(self.params, self.mesh)
+        return {} if self.all_ranks.rank else supports(self.params, self.mesh)
 
     def items(self) -> int:
         """Count the elements."""
-        return len(self.mesh.corner)
+        return self.all_ranks.elements.size

@@ -3,60 +3,87 @@
 import numpy as np
 
 from quintet.components.fe_plate.build import Structure
+from quintet.components.fe_plate.ranks.method import Ranks
 from quintet.components.fe_plate.state import ENERGY, Array, State
 from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
 
 
-def motion(state: State, mass: Array, velocity: Array, gravity: Array) -> tuple[float, float]:
-    """Kinetic and potential energy [J] of masses (n,) kg at velocities (n, 3) m/s."""
-    kinetic = 0.5 * float((mass[:, None] * velocity * velocity).sum())
-    return kinetic, -float(mass @ (state.position @ gravity)) if gravity.any() else 0.0
+def motion(state: State, mass: Array, velocity: Array, gravity: Array) -> list[Array]:
+    """Kinetic and potential energies (n,) J of masses (n,) kg at velocities (n, 3) m/s."""
+    kinetic = 0.5 * mass * (velocity * velocity).sum(axis=1)
+    return [kinetic, -mass * (state.position[: len(mass)] @ gravity)]
 
 
 def totals(
-    state: State, built: Structure, mass: Array, energies: tuple[float, float], work: float
+    state: State, built: Structure, mass: Array, energies: list[Array], ranks: Ranks
 ) -> Totals:
-    """Mass, momentum and energies, added mass included.
+    """Mass, momentum and energies of all ranks, added mass included.
 
     Parameters
     ----------
     state, built
     mass : (n,) float array, kg
-        Of the nodes.
-    energies : two floats, J
+        Of the nodes that this rank moves.
+    energies : two (n,) float arrays, J
         Kinetic and potential.
-    work : float, J
-        Of pressures and mass damping; that of rigid walls is added.
+    ranks : Ranks
     """
-    momentum = mass[:, None] * state.velocity
-    springs = built.places.spring_energy(state).sum()
+    nodes = len(mass)
+    momentum = mass[:, None] * state.velocity[:nodes]
+    angular = np.cross(state.position[:nodes], momentum)
+    internal = built.element_mass * built.places.of(state, ENERGY)
+    internal += built.places.spring_energy(state)
+    _, walls, damping = state.works(nodes)
+    pressures = state.load_work[: len(state.partner_work)] - state.partner_work
+    works = [pressures[:nodes], walls, damping]
+    sums = ranks.sums([mass, *momentum.T, *angular.T, *energies, internal, *works])
+    kinetic, potential, internal_energy, *work = sums[7:].tolist()
     return Totals(
-        mass=float(mass.sum()),
-        momentum=momentum.sum(axis=0),
-        angular_momentum=np.cross(state.position, momentum).sum(axis=0),
-        kinetic=energies[0],
-        potential=energies[1],
-        internal=float(built.element_mass @ built.places.of(state, ENERGY) + springs),
-        work=work + float(state.wall_work.sum()),
+        mass=float(sums[0]),
+        momentum=sums[1:4],
+        angular_momentum=sums[4:7],
+        kinetic=kinetic,
+        potential=potential,
+        internal=internal_energy,
+        work=sum(work),
     )
 
 
-def inside_out(built: Structure, place: int, ratio: float, time: float) -> StepError:
-    """Report that the element of a point has a ratio of its volume at the start, at a time [s]."""
-    element = int(np.flatnonzero((built.places.point == place).any(axis=1))[0])
-    middle = built.mesh.node[built.mesh.corner[element]].mean(axis=0)
+def inside_out(built: Structure, place: int, ratio: float, time: float, ranks: Ranks) -> StepError:
+    """Report the element that has the least ratio of its volume at the start, at a time [s].
+
+    Parameters
+    ----------
+    built
+    place : int
+        Of one of its points; -1 if this rank has none of its points.
+    ratio : float
+    time : float, s
+    ranks : Ranks
+    """
+    row = np.full(4, np.inf)
+    for element in np.flatnonzero((built.places.point == place).any(axis=1)):
+        number = np.arange(ranks.elements.size)[ranks.elements.ids][element]
+        row[:] = (
+            number,
+            *built.mesh.node[built.corners(slice(element, element + 1))[0]].mean(axis=0),
+        )
+    number, *middle = ranks.lowest(row)
     return StepError(
-        f"element {element}, at {np.array2string(middle, precision=4)} m at the start, must keep "
-        f"a positive volume; at {time:g} s it has {ratio:.3g} of that at the start: it is inside "
-        "out. Let it erode by failure_strain, or refine the mesh."
+        f"element {number:.0f}, at {np.array2string(np.array(middle), precision=4)} m at the "
+        f"start, must keep a positive volume; at {time:g} s it has {ratio:.3g} of that at the "
+        "start: it is inside out. Let it erode by failure_strain, or refine the mesh."
     )
 
 
-def not_finite(built: Structure, state: State, time: float) -> StepError:
+def not_finite(built: Structure, state: State, time: float, ranks: Ranks) -> StepError:
     """Report the first node whose velocity is not finite, at a time [s]."""
-    node = int(np.argmin(np.isfinite(state.velocity).all(axis=1)))
+    row = np.full(4, np.inf)
+    for node in np.flatnonzero(~np.isfinite(state.velocity[ranks.nodes.rows]).all(axis=1))[:1]:
+        row[:] = np.arange(ranks.nodes.size)[ranks.nodes.ids][node], *built.mesh.node[node]
+    number, *place = ranks.lowest(row)
     return StepError(
-        f"node {node}, at {built.mesh.node[node]} m at the start: its velocity must be finite; "
+        f"node {number:.0f}, at {np.array(place)} m at the start: its velocity must be finite; "
         f"at {time:g} s it is not. Take a smaller courant."
     )

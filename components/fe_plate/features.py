@@ -7,10 +7,24 @@ from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.loads import add_pressure
 from quintet.components.fe_plate.params import Pressure
+from quintet.components.fe_plate.ranks.method import Ranks
+from quintet.components.fe_plate.ranks.one import OneRank
 from quintet.components.fe_plate.state import State
+from quintet.interfaces.component import Resources
 
 Stepped = tuple[float, float, int]  # stable step [s], least volume over that at the start, of which
 Kernel = Callable[..., Stepped]
+
+
+def ranks(resources: Resources, ends: Callable[[int], list[int]]) -> Ranks:
+    """The ranks that share the elements out, and each its own by `ends` among threads."""
+    communicator = resources.communicator
+    if communicator is None or communicator.size == 1:
+        return OneRank()
+    # Only a structure of several ranks loads mpi4py.
+    from quintet.components.fe_plate.ranks.several import SeveralRanks
+
+    return SeveralRanks(communicator, ends)
 
 
 class Pressures:
@@ -21,10 +35,10 @@ class Pressures:
 
     def add(self, state: State, time: float) -> None:
         """Add the loads [N] of a time [s]."""
-        mesh, places = self.built.mesh, self.built.places
+        mesh, places = self.built.mesh, self.built.face_places
         for load, faces in self.loads:
             if pressure := load.at(time):
-                intact = places.active(state)[mesh.owner[faces]] > 0.0
+                intact = places.subset(faces).active(state) > 0.0
                 add_pressure(mesh, state, faces[intact], pressure)
 
 

@@ -1,7 +1,7 @@
 """Gauges of a structure: at nodes, in elements, of sets and of whole parts."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, elements_of
 from quintet.components.fe_plate.meshes.selections import Faces
 from quintet.components.fe_plate.params import Gauges
+from quintet.components.fe_plate.ranks.method import Ranks, Rows
 from quintet.components.fe_plate.state import (
     DAMAGE,
     ENERGY,
@@ -18,7 +19,6 @@ from quintet.components.fe_plate.state import (
     Array,
     Places,
     State,
-    Whole,
 )
 from quintet.components.fe_plate.view import von_mises
 from quintet.components.shared.search.nearest import nearest_rows
@@ -29,13 +29,14 @@ from quintet.interfaces.errors import SceneError
 class Measured(NamedTuple):
     """Nodes and elements at which a structure is measured."""
 
-    node: Whole  # (k,)
-    element: Whole  # (k,)
-    node_sets: list[Whole]  # nodes of each
-    element_sets: list[Whole]  # elements of each
+    node: Rows
+    element: Rows
+    node_sets: list[Rows]
+    element_sets: list[Rows]
+    parts: list[Rows]  # elements of each part, if parts are measured
 
 
-def measured(mesh: Mesh, gauges: Gauges) -> Measured:
+def measured(mesh: Mesh, gauges: Gauges, ranks: Ranks) -> Measured:
     """Nodes nearest to some points at the start, elements whose middles are, and whole sets."""
     middle = mesh.node[mesh.corner].mean(axis=1)
     nodes = []
@@ -56,91 +57,113 @@ def measured(mesh: Mesh, gauges: Gauges) -> Measured:
                 f"{where}: it must hold an element; it holds none. Correct the box, or name "
                 "another set."
             )
+    parts = int(mesh.part.max()) + 1 if gauges.part_gauge else 0
     return Measured(
-        nearest_rows(mesh.node, gauges.node_gauges),
-        nearest_rows(middle, gauges.element_gauges),
-        nodes,
-        elements,
+        ranks.nodes_of(nearest_rows(mesh.node, gauges.node_gauges)),
+        ranks.elements_of(nearest_rows(middle, gauges.element_gauges)),
+        [ranks.nodes_of(numbers) for numbers in nodes],
+        [ranks.elements_of(numbers) for numbers in elements],
+        [ranks.elements_of(np.flatnonzero(mesh.part == part)) for part in range(parts)],
     )
 
 
-def at_nodes(state: State, node: Whole) -> dict[str, Array]:
+def at_nodes(state: State, nodes: Rows) -> dict[str, Array]:
     """Motion of some nodes."""
     return {
-        "node_gauge.position": state.position[node],
-        "node_gauge.velocity": state.velocity[node],
+        "node_gauge.position": nodes.gather(state.position[nodes.rows]),
+        "node_gauge.velocity": nodes.gather(state.velocity[nodes.rows]),
     }
 
 
-def in_elements(places: Places, state: State, element: Whole) -> dict[str, Array]:
+def in_elements(places: Places, state: State, elements: Rows) -> dict[str, Array]:
     """Stress, strain, temperature and damage of some elements."""
-    subset = Places(places.point[element], places.share[element])
+    subset = Places(places.point[elements.rows], places.share[elements.rows])
+    values = {
+        "von_mises": von_mises(subset, state),
+        "pressure": subset.of(state, PRESSURE),
+        "plastic_strain": subset.of(state, STRAIN),
+        "temperature": subset.of(state, TEMPERATURE),
+        "damage": subset.of(state, DAMAGE),
+        "active": subset.active(state),
+    }
+    return {f"element_gauge.{name}": elements.gather(value) for name, value in values.items()}
+
+
+def of_node_sets(state: State, sets: list[Rows], ranks: Ranks) -> dict[str, Array]:
+    """Mean motion of the nodes of each set."""
+    columns = [
+        column
+        for nodes in sets
+        for array in (state.position, state.velocity)
+        for column in array[nodes.rows].T
+    ]
+    counts = np.array([nodes.size for nodes in sets], float)
+    means = ranks.sums(columns).reshape(-1, 2, 3) / counts[:, None, None]
     return {
-        "element_gauge.von_mises": von_mises(subset, state),
-        "element_gauge.pressure": subset.of(state, PRESSURE),
-        "element_gauge.plastic_strain": subset.of(state, STRAIN),
-        "element_gauge.temperature": subset.of(state, TEMPERATURE),
-        "element_gauge.damage": subset.of(state, DAMAGE),
-        "element_gauge.active": subset.active(state),
+        "node_set_gauge.position": means[:, 0].copy(),
+        "node_set_gauge.velocity": means[:, 1].copy(),
     }
 
 
-def of_node_sets(state: State, sets: list[Whole]) -> dict[str, Array]:
-    """Mean motion of the nodes of each set."""
+def of_elements(built: Structure, state: State, sets: list[Rows], ranks: Ranks) -> dict[str, Array]:
+    """Mean velocities and energies of sets of elements.
+
+    Each element has an eighth of its mass at each of its corners.
+    """
+    ranks.copy_velocities(state)
+    columns: list[Array] = []
+    for elements in sets:
+        rows = elements.rows
+        subset = Places(built.places.point[rows], built.places.share[rows])
+        mass = built.element_mass[rows]
+        velocity = state.velocity[built.corners(rows)]  # (e, 8, 3)
+        internal = mass * subset.of(state, ENERGY) + subset.spring_energy(state)
+        columns += [mass, *(mass * velocity[:, :, d].mean(axis=1) for d in range(3))]
+        columns += [0.5 * mass * (velocity**2).sum(axis=2).mean(axis=1), internal]
+        columns += [internal * (subset.active(state) == 0.0)]
+    sums = ranks.sums(columns).reshape(-1, 7)
     return {
-        "node_set_gauge.position": np.stack([state.position[nodes].mean(axis=0) for nodes in sets]),
-        "node_set_gauge.velocity": np.stack([state.velocity[nodes].mean(axis=0) for nodes in sets]),
+        "velocity": sums[:, 1:4] / sums[:, :1],
+        "kinetic": sums[:, 4].copy(),
+        "internal": sums[:, 5].copy(),
+        "eroded": sums[:, 6].copy(),
     }
 
 
 def of_element_sets(
-    mesh: Mesh, places: Places, state: State, mass: Array, sets: list[Whole]
+    built: Structure, state: State, sets: list[Rows], ranks: Ranks
 ) -> dict[str, Array]:
     """Mean velocity, energies, mean stress, greatest strain and damage of each set of elements."""
-    means: dict[str, list[Any]] = {}
-    for rows in sets:
-        subset = Places(places.point[rows], places.share[rows])
-        part = mesh._replace(corner=mesh.corner[rows], part=np.zeros(len(rows), np.int64))
-        for key, value in of_parts(part, subset, state, mass[rows]).items():
-            means.setdefault(key.partition(".")[2], []).append(value[0])
-        means.setdefault("von_mises", []).append(von_mises(subset, state).mean())
-        means.setdefault("plastic_strain", []).append(subset.of(state, STRAIN).max())
-        means.setdefault("damage", []).append(subset.of(state, DAMAGE).max())
-    return {f"element_set_gauge.{name}": np.array(values) for name, values in means.items()}
+    places, stresses, extremes = built.places, [], []
+    for elements in sets:
+        subset = Places(places.point[elements.rows], places.share[elements.rows])
+        stresses.append(von_mises(subset, state))
+        extremes += [subset.of(state, row).max(initial=0.0) for row in (STRAIN, DAMAGE)]
+    counts = np.array([elements.size for elements in sets], float)
+    largest = ranks.greatest(np.array(extremes)).reshape(-1, 2)
+    means = of_elements(built, state, sets, ranks)
+    means["von_mises"] = ranks.sums(stresses) / counts
+    means["plastic_strain"], means["damage"] = largest[:, 0].copy(), largest[:, 1].copy()
+    return means
 
 
-def of_parts(mesh: Mesh, places: Places, state: State, mass: Array) -> dict[str, Array]:
-    """Mean velocity and energies of each part, whose elements have a mass (e,) kg each.
-
-    Each element has an eighth of its mass at each of its corners.
-    """
-    parts = int(mesh.part.max()) + 1
-
-    def sums(of_elements: Array) -> Array:
-        return np.bincount(mesh.part, of_elements, parts).astype(np.float64)
-
-    velocity = state.velocity[mesh.corner]  # (e, 8, 3)
-    internal = mass * places.of(state, ENERGY) + places.spring_energy(state)
-    momentum = [sums(mass * velocity[:, :, d].mean(axis=1)) for d in range(3)]
-    return {
-        "part_gauge.velocity": np.stack(momentum, axis=1) / sums(mass)[:, None],
-        "part_gauge.kinetic": sums(0.5 * mass * (velocity**2).sum(axis=2).mean(axis=1)),
-        "part_gauge.internal": sums(internal),
-        "part_gauge.eroded": sums(internal * (places.active(state) == 0.0)),
-    }
-
-
-def readings(measured: Measured, built: Structure, state: State, wanted: Keys) -> dict[str, Array]:
+def readings(
+    measured: Measured, built: Structure, state: State, wanted: Keys, ranks: Ranks
+) -> dict[str, Array]:
     """Fields of the gauges that any partner, expectation or output wants."""
-    mesh, places, mass = built.mesh, built.places, built.element_mass
+
+    def named(port: str, values: dict[str, Array]) -> dict[str, Array]:
+        return {f"{port}.{name}": value for name, value in values.items()}
+
+    sets = measured.element_sets
     gauges: dict[str, Callable[[], dict[str, Array]]] = {
         "node_gauge": lambda: at_nodes(state, measured.node),
-        "element_gauge": lambda: in_elements(places, state, measured.element),
-        "node_set_gauge": lambda: of_node_sets(state, measured.node_sets),
-        "element_set_gauge": lambda: of_element_sets(
-            mesh, places, state, mass, measured.element_sets
+        "element_gauge": lambda: in_elements(built.places, state, measured.element),
+        "node_set_gauge": lambda: of_node_sets(state, measured.node_sets, ranks),
+        "element_set_gauge": lambda: named(
+            "element_set_gauge", of_element_sets(built, state, sets, ranks)
         ),
-        "part_gauge": lambda: of_parts(mesh, places, state, mass),
+        "part_gauge": lambda: named("part_gauge", of_elements(built, state, measured.parts, ranks)),
     }
     ports = {key.partition(".")[0] for key in wanted}
     values = {k: v for port in gauges if port in ports for k, v in gauges[port]().items()}

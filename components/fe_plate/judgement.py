@@ -18,12 +18,13 @@ lacks in stiffness is |E/r - E|, over its internal energy. Of material that flow
 import numpy as np
 
 from quintet.components.fe_plate.build import Structure
-from quintet.components.fe_plate.meshes.mesh import Mesh
 from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.ranks.method import Ranks
 from quintet.components.fe_plate.state import DEVIATOR, ENERGY, POINT_ROWS, PRESSURE, Array, State
 from quintet.components.shared.materials.solid import NEVER, Solid
 
 EVERY = 64  # steps
+NOTHING = np.zeros(0)  # J
 CUBE = 1.126  # energy of a cube's springs over that of the bending they stand for, by κ M/E_Y
 NEGLIGIBLE = 1e-6  # of the largest energy: smaller changes are rounding
 MOST_GAINED = 0.05  # of the energy turned over
@@ -38,9 +39,10 @@ def is_elastic(law: Solid) -> bool:
     return law.hard >= NEVER and not law.shocks and law.spall >= NEVER
 
 
-def hourglass_weights(mesh: Mesh, laws: list[Solid], hourglass: float) -> Array:
+def hourglass_weights(built: Structure, hourglass: float) -> Array:
     """Energy (e,) that elements lack, or have too much of, over that of their springs."""
-    x = mesh.node[mesh.corner]
+    mesh, laws = built.mesh, built.laws
+    x = mesh.node[built.corners(slice(None))]
     edges = np.stack([
         np.linalg.norm(x[:, high].mean(axis=1) - x[:, low].mean(axis=1), axis=1)
         for low, high in ENDS
@@ -64,9 +66,9 @@ class Judge:
 
     def __init__(self, params: FePlateParams, built: Structure, has_springs: bool) -> None:
         self.params, self.places, self.mass = params, built.places, built.element_mass
-        self.volume, self.weights = built.volume, np.zeros(len(built.mesh.corner))
+        self.volume, self.weights = built.volume, np.zeros(len(built.volume))
         if has_springs:
-            self.weights = hourglass_weights(built.mesh, built.laws, params.hourglass)
+            self.weights = hourglass_weights(built, params.hourglass)
         laws, part = built.laws, built.mesh.part
         elastic = np.array([is_elastic(law) for law in laws])[part]
         # Who asks for stiffness damping wants motion to become heat.
@@ -79,26 +81,42 @@ class Judge:
         self.most = np.zeros(3)  # J, greatest internal energy, lack by hourglassing, heat
 
     def note(
-        self, state: State, kinetic: float, potential: float, done: float, first: bool
-    ) -> None:
-        """Take down the energies [J] of the present state; `done` is the work on it so far."""
+        self, state: State, motion: list[Array], works: list[Array], brought: float, ranks: Ranks,
+        first: bool,
+    ) -> None:  # fmt: skip
+        """Take down the energies of the present state.
+
+        Parameters
+        ----------
+        state
+        motion : two (n,) float arrays, J
+            Kinetic and potential energies of the nodes.
+        works : list of (n or 0,) float arrays, J
+            Done on the nodes so far.
+        brought : float, J
+            Other work done on the structure so far.
+        ranks : Ranks
+        first : bool
+            Whether nothing was taken down before.
+        """
         elements = self.mass * self.places.of(state, ENERGY)
         springs = self.places.spring_energy(state)
-        internal = float(elements.sum() + springs.sum())
+        heats = NOTHING if self.shear is None else elements - self._stored(state)
+        kinetic, potential, *works_done, strain, held, lack, heat = ranks.sums(
+            [*motion, *works, elements, springs, self.weights * springs, heats]
+        ).tolist()
+        internal = strain + held
         energies = np.array([kinetic, potential, internal])
-        total = float(energies.sum()) - done
+        total = float(energies.sum()) - sum(works_done) - brought
         if first:
             self.ranges[:], self.sums[:] = energies[:, None], total
         self.ranges[:, 0] = np.minimum(self.ranges[:, 0], energies)
         self.ranges[:, 1] = np.maximum(self.ranges[:, 1], energies)
         self.sums[1], self.sums[2] = min(self.sums[1], total), max(self.sums[2], total)
-        lack, heat = float(self.weights @ springs), 0.0
-        if self.shear is not None:
-            heat = float(elements.sum() - self._stored(state))
         self.most[:] = np.maximum(self.most, (internal, lack, heat))
 
-    def _stored(self, state: State) -> float:
-        """Elastic energy [J] of all elements, by small strains."""
+    def _stored(self, state: State) -> Array:
+        """Elastic energies (e,) J of elements, by small strains."""
         assert self.shear is not None
         rows = state.points.transpose(1, 0, 2).reshape(POINT_ROWS, -1)
         at = self.places.point
@@ -106,7 +124,7 @@ class Judge:
         squares = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx)
         pressure = rows[PRESSURE][at]
         energy = squares / (4.0 * self.shear[:, None]) + pressure**2 / (2.0 * self.bulk[:, None])
-        return float(self.volume @ (energy * self.places.share).sum(axis=1))
+        return np.asarray(self.volume * (energy * self.places.share).sum(axis=1))
 
     def warnings(self) -> dict[str, str]:
         """Reasons why the results may be wrong, by subject."""

@@ -39,6 +39,7 @@ class Model(NamedTuple):
     free: Array  # (n, 3) 1 or 0: whether a node moves along an axis
     gravity: Array  # (3,) m/s2
     walls: Array  # (w, 4) unit normal and offset of rigid walls: normal·x ≥ offset
+    moving: int  # nodes that this rank moves, the first ones; others are copies
 
 
 class Parted(NamedTuple):
@@ -46,6 +47,14 @@ class Parted(NamedTuple):
 
     node: Whole  # (p,)
     begin: Whole  # (p + 1,) rows of forces at node[i]: begin[i] ... begin[i + 1] - 1
+
+
+class Span(NamedTuple):
+    """Blocks of one part that stand one after another."""
+
+    part: int
+    first: int
+    last: int  # and one
 
 
 class Resistance(NamedTuple):
@@ -67,8 +76,11 @@ class State(NamedTuple):
     load: Array  # (n, 3) N, from outside
     points: Array  # (b, POINT_ROWS, LANES), stresses and all that belongs to the material
     springs: Array  # (b or 0, SPRING_ROWS, LANES), of the hourglass patterns
-    wall_impulse: Array  # (w,) N s, on each rigid wall so far
-    wall_work: Array  # (w,) J, of each rigid wall on the nodes so far
+    load_work: Array  # (n,) J, of the loads so far
+    partner_work: Array  # (n or 0,) J, of it that of partners' loads, where pressures act too
+    damped: Array  # (n or 0,) J, that mass damping took so far
+    wall_impulse: Array  # (n or 0, w) N s, on each rigid wall so far
+    wall_work: Array  # (n or 0,) J, of rigid walls so far
 
     @property
     def internal(self) -> Array:
@@ -79,43 +91,49 @@ class State(NamedTuple):
         """All that moves; of the forces those on nodes: the others are none between steps."""
         return {**self._asdict(), "forces": self.internal}
 
+    def works(self, nodes: int) -> list[Array]:
+        """Works (nodes or 0,) J on the first nodes: of loads, of walls, of damping (negative)."""
+        return [self.load_work[:nodes], self.wall_work[:nodes], -self.damped[:nodes]]
+
 
 @dataclass(slots=True)
 class Accumulated:
     """Sums over a run."""
 
     time: float = 0.0  # s
-    work: float = 0.0  # J, of the loads
-    outside: float = 0.0  # J, of it that of pressures; less the energy that mass damping took
-    damped: float = 0.0  # J, that mass damping took
     brought: float = 0.0  # J, of motion that added mass brought
     steps: int = 0
 
-    def damp(self, energy: float) -> None:
-        """Add an energy [J] that mass damping took."""
-        self.damped += energy
-        self.outside -= energy
 
-    def done(self) -> float:
-        """Work [J] on the structure, but for that of rigid walls."""
-        return self.work + self.brought - self.damped
+class Sizes(NamedTuple):
+    """Rows of what not every structure has; 0 if it is absent."""
+
+    springs: int  # blocks with springs
+    forces: int  # rows of forces, on nodes and on corners
+    walls: int  # rigid walls
+    pressed: int  # nodes, where pressures act
+    damped: int  # nodes, with mass damping
 
 
-def state_at_rest(nodes: Array, blocks: int, springs: int, rows: int, walls: int) -> State:
-    """State at rest at nodes (n, 3) m, with some rows of forces."""
+def state_at_rest(nodes: Array, blocks: int, sizes: Sizes) -> State:
+    """State at rest at nodes (n, 3) m, with some blocks of points."""
     still = np.zeros_like(nodes)
+    walled = len(nodes) if sizes.walls else 0
     points = np.zeros((blocks, POINT_ROWS, LANES))
     points[:, ACTIVE] = 1.0
     return State(
         position=nodes.copy(),
         velocity=still.copy(),
         mean_velocity=still.copy(),
-        forces=np.zeros((rows, 3)),
+        forces=np.zeros((sizes.forces, 3)),
         load=still.copy(),
         points=points,
-        springs=np.zeros((springs, SPRING_ROWS, LANES)),
-        wall_impulse=np.zeros(walls),
-        wall_work=np.zeros(walls),
+        springs=np.zeros((sizes.springs, SPRING_ROWS, LANES)),
+        load_work=np.zeros(len(nodes)),
+        partner_work=np.zeros(sizes.pressed),
+        damped=np.zeros(sizes.damped),
+        wall_impulse=np.zeros((walled, sizes.walls)),
+        wall_work=np.zeros(walled),
     )
 
 
@@ -124,6 +142,10 @@ class Places(NamedTuple):
 
     point: Whole  # (e, q), of each of its q points
     share: Array  # (e, q) 1, of the element's mass
+
+    def subset(self, elements: Whole) -> "Places":
+        """Those of some elements, by their rows here."""
+        return Places(self.point[elements], self.share[elements])
 
     def of(self, state: State, row: int) -> Array:
         """Mean of a row over the points of each element (e,)."""

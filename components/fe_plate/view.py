@@ -15,6 +15,8 @@ from quintet.components.fe_plate.state import (
 )
 from quintet.interfaces.component import Fields
 
+VALUES = ("von_mises", "pressure", "plastic_strain", "temperature", "damage")  # of elements
+
 
 def von_mises(places: Places, state: State) -> Array:
     """Equivalent stress (e,) Pa of the elements' mean deviators."""
@@ -23,9 +25,24 @@ def von_mises(places: Places, state: State) -> Array:
     return np.asarray(np.sqrt(squares))
 
 
-def view(mesh: Mesh, places: Places, state: State) -> Fields:
-    """Corners of the outer faces of what is left, in a plane of its elements; means at each."""
-    live = np.flatnonzero(places.active(state))
+def shown(places: Places, state: State) -> Array:
+    """What a view shows of elements (e, 6): whether they are left, and the values of `VALUES`."""
+    means = [places.of(state, row) for row in (PRESSURE, STRAIN, TEMPERATURE, DAMAGE)]
+    return np.column_stack([places.active(state), von_mises(places, state), *means])
+
+
+def view(mesh: Mesh, motion: Array, elements: Array) -> Fields:
+    """Corners of the outer faces of what is left, in a plane of its elements; means at each.
+
+    Parameters
+    ----------
+    mesh
+    motion : (n, 6) float array, m and m/s
+        Positions and velocities of the nodes.
+    elements : (e, 6) float array
+        As of `shown`.
+    """
+    live = np.flatnonzero(elements[:, 0])
     planar = bool((mesh.side[:1, 2] < 0).any())
     side = mesh.corner[live][:, 3::-1] if planar else outer_sides(mesh.corner[live])[0]
     node, cells = np.unique(side, return_inverse=True)
@@ -38,13 +55,9 @@ def view(mesh: Mesh, places: Places, state: State) -> Fields:
         return np.asarray((summed / count)[node])
 
     return {
-        "points": state.position[node],
+        "points": motion[node, :3],
         "cells": cells.reshape(-1, 4),
-        "velocity": state.velocity[node],
-        "von_mises": mean(von_mises(places, state)),
-        "pressure": mean(places.of(state, PRESSURE)),
-        "plastic_strain": mean(places.of(state, STRAIN)),
-        "temperature": mean(places.of(state, TEMPERATURE)),
-        "damage": mean(places.of(state, DAMAGE)),
-        "displacement": state.position[node] - mesh.node[node],
+        "velocity": motion[node, 3:],
+        **{name: mean(elements[:, 1 + k]) for k, name in enumerate(VALUES)},
+        "displacement": motion[node, :3] - mesh.node[node],
     }

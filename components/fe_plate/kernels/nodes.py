@@ -9,8 +9,8 @@ from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> float:
-    """Advance velocities by half a step and positions by a whole one; return the loads' work [J].
+def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> None:
+    """Advance velocities by half a step and positions by a whole one; add the works on each node.
 
     The elements' forces are then none, for the elements to write them again.
 
@@ -21,14 +21,14 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
     damping : float, 1/s
         α: velocities decay by exp(-α dt/4) here and at the step's end.
     """
-    decay, work = math.exp(-0.25 * damping * dt), 0.0
+    decay = math.exp(-0.25 * damping * dt)
     position, velocity, mean = state.position, state.velocity, state.mean_velocity
     forces, load, free = state.forces, state.load, model.free
-    impulse, taken = state.wall_impulse, state.wall_work
+    work, impulse, taken = state.load_work, state.wall_impulse, state.wall_work
     inverse, walls = model.inverse_mass, model.walls
     h, gravity = 0.5 * dt, model.gravity
     gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
-    for i in range(position.shape[0]):
+    for i in range(model.moving):
         half = 0.5 * dt * inverse[i]
         fx, fy, fz = load[i, 0], load[i, 1], load[i, 2]
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
@@ -44,17 +44,17 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> flo
             if gap + dt * speed < 0.0:
                 more = -gap / dt - speed
                 du, dv, dw = more * a * free[i, 0], more * b * free[i, 1], more * c * free[i, 2]
-                impulse[k] += more / inverse[i]
+                impulse[i, k] += more / inverse[i]
                 # Its impulse acts on the mean of the velocities, but for the kick: what pushed the
                 # node into the wall in vain has done no work.
                 along = du * (mx + 0.5 * du) + dv * (my + 0.5 * dv) + dw * (mz + 0.5 * dw)
-                taken[k] += along / inverse[i]
+                taken[i] += along / inverse[i]
                 mx, my, mz = mx + du, my + dv, mz + dw
                 u, v, w = u + du, v + dv, w + dw
         mean[i, 0], mean[i, 1], mean[i, 2] = u, v, w
         position[i, 0], position[i, 1], position[i, 2] = x + dt * u, y + dt * v, z + dt * w
-        work += dt * (u * fx + v * fy + w * fz)
-    return work
+        if fx != 0.0 or fy != 0.0 or fz != 0.0:
+            work[i] += dt * (u * fx + v * fy + w * fz)
 
 
 @njit(**EXACT)
@@ -82,7 +82,7 @@ def kick(
     position, walls = state.position, model.walls
     h, gravity = 0.5 * dt, model.gravity
     gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
-    for i in range(velocity.shape[0]):
+    for i in range(model.moving):
         half = 0.5 * dt * inverse[i]
         u = (mean[i, 0] + half * (forces[i, 0] + load[i, 0]) + gx) * (decay * free[i, 0])
         v = (mean[i, 1] + half * (forces[i, 1] + load[i, 1]) + gy) * (decay * free[i, 1])
@@ -119,10 +119,9 @@ def sum_parted(parted: Parted, forces: Array) -> None:
 
 
 @njit(**EXACT)
-def kinetic_energy(model: Model, state: State) -> float:
-    """Kinetic energy [J] of all nodes, with what hangs on them."""
-    inverse, velocity, twice = model.inverse_mass, state.velocity, 0.0
-    for i in range(velocity.shape[0]):
+def add_damped(model: Model, state: State, share: float) -> None:
+    """Add a share of each node's kinetic energy to what mass damping took [J]."""
+    inverse, velocity, damped = model.inverse_mass, state.velocity, state.damped
+    for i in range(model.moving):
         u, v, w = velocity[i, 0], velocity[i, 1], velocity[i, 2]
-        twice += (u * u + v * v + w * w) / inverse[i]
-    return 0.5 * twice
+        damped[i] += share * (0.5 * (u * u + v * v + w * w) / inverse[i])

@@ -155,7 +155,7 @@ def test_sets_of_elements_are_read_from_a_file(tmp_path):
     part = Part(shape="mesh", file=str(tmp_path / "block.inp"), scale=1e-3, material=ELASTIC)
     gauges = Gauges(element_set_gauges=(Elements(element_set="right"),))
     made = FePlate(FePlateParams(parts=(part,), gauges=gauges))
-    assert [one.tolist() for one in made.measured.element_sets] == [[1]]
+    assert [one.rows.tolist() for one in made.measured.element_sets] == [[1]]
 
 
 def _hexahedra():

@@ -1,0 +1,154 @@
+"""Which rank steps which blocks of elements, and its part of a structure."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.components.fe_plate.build import Structure, targets
+from quintet.components.fe_plate.meshes.mesh import Mesh
+from quintet.components.fe_plate.state import LANES, Array, Places, Span, Whole
+from quintet.components.shared.domain.bisection import bisect
+from quintet.interfaces.errors import SceneError
+
+
+class Owners(NamedTuple):
+    """Ranks that own each node and each block; a block's owner owns the first corner of it."""
+
+    node: Whole  # (n,)
+    block: Whole  # (b,)
+
+
+class Part(NamedTuple):
+    """What a rank computes, by numbers of the whole structure."""
+
+    node: Whole  # (n,) nodes that it owns, rising, then the other corners of its blocks
+    moving: int  # of them it owns
+    block: Whole  # (b,) blocks that it steps, in the order of its spans
+    element: Whole  # (e,) elements whose block it owns, rising
+    own_blocks: Whole  # (o,) rows of the blocks that it owns among these
+
+
+def owners(built: Structure, ranks: int) -> Owners:
+    """Share blocks out by bisection of space, and nodes to the lowest rank with a block there.
+
+    Every rank computes the same.
+
+    Raises
+    ------
+    SceneError
+        If a rank would own no node.
+    """
+    model, blocks = built.model, len(built.model.filled)
+    corner = model.corner.reshape(blocks, -1)
+    place, inverse, weights = _cells(built)
+    of_block = bisect(place, weights, ranks)[inverse]
+    of_node: Whole = np.zeros(len(built.mesh.node), np.int64)
+    for rank in reversed(range(ranks)):
+        of_node[corner[of_block == rank]] = rank
+    fewest = int(np.bincount(of_node, minlength=ranks).min())
+    if not fewest:
+        raise SceneError(
+            f"ranks: each must own a node of the mesh; of {ranks} ranks one owns none, for "
+            f"{len(built.mesh.corner)} elements are only {blocks} blocks. Take fewer ranks."
+        )
+    return Owners(of_node, of_node[corner[:, 0]])
+
+
+def _cells(built: Structure) -> tuple[Whole, Whole, Array]:
+    """Cells (c, 3) as large as most blocks are, the cell of each block, and elements in each."""
+    model, blocks = built.model, len(built.model.filled)
+    # Opposite corners of the elements of a block.
+    ends = built.mesh.node[model.corner[:, [0, 6]]].reshape(blocks, -1, 3)
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    size = np.median(high - low, axis=0)
+    size[size == 0.0] = 1.0
+    cell = np.floor(0.5 * (low + high) / size).astype(np.int64)
+    place, inverse = np.unique(cell, axis=0, return_inverse=True)
+    inverse = inverse.reshape(-1)
+    weights = np.bincount(inverse, model.filled, len(place)).astype(np.float64)
+    return place, inverse.astype(np.int64), weights
+
+
+def part_of(built: Structure, owner: Owners, rank: int) -> tuple[Part, list[Span], list[Span]]:
+    """What a rank computes, and the spans of its blocks: those of own nodes, and all others."""
+    blocks = len(built.model.filled)
+    is_own = (owner.node == rank)[built.model.corner.reshape(blocks, -1)]
+    touches, is_inner = is_own.any(axis=1), is_own.all(axis=1)
+    inner: list[Span] = []
+    border: list[Span] = []
+    order, first = [], 0
+    for span in built.inner:
+        of_part = np.arange(span.first, span.last)
+        for spans, chosen in (
+            (inner, is_inner[of_part]),
+            (border, touches[of_part] & ~is_inner[of_part]),
+        ):
+            numbers = of_part[chosen]
+            order.append(numbers)
+            spans.append(Span(span.part, first, first + len(numbers)))
+            first += len(numbers)
+    block = np.concatenate(order)
+    corners = np.unique(built.model.corner.reshape(blocks, -1)[block]).astype(np.int64)
+    moving = np.flatnonzero(owner.node == rank)
+    node = np.concatenate([moving, corners[owner.node[corners] != rank]])
+    block_of = built.places.point[:, 0] // LANES
+    element = np.flatnonzero(owner.block[block_of] == rank)
+    own_blocks = np.flatnonzero(owner.block[block] == rank)
+    return Part(node, len(moving), block, element, own_blocks), inner, border
+
+
+def cut(
+    built: Structure,
+    part: Part,
+    inner: list[Span],
+    border: list[Span],
+    ends: Callable[[int], list[int]],
+) -> Structure:
+    """Return the part of a structure, in the numbers of its own nodes, blocks and elements."""
+    mesh, model, blocks = built.mesh, built.model, len(built.model.filled)
+    row: Whole = np.full(len(mesh.node), -1)  # of each node
+    row[part.node] = np.arange(len(part.node))
+    block_row: Whole = np.full(blocks, -1)
+    block_row[part.block] = np.arange(len(part.block))
+    corner = row[model.corner.reshape(blocks, -1, 8)[part.block].reshape(-1, 8)].astype(np.uint32)
+    filled = model.filled[part.block]
+    spans = sorted((*inner, *border), key=lambda span: (span.first, span.last))
+    target, parted = targets(corner, filled, spans, ends, len(part.node), part.block)
+    faces = np.flatnonzero(block_row[built.face_places.point[:, 0] // LANES] >= 0)
+    face_row: Whole = np.full(len(mesh.side), -1)
+    face_row[faces] = np.arange(len(faces))
+    side = np.where(mesh.side[faces] < 0, -1, row[mesh.side[faces]])
+    pressed = [face_row[numbers] for numbers in built.pressed]
+    return built._replace(
+        # Corners of elements stand in the model alone.
+        mesh=Mesh(
+            mesh.node[part.node], np.zeros((0, 8), np.int64), mesh.part[part.element], side,
+            mesh.owner[faces], {}, {},
+        ),
+        model=model._replace(
+            corner=corner,
+            target=target,
+            filled=filled,
+            volume=model.volume.reshape(blocks, LANES)[part.block].ravel(),
+            inverse_mass=model.inverse_mass[part.node],
+            free=model.free[part.node],
+            moving=part.moving,
+        ),
+        parted=parted,
+        places=_renumbered(built.places.subset(part.element), block_row),
+        inner=inner,
+        border=border,
+        volume=built.volume[part.element],
+        mass=built.mass[part.node],
+        coupled=face_row[built.coupled],
+        pressed=[rows[rows >= 0] for rows in pressed],
+        face_places=_renumbered(built.face_places.subset(faces), block_row),
+        element_mass=built.element_mass[part.element],
+    )  # fmt: skip
+
+
+def _renumbered(places: Places, block_row: Whole) -> Places:
+    """Places in a rank's own blocks."""
+    point = places.point
+    return Places(LANES * block_row[point // LANES] + point % LANES, places.share)

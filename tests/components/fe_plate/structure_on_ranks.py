@@ -1,0 +1,147 @@
+"""What test_fe_plate_ranks.py runs on several ranks; rank 0 writes what came out."""
+
+import json
+import sys
+
+import numpy as np
+from mpi4py import MPI
+from pydantic import TypeAdapter
+
+from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.interfaces.component import Resources, outputs_of
+
+WORLD = MPI.COMM_WORLD
+BLOCK = {
+    "lowest": [0.0, 0.0, 0.0],
+    "highest": [0.016, 0.012, 0.02],
+    "elements": [8, 6, 10],
+    "material": "steel",
+    "velocity": [20.0, 0.0, -300.0],
+}
+GAUGES = {
+    "node_gauges": [[0.0, 0.0, 0.02], [0.016, 0.012, 0.0]],
+    "element_gauges": [[0.008, 0.006, 0.01], [0.0, 0.0, 0.0]],
+    "part_gauge": True,
+    "node_set_gauges": ["end"],
+    "element_set_gauges": [{"lowest": [0.0, 0.0, 0.0], "highest": [0.016, 0.012, 0.01]}],
+}
+END = {"name": "end", "lowest": [0.0, 0.0, 0.02], "highest": [0.016, 0.012, 0.02]}
+WALL = {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.1, 1.0]}
+BRITTLE = {
+    "density": 2700.0,
+    "youngs_modulus": 7e10,
+    "poissons_ratio": 0.3,
+    "johnson_cook": {"a": 1e8, "b": 2e8, "n": 0.3, "c": 0.01},
+    "failure_strain": 0.15,
+}
+PARAMS = {
+    "struck": {  # two parts, one of them eroding, against a wall that leans
+        "parts": [
+            BLOCK,
+            {**BLOCK, "lowest": [0.02, 0.0, 0.0], "highest": [0.036, 0.012, 0.02],
+             "elements": [5, 4, 9], "material": BRITTLE},
+        ],
+        "rigid_walls": [WALL],
+        "node_sets": [END],
+        "gauges": GAUGES,
+        "gravity": [0.0, 0.0, -9.81],
+    },
+    "pressed": {  # damped, under a pressure and a partner's forces
+        "parts": [{**BLOCK, "velocity": [0.0, 0.0, 0.0]}],
+        "fixed": [{"lowest": [0.0, 0.0, 0.0], "highest": [0.0, 0.012, 0.02]}],
+        "pressures": [
+            {"faces": {"lowest": [0.0, 0.0, 0.02], "highest": [0.016, 0.012, 0.02]},
+             "pressure": 8e8},
+        ],
+        "mass_damping": 2e4,
+        "coupled_faces": [{"lowest": [0.016, 0.0, 0.0], "highest": [0.016, 0.012, 0.02]}],
+    },
+    "bent": {  # eight points an element
+        "parts": [{**BLOCK, "highest": [0.03, 0.012, 0.004], "elements": [15, 6, 2],
+                   "velocity": [0.0, 0.0, 0.0]}],
+        "integration": "full",
+        "fixed": [{"lowest": [0.0, 0.0, 0.0], "highest": [0.0, 0.012, 0.004]}],
+    },
+    "glued": {  # particles hang on a face and add their mass, of which some is let go
+        "parts": [{**BLOCK, "velocity": [0.0, 0.0, 0.0]}],
+        "coupled_faces": [{"lowest": [0.0, 0.0, 0.02], "highest": [0.016, 0.012, 0.02]}],
+        "gauges": {"part_gauge": True},
+    },
+    "plane": {
+        "parts": [{**BLOCK, "highest": [0.016, 1.0, 0.02], "elements": [12, 1, 14]}],
+        "dimensions": 2,
+        "rigid_walls": [WALL],
+    },
+}  # fmt: skip
+FORCED = ("pressed", "bent", "glued")
+
+
+def make(name):
+    params = TypeAdapter(FePlateParams).validate_json(json.dumps(PARAMS[name]))
+    communicator = WORLD if WORLD.size > 1 else None
+    return FePlate(params, Resources(communicator=communicator))
+
+
+def fields(structure, name):
+    """Forces on the nodes of the surface, and of glued particles their mass too."""
+    if name not in FORCED:
+        return {}
+    nodes, steps = len(structure.surface), structure.accumulated.steps
+    number = np.arange(nodes)
+    force = 50.0 * np.sin(np.add.outer(number, np.arange(3.0)) + 0.1 * steps)
+    if name != "glued":
+        return {"node_load.force": force}
+    added = np.where(number < 5 * (steps // 20), 0.0, 1e-5)
+    return {"node_load.force": 20.0 * force, "node_mass.added": added}
+
+
+def go(structure, name, steps):
+    for _ in range(steps):
+        structure.take(fields(structure, name))
+        structure.step(structure.stable_dt())
+
+
+def results(structure):
+    totals = structure.totals()
+    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal, totals.work]
+    numbers += [*totals.momentum, *totals.angular_momentum, structure.stable_dt()]
+    warned = np.array(sorted(structure.warnings().items()), dtype=str)
+    seen = {f"view {name}": array for name, array in structure.view().items()}
+    walls = {f"walls {name}": array for name, array in structure.walls().items()}
+    described = {f"described {name}": array for name, array in structure.describe().items()}
+    more = {
+        "totals": np.array(numbers),
+        "warned": warned,
+        "notes": np.array(structure.notes(), str),
+    }
+    return {**outputs_of(structure), **seen, **walls, **described, **more}
+
+
+def run(name, steps, folder, earlier, written=""):
+    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
+    structure = make(name)
+    joined = frozenset({"node_load"} | ({"node_glue"} if name == "glued" else set()))
+    nodes = len(structure.surface)
+    structure.bind(
+        {"node_load.added_mass": np.full(nodes, 1e-5)} if name == "glued" else {}, joined
+    )
+    if earlier:
+        structure.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
+    go(structure, name, steps)
+    state, reached = structure.save(), results(structure)
+    if WORLD.rank == 0:
+        path = f"{folder}/{name}-{WORLD.size}"
+        if not earlier:
+            np.savez(f"{path}-state.npz", **state)
+        saved = {f"state {key}": array for key, array in state.items()}
+        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **saved)
+
+
+def main(folder, steps, earlier, names):
+    for name in names.split(","):
+        run(name, int(steps), folder, earlier if earlier != "0" else "")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
