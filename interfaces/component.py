@@ -229,6 +229,15 @@ class Component(ABC):
             Names of its ports that have a partner.
         """
 
+    def rank_rows(self, port: str) -> Array | None:
+        """Rows (k,) of a port that this rank of several works on; None: all, or unknown.
+
+        Of a port it takes: those that it needs from now on, asked once, after `bind`. In fields
+        that come later the others mean nothing; rank 0 has all. Of a port it gives: those that it
+        computes now; a number that is not finite is reported with its rank.
+        """
+        return None
+
     def prime(self, fields: Fields) -> None:  # noqa: B027  (most need none)
         """Learn what the inputs that are instants are as the run begins; once, after `bind`."""
 

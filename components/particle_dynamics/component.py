@@ -75,6 +75,10 @@ class ParticleLattice(Component):
             return {}
         return {"wall_heat.position": self.bathed.rest[self.wall.rows]}
 
+    def rank_rows(self, port: str) -> Array | None:
+        """Points of the wall whose heat this rank computes."""
+        return self.wall.of_wall if port == "wall_heat" else None
+
     def stable_dt(self) -> float:
         """Return the length of all substeps."""
         return self.params.substeps * self.substep

@@ -122,7 +122,8 @@ class Participant:
                 if self.sums and self.order == "advance":
                     self.sums.check(message)
             if finite:
-                require_finite(message.fields, "what it gave")
+                giver = sendable(str(message.header.get("giver", "it")))
+                require_finite(message.fields, f"what {giver} gave")
         except MessageError as error:
             if self.trial:
                 self._answered = True

@@ -162,7 +162,7 @@ def make_server(
     if ranks is None:
         return Server(component, name, seconds)
     # Only a component of several ranks loads MPI here.
-    from quintet.interfaces.serving.ranks import FollowingServer
+    from quintet.interfaces.serving.following import FollowingServer
 
     server = FollowingServer if ranks.rank else Server
     return server(component, name, seconds, line.spread)

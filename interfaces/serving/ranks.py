@@ -1,14 +1,14 @@
 """A component of several MPI ranks: rank 0 leads, the others follow.
 
-Rank 0 holds the line to the coupler and passes every order on. All ranks carry it out, and rank 0
-alone answers. If another rank fails, a thread of rank 0 tells the coupler, for the solver of rank 0
-may be waiting for that rank.
+Rank 0 holds the line to the coupler and passes every order on, with the rows that each rank needs.
+All ranks carry it out, and rank 0 alone answers. If another rank fails, a thread of rank 0 tells
+the coupler, for the solver of rank 0 may be waiting for that rank.
 """
 
 import os
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from quintet.interfaces.component import Fields
@@ -16,13 +16,12 @@ from quintet.interfaces.errors import QuintetError
 from quintet.interfaces.lines.message import Message, Shapes
 from quintet.interfaces.lines.mpi import MpiLine, communicator_of
 from quintet.interfaces.lines.transport import Line
-from quintet.interfaces.serving.outputs import Outputs, Sums
-from quintet.interfaces.serving.serve import LONGEST_WAIT, Answer, Server
+from quintet.interfaces.serving.following import FAILURES, TELLING, WHOSE, FollowingLine
+from quintet.interfaces.serving.rank_rows import ORDERS, first_not_finite, with_rows
+from quintet.interfaces.serving.serve import LONGEST_WAIT, is_trial
 
-FAILURES = ("failed", "unable")  # answers of a rank that could not carry out an order
 LOOKING = 0.05  # s between two looks at what other ranks say
-DECIDING = 1.0  # s for rank 0 to fail at the same order as another rank
-TELLING = 5.0  # s for all ranks to tell what they used
+DECIDING = 0.5  # s for rank 0 to fail at the same order as another rank
 NOTICING = 2.0  # s for the coupler to notice that a rank has died
 MPI_ERROR = "mpi4py.MPI.Exception: "
 
@@ -46,16 +45,28 @@ class LeadingLine:
         self._failed_at = 0  # the last order that this rank could not carry out
         self._over = False  # a failure was reported, or the line is closed
         self._used: list[Mapping[str, Any]] = []  # by other ranks, at the end
+        self._needed: dict[int, Fields] = {}  # rows of ports taken, by rank
+        self._computes: dict[int, bool | None] = {}  # whether a rank has given a row, by rank
+        self._checks = False  # whether the answer to the last order may name a rank
         self._lock = threading.Lock()
         threading.Thread(target=self._watch, name="ranks", daemon=True).start()
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
         """Receive an order, and pass it on."""
         message = self._line.receive(seconds, expected)
-        for line in self._others:
-            line.send(message.header, message.fields)
+        self._checks = message.order in ("give", "advance") and not is_trial(message)
+        if message.order in ORDERS:
+            self._wait_for_all(self._needed, LONGEST_WAIT)
+        for rank, line in enumerate(self._others, 1):
+            line.send(*with_rows(message, self._needed.get(rank, {})))
         self._orders += 1
         return message
+
+    def _wait_for_all(self, said: Collection[Any], seconds: float) -> None:
+        """Wait until all other ranks have said something, or one of them has failed."""
+        limit = time.monotonic() + seconds
+        while len(said) < len(self._others) and time.monotonic() < limit and not self._over:
+            time.sleep(LOOKING)
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """Answer for all ranks."""
@@ -63,6 +74,8 @@ class LeadingLine:
             time.sleep(NOTICING)  # most likely another rank has died: the coupler names that one
         if "memory" in header:
             header = self._of_all(header)
+        if self._checks and (place := first_not_finite(fields)):
+            header = {**header, **self._giver(*place)}
         with self._lock:
             if self._over:
                 return
@@ -76,11 +89,22 @@ class LeadingLine:
 
     def _of_all(self, header: Mapping[str, Any]) -> dict[str, Any]:
         """Add what the other ranks used to the last answer."""
-        limit = time.monotonic() + TELLING
-        while len(self._used) < len(self._others) and time.monotonic() < limit:
-            time.sleep(LOOKING)
+        self._wait_for_all(self._used, TELLING)
         used = [header, *self._used]
         return {**header, **{key: sum(rank[key] for rank in used) for key in ("memory", "cpu")}}
+
+    def _giver(self, key: str, row: int) -> dict[str, str]:
+        """Name the rank that computed a row, if the component can tell."""
+        for line in self._others:
+            line.send({"order": WHOSE, "key": key, "row": row}, {})
+        self._wait_for_all(self._computes, DECIDING)
+        for rank, answer in sorted(self._computes.items()):
+            if answer:
+                return {"giver": f"rank {rank} on {self._hosts[rank - 1]}"}
+        of_others = list(self._computes.values())
+        if None in of_others or len(of_others) < len(self._others):
+            return {}
+        return {"giver": f"rank 0 on {os.uname().nodename}"}
 
     def spread(self, state: Fields) -> Fields:
         """Give a state, which this rank has whole, to all ranks; return it."""
@@ -96,19 +120,27 @@ class LeadingLine:
     def _watch(self) -> None:
         while not self._over:
             time.sleep(LOOKING)
-            for line, host in zip(self._others, self._hosts, strict=True):
+            for rank, line in enumerate(self._others, 1):
                 try:
                     if line.peek() is not None:
-                        self._hear(line.receive(LOOKING), host)
+                        self._hear(line.receive(LOOKING), rank)
                 except QuintetError:  # it is dead, which the coupler sees
                     return
 
-    def _hear(self, report: Message, host: str) -> None:
-        """Note what a rank used; report its failure, unless this one fails at the same order."""
+    def _hear(self, report: Message, rank: int) -> None:
+        """Note what a rank says; report its failure, unless this one fails at the same order."""
         header = report.header
-        if report.order == "used":
-            self._used.append(header)
-            return
+        match report.order:
+            case "used":
+                self._used.append(header)
+            case "needed":
+                self._needed[rank] = report.fields
+            case "computes":
+                self._computes[rank] = header["computes"]
+            case _:
+                self._hear_failure(header, self._hosts[rank - 1])
+
+    def _hear_failure(self, header: Mapping[str, Any], host: str) -> None:
         limit = time.monotonic() + DECIDING
         while self._answered < int(header["at"]) and time.monotonic() < limit:
             time.sleep(LOOKING)
@@ -118,75 +150,6 @@ class LeadingLine:
             self._over = True
             text = f"rank {header['rank']} on {host}: {header['text']}"
             self._line.send({**header, "order": "failed", "text": text}, {})
-
-
-class FollowingLine:
-    """The line of another rank to rank 0; the coupler does not hear what it answers."""
-
-    def __init__(self, line: MpiLine, rank: int) -> None:
-        self._line, self._rank = line, rank
-        self._orders, self._cpu = 0, 0.0
-
-    def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
-        """Receive the next order."""
-        message = self._line.receive(seconds, expected)
-        self._orders += 1
-        return message
-
-    def send(self, header: Mapping[str, Any], fields: Fields) -> None:
-        """Tell rank 0 of a failure, and at the end of what this rank used."""
-        if header["order"] in FAILURES:
-            self._line.send({**header, "at": self._orders, "rank": self._rank}, {})
-        elif "memory" in header:
-            self._line.send({"order": "used", "memory": header["memory"], "cpu": self._cpu}, {})
-            self._line.receive(2.0 * TELLING)  # until rank 0 has answered
-        else:
-            self._cpu += header.get("cpu", 0.0)
-
-    def spread(self, _: Fields) -> Fields:
-        """Return the state that rank 0 has."""
-        return self._line.receive(LONGEST_WAIT).fields
-
-    def close(self) -> None:
-        """See `Line.close`."""
-
-
-class Unheard(Outputs):
-    """Outputs of a rank that does not answer: its rows are among those of rank 0."""
-
-    def check(self, fields: Fields) -> Fields:
-        """Accept anything."""
-        return fields
-
-    def add(self, outputs: Fields, taken: Fields, dt: float) -> None:
-        """Add nothing."""
-
-    def collect(self, outputs: Fields) -> dict[str, Any]:
-        """Send nothing."""
-        return {}
-
-    def audit(self) -> Sums:
-        """Tell no sums."""
-        return {}
-
-
-class FollowingServer(Server):
-    """Carries out orders on a rank that does not answer."""
-
-    outputs_class = Unheard
-
-    def _view(self, message: Message) -> Answer:
-        self._totals()
-        if message.header.get("shown", True):
-            if self.component.shows:
-                self.component.view()
-            else:  # as `look_at` does without a view of the component's own
-                self.component.view()
-                self.component.give(frozenset(self.outputs.fields))
-                self.component.describe()
-        if message.header.get("walls"):
-            self.component.walls()
-        return {}, {}
 
 
 class Ranks:
