@@ -3,6 +3,7 @@
 import contextlib
 import math
 import os
+import time
 from dataclasses import dataclass, field
 
 import psutil
@@ -25,6 +26,7 @@ class RanksProbe(ProcessProbe):
     """
 
     ranks: list[ProcessProbe] = field(default_factory=list)
+    _at_work: list[ProcessProbe] = field(default_factory=list)  # that waited for no other
 
     def alive(self) -> bool:
         """Whether all processes still run."""
@@ -48,7 +50,7 @@ class RanksProbe(ProcessProbe):
 
     def begin(self) -> None:
         """Begin to find out what the ranks do: from now on."""
-        self.activity = ""
+        self.activity, self._at_work = "", []
         for rank in self.ranks:
             rank.begin()
 
@@ -65,9 +67,11 @@ class RanksProbe(ProcessProbe):
             self.activity = ""
 
     def described(self) -> str:
-        """What the ranks do, in words; if one alone is stopped or computes, that one."""
+        """What the ranks do, in words; if one alone is stopped, at work or computes, that one."""
         if self.awaited or not self.ranks:
             return ProcessProbe.described(self)
+        if self.activity != "stopped" and len(self._at_work) == 1:
+            return f"{self._at_work[0].name}: {self._at_work[0].described()}"
         for activity in ("stopped", "computing"):
             doing = [rank for rank in self.ranks if rank.activity == activity]
             if len(doing) == 1:
@@ -77,8 +81,9 @@ class RanksProbe(ProcessProbe):
     def calls(self) -> str:
         """Where in its code the first rank is that waits for no other."""
         stacks = [rank.where() for rank in self.ranks]
-        at_work = (stack for stack in stacks if stack and not any(at in stack for at in WAITING))
-        return next(at_work, stacks[0] if stacks else "")
+        at_work = [n for n, stack in enumerate(stacks) if stack and not _waits(stack)]
+        self._at_work = [self.ranks[n] for n in at_work]
+        return stacks[at_work[0]] if at_work else stacks[0] if stacks else ""
 
     def pids(self) -> list[int]:
         """See `ProcessProbe.pids`."""
@@ -86,9 +91,10 @@ class RanksProbe(ProcessProbe):
 
     def end(self, grace: float) -> None:
         """Wait for the processes to end, then kill them; remove their files in shared memory."""
+        limit = time.monotonic() + grace
         for rank in self.ranks:
-            rank.end(grace)
-        ProcessProbe.end(self, grace)
+            rank.end(max(0.0, limit - time.monotonic()))
+        ProcessProbe.end(self, max(0.0, limit - time.monotonic()))
 
     def kill(self) -> None:
         """Kill the processes; remove the files of those that have not told of them."""
@@ -103,6 +109,11 @@ class RanksProbe(ProcessProbe):
         for path in files:
             with contextlib.suppress(OSError):
                 os.unlink(path)
+
+
+def _waits(stack: str) -> bool:
+    """Whether a rank waits for others, or for orders."""
+    return any(at in stack for at in WAITING)
 
 
 def _descendants(pid: int) -> list[psutil.Process]:

@@ -4,14 +4,11 @@
 coupler/README.md. The tests hold each to the same rules.
 """
 
-import re
 import shutil
 import sys
 import tempfile
-import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from threading import Thread
 
 ROOT = Path(__file__).resolve().parents[3]
 TOYS = ROOT / "tests/coupler/toy_scenes"
@@ -19,15 +16,14 @@ if __name__ == "__main__":
     sys.path.insert(0, str(TOYS))
 
 from full_disk import broken_rules, fill, make_disk, start  # noqa: E402
+from outcomes import ENDED, SOON, TOLD, Outcome, Reader, shortened  # noqa: E402
+from rank_faults import rank_rows  # noqa: E402
 from started import Started, write_scene  # noqa: E402
 
 TABLE = ROOT / "coupler/README.md"
 BEGIN, END = "<!-- faults -->", "<!-- end of faults -->"
 TRANSPORTS = ("memory", "zenoh", "mpi")
 AT = 60  # window in which it fails
-SOON = 1.0  # s within which a death is told
-TOLD = 5.0  # s, and 3 usual windows, within which a hang is
-ENDED = 1.5  # s after that until the run is over
 EARLIER = 0.2  # s, of its window before the fault, in which it is waited for too
 
 
@@ -72,51 +68,6 @@ WRITTEN = {  # on a full disk: what finds no room
     "snapshot": "snapshot-",
     "view": "pong.vtkhdf",
 }
-
-
-@dataclass
-class Outcome:
-    """What a run did."""
-
-    status: int
-    results: dict
-    err: str
-    told: float  # s after the fault until the screen said who keeps the others waiting
-    said: float  # s until it said what failed
-    took: float  # s until the run had ended
-    left: list = field(default_factory=list)
-
-
-class Reader:
-    """Reads what a run says, and when."""
-
-    def __init__(self, run):
-        self.run, self.lines = run, []
-        streams = (run.process.stdout, run.process.stderr)
-        self.threads = [Thread(target=self._read, args=[one]) for one in streams]
-        for one in self.threads:
-            one.start()
-
-    def _read(self, stream):
-        with stream:
-            for line in stream:
-                self.lines.append((time.time(), line))
-
-    def wait(self, seconds):
-        """Wait for the run's end; return its status, when that was, and what it has left."""
-        try:
-            status = self.run.process.wait(seconds)
-        finally:
-            ended = time.time()
-            left = [*self.run.left_processes(), *self.run.left_in_shared_memory()]
-            self.run.end()
-            for one in self.threads:
-                one.join(5.0)
-        return status, ended, left
-
-    def first(self, words):
-        """When some words were said first, if they were."""
-        return next((then for then, line in self.lines if words in line), None)
 
 
 def fail(fault, transport, folder, patience):
@@ -206,7 +157,7 @@ def table(patience):
                 cause = found.results.get("fault", {}).get("cause", "")
             print(fault.name, transport, cells[-1], flush=True)
         rows.append(f"| {fault.name} | {' | '.join(cells)} | {shortened(cause)} |")
-    return [*rows, *disk_rows()]
+    return [*rows, *rank_rows(patience), *disk_rows()]
 
 
 def full_disk(written, transport, folder):
@@ -237,14 +188,6 @@ def disk_rows():
             causes.append(cause.partition(": ")[2])
             print(f"full disk, {written}", transport, cells[-1], flush=True)
         yield f"| full disk, {written} | {' | '.join(cells)} | {shortened(causes[0])} |"
-
-
-def shortened(cause):
-    """A cause without what differs from run to run."""
-    cause = re.sub(r"process \d+", "its process", cause)
-    cause = re.sub(r'"[^"]*/', '"', cause).replace("|", "/").replace("\n", " ")
-    cause = re.sub(r"/\S*/small", "/small", cause)
-    return cause if len(cause) < 240 else cause[:237] + "..."
 
 
 def main(patience=8.0):

@@ -1,17 +1,18 @@
-"""A scene of a chain of masses whose ranks may fail on purpose, and of what pushes them."""
+"""A scene of a chain of masses that several ranks share, and of what pushes them."""
 
 import shutil
 from pathlib import Path
 
-TOYS = Path(__file__).with_name("toy_ranks.py")
+TOYS = Path(__file__).with_name("toy_ranks.py"), Path(__file__).with_name("toy_rank_faults.py")
+CHAIN = "toy_ranks:Chain"
 SCENE = """
 name = "chain"
 end = {end}
 window = 2e-3
-patience = 2.0
+patience = {patience}
 transport = "{transport}"
 [components.chain]
-kind = "toy_ranks:Chain"
+kind = "{kind}"
 ranks = {ranks}
 {keys}
 [components.pusher]
@@ -24,9 +25,11 @@ snapshots = 0.05
 """
 
 
-def write(folder, transport, ranks, end=0.2, keys=""):
-    folder.mkdir(exist_ok=True)
-    shutil.copy(TOYS, folder)
+def write(folder, transport, ranks, end=0.2, keys="", kind=CHAIN, patience=2.0):
+    folder.mkdir(exist_ok=True, parents=True)
+    for path in TOYS:
+        shutil.copy(path, folder)
     path = folder / "scene.toml"
-    path.write_text(SCENE.format(transport=transport, ranks=ranks, end=end, keys=keys))
+    values = {"transport": transport, "ranks": ranks, "end": end, "keys": keys, "kind": kind}
+    path.write_text(SCENE.format(**values, patience=patience))
     return path

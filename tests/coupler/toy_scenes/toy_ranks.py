@@ -1,9 +1,6 @@
-"""A chain of masses and springs that several ranks share, and that fails on purpose."""
+"""A chain of masses and springs that several ranks share."""
 
-import os
-import signal
 import time
-from typing import Literal
 
 import numpy as np
 
@@ -21,9 +18,6 @@ class Chain(Component):
     class Params:
         items: Count = 7
         pause: float = 0.0  # s, of every step
-        fails_on: int = -1  # rank
-        fails_at: int = 20  # step
-        fails_by: Literal["raise", "kill", "stop", "loop", "nan", "build"] = "raise"
 
     ranks = True
     takes = (Port("push", LOAD),)
@@ -33,8 +27,6 @@ class Chain(Component):
         self.params, self.ranks_of_it = params, resources.communicator
         self.rank = self.ranks_of_it.rank if self.ranks_of_it else 0
         size = self.ranks_of_it.size if self.ranks_of_it else 1
-        if params.fails_by == "build" and self.rank == params.fails_on:
-            raise ArithmeticError("asked not to be built")
         self.cuts = [params.items * rank // size for rank in range(size + 1)]
         self.mine = slice(self.cuts[self.rank], self.cuts[self.rank + 1])
         places = np.zeros((params.items, 3))
@@ -46,10 +38,13 @@ class Chain(Component):
         """Rows of all ranks, on all ranks."""
         if self.ranks_of_it is None:
             return rows.copy()
-        everything = np.empty((self.params.items, 3))
-        counts = [3 * (last - first) for first, last in zip(self.cuts, self.cuts[1:], strict=False)]
-        self.ranks_of_it.Allgatherv(np.ascontiguousarray(rows), [everything, counts])
-        return everything
+        # Only a chain of several ranks loads mpi4py.
+        from quintet.components.shared.domain.exchange import share
+
+        return np.concatenate(share(self.ranks_of_it, rows.reshape(-1))).reshape(-1, 3)
+
+    def rank_rows(self, port):
+        return np.arange(self.params.items)[self.mine]
 
     def stable_dt(self):
         return 1e-3
@@ -58,8 +53,6 @@ class Chain(Component):
         self.push = np.array(fields["push.load"])[self.mine] if "push.load" in fields else self.push
 
     def step(self, dt):
-        if self.rank == self.params.fails_on and self.steps == self.params.fails_at:
-            self.fail()
         self.steps += 1
         time.sleep(self.params.pause)
         places = self.whole(self.position)
@@ -68,20 +61,6 @@ class Chain(Component):
         force[1:] -= 50.0 * (places[1:] - places[:-1])
         self.velocity = self.velocity + dt * (force[self.mine] + self.push)
         self.position = self.position + dt * self.velocity
-
-    def fail(self):
-        match self.params.fails_by:
-            case "raise":
-                raise ArithmeticError("asked to raise")
-            case "kill":
-                os.kill(os.getpid(), signal.SIGKILL)
-            case "stop":
-                os.kill(os.getpid(), signal.SIGSTOP)
-            case "nan":
-                self.position[0, 0] = np.nan
-            case "loop":
-                while True:
-                    time.monotonic()
 
     def give(self, wanted):
         rows = {"motion.position": self.position, "motion.velocity": self.velocity}
