@@ -18,6 +18,7 @@ TEMPERATURE = Field("temperature", (), "K")
 HEAT_FLOW = Field("heat_flow", (), "W", "impulse")  # into the side that takes it
 # Of items that may die, as a face that erodes: 1 while the item exists, then 0, permanently.
 ACTIVE = Field("active", (), "1", kind="flag")
+RANK = Field("rank", (), "1")  # in views of a component of several MPI ranks: who owns each point
 
 # Moving surface samples, whoever moves them: taken by fluids, which push back with a force on each.
 SURFACE = Port(

@@ -165,7 +165,7 @@ class SphFluid(Component):
             state.largest_approach,
         )
         if failures:
-            raise StepError(diagnostics.failure(self.all_ranks.whole(state), self.params, dt))
+            raise StepError(diagnostics.failure(state, self.params, dt, self.all_ranks))
         self.symmetry.reflect_crossed(state)
         state.moved = math.sqrt(shift2)
         state.largest_acceleration, state.largest_approach = fastest, approach
@@ -207,7 +207,7 @@ class SphFluid(Component):
 
     def view(self) -> Fields:
         """Fluid particles in the order of their birth."""
-        return view(self.all_ranks.whole(self.state))
+        return {**view(self.all_ranks.whole(self.state)), **self.all_ranks.owners(self.state)}
 
     def notes(self) -> tuple[str, ...]:
         """What was not as a scene may have meant it: masses, films that are missing."""

@@ -12,6 +12,7 @@ from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
 
 MACH = 0.5  # of the speed of sound: what strikes the fluid faster is refused
+OTHERS = "a particle failed; rank 0 names it."  # said by the other ranks
 FEW = 1e-3  # of the fluid: so many particles may be denser for no such reason
 
 
@@ -50,24 +51,31 @@ def _elastic(density: Array, params: SphFluidParams, constants: Constants) -> Ar
     return np.asarray(constants.stiffness / constants.density * (power + 1.0 / ratio - 1.0))
 
 
-def failure(state: State, params: SphFluidParams, dt: float) -> str:
-    """Say which particle of a state of all rows a step [s] failed on, and what to do."""
-    worst = _worst(state, params.spacing, dt)
-    x, y, z, density = state.position_density[worst].tolist()
-    speed = math.hypot(*state.velocity_pressure[worst, :3].tolist())
+def failure(state: State, params: SphFluidParams, dt: float, ranks: Ranks) -> str:
+    """Say which particle of all ranks a step [s] failed on, and what to do; rank 0 alone knows."""
+    whole = ranks.whole(state)
+    worst = 0 if ranks.rank else _worst(whole, params.spacing, dt)
+    owner = ranks.owner(state, 0 if ranks.rank else int(whole.identity[worst]))
+    if ranks.rank:
+        return OTHERS
+    x, y, z, density = whole.position_density[worst].tolist()
+    speed = math.hypot(*whole.velocity_pressure[worst, :3].tolist())
     return (
         f"step {state.steps} of {dt:.3g} s: a fluid particle must stay finite, have a positive "
         f"density and move less than a spacing ({params.spacing:.3g} m); particle "
-        f"{state.identity[worst]} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {speed:.4g} m/s and "
+        f"{whole.identity[worst]}{owner} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {speed:.4g} m/s and "
         f"{density:.4g} kg/m3. Lower courant (now {params.courant}), raise viscosity.artificial or "
         "sound_speed, or look for a surface that moves too fast."
     )
 
 
 def _worst(state: State, spacing: float, dt: float) -> int:
-    """Row of the fluid particle that is not finite, or the fastest, or the thinnest."""
+    """Row of the fluid particle at no place, or not finite, or the fastest, or the thinnest."""
     rows = slice(state.fluid)
     position, velocity = state.position_density[rows], state.velocity_pressure[rows]
+    placed = np.isfinite(position[:, :3]).all(axis=1)
+    if not placed.all():  # what it has made of its neighbours in this step has a place
+        return int(np.argmin(placed))
     finite = np.isfinite(position).all(axis=1) & np.isfinite(velocity).all(axis=1)
     if not finite.all():
         return int(np.argmin(finite))
@@ -88,20 +96,24 @@ def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:
     if dense <= FEW * ranks.fluid(state):
         return
     whole = ranks.whole(state)
-    worst = int(np.argmax(whole.position_density[: whole.fluid, 3]))
+    worst = 0 if ranks.rank else int(np.argmax(whole.position_density[: whole.fluid, 3]))
+    owner = ranks.owner(state, 0 if ranks.rank else int(whole.identity[worst]))
+    if ranks.rank:
+        raise StepError(OTHERS)
     raise StepError(
         f"step {state.steps}: what strikes the fluid must be slower than half its sound_speed "
         f"({MACH * params.sound_speed:.3g} m/s), a tenth to be right, so that its density stays "
-        f"below {most:.4g} kg/m3; {_met(whole, worst)} Raise sound_speed to ten times the largest "
-        "velocity, or slow what moves."
+        f"below {most:.4g} kg/m3; {_met(whole, worst, owner)} Raise sound_speed to ten times the "
+        "largest velocity, or slow what moves."
     )
 
 
-def _met(state: State, worst: int) -> str:
+def _met(state: State, worst: int, owner: str) -> str:
     x, y, z, density = state.position_density[worst].tolist()
     speed = math.hypot(*state.velocity_pressure[worst, :3].tolist())
     fastest = float(np.linalg.norm(state.velocity_pressure[:, :3], axis=1).max())
     return (
-        f"particle {state.identity[worst]} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {density:.4g} "
-        f"kg/m3 and {speed:.3g} m/s, and the fastest of all, surfaces too, {fastest:.3g} m/s."
+        f"particle {state.identity[worst]}{owner} at ({x:.4g}, {y:.4g}, {z:.4g}) m has "
+        f"{density:.4g} kg/m3 and {speed:.3g} m/s, and the fastest of all, surfaces too, "
+        f"{fastest:.3g} m/s."
     )

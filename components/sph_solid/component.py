@@ -140,7 +140,7 @@ class SphSolid(Component):
         add_work(state, dt)
         wrong = float(not math.isfinite(sum(squares)))
         if self.all_ranks.greatest(np.array([wrong]))[0]:
-            raise StepError(failure(self.all_ranks.whole(state), self.params, dt))
+            raise StepError(failure(state, self.params, dt, self.all_ranks))
         self.all_ranks.end_step()
 
     def warnings(self) -> Mapping[str, str]:
@@ -173,7 +173,7 @@ class SphSolid(Component):
         middle = state.position + 0.5 * dt * state.velocity
         wrong = float(self.lists.is_unstable(spread) or not np.isfinite(middle).all())
         if self.all_ranks.greatest(np.array([wrong]))[0]:
-            raise StepError(failure(self.all_ranks.whole(state), self.params, dt))
+            raise StepError(failure(state, self.params, dt, self.all_ranks))
         self.lists.widen(state, spread)
         self.all_ranks.sort(state, middle)
         self._list()
@@ -250,7 +250,7 @@ class SphSolid(Component):
 
     def view(self) -> Fields:
         """Particles in the order of their birth, with stress, strain and damage."""
-        return view(self.all_ranks.whole(self.state))
+        return {**view(self.all_ranks.whole(self.state)), **self.all_ranks.owners(self.state)}
 
     def items(self) -> int:
         """Count the particles."""

@@ -40,18 +40,32 @@ def totals(state: State, mass: Array, carried: Whole, gravity: Vector, ranks: Ra
     )
 
 
-def failure(state: State, params: SphSolidParams, dt: float) -> str:
-    """Say which particle of a state of all ranks a step [s] failed on, and what to do."""
-    finite = np.isfinite(state.position).all(axis=1) & np.isfinite(state.velocity).all(axis=1)
-    finite &= np.isfinite(state.acceleration).all(axis=1)
-    speed = np.where(finite, np.abs(state.velocity).max(axis=1), np.inf)  # squares may overflow
-    row = int(np.argmax(speed))
-    x, y, z = state.position[row]
+def failure(state: State, params: SphSolidParams, dt: float, ranks: Ranks) -> str:
+    """Say which particle of all ranks a step [s] failed on, and what to do; rank 0 alone knows."""
+    whole = ranks.whole(state)
+    row, speed = (0, 0.0) if ranks.rank else _worst(whole)
+    owner = ranks.owner(state, 0 if ranks.rank else int(whole.identity[row]))
+    if ranks.rank:
+        return "a particle failed; rank 0 names it."
+    x, y, z = whole.position[row]
     return (
         f"step of {dt:.3g} s at {state.time:.4g} s: in a step particles must stay finite and move "
         f"by little more than a smoothing length, {params.length:.3g} m; particle "
-        f"{state.identity[row]} of body {state.body[row]}, at ({x:.4g}, {y:.4g}, {z:.4g}) m, has "
-        f"{speed[row]:.4g} m/s, a density of {state.density_ratio[row]:.4g} of that at rest and "
-        f"{state.pressure[row]:.3g} Pa. Lower courant (now {params.courant}), raise the "
+        f"{whole.identity[row]}{owner} of body {whole.body[row]}, at ({x:.4g}, {y:.4g}, {z:.4g}) "
+        f"m, has {speed:.4g} m/s, a density of {whole.density_ratio[row]:.4g} of that at rest and "
+        f"{whole.pressure[row]:.3g} Pa. Lower courant (now {params.courant}), raise the "
         "viscosities, or look for bodies that overlap at the start."
     )
+
+
+def _worst(state: State) -> tuple[int, float]:
+    """Row of the first particle at no place, or else of the fastest; its speed [m/s].
+
+    In one step neighbours of a particle that is at no place get no velocity, but have a place.
+    """
+    placed = np.isfinite(state.position).all(axis=1)
+    finite = placed & np.isfinite(state.velocity).all(axis=1)
+    finite &= np.isfinite(state.acceleration).all(axis=1)
+    speed = np.where(finite, np.abs(state.velocity).max(axis=1), np.inf)  # squares may overflow
+    row = int(np.argmax(speed) if placed.all() else np.argmin(placed))
+    return row, float(speed[row])

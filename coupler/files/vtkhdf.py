@@ -17,6 +17,7 @@ from quintet.coupler.files.hdf5 import create, room
 from quintet.coupler.files.vtkhdf_reader import SCENE, UNITS, read_step, scene, times, units
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import PortError, SceneError
+from quintet.interfaces.ports import RANK
 from quintet.interfaces.recordings import checksum
 
 BLOCK = 1024  # entries by which the small tables grow; readers take the first NSteps
@@ -75,7 +76,8 @@ class VtkHdf:
         view : mapping of arrays
             ``points`` (n, 3) m; optional ``cells`` (m, 3 or more), numbers of corner points, -1
             after the last corner, taken from the first step; all others are fields with n rows,
-            or, if these are other numbers, m. The names must not change; n may.
+            or, if these are other numbers, m. The names must not change, but for ``rank``, which
+            a run may begin or cease to have when it is resumed; n may change.
         """
         arrays = {k: np.asarray(v, np.float32) for k, v in view.items() if k != "cells"}
         cells = np.asarray(view.get("cells", ()))
@@ -83,6 +85,7 @@ class VtkHdf:
             if not self._data:
                 self._begin(arrays, view.get("cells"))
             _require_points({k: array for k, array in arrays.items() if k not in self._cell_data})
+            arrays = self._with_ranks(arrays)
             self._require_same(arrays)
             self._append(time, arrays)
 
@@ -97,6 +100,14 @@ class VtkHdf:
             self._append_cells(key, dataset, arrays[key])
         self._add_step(time, count)
         self._rows += count
+
+    def _with_ranks(self, arrays: dict[str, Array]) -> dict[str, Array]:
+        """Add or drop the rank of each point, as the first step has it; one rank is number 0."""
+        if (RANK.name in arrays) == (RANK.name in self._data):
+            return arrays
+        if RANK.name in self._data:
+            return {**arrays, RANK.name: np.zeros(len(arrays["points"]), np.float32)}
+        return {key: array for key, array in arrays.items() if key != RANK.name}
 
     def _append_cells(self, key: str, dataset: h5py.Dataset, array: Array) -> None:
         """Append a field over the polygons; vertices, which come before them, have no value."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from quintet.interfaces.component import Component, Field, Fields, Port
 from quintet.interfaces.errors import StepError
-from quintet.interfaces.ports import MESH, POSITION, RADIUS
+from quintet.interfaces.ports import MESH, POSITION, RADIUS, RANK
 
 MESH_CORNER = next(field for field in MESH if field.name == "corner")
 
@@ -19,7 +19,7 @@ def look_at(component: Component) -> tuple[Fields, dict[str, str]]:
             shown = port_view(port, component.give(frozenset(keys)), component.describe())
         except StepError:  # a recording between two of its rows: not shown at this time
             shown = {}
-    return shown, {field.name: field.unit for field in fields if field.name in shown}
+    return shown, {field.name: field.unit for field in (*fields, RANK) if field.name in shown}
 
 
 def shown_port(gives: tuple[Port, ...]) -> Port | None:

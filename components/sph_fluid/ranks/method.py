@@ -72,6 +72,12 @@ class Ranks(Protocol):
     def whole(self, state: State) -> State:
         """All rows on rank 0; on others their own."""
 
+    def owners(self, state: State) -> Fields:
+        """Rank of each particle, in the order of birth, for a view; nothing of one rank."""
+
+    def owner(self, state: State, identity: int) -> str:
+        """Name the rank that owns a particle, which rank 0 chooses; "" of one rank."""
+
     def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
         """Rows of all ranks that are near, or more, on rank 0; on others none."""
 

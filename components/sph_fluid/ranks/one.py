@@ -80,6 +80,14 @@ class OneRank:
         """Return the state."""
         return state
 
+    def owners(self, state: State) -> Fields:
+        """Nothing to tell."""
+        return {}
+
+    def owner(self, state: State, identity: int) -> str:
+        """Nobody else could."""
+        return ""
+
     def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
         """Return all rows: what is far adds nothing to a sum."""
         rows = slice(state.particles)

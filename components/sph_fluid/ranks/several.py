@@ -12,6 +12,7 @@ from quintet.components.shared.domain.cuts import owners
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import added, counted, greatest
 from quintet.components.shared.domain.migration import migrate
+from quintet.components.shared.domain.owner import owner_of
 from quintet.components.shared.domain.sorting import cells_around, grid_of_all, sort_by_cell
 from quintet.components.shared.domain.work import Work
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
@@ -27,6 +28,7 @@ from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, place
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.ports import RANK
 
 
 def _no_keys() -> Whole:
@@ -201,6 +203,19 @@ class SeveralRanks:
             parts = {name: collect(self._communicator, part) for name, part in columns.items()}
             of_all.append({name: part.take(order, axis=0) for name, part in parts.items()})
         return of_all
+
+    def owners(self, state: State) -> Fields:
+        """Rank of each particle, in the order of birth; 0 before they are shared out."""
+        ranks = np.full(state.fluid, float(self.rank if self._shared else 0))
+        return {RANK.name: self.all_rows(state.identity, ranks)}
+
+    def owner(self, state: State, identity: int) -> str:
+        """Name the rank that owns a particle, which rank 0 chooses; "" before they are shared."""
+        return (
+            owner_of(self._communicator, state.identity[: state.fluid], identity)
+            if self._shared
+            else ""
+        )
 
     def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
         """Rows of all ranks that are near, on rank 0; on others none."""

@@ -10,6 +10,7 @@ from quintet.components.shared.search.neighbours import NeighbourLists
 from quintet.components.shared.symmetry import Plane
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
 
 
 class Images(Protocol):
@@ -85,6 +86,12 @@ class Ranks(Protocol):
 
     def agree(self, numbers: Array) -> None:
         """Take over numbers, in their array, from rank 0."""
+
+    def owners(self, state: State) -> Fields:
+        """Rank of each particle, in the order of birth, for a view; nothing of one rank."""
+
+    def owner(self, state: State, identity: int) -> str:
+        """Name the rank that owns a particle, which rank 0 chooses; "" of one rank."""
 
     def rows_of(self, state: State, identities: Whole) -> State:
         """Particles that were born with some numbers, in that order, on every rank."""

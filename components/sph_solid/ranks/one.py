@@ -11,6 +11,7 @@ from quintet.components.shared.search.neighbours import NeighbourLists, neighbou
 from quintet.components.shared.symmetry import Plane, SymmetryImages, neighbours_and_images
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.state import Array, State, Whole, chosen
+from quintet.interfaces.component import Fields
 
 
 class NoCopies:
@@ -86,6 +87,14 @@ class OneRank:
 
     def agree(self, numbers: Array) -> None:
         """Nothing to do: this is rank 0."""
+
+    def owners(self, state: State) -> Fields:
+        """Nothing to tell."""
+        return {}
+
+    def owner(self, state: State, identity: int) -> str:
+        """Nobody else could."""
+        return ""
 
     def rows_of(self, state: State, identities: Whole) -> State:
         """Particles that were born with some numbers, in that order."""

@@ -11,6 +11,7 @@ from quintet.components.shared.domain.collection import collect
 from quintet.components.shared.domain.copies import CopiesAndImages, Group
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import added, greatest
+from quintet.components.shared.domain.owner import owner_of
 from quintet.components.shared.domain.sorting import grid_of_all, sort_by_cell
 from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.components.shared.domain.work import Work
@@ -20,6 +21,8 @@ from quintet.components.shared.symmetry import Plane
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.ranks.contact import ContactCopies
 from quintet.components.sph_solid.state import OF_PARTICLES, Array, State, Whole, chosen
+from quintet.interfaces.component import Fields
+from quintet.interfaces.ports import RANK
 
 
 class SeveralRanks:
@@ -129,6 +132,15 @@ class SeveralRanks:
     def agree(self, numbers: Array) -> None:
         """Take over numbers, in their array, from rank 0."""
         wait_for_all(self._communicator.Ibcast(numbers, 0))
+
+    def owners(self, state: State) -> Fields:
+        """Rank of each particle, in the order of birth."""
+        ranks = np.full(state.particles, float(self.rank))
+        return {RANK.name: self.all_rows(state.identity, ranks)}
+
+    def owner(self, state: State, identity: int) -> str:
+        """Name the rank that owns a particle, which rank 0 chooses; "" before they are shared."""
+        return owner_of(self._communicator, state.identity, identity) if self._shared else ""
 
     def rows_of(self, state: State, identities: Whole) -> State:
         """Particles that were born with some numbers, in that order, on every rank."""

@@ -1,6 +1,7 @@
 """What test_sph_solid_ranks.py runs on several ranks; rank 0 writes what came out."""
 
 import json
+import os
 import sys
 
 import numpy as np
@@ -10,6 +11,7 @@ from pydantic import TypeAdapter
 from quintet.components.sph_solid.component import SphSolid
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.errors import StepError
 
 WORLD = MPI.COMM_WORLD
 ORIGIN = [0.0, 0.0, 0.0]
@@ -83,8 +85,28 @@ def results(solid):
     numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
     numbers += [*totals.momentum, *totals.angular_momentum]
     warned = np.array(sorted(solid.warnings()), dtype=str)
-    seen = {f"view {name}": array for name, array in solid.view().items()}
+    view = dict(solid.view())
+    ranks = view.pop("rank", np.zeros(0))
+    assert len(ranks) == (len(view["points"]) if WORLD.size > 1 else 0) or WORLD.rank
+    assert set(ranks) == set(range(WORLD.size)) or WORLD.size == 1
+    seen = {f"view {name}": array for name, array in view.items()}
     return {**outputs_of(solid), **seen, "totals": np.array(numbers), "warned": warned}
+
+
+def failure(solid, identity=700):
+    """What a step says of a particle whose velocity is no number, and by which rank it is owned."""
+    rows = np.flatnonzero(solid.state.identity == identity)
+    solid.state.velocity[rows] = np.nan
+    text = "nothing"
+    try:
+        solid.step(solid.stable_dt())
+    except StepError as error:
+        text = str(error)
+    text, owner = WORLD.bcast(text), WORLD.allreduce(WORLD.rank if len(rows) else 0)
+    if WORLD.size > 1:
+        assert f"particle {identity} (rank {owner} on {os.uname().nodename}) of body" in text, text
+        text = text.replace(f" (rank {owner} on {os.uname().nodename})", "")
+    return text
 
 
 def run(name, steps, folder, earlier):
@@ -97,6 +119,7 @@ def run(name, steps, folder, earlier):
         solid.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
     go(solid, steps)
     state, reached = solid.save(), results(solid)
+    reached["failure"] = np.array(failure(solid))
     if WORLD.rank == 0:
         path = f"{folder}/{name}-{WORLD.size}"
         np.savez(f"{path}-state.npz", **state)

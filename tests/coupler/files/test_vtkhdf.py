@@ -158,6 +158,30 @@ def test_a_view_that_changes_its_names_shapes_or_cells_is_refused(tmp_path):
     assert len(times(tmp_path / "g.vtkhdf")) == 1
 
 
+@pytest.mark.parametrize("begins_with_ranks", [True, False])
+def test_a_file_goes_on_with_another_number_of_ranks(tmp_path, begins_with_ranks):
+    views = _views((5, 5))
+    ranks = {"rank": np.array([0.0, 1.0, 1.0, 0.0, 1.0])}
+    first, second = (ranks, {}) if begins_with_ranks else ({}, ranks)
+    _write(tmp_path / "of_two.vtkhdf", [{**views[0], **first}, {**views[1], **second}])
+    _write(tmp_path / "of_one.vtkhdf", views)
+    for k in range(2):
+        _, step = read_step(tmp_path / "of_two.vtkhdf", k)
+        _, same = read_step(tmp_path / "of_one.vtkhdf", k)
+        assert all((step[key] == same[key]).all() for key in same)
+        if begins_with_ranks:
+            assert (step["rank"] == (ranks["rank"] if k == 0 else 0.0)).all()
+        else:
+            assert "rank" not in step
+
+
+def test_pyvista_shows_the_rank_of_each_point(tmp_path):
+    ranks = np.array([0.0, 1.0, 1.0, 0.0, 1.0])
+    path = tmp_path / "points.vtkhdf"
+    _write(path, [{**view, "rank": ranks} for view in _views((5, 5))])
+    assert (pyvista.read(path)["rank"] == ranks).all()
+
+
 def test_a_step_that_is_not_there_is_refused_by_its_number(tmp_path):
     _write(tmp_path / "h.vtkhdf", _views((3,)))
     with pytest.raises(SceneError, match="1 steps; there is no step 1"):
