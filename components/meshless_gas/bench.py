@@ -34,6 +34,7 @@ def cases() -> tuple[BenchCase, ...]:
         BenchCase("vortex, 64k nodes, 9 neighbours", vortex(253), 10, 30, UNIT, series=plane),
         BenchCase("vortex, 64k nodes, first order", vortex(253, order=1), 10, 30, UNIT),
         BenchCase("box, 64k nodes, 14 neighbours", vortex(40, **space), 5, 15, UNIT),
+        BenchCase("box, 300k nodes, 14 neighbours", vortex(67, **space), 2, 6, UNIT),
         BenchCase(
             "box, 64k nodes, 14 neighbours, viscous", vortex(40, **space, viscous=True), 5, 15, UNIT
         ),

@@ -135,9 +135,9 @@ def _cloud(
     return cloud, cure.stencils, notes, ()
 
 
-def reaches(domain: Domain) -> Array:
-    """Distance (n,) m of each node's farthest neighbour: layers are thinner than they are wide."""
-    rows, positions = domain.every, domain.cloud.positions
+def reaches(domain: Domain, rows: Rows) -> Array:
+    """Distance (m,) m of nodes' farthest neighbours: layers are thinner than they are wide."""
+    positions = domain.cloud.positions
     arms = positions[domain.stencils.neighbours[rows]] - positions[rows][:, None]
     return np.asarray(np.sqrt((arms**2).sum(axis=2)).max(axis=1))
 

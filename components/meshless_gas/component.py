@@ -68,6 +68,7 @@ class MeshlessGas(Component):
         self.coarse = coarse_clouds(params, domain)
         parts = (*self.parts, self.gauges, self.wall_loads, self.monitor)
         self.readers = port_readers(params, self.state, self.fluxes, self.motion, parts, self.team)
+        self.motion.divide(self.all_ranks.divide)
         self._continue_from_state()
 
     def describe(self) -> Fields:
@@ -140,12 +141,17 @@ class MeshlessGas(Component):
         )
         if wrong >= 0:
             node = domain.inner[wrong]
-            sided = sidedness(
-                domain.cloud, domain.stencils, np.array([node]), self.params.planar, self.team
-            )
+            one_sided = -math.inf
+            if node in nodes:  # else another rank has its stencil
+                rows = np.array([node])
+                sided = sidedness(
+                    domain.cloud, domain.stencils, rows, self.params.planar, self.team
+                )
+                one_sided = float(sided[0])
+            one_sided = self.all_ranks.greatest(one_sided)
             place, share = domain.cloud.positions[node], dt / self.scheme.shortest_step
             raise StepError(
-                diagnostics.failure(place, work.primitive[node], state.time, share, float(sided[0]))
+                diagnostics.failure(place, work.primitive[node], state.time, share, one_sided)
             )
         if len(domain.mirrored):
             hold_along(domain.mirrored, domain.cloud.normals, state.conservative, work.primitive)
@@ -200,8 +206,9 @@ class MeshlessGas(Component):
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""
-        self.scheme.write_gradients(self.motion.domain.every)
-        return view.view(self.state, self.motion.domain, self.fluxes, self.params)
+        domain, ranks = self.motion.domain, self.all_ranks
+        self.scheme.write_gradients(ranks.shown(domain))
+        return view.view(self.state, domain, self.fluxes, self.params, ranks)
 
     def walls(self) -> Fields:
         """Walls of a box, or the wall of a body."""

@@ -78,6 +78,9 @@ class NodeMotion(Part):
     )
     moves = False  # whether boundaries need new states after `begin`
 
+    def divide(self, part: Callable[[Domain], Domain]) -> None:
+        """Keep only the part of the domain that a rank needs, where nodes stand still."""
+
     def soften_start(self, state: State) -> None:
         """Change the state at the start where bodies would jerk the gas."""
 
@@ -100,6 +103,10 @@ class FixedNodes(NodeMotion):
 
     def __init__(self, domain: Domain) -> None:
         self.domain = domain
+
+    def divide(self, part: Callable[[Domain], Domain]) -> None:
+        """Keep only the part of the domain that a rank needs."""
+        self.domain = part(self.domain)
 
 
 class WallFriction(Part):

@@ -3,9 +3,11 @@
 import numpy as np
 
 from quintet.components.meshless_gas.boundaries import NO_SLIP
-from quintet.components.meshless_gas.build import Domain, reaches
+from quintet.components.meshless_gas.build import Domain, Rows, reaches
+from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.ranks.one import Ranks
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.components.shared.geometry.box_faces import box
 from quintet.interfaces.component import Array, Fields
@@ -61,36 +63,57 @@ def shadowgraph(curvature: Array) -> Array:
     return np.asarray(0.5 - 0.5 * np.tanh(CONTRAST * curvature / largest))
 
 
-def laplacian(domain: Domain, gradients: Array) -> Array:
-    """Sum (m,) of the second derivatives of a field at nodes that are not left out.
+def laplacian(domain: Domain, rows: Rows, gradients: Array) -> Array:
+    """Sum (m,) of the second derivatives of a field at nodes (m,).
 
     Parameters
     ----------
     domain : Domain
+    rows : (m,) int array
     gradients : (n, 3) float array
         Of the field, at all nodes and ghosts.
     """
-    rows = domain.every
     near, coefficients = domain.stencils.neighbours[rows], domain.stencils.coefficients[rows]
     rise = gradients[near] - gradients[rows][:, None]
     return np.asarray((coefficients * rise).sum(axis=(1, 2)))
 
 
-def view(state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams) -> Fields:
-    """Nodes that are not left out, with the gradients of the last stage."""
-    rows = domain.every
+def turn_to_ghosts(cloud: Cloud, slopes: Array) -> None:
+    """Write gradients (n, 3) of a scalar at ghosts, from those of the nodes behind."""
+    x, y, z = slopes[cloud.owner].T
+    for axis in range(3):
+        turn = cloud.turn[:, axis]
+        slopes[cloud.nodes :, axis] = turn[:, 0] * x + turn[:, 1] * y + turn[:, 2] * z
+
+
+def view(
+    state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams, ranks: Ranks
+) -> Fields:
+    """Nodes that are not left out; each rank has written the gradients of those that it shows."""
+    rows, shown, cloud = domain.every, ranks.shown(domain), domain.cloud
+    slopes = fluxes.gradients[:, 0].copy()
+    ranks.gather_shown(domain, slopes)
+    turn_to_ghosts(cloud, slopes)
+
+    def of_all(values: Array) -> Array:
+        """Values of all nodes that are not left out, from those of each rank."""
+        whole = np.zeros((cloud.nodes, 1))
+        whole[shown, 0] = values
+        ranks.gather_shown(domain, whole)
+        return whole[rows, 0]
+
     has_layers = params.box is None or params.moving is not None
-    gradient, primitive = fluxes.gradients[rows, 0], state.primitive[rows]
+    gradient, primitive = slopes[rows], state.primitive[rows]
     return {
         "points": domain.cloud.positions[rows],
-        "spacing": reaches(domain) if has_layers else domain.cloud.spacing[rows],
+        "spacing": of_all(reaches(domain, shown)) if has_layers else domain.cloud.spacing[rows],
         "density": primitive[:, 0].copy(),
         "pressure": primitive[:, 4].copy(),
         "velocity": primitive[:, 1:4].copy(),
         "temperature": temperature(primitive, params.gas),
         "mach": mach(primitive, params.gas),
         "schlieren": schlieren(np.sqrt((gradient * gradient).sum(axis=1))),
-        "shadowgraph": shadowgraph(laplacian(domain, fluxes.gradients[:, 0])),
+        "shadowgraph": shadowgraph(of_all(laplacian(domain, shown, slopes))),
     }
 
 

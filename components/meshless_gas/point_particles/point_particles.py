@@ -45,7 +45,8 @@ class CoupledParticles(Part):
         if params.box is None:
             # Layers are thinner than they are wide: a particle has left the gas that is farther
             # from its nearest node than all neighbours of this are.
-            reach = reaches(domain)[np.concatenate([np.arange(cloud.nodes), cloud.owner])]
+            behind = np.concatenate([np.arange(cloud.nodes), cloud.owner])
+            reach = reaches(domain, domain.every)[behind]
             cloud = cloud._replace(spacing=reach / OUTSIDE)
         self.exchange = InterphaseExchange(
             params.particles, cloud, params.planar, transport_of(gas), gas.gamma, gas.prandtl

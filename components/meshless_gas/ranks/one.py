@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.build import Domain, Rows
 from quintet.interfaces.component import Array
 
 
@@ -14,6 +14,15 @@ class Ranks(Protocol):
 
         Of gradients these are its own nodes and all that their fluxes need.
         """
+
+    def divide(self, domain: Domain) -> Domain:
+        """Return a domain that holds of all stencils only those that this rank needs."""
+
+    def shown(self, domain: Domain) -> Rows:
+        """Nodes, of `every`, for which this rank computes what a view shows."""
+
+    def gather_shown(self, domain: Domain, array: Array) -> None:
+        """Bring rows of an array (n, width), from the ranks that compute them for a view."""
 
     def gather(self, domain: Domain, *arrays: Array) -> None:
         """Bring rows of nodes that are advanced, of arrays (n, 5), from the rank that did it."""
@@ -37,6 +46,17 @@ class OneRank:
     def share(self, domain: Domain) -> Domain:
         """Return the domain."""
         return domain
+
+    def divide(self, domain: Domain) -> Domain:
+        """Return the domain."""
+        return domain
+
+    def shown(self, domain: Domain) -> Rows:
+        """Return all."""
+        return domain.every
+
+    def gather_shown(self, domain: Domain, array: Array) -> None:
+        """Nothing to do: all rows are here."""
 
     def gather(self, domain: Domain, *arrays: Array) -> None:
         """Nothing to do: all rows are here."""

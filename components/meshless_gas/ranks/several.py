@@ -1,10 +1,12 @@
-"""Nodes shared out among several ranks, each of which has them all."""
+"""Nodes shared out among several ranks: each has the states of all, and stencils of its own."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.build import Domain, Rows
+from quintet.components.meshless_gas.ranks.part_stencils import part_stencils
 from quintet.components.shared.domain.extremes import greatest, least
 from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
@@ -36,6 +38,32 @@ class SeveralRanks:
             self._buffers = {}
         return self._share
 
+    def divide(self, domain: Domain) -> Domain:
+        """Return a domain that holds of all stencils only those that this rank needs."""
+        computed = np.union1d(self.share(domain).every, self.shown(domain))
+        self._domain = self._share = None  # they hold all stencils
+        return domain._replace(stencils=part_stencils(domain, computed))
+
+    def shown(self, domain: Domain) -> Rows:
+        """Nodes, of `every`, for which this rank computes what a view shows."""
+        first, last = self._shown_part(domain)[self._communicator.rank]
+        return domain.every[first:last]
+
+    def gather_shown(self, domain: Domain, array: Array) -> None:
+        """Bring rows of an array (n, width), from the ranks that compute them for a view."""
+        rows, parts = array[self.shown(domain)], self._shown_part(domain)
+        received = np.empty((len(domain.every), array.shape[1]))
+        self._receive(rows, received, parts)
+        array[domain.every] = received
+
+    def _shown_part(self, domain: Domain) -> list[tuple[int, int]]:
+        """First and last place of each rank's nodes among all; boundary nodes go with others."""
+        size = self._communicator.size
+        begins = [self._part(domain, rank)[0] for rank in range(1, size)]
+        starts = np.append(domain.inner, len(domain.cloud.positions))[begins]
+        cuts = [0, *np.searchsorted(domain.every, starts).tolist(), len(domain.every)]
+        return list(pairwise(cuts))
+
     def _part(self, domain: Domain, rank: int) -> tuple[int, int]:
         """First and last place of a rank's nodes among those that are advanced."""
         count, size = len(domain.inner), self._communicator.size
@@ -66,11 +94,14 @@ class SeveralRanks:
         if width not in self._buffers:
             self._buffers[width] = np.empty((len(domain.inner), width))
         received, size = self._buffers[width], self._communicator.size
-        parts = [self._part(domain, rank) for rank in range(size)]
-        counts = [width * (last - first) for first, last in parts]
+        self._receive(rows, received, [self._part(domain, rank) for rank in range(size)])
+        return received
+
+    def _receive(self, rows: Array, received: Array, parts: list[tuple[int, int]]) -> None:
+        """Write rows (m, width) of all ranks, from those of this one and places of each."""
+        counts = [rows.shape[1] * (last - first) for first, last in parts]
         target, others = [received.reshape(-1), counts], received.nbytes - rows.nbytes
         wait_for_all(self._communicator.Iallgatherv(rows.reshape(-1), target), others)
-        return received
 
     def least(self, number: float) -> float:
         """Smallest number of all ranks."""
