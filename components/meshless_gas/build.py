@@ -58,6 +58,7 @@ class Domain(NamedTuple):
     bounding: Rows  # (a,) all boundary nodes
     patches: Array  # (p, PATCH_COLUMNS), what the scene says of each boundary
     mirrored: Rows  # (s,) nodes of walls that are planes of symmetry
+    ghosts: Rows | None = None  # (r,) whose gradients a rank needs, from the first; None: of all
     notes: tuple[str, ...] = ()  # what was changed about the neighbours that the scene asks for
     doubts: tuple[str, ...] = ()  # why no result on this cloud is to be trusted
 

@@ -51,12 +51,13 @@ class MeshlessGas(Component):
         domain = self.motion.domain
         self.state = initial_state(params, domain.cloud, self.team)
         self.motion.soften_start(self.state)
-        self.fluxes = Fluxes.empty(domain.cloud.nodes, len(domain.cloud.owner))
+        self.all_ranks = features.ranks(resources)
+        nodes, ghosts = domain.cloud.nodes, len(domain.cloud.owner)
+        self.fluxes = Fluxes.empty(nodes, ghosts, self.all_ranks.room)
         self.friction = features.friction(params, self.motion, self.team)
         axis = features.axis_terms(params, self.friction, self.team)
         particles = features.particles(params, self.motion)
         self.parts = [self.friction, self.motion, *axis, *particles]  # in the order of their terms
-        self.all_ranks = features.ranks(resources)
         self.scheme = SpatialScheme(
             params, self.motion, self.parts, self.fluxes, self.team, self.all_ranks
         )
@@ -207,7 +208,7 @@ class MeshlessGas(Component):
     def view(self) -> Fields:
         """Nodes, and the state at each."""
         domain, ranks = self.motion.domain, self.all_ranks
-        self.scheme.write_gradients(ranks.shown(domain))
+        self.scheme.write_gradients(ranks.shown(domain), ranks.share(domain).ghosts)
         return view.view(self.state, domain, self.fluxes, self.params, ranks)
 
     def walls(self) -> Fields:

@@ -70,22 +70,23 @@ class SpatialScheme:
         for part in self.parts:
             part.add_flows(domain, work.primitive, work.flows)
 
-    def write_gradients(self, nodes: Whole) -> None:
-        """Write gradients at some nodes, and at all ghosts those of the nodes behind."""
+    def write_gradients(self, nodes: Whole, ghosts: Whole | None = None) -> None:
+        """Write gradients at some nodes, and at some or all ghosts those of the nodes behind."""
         domain, work, cloud = self.motion.domain, self.work, self.motion.domain.cloud
         self.team.run(
             write_gradients, len(nodes), nodes, work.primitive, *domain.stencils,
             self.planar, work.gradients, work.lowest, fewest=SUMS,
         )  # fmt: skip
+        count = len(cloud.owner) if ghosts is None else len(ghosts)
         self.team.run(
-            write_ghost_gradients, len(cloud.owner), cloud.owner, cloud.turn, work.gradients,
-            work.lowest, fewest=SUMS,
+            write_ghost_gradients, count, cloud.owner, cloud.turn, work.gradients,
+            work.lowest, ghosts, fewest=SUMS,
         )  # fmt: skip
 
     def write_rates(self, dt: float, stage: Stage) -> None:
         """Write the rates of change of density, momentum and energy in a stage of a step [s]."""
         domain, work = self.ranks.share(self.motion.domain), self.work
-        self.write_gradients(domain.every)
+        self.write_gradients(domain.every, domain.ghosts)
         self.motion.flatten(work.gradients)
         self.team.run(
             write_residuals, len(domain.inner), domain.inner, domain.cloud.positions,

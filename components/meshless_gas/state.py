@@ -1,5 +1,6 @@
 """All arrays of a gas that change, and the numbers of its scheme."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -66,15 +67,17 @@ class Fluxes:
     flows: Array  # (5,) kg/s, N, W, through the boundary
 
     @classmethod
-    def empty(cls, nodes: int, ghosts: int) -> "Fluxes":
-        """Make room."""
+    def empty(
+        cls, nodes: int, ghosts: int, room: Callable[[tuple[int, ...]], Array] = np.zeros
+    ) -> "Fluxes":
+        """Make room; `room` makes arrays of a shape of which a rank may write a part alone."""
         whole = nodes + ghosts
         return cls(
             primitive=np.zeros((whole, 5)),
-            gradients=np.zeros((whole, 5, 3)),
+            gradients=room((whole, 5, 3)),
             lowest=np.zeros(whole),
-            residual=np.zeros((nodes, 5)),
-            start=np.zeros((nodes, 5)),
+            residual=room((nodes, 5)),
+            start=room((nodes, 5)),
             sound=np.ones(whole),
             bounds=np.ones(nodes),
             steps=np.ones(nodes),

@@ -31,11 +31,18 @@ def write_ghost_states(begin: int, end: int, owner: Any, turn: Any, primitive: A
 
 @njit(**EXACT)
 def write_ghost_gradients(
-    begin: int, end: int, owner: Any, turn: Any, gradients: Any, lowest: Any
+    begin: int, end: int, owner: Any, turn: Any, gradients: Any, lowest: Any, rows: Any = None
 ) -> None:
-    """Write the gradients of ghosts: of scalars T g, of the velocity T G Tᵀ."""
+    """Write the gradients of ghosts: of scalars T g, of the velocity T G Tᵀ.
+
+    Parameters
+    ----------
+    rows : (r,) int array or None
+        Which ghosts, counted from the first; None: all.
+    """
     first = lowest.shape[0] - owner.shape[0]
-    for g in range(begin, end):
+    for row in range(begin, end):
+        g = row if rows is None else rows[row]
         i, o = first + g, owner[g]
         lowest[i] = lowest[o]
         for q in range(gradients.shape[1]):

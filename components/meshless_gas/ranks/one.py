@@ -2,6 +2,8 @@
 
 from typing import Protocol
 
+import numpy as np
+
 from quintet.components.meshless_gas.build import Domain, Rows
 from quintet.interfaces.component import Array
 
@@ -14,6 +16,9 @@ class Ranks(Protocol):
 
         Of gradients these are its own nodes and all that their fluxes need.
         """
+
+    def room(self, shape: tuple[int, ...]) -> Array:
+        """Zeros of a shape, of which this rank may write a part alone."""
 
     def divide(self, domain: Domain) -> Domain:
         """Return a domain that holds of all stencils only those that this rank needs."""
@@ -46,6 +51,10 @@ class OneRank:
     def share(self, domain: Domain) -> Domain:
         """Return the domain."""
         return domain
+
+    def room(self, shape: tuple[int, ...]) -> Array:
+        """Zeros of a shape."""
+        return np.zeros(shape)
 
     def divide(self, domain: Domain) -> Domain:
         """Return the domain."""

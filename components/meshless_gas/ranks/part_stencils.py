@@ -35,12 +35,18 @@ def part_stencils(domain: Domain, computed: Rows) -> Stencils:
 
 
 def _part(array: NDArray[Any], rows: NDArray[Any]) -> NDArray[Any]:
-    """Some rows of an array in their places; the others are 0 and take no memory.
-
-    The system gives memory to pages that are written. Of an array that numpy makes, all may be.
-    """
-    size = max(array.nbytes, 1)
-    pages = mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
-    part = np.frombuffer(pages, array.dtype, math.prod(array.shape)).reshape(array.shape)
+    """Some rows of an array in their places; the others are 0 and take no memory."""
+    part = unwritten(array.shape, array.dtype)
     part[rows] = array[rows]
     return part
+
+
+def unwritten(shape: tuple[int, ...], dtype: Any) -> NDArray[Any]:
+    """Zeros that take memory where they are written: the system gives it page by page.
+
+    Memory from `numpy.zeros` may have been in use before; all of it is then written with zeros.
+    """
+    count = math.prod(shape)
+    size = max(count * np.dtype(dtype).itemsize, 1)
+    pages = mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+    return np.frombuffer(pages, dtype, count).reshape(shape)

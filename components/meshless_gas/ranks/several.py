@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from quintet.components.meshless_gas.build import Domain, Rows
-from quintet.components.meshless_gas.ranks.part_stencils import part_stencils
+from quintet.components.meshless_gas.ranks.part_stencils import part_stencils, unwritten
 from quintet.components.shared.domain.extremes import greatest, least
 from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
@@ -33,10 +33,15 @@ class SeveralRanks:
         if self._share is None or self._domain is not domain:
             first, last = self._part(domain, self._communicator.rank)
             nodes = domain.inner[first:last]
-            needed = _needed(domain, nodes)
-            self._domain, self._share = domain, domain._replace(inner=nodes, every=needed)
+            needed, ghosts = _needed(domain, nodes)
+            self._domain = domain
+            self._share = domain._replace(inner=nodes, every=needed, ghosts=ghosts)
             self._buffers = {}
         return self._share
+
+    def room(self, shape: tuple[int, ...]) -> Array:
+        """Zeros of a shape, of which rows that are not written take no memory."""
+        return unwritten(shape, np.float64)
 
     def divide(self, domain: Domain) -> Domain:
         """Return a domain that holds of all stencils only those that this rank needs."""
@@ -119,8 +124,8 @@ def _as_slice(rows: Array) -> Array | slice:
     return rows
 
 
-def _needed(domain: Domain, nodes: Array) -> Array:
-    """Nodes whose gradients the fluxes of some nodes need: these, and all neighbours.
+def _needed(domain: Domain, nodes: Array) -> tuple[Rows, Rows]:
+    """Nodes and ghosts whose gradients the fluxes of some nodes need: these, and all neighbours.
 
     A ghost has the gradient of the node that it is an image of.
     """
@@ -130,4 +135,4 @@ def _needed(domain: Domain, nodes: Array) -> Array:
     is_needed[domain.stencils.neighbours[nodes]] = True
     ghosts = np.flatnonzero(is_needed[cloud.nodes :])
     is_needed[cloud.owner[ghosts]] = True
-    return domain.every[is_needed[domain.every]]
+    return domain.every[is_needed[domain.every]], ghosts.astype(np.int32)
