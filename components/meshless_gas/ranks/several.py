@@ -80,10 +80,15 @@ class SeveralRanks:
 
     def gather(self, domain: Domain, *arrays: Array) -> None:
         """Bring rows of nodes that are advanced, of arrays (n, 5), from the rank that did it."""
-        nodes = self.share(domain).inner
+        nodes, whole = self.share(domain).inner, _as_slice(domain.inner)
+        size = self._communicator.size
         for array in arrays:
+            if isinstance(whole, slice) and array.flags.c_contiguous:  # without a buffer
+                parts = [self._part(domain, rank) for rank in range(size)]
+                self._receive(array.take(nodes, axis=0), array[whole], parts)
+                continue
             received = self._gathered(domain, array.take(nodes, axis=0))
-            for rank in range(self._communicator.size):
+            for rank in range(size):
                 if rank != self._communicator.rank:
                     first, last = self._part(domain, rank)
                     array[_as_slice(domain.inner[first:last])] = received[first:last]
