@@ -71,4 +71,5 @@ MANIFEST = Manifest(
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",
     shows=SHOWS,
+    ranks=True,
 )

@@ -15,7 +15,6 @@ from quintet.components.dem_bodies.shapes.sampling import sample
 from quintet.components.dem_bodies.shapes.solid import solids
 from quintet.components.dem_bodies.start import described
 from quintet.components.dem_bodies.view import planes_view, view
-from quintet.components.shared.threads import Team
 from quintet.interfaces.component import (
     ONE_THREAD,
     Array,
@@ -28,8 +27,6 @@ from quintet.interfaces.component import (
 from quintet.interfaces.errors import StepError
 
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
-FEWEST = 8  # blocks of rows that are worth handing to another thread
-SHARED = (kernels.DRIFT, kernels.BALLS, kernels.KICK)  # stages of a step that threads share out
 LOADS = ("load.force", "load.torque")
 # Of the port, in the order that kernels.copy_motion takes.
 MOTION = ("motion.position", "motion.velocity", "motion.orientation", "motion.angular_velocity")
@@ -60,14 +57,13 @@ class DemBodies(Component):
         bodies, sorted_solids = [self.bodies[k] for k in number], [self.solids[k] for k in number]
         self.model = build.model(params, bodies, sorted_solids)
         self.state = build.state(bodies, number, sorted_solids)
-        self.lists = features.contact_lists(params, self.model, self.bodies, self.solids)
-        self.limit = features.step_limit(params, self.model, self.bodies, self.solids)
+        parts = self.model, self.bodies, self.solids
+        self.stepping = features.stepping(params, *parts, resources)
+        self.lists = self.stepping.lists
+        self.limit = features.step_limit(params, *parts)
         self.accumulated = Accumulated()
         self.count = len(self.solids)
         self.mass = np.array([solid.mass for solid in self.solids])  # (m,) kg
-        self.sums = np.zeros((rows.blocks_of(self.count + 1), rows.SUMS))
-        several = resources.threads > 1 and len(self.sums) >= 2 * FEWEST
-        self.team = Team(resources.threads if several else 1, FEWEST, 1)
         self.loaded = False  # whether any body has a load
         self.begun = False  # whether the contacts of the start are known
 
@@ -117,43 +113,29 @@ class DemBodies(Component):
         self.accumulated.add(dt, elastic, self.state.report)
 
     def _move(self, dt: float) -> None:
-        stage = kernels.DRIFT
-        while stage != kernels.DONE:
-            stage = self._advance(stage, dt)
-            if stage == kernels.LIST:
-                if not np.isfinite(self.state.position).all():
-                    raise self._failure(0.0)
-                self.lists.renew(self.state)
-                self.sums[:, rows.TRAVEL] = 0.0
-                stage = kernels.BALLS
+        listed = self.stepping.advance(self.state, dt, self.loaded)
         report = self.state.report
+        if not listed:
+            raise self._failure(0.0)
         if not (report[rows.DEEPEST] <= ALLOWED_DEPTH and math.isfinite(report[rows.CONTACT_WORK])):
             raise self._failure(dt)
 
-    def _advance(self, stage: int, dt: float) -> int:
-        """Run all stages from one on; with several threads, that one. Return the next one."""
-        lists = self.lists
-        pairs = lists.balls, lists.bodies
-        arguments = (self.model, self.state, *pairs, self.sums, dt, self.loaded, lists.skin)
-        blocks, several = len(self.sums), self.team.size > 1
-        stages = stage, stage + 1 if several else kernels.DONE
-        if several and stage in SHARED:
-            return min(self.team.run(kernels.step, blocks, *stages, *arguments))
-        return int(kernels.step(0, blocks, *stages, *arguments))
-
     def _failure(self, dt: float) -> StepError:
-        time, lists = self.accumulated.time + dt, self.lists
-        return diagnostics.failure(self.state, lists.balls, lists.bodies, time)
+        time, balls = self.accumulated.time + dt, self.stepping.pairs_of_all()
+        self.stepping.gather(self.state)
+        return diagnostics.failure(self.state, balls, self.lists.bodies, time)
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of all bodies; if wanted, the loads of contacts in the last step."""
         s, n, fields = self.state, self.count, dict[str, Array]()
         if not wanted.isdisjoint(CONTACT_FIELDS):
             self._begin()
+            self.stepping.gather(s, "contact_load", "previous_contact_load")
             # The mean of both ends gives the change of momentum to rounding.
             mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
             fields |= {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
         if not wanted.isdisjoint(MOTION):
+            self.stepping.gather(s, "motion", "orientation")
             # One piece of memory: separate ones are requested from the system at every call.
             parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
             motion = dict(zip(MOTION, (part.reshape(n, -1) for part in parts), strict=True))
@@ -174,12 +156,14 @@ class DemBodies(Component):
         if not self.params.contact_forces:
             raise ValueError("contact_forces must be true to list contacts; found false. Set it.")
         self._begin()
-        lists = self.lists
-        return diagnostics.contact_points(self.model, self.state, lists.balls, lists.bodies)
+        balls = self.stepping.pairs_of_all()
+        self.stepping.gather(self.state)
+        return diagnostics.contact_points(self.model, self.state, balls, self.lists.bodies)
 
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, accumulated numbers."""
         self._begin()
+        self.stepping.gather(self.state)
         arrays = {name: array.copy() for name, array in self.state._asdict().items()}
         accumulated = np.array(astuple(self.accumulated))
         return arrays | self.lists.save() | {"accumulated": accumulated}
@@ -192,6 +176,7 @@ class DemBodies(Component):
         for name, array in self.state._asdict().items():
             array[:] = state[name]
         self.lists.load(state)
+        self.stepping.load(self.state)
         self.loaded = bool(self.state.load.any())
         self.accumulated = Accumulated(*state["accumulated"].tolist())
 
@@ -202,14 +187,17 @@ class DemBodies(Component):
     def totals(self) -> Totals:
         """Mass, momentum and energies of the bodies; internal is the contacts' elastic energy."""
         self._begin()
+        self.stepping.gather(self.state)
         return diagnostics.totals(self.model, self.state, self.mass)
 
     def view(self) -> Fields:
         """Corners and faces of boxes and polygons, centres and radii of spheres, velocities."""
+        self.stepping.gather(self.state)
         return view(self.bodies, self.solids, self.state)
 
     def walls(self) -> Fields:
         """Polygons on the planes, near the bodies."""
+        self.stepping.gather(self.state)
         return planes_view(self.model.plane, self.state)
 
     def items(self) -> int:

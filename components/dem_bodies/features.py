@@ -2,29 +2,54 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from quintet.components.dem_bodies.contact.ball_pairs import no_ball_pairs
 from quintet.components.dem_bodies.contact.expected import expected_frequency
 from quintet.components.dem_bodies.contact.lists import ContactLists
 from quintet.components.dem_bodies.contact.step_limit import FixedStep, StepLimit
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.ranks.one import OneRank
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import Solid, contact_length
 from quintet.components.dem_bodies.state import Model
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError
 
 SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
 
 
-def contact_lists(
-    params: DemBodiesParams, model: Model, bodies: Sequence[RigidBody], solids: Sequence[Solid]
-) -> ContactLists:
-    """Lists of pairs; those of balls are absent where there are no balls.
+def stepping(
+    params: DemBodiesParams,
+    model: Model,
+    bodies: Sequence[RigidBody],
+    solids: Sequence[Solid],
+    resources: Resources,
+) -> OneRank:
+    """What steps the rows, all of them or those of this rank, with the lists of their pairs.
 
     The skin follows the smallest contact radius. The edge radius of a sharp box, or of a thin
     plate, is no measure of how far it moves before it touches: lists would be renewed at every
-    step.
+    step. Lists of pairs of balls are absent where there are no balls.
     """
     skin = SKIN * min(map(contact_length, bodies, solids))
-    return ContactLists(model, no_ball_pairs(model), skin, params.contact_forces)
+    balls, communicator = no_ball_pairs(model), resources.communicator
+    if communicator is None or communicator.size == 1:
+        lists = ContactLists(model, balls, skin, params.contact_forces)
+        return OneRank(model, lists, resources.threads)
+    if balls is None:
+        raise SceneError(
+            f"ranks must be 1 where no body is a single sphere, as only spheres are shared out; "
+            f"there are {communicator.size}. Take one rank and several threads."
+        )
+    # Only bodies on several ranks load mpi4py.
+    from quintet.components.dem_bodies.ranks.lists import SharedLists
+    from quintet.components.dem_bodies.ranks.several import SeveralRanks
+    from quintet.components.dem_bodies.ranks.shares import Shares
+
+    shares = Shares(communicator, len(model.kind), int(np.count_nonzero(model.ball)))
+    shared_lists = SharedLists(model, balls, skin, params.contact_forces, shares)
+    return SeveralRanks(model, shared_lists, resources.threads)
 
 
 def step_limit(

@@ -49,14 +49,20 @@ def list_ball_pairs(
     old_body: Whole,
     skin: float,
     records_forces: bool,
+    rows: slice | None = None,
 ) -> BallPairs:
-    """List all pairs of balls, and of balls and planes, nearer than the skin [m]."""
+    """List all pairs of balls, and of balls and planes, nearer than the skin [m]; or of some rows.
+
+    The history of `old` pairs is taken over: their rows are those of `old_body`.
+    """
     begin = np.empty(len(cells.keys) + 1, np.int64)
     partner = np.empty(2 * len(old.partner) + 64, np.uint32)
-    count = list_partners(model, state.motion, cells.keys, skin, begin, partner)
+    first, last, _ = (rows or slice(None)).indices(len(cells.keys))
+    arguments = first, last, model, state.motion, cells.keys, skin
+    count = list_partners(*arguments, begin, partner)
     if count > len(partner):
         partner = np.empty(count, np.uint32)
-        list_partners(model, state.motion, cells.keys, skin, begin, partner)
+        list_partners(*arguments, begin, partner)
     new = ball_pairs(model, begin, partner[:count].copy(), records_forces)
     transfer_history(old, old_body, new, state.body)
     return new

@@ -58,14 +58,18 @@ class ContactLists:
 
     def count_contacts(self, listed: bool = False) -> int:
         """Most contacts of any row; with `listed` as if all listed pairs touched."""
-        pairs, balls, model = self.bodies, self.balls, self.model
+        pairs, model = self.bodies, self.model
         history = np.ones_like(pairs.history) if listed else pairs.history
         ends = (pairs.ends, pairs.begin, model.sphere_row, model.edge_ends)
         count_contacts(history, *ends, self.contacts)
-        if balls is not None:
+        self._add_balls(listed)
+        return int(self.contacts.max())
+
+    def _add_balls(self, listed: bool) -> None:
+        """Add the contacts of balls to those of each row."""
+        if (balls := self.balls) is not None:
             history = np.ones_like(balls.history) if listed else balls.history
             count_ball_contacts(balls.row, balls.partner, history, self.contacts)
-        return int(self.contacts.max())
 
     def save(self) -> dict[str, Array]:
         """Copy out the listed pairs and their history."""
@@ -74,7 +78,7 @@ class ContactLists:
             # Messages know no uint32.
             partner = self.balls.partner.astype(np.int64)
             arrays |= {"balls.begin": self.balls.begin, "balls.partner": partner}
-            arrays |= {f"balls.{name}": array for name, array in _history(self.balls).items()}
+            arrays |= {f"balls.{name}": array for name, array in history_of(self.balls).items()}
         return {name: array.copy() for name, array in arrays.items()}
 
     def load(self, saved: Fields) -> None:
@@ -88,11 +92,12 @@ class ContactLists:
             self.balls = ball_pairs(
                 self.model, begin, partner.astype(np.uint32), self.records_forces
             )
-            for name, array in _history(self.balls).items():
+            for name, array in history_of(self.balls).items():
                 array[:] = saved[f"balls.{name}"]
         self.most_contacts = self.count_contacts(listed=True)
 
 
-def _history(balls: BallPairs) -> Mapping[str, Array]:
+def history_of(balls: BallPairs) -> Mapping[str, Array]:
+    """Arrays of the contacts of balls that a later step needs."""
     arrays = {name: getattr(balls, name) for name in SAVED}
     return {name: array for name, array in arrays.items() if array is not None}

@@ -30,12 +30,17 @@ class Sorted(NamedTuple):
 
 @njit(**EXACT)
 def list_partners(
-    model: Model, motion: Numbers, keys: Whole, skin: float, begin: Whole, partner: Short
-) -> int:
-    """Write the partners of each row, while there is room, and where rows begin; count them."""
+    first_row: int, last_row: int, model: Model, motion: Numbers, keys: Whole, skin: float,
+    begin: Whole, partner: Short,
+) -> int:  # fmt: skip
+    """Write partners of the rows [first_row, last_row), while there is room, and where rows begin.
+
+    Other rows have none. Return the number of partners.
+    """
     planes, rows, count, listed = model.plane.shape[0], motion.shape[0], keys.shape[0], 0
     low, high = np.zeros(5, np.int64), np.zeros(5, np.int64)
-    for a in range(count):
+    begin[:first_row] = 0
+    for a in range(first_row, last_row):
         begin[a] = listed
         x, radius = row_vector(motion, a), motion[a, RADIUS]
         for p in range(planes):
@@ -56,5 +61,5 @@ def list_partners(
                     if listed < partner.shape[0]:
                         partner[listed] = b
                     listed += 1
-    begin[count] = listed
+    begin[last_row:] = listed
     return listed

@@ -1,0 +1,1 @@
+"""Rows of bodies on one MPI rank or shared out among several."""

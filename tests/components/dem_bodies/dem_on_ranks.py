@@ -1,0 +1,107 @@
+"""What test_dem_bodies_ranks.py runs on several ranks; rank 0 writes what came out."""
+
+import sys
+
+import numpy as np
+from dem_scenes import NOTHING, box, material, sphere
+from mpi4py import MPI
+
+from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.params import read
+
+WORLD = MPI.COMM_WORLD
+DIAMETER = 0.02  # m
+WALLS = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+PLANES = [{"point": NOTHING, "normal": normal, "material": "a"} for normal in WALLS]
+
+
+def heap(nx, ny, nz, seed=1, **changes):
+    """Spheres that nearly touch and fly about at random: they collide, mix and settle."""
+    random = np.random.default_rng(seed)
+    grid = np.stack(np.meshgrid(*map(np.arange, (nx, ny, nz)), indexing="ij"), -1).reshape(-1, 3)
+    places = (grid + 0.55) * 1.08 * DIAMETER
+    speeds = random.uniform(-0.6, 0.6, places.shape)
+    radii = np.where(random.random(len(places)) < 0.3, 0.4 * DIAMETER, 0.5 * DIAMETER)
+    bodies = [
+        sphere(place, 2.0 * radius, velocity=speed)
+        for place, speed, radius in zip(
+            places.tolist(), speeds.tolist(), radii.tolist(), strict=True
+        )
+    ]
+    table = {
+        "bodies": bodies,
+        "planes": PLANES,
+        "materials": {"a": material(youngs_modulus=1e7, **changes)},
+        "gravity": [-2.0, -2.0, -9.81],
+        "impact_speed": 1.0,
+    }
+    return table
+
+
+def with_boxes():
+    """Two boxes fall into the spheres: every rank computes their contacts."""
+    table = heap(9, 9, 12)
+    size = (0.05, 0.05, 0.05)
+    table["bodies"].insert(5, box((0.06, 0.06, 0.31), size, velocity=[0.0, 0.0, -2.0]))
+    table["bodies"].append(box((0.13, 0.13, 0.31), size, velocity=[0.3, 0.0, -2.0]))
+    return table
+
+
+SCENES = {
+    "heap": lambda: heap(10, 10, 12),
+    "rolling": lambda: heap(9, 9, 13, rolling_friction=0.1) | {"contact_forces": True},
+    "boxes": with_boxes,
+}
+
+
+def make(name):
+    communicator = WORLD if WORLD.size > 1 else None
+    return DemBodies(
+        read(DemBodiesParams, SCENES[name](), name)[0], Resources(communicator=communicator)
+    )
+
+
+def go(bodies, steps):
+    """Advance under a load that changes, which every rank gets whole."""
+    number = np.arange(bodies.items())
+    for _ in range(steps):
+        time = bodies.accumulated.time
+        force = np.zeros((len(number), 3))
+        force[:, 0] = 1e-3 * np.sin(40.0 * time + number)
+        bodies.take({"load.force": force, "load.torque": 1e-3 * force})
+        bodies.step(bodies.stable_dt())
+
+
+def results(bodies):
+    """All that rank 0 gives out; the other ranks call the same."""
+    totals = bodies.totals()
+    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
+    numbers += [*totals.momentum, *totals.angular_momentum]
+    shown = {f"view {name}": array for name, array in bodies.view().items()}
+    walls = {f"walls {name}": array for name, array in bodies.walls().items()}
+    return {**outputs_of(bodies), **shown, **walls, "totals": np.array(numbers)}
+
+
+def run(name, steps, folder, earlier):
+    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
+    bodies = make(name)
+    bodies.bind({}, frozenset(port.name for port in bodies.takes + bodies.gives))
+    if earlier:
+        bodies.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
+    go(bodies, steps)
+    state, reached = bodies.save(), results(bodies)
+    if WORLD.rank == 0:
+        path = f"{folder}/{name}-{WORLD.size}"
+        np.savez(f"{path}-state.npz", **state)
+        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **state)
+
+
+def main(folder, steps, earlier, names):
+    for name in names.split(","):
+        run(name, int(steps), folder, int(earlier))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,77 @@
+"""Bodies shared out among real MPI ranks: the same bits on any number of them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dem_scenes import box, params
+
+from quintet.components.dem_bodies.component import DemBodies
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError
+
+pytestmark = pytest.mark.mpi
+PROGRAM = Path(__file__).with_name("dem_on_ranks.py")
+NAMES = ("heap", "rolling", "boxes")
+STEPS = 60  # in which pairs are listed again, and rows change their rank
+
+
+def differences(folder, first, second):
+    """Names of the arrays that differ in a bit."""
+    one, other = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
+    assert set(one.files) == set(other.files)
+    return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, on_ranks):
+    """Runs on 1 and 2 ranks."""
+    folder = tmp_path_factory.mktemp("heaps")
+    for ranks in (1, 2):
+        on_ranks(PROGRAM, ranks, folder, STEPS, 0, ",".join(NAMES))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def resumed(folder, on_ranks):
+    """Runs on 1 and 3 ranks that go on from the states of 1 and 2."""
+    for ranks, earlier in ((1, 1), (3, 2)):
+        on_ranks(PROGRAM, ranks, folder, 30, earlier, ",".join(NAMES))
+    return folder
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_two_ranks_compute_what_one_does_to_the_bit(name, folder):
+    assert differences(folder, f"{name}-1", f"{name}-2") == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
+    assert differences(resumed, f"{name}-1-1", f"{name}-3-2") == []
+
+
+def test_spheres_touch_each_other_and_planes_in_these_runs(folder):
+    """So that histories of contacts, and loads on rows of other ranks, are compared."""
+    state = np.load(folder / "heap-2-state.npz")
+    touching = state["balls.history"][3] > 0.0
+    on_planes = state["balls.partner"] >= len(state["body"])
+    assert np.count_nonzero(touching & ~on_planes) > 100
+    assert np.count_nonzero(touching & on_planes) > 10
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("name", NAMES)
+def test_a_thousand_steps_give_the_same_bits_on_one_to_four_ranks(name, tmp_path, on_ranks):
+    for ranks in (1, 2, 3, 4):
+        on_ranks(PROGRAM, ranks, tmp_path, 1000, 0, name, seconds=1500)
+    for ranks in (2, 3, 4):
+        assert differences(tmp_path, f"{name}-1", f"{name}-{ranks}") == []
+
+
+def test_bodies_without_spheres_are_refused_on_several_ranks():
+    class Several:
+        size = 2
+
+    boxes = params([box((0.0, 0.0, 1.0))])
+    with pytest.raises(SceneError, match=r"ranks must be 1 where no body is a single sphere"):
+        DemBodies(boxes, Resources(communicator=Several()))
