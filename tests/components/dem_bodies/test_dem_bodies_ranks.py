@@ -59,15 +59,6 @@ def test_spheres_touch_each_other_and_planes_in_these_runs(folder):
     assert np.count_nonzero(touching & on_planes) > 10
 
 
-@pytest.mark.full
-@pytest.mark.parametrize("name", NAMES)
-def test_a_thousand_steps_give_the_same_bits_on_one_to_four_ranks(name, tmp_path, on_ranks):
-    for ranks in (1, 2, 3, 4):
-        on_ranks(PROGRAM, ranks, tmp_path, 1000, 0, name, seconds=1500)
-    for ranks in (2, 3, 4):
-        assert differences(tmp_path, f"{name}-1", f"{name}-{ranks}") == []
-
-
 def test_bodies_without_spheres_are_refused_on_several_ranks():
     class Several:
         size = 2

@@ -59,22 +59,6 @@ def test_elements_erode_in_what_is_compared(folder):
     assert reached["part_gauge.eroded"][1] > 0.0
 
 
-@pytest.mark.full
-@pytest.mark.parametrize("name", NAMES)
-def test_a_thousand_steps_give_the_same_bits_on_one_to_four_ranks(name, tmp_path, on_ranks):
-    for ranks in (1, 2, 3, 4):
-        on_ranks(PROGRAM, ranks, tmp_path, 1000, 0, name, seconds=600)
-    for ranks in (2, 3, 4):
-        assert differences(tmp_path, f"{name}-1", f"{name}-{ranks}") == []
-    rng, states = np.random.default_rng(23), [(1, 4), (2, 4), (3, 4), (4, 1)]
-    for _ in range(3):  # windows of random lengths, from states of 4 ranks and of 1
-        steps = int(rng.integers(5, 60))
-        on_ranks(PROGRAM, 1, tmp_path, steps, 1, name, seconds=600)
-        for ranks, earlier in states:
-            on_ranks(PROGRAM, ranks, tmp_path, steps, earlier, name, seconds=600)
-            assert differences(tmp_path, f"{name}-1-1", f"{name}-{ranks}-{earlier}") == []
-
-
 def block(elements):
     part = {
         "lowest": [0.0] * 3,

@@ -72,11 +72,3 @@ def test_damping_of_all_pairs_is_refused_on_two_ranks(tmp_path, on_ranks):
     program.write_text(REFUSED)
     sentence = "the range all needs every pair of points, so the lattice cannot be shared out"
     assert sentence in on_ranks(program, 2)
-
-
-@pytest.mark.full
-@pytest.mark.parametrize("name", NAMES)
-def test_any_number_of_ranks_computes_a_thousand_steps_to_the_bit(name, tmp_path, on_ranks):
-    for ranks in (1, 2, 3, 4):
-        on_ranks(PROGRAM, ranks, tmp_path, 1000, 0, name, seconds=580)
-        assert differences(tmp_path, f"{name}-1", f"{name}-{ranks}") == []
