@@ -125,22 +125,22 @@ class SharedLists(ContactLists):
     def link_ranks(self, state: State) -> None:
         """Prepare the exchange of motion, and of loads on rows of other ranks, of these pairs."""
         shares, pairs = self.shares, self.balls
-        own = shares.rows_of(shares.rank)
+        rows = shares.rows_of(shares.rank)
         all_pairs = np.concatenate(share(shares.communicator, np.array([len(pairs.partner)])))
         self.pairs_before, self.pairs = int(all_pairs[: shares.rank].sum()), int(all_pairs.sum())
-        self._link_motion(own)
-        self._link_loads(own)
+        self._link_motion(rows)
+        self._link_loads()
 
-    def _link_motion(self, own: slice) -> None:
+    def _link_motion(self, rows: slice) -> None:
         shares = self.shares
         partner = self.balls.partner.astype(np.int64)
-        beyond = np.unique(partner[(partner >= own.stop) & (partner < shares.rows)])
+        beyond = np.unique(partner[(partner >= rows.stop) & (partner < shares.rows)])
         owner = shares.owners(beyond)
         needed = [beyond[owner == rank] for rank in range(shares.size)]
         asked = send_rows(shares.communicator, needed)
         self.motion_halo = Halo(shares.communicator, asked, needed, (COLUMNS,))
 
-    def _link_loads(self, own: slice) -> None:
+    def _link_loads(self) -> None:
         """Put the loads of other ranks' pairs behind own ones, in the order of one rank's pairs."""
         shares, pairs = self.shares, self.balls
         partner, row = pairs.partner.astype(np.int64), pairs.row.astype(np.int64)
@@ -192,9 +192,9 @@ class SharedLists(ContactLists):
     def save(self) -> dict[str, Array]:
         """Copy out the listed pairs of all ranks on rank 0."""
         pairs, communicator = self.balls, self.shares.communicator
-        own = self.shares.rows_of(self.shares.rank)
-        stop = min(own.stop, self.shares.balls)
-        counts = np.diff(pairs.begin)[own.start : stop]
+        rows = self.shares.rows_of(self.shares.rank)
+        stop = min(rows.stop, self.shares.balls)
+        counts = np.diff(pairs.begin)[rows.start : stop]
         begin = np.concatenate([[0], np.cumsum(collect(communicator, counts))])
         partner = collect(communicator, pairs.partner.astype(np.int64))
         arrays = {
@@ -203,8 +203,8 @@ class SharedLists(ContactLists):
         }
         arrays |= {"balls.begin": begin, "balls.partner": partner}
         for name, array in history_of(pairs).items():
-            rows = np.ascontiguousarray(array.T) if name == "history" else array
-            of_all = collect(communicator, rows)
+            by_pair = np.ascontiguousarray(array.T) if name == "history" else array
+            of_all = collect(communicator, by_pair)
             arrays[f"balls.{name}"] = (
                 np.ascontiguousarray(of_all.T) if name == "history" else of_all
             )
@@ -216,9 +216,9 @@ class SharedLists(ContactLists):
         pairs.key[:] = saved["others.key"]
         pairs.history[:] = saved["others.history"]
         self.bodies = body_pairs_of(pairs.key, pairs)
-        own, begin = self.shares.rows_of(self.shares.rank), np.array(saved["balls.begin"])
+        rows, begin = self.shares.rows_of(self.shares.rank), np.array(saved["balls.begin"])
         balls = self.shares.balls
-        some = slice(begin[min(own.start, balls)], begin[min(own.stop, balls)])
+        some = slice(begin[min(rows.start, balls)], begin[min(rows.stop, balls)])
         partner = np.asarray(saved["balls.partner"])[some].astype(np.uint32)
         begin = np.clip(begin - some.start, 0, len(partner))
         self.balls = ball_pairs(self.model, begin, partner, self.records_forces)

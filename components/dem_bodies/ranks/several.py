@@ -92,8 +92,8 @@ class SeveralRanks(OneRank):
 
     def _listed_holds(self) -> bool:
         """Whether no sphere of any rank has moved so far that pairs must be listed again."""
-        own = self.sums[self.shares.first : self.shares.last, TRAVEL].max(initial=0.0)
-        furthest = own if math.isfinite(own) else math.inf
+        travel = self.sums[self.shares.first : self.shares.last, TRAVEL].max(initial=0.0)
+        furthest = travel if math.isfinite(travel) else math.inf
         all_ranks = greatest(self.shares.communicator, np.array([furthest]))
         return bool(slack(self.lists.skin, math.sqrt(all_ranks[0])) >= 0.0)
 
@@ -126,8 +126,8 @@ class SeveralRanks(OneRank):
 
     def _number_deepest(self) -> None:
         """Number the pairs of own blocks among those of all ranks."""
-        own = self.sums[self.shares.first : self.shares.last]
-        own[own[:, DEEPEST_PAIR] >= 0.0, DEEPEST_PAIR] += self.lists.pairs_before
+        block_sums = self.sums[self.shares.first : self.shares.last]
+        block_sums[block_sums[:, DEEPEST_PAIR] >= 0.0, DEEPEST_PAIR] += self.lists.pairs_before
 
     def _touch_others(self, state: State, dt: float, loaded: bool) -> None:
         """Contacts of bodies that are no balls, on every rank."""

@@ -77,18 +77,18 @@ class Shares:
 
     def everywhere(self, array: Numbers) -> None:
         """Bring the rows (n, width) of all ranks up to date on every rank."""
-        counts, begins = self._counts(array.shape[1], self.rows, self.rows)
-        target = [array.reshape(-1), (counts, begins)]
-        own = counts[self.rank]
-        wait_for_all(self.communicator.Iallgatherv(MPI.IN_PLACE, target), 8 * (sum(counts) - own))
+        self._everywhere(array, *self._counts(array.shape[1], self.rows, self.rows))
 
     def blocks_everywhere(self, sums: Numbers) -> None:
         """Bring the sums (blocks, width) of all ranks up to date on every rank."""
         width = sums.shape[1]
         counts, begins = (width * np.diff(self.cuts)).tolist(), (width * self.cuts[:-1]).tolist()
-        target = [sums.reshape(-1), (counts, begins)]
-        own = counts[self.rank]
-        wait_for_all(self.communicator.Iallgatherv(MPI.IN_PLACE, target), 8 * (sum(counts) - own))
+        self._everywhere(sums, counts, begins)
+
+    def _everywhere(self, array: Numbers, counts: list[int], begins: list[int]) -> None:
+        """Send the numbers of each rank in an array to all."""
+        target, others = [array.reshape(-1), (counts, begins)], sum(counts) - counts[self.rank]
+        wait_for_all(self.communicator.Iallgatherv(MPI.IN_PLACE, target), 8 * others)
 
     def gather(self, state: State, *names: str) -> None:
         """Bring the rows of all ranks in some arrays up to date on rank 0; in all, if none."""
@@ -101,10 +101,10 @@ class Shares:
             counts, begins = self._counts(width, self.balls if spheres else self.rows, len(array))
             flat = array.reshape(-1)
             begin, count = begins[self.rank], counts[self.rank]
-            own = MPI.IN_PLACE if self.rank == 0 else flat[begin : begin + count]
+            sent = MPI.IN_PLACE if self.rank == 0 else flat[begin : begin + count]
             target = [flat, (counts, begins)] if self.rank == 0 else None
             others = 0 if self.rank else 8 * (sum(counts) - count)
-            wait_for_all(self.communicator.Igatherv(own, target), others)
+            wait_for_all(self.communicator.Igatherv(sent, target), others)
 
     def from_last(self, state: State) -> None:
         """Bring bodies that are no balls, which the last rank moves, up to date on every rank."""
