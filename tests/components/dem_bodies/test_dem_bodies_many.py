@@ -52,7 +52,7 @@ def assert_same_bits(one, other):
 
 def test_threads_change_no_bit(mixed):
     shared = crowd(threads=2)
-    assert shared.team.size == 2 and mixed.team.size == 1
+    assert shared.stepping.team.size == 2 and mixed.stepping.team.size == 1
     run(shared, 4e-3, dt=2e-5)
     assert_same_bits(mixed, shared)
 
@@ -64,7 +64,7 @@ def test_threads_change_no_bit_of_what_resists_rolling_beside_a_box():
     for threads in (1, 2):
         scenes.append(crowd(threads=threads, others=(above,), rolling_friction=0.2))
         run(scenes[-1], 1.2e-3, dt=2e-5)
-    assert [scene.team.size for scene in scenes] == [1, 2]
+    assert [scene.stepping.team.size for scene in scenes] == [1, 2]
     lists = scenes[0].lists
     assert len(lists.bodies.key) > 10 and np.abs(lists.balls.rolling_moment).max() > 0.0
     assert_same_bits(*scenes)

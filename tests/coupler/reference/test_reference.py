@@ -179,4 +179,4 @@ def test_a_kind_is_described_with_its_ports(capsys):
 
 def test_a_kind_that_may_own_several_ranks_says_so(capsys):
     assert "several MPI ranks" in said(capsys, "particle_lattice")[1]
-    assert "several MPI ranks" not in said(capsys, "dem_bodies")[1]
+    assert "several MPI ranks" not in said(capsys, "fe_heat")[1]
