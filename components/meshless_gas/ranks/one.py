@@ -21,7 +21,7 @@ class Ranks(Protocol):
         """Zeros of a shape, of which this rank may write a part alone."""
 
     def divide(self, domain: Domain) -> Domain:
-        """Return a domain that holds of all stencils only those that this rank needs."""
+        """Return the domain with only the stencils that this rank needs."""
 
     def shown(self, domain: Domain) -> Rows:
         """Nodes, of `every`, for which this rank computes what a view shows."""

@@ -44,7 +44,7 @@ class SeveralRanks:
         return unwritten(shape, np.float64)
 
     def divide(self, domain: Domain) -> Domain:
-        """Return a domain that holds of all stencils only those that this rank needs."""
+        """Return the domain with only the stencils that this rank needs."""
         computed = np.union1d(self.share(domain).every, self.shown(domain))
         self._domain = self._share = None  # they hold all stencils
         return domain._replace(stencils=part_stencils(domain, computed))

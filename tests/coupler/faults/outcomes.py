@@ -29,9 +29,9 @@ class Reader:
     def __init__(self, run):
         self.run, self.lines = run, []
         streams = (run.process.stdout, run.process.stderr)
-        self.threads = [Thread(target=self._read, args=[one]) for one in streams]
-        for one in self.threads:
-            one.start()
+        self.threads = [Thread(target=self._read, args=[stream]) for stream in streams]
+        for thread in self.threads:
+            thread.start()
 
     def _read(self, stream):
         with stream:
@@ -46,8 +46,8 @@ class Reader:
             ended = time.time()
             left = [*self.run.left_processes(), *self.run.left_in_shared_memory()]
             self.run.end()
-            for one in self.threads:
-                one.join(5.0)
+            for thread in self.threads:
+                thread.join(5.0)
         return status, ended, left
 
     def first(self, words):

@@ -42,7 +42,7 @@ class Lists:
         self.forget()
 
     def forget(self) -> None:
-        """Make lists anew where they are needed next."""
+        """Make new lists when they are next needed."""
         self._listed = np.full((len(self._ranks.ids), 3), np.inf)  # m, where spheres were listed
 
     @property
