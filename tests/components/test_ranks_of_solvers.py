@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rank_runs import MOVED_BORDERS, differences
 
 pytestmark = [pytest.mark.mpi, pytest.mark.full]
 HERE = Path(__file__).parent
@@ -24,22 +25,15 @@ CASES = {
 SCENES = [(program, name) for program, names in CASES.items() for name in names]
 
 
-def differences(first, second):
-    """Names of the arrays of two files that differ in a bit."""
-    one, other = np.load(first), np.load(second)
-    assert set(one.files) == set(other.files)
-    return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
-
-
 @pytest.mark.parametrize(("program", "name"), SCENES)
 def test_many_steps_give_the_same_bits_on_one_to_four_ranks(program, name, tmp_path, on_ranks):
+    differing = {}
     for ranks in (1, 2, 3, 4):
         on_ranks(HERE / program, ranks, tmp_path, STEPS, 0, name, seconds=3000)
-    differing = {
-        ranks: differences(tmp_path / f"{name}-1.npz", tmp_path / f"{name}-{ranks}.npz")
-        for ranks in (2, 3, 4)
-    }
-    assert differing == {2: [], 3: [], 4: []}
+        differing[ranks] = differences(tmp_path, f"{name}-1", f"{name}-{ranks}")
+    on_ranks(MOVED_BORDERS, 2, HERE / program, tmp_path, STEPS, 0, name, seconds=3000)
+    differing["borders moved"] = differences(tmp_path, f"{name}-1", f"{name}-2")
+    assert not any(differing.values()), differing
 
 
 @pytest.mark.parametrize(("program", "name"), SCENES)
@@ -55,7 +49,7 @@ def test_snapshots_at_random_steps_go_on_with_other_ranks(program, name, tmp_pat
             folder.mkdir()
             shutil.copy(tmp_path / f"{name}-{earlier}-state.npz", folder)
             on_ranks(HERE / program, ranks, folder, FURTHER, earlier, name, seconds=600)
-            resumed = folder / f"{name}-{ranks}-{earlier}.npz"
-            if differences(tmp_path / f"{step}-1-1" / f"{name}-1-1.npz", resumed):
+            reached = f"{step}-{earlier}-{ranks}/{name}-{ranks}-{earlier}"
+            if differences(tmp_path, f"{step}-1-1/{name}-1-1", reached):
                 differing.append((step, earlier, ranks))
     assert differing == []

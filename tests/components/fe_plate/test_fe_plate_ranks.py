@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
+from rank_runs import differences, from_states, from_the_start
 
 from quintet.components.fe_plate.build import structure
 from quintet.components.fe_plate.params import FePlateParams
@@ -16,30 +17,8 @@ pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("structure_on_ranks.py")
 NAMES = ("struck", "pressed", "bent", "glued", "plane")
 STEPS = 60
-
-
-def differences(folder, first, second):
-    """Names of the arrays that differ in a bit."""
-    one, other = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
-    assert set(one.files) == set(other.files)
-    return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory, on_ranks):
-    """Runs on 1, 2 and 3 ranks."""
-    folder = tmp_path_factory.mktemp("structures")
-    for ranks in (1, 2, 3):
-        on_ranks(PROGRAM, ranks, folder, STEPS, 0, ",".join(NAMES))
-    return folder
-
-
-@pytest.fixture(scope="module")
-def resumed(folder, on_ranks):
-    """Runs on 1 and 3 ranks that go on from the states of 1 and 2."""
-    for ranks, earlier in ((1, 1), (1, 2), (3, 2), (2, 1)):
-        on_ranks(PROGRAM, ranks, folder, 30, earlier, ",".join(NAMES))
-    return folder
+folder = from_the_start(PROGRAM, NAMES, STEPS, ranks=(1, 2, 3))
+resumed = from_states(PROGRAM, NAMES, 30, pairs=((1, 1), (1, 2), (3, 2), (2, 1)))
 
 
 @pytest.mark.parametrize("ranks", [2, 3])

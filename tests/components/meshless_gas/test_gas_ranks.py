@@ -4,35 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rank_runs import differences, from_states, from_the_start
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("gas_on_ranks.py")
 NAMES = ("bodies", "vortex", "steady")
 STEPS = 60  # with holes cut again
-
-
-def differences(folder, first, second):
-    """Names of the arrays that differ in a bit."""
-    one, other = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
-    assert set(one.files) == set(other.files)
-    return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory, on_ranks):
-    """Runs on 1 and 2 ranks."""
-    folder = tmp_path_factory.mktemp("gases")
-    for ranks in (1, 2):
-        on_ranks(PROGRAM, ranks, folder, STEPS, 0, ",".join(NAMES))
-    return folder
-
-
-@pytest.fixture(scope="module")
-def resumed(folder, on_ranks):
-    """Runs on 1 and 3 ranks that go on from the states of 1 and 2."""
-    for ranks, earlier in ((1, 1), (3, 2)):
-        on_ranks(PROGRAM, ranks, folder, 10, earlier, ",".join(NAMES))
-    return folder
+folder = from_the_start(PROGRAM, NAMES, STEPS)
+resumed = from_states(PROGRAM, NAMES, 10)
 
 
 @pytest.mark.parametrize("name", NAMES)
