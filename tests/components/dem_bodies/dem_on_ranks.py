@@ -1,17 +1,14 @@
 """What test_dem_bodies_ranks.py runs on several ranks; rank 0 writes what came out."""
 
-import sys
-
 import numpy as np
 from dem_scenes import NOTHING, box, material, sphere
-from mpi4py import MPI
+from solver_run import COMMUNICATOR, SolverRun
 
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.component import Resources
 from quintet.interfaces.params import read
 
-WORLD = MPI.COMM_WORLD
 DIAMETER = 0.02  # m
 WALLS = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 PLANES = [{"point": NOTHING, "normal": normal, "material": "a"} for normal in WALLS]
@@ -56,52 +53,17 @@ SCENES = {
 }
 
 
-def make(name):
-    communicator = WORLD if WORLD.size > 1 else None
-    return DemBodies(
-        read(DemBodiesParams, SCENES[name](), name)[0], Resources(communicator=communicator)
-    )
+class Run(SolverRun):
+    """A case of bodies under a load that changes, which every rank gets whole."""
 
+    def build(self):
+        params, _ = read(DemBodiesParams, SCENES[self.name](), self.name)
+        bodies = DemBodies(params, Resources(communicator=COMMUNICATOR))
+        bodies.bind({}, frozenset(port.name for port in bodies.takes + bodies.gives))
+        return bodies
 
-def go(bodies, steps):
-    """Advance under a load that changes, which every rank gets whole."""
-    number = np.arange(bodies.items())
-    for _ in range(steps):
-        time = bodies.accumulated.time
+    def inputs(self):
+        number = np.arange(self.solver.items())
         force = np.zeros((len(number), 3))
-        force[:, 0] = 1e-3 * np.sin(40.0 * time + number)
-        bodies.take({"load.force": force, "load.torque": 1e-3 * force})
-        bodies.step(bodies.stable_dt())
-
-
-def results(bodies):
-    """All that rank 0 gives out; the other ranks call the same."""
-    totals = bodies.totals()
-    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
-    numbers += [*totals.momentum, *totals.angular_momentum]
-    shown = {f"view {name}": array for name, array in bodies.view().items()}
-    walls = {f"walls {name}": array for name, array in bodies.walls().items()}
-    return {**outputs_of(bodies), **shown, **walls, "totals": np.array(numbers)}
-
-
-def run(name, steps, folder, earlier):
-    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
-    bodies = make(name)
-    bodies.bind({}, frozenset(port.name for port in bodies.takes + bodies.gives))
-    if earlier:
-        bodies.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
-    go(bodies, steps)
-    state, reached = bodies.save(), results(bodies)
-    if WORLD.rank == 0:
-        path = f"{folder}/{name}-{WORLD.size}"
-        np.savez(f"{path}-state.npz", **state)
-        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **state)
-
-
-def main(folder, steps, earlier, names):
-    for name in names.split(","):
-        run(name, int(steps), folder, int(earlier))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+        force[:, 0] = 1e-3 * np.sin(40.0 * self.time + number)
+        return {"load.force": force, "load.torque": 1e-3 * force}

@@ -31,9 +31,9 @@ def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
 
 def test_spheres_touch_each_other_and_planes_in_these_runs(folder):
     """So that histories of contacts, and loads on rows of other ranks, are compared."""
-    state = np.load(folder / "heap-2-state.npz")
-    touching = state["balls.history"][3] > 0.0
-    on_planes = state["balls.partner"] >= len(state["body"])
+    state = np.load(folder / "heap-2.npz")
+    touching = state["state balls.history"][3] > 0.0
+    on_planes = state["state balls.partner"] >= len(state["state body"])
     assert np.count_nonzero(touching & ~on_planes) > 100
     assert np.count_nonzero(touching & on_planes) > 10
 

@@ -1,17 +1,15 @@
 """What test_fe_plate_ranks.py runs on several ranks; rank 0 writes what came out."""
 
 import json
-import sys
 
 import numpy as np
-from mpi4py import MPI
 from pydantic import TypeAdapter
+from solver_run import COMMUNICATOR, SolverRun
 
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.component import Resources
 
-WORLD = MPI.COMM_WORLD
 BLOCK = {
     "lowest": [0.0, 0.0, 0.0],
     "highest": [0.016, 0.012, 0.02],
@@ -77,71 +75,24 @@ PARAMS = {
 FORCED = ("pressed", "bent", "glued")
 
 
-def make(name):
-    params = TypeAdapter(FePlateParams).validate_json(json.dumps(PARAMS[name]))
-    communicator = WORLD if WORLD.size > 1 else None
-    return FePlate(params, Resources(communicator=communicator))
+class Run(SolverRun):
+    """A case of a structure under forces on the nodes of its surface."""
 
+    def build(self):
+        params = TypeAdapter(FePlateParams).validate_json(json.dumps(PARAMS[self.name]))
+        structure = FePlate(params, Resources(communicator=COMMUNICATOR))
+        nodes, glued = len(structure.surface), self.name == "glued"
+        static = {"node_load.added_mass": np.full(nodes, 1e-5)} if glued else {}
+        structure.bind(static, frozenset({"node_load", *["node_glue"] * glued}))
+        return structure
 
-def fields(structure, name):
-    """Forces on the nodes of the surface, and of glued particles their mass too."""
-    if name not in FORCED:
-        return {}
-    nodes, steps = len(structure.surface), structure.accumulated.steps
-    number = np.arange(nodes)
-    force = 50.0 * np.sin(np.add.outer(number, np.arange(3.0)) + 0.1 * steps)
-    if name != "glued":
-        return {"node_load.force": force}
-    added = np.where(number < 5 * (steps // 20), 0.0, 1e-5)
-    return {"node_load.force": 20.0 * force, "node_mass.added": added}
-
-
-def go(structure, name, steps):
-    for _ in range(steps):
-        structure.take(fields(structure, name))
-        structure.step(structure.stable_dt())
-
-
-def results(structure):
-    totals = structure.totals()
-    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal, totals.work]
-    numbers += [*totals.momentum, *totals.angular_momentum, structure.stable_dt()]
-    warned = np.array(sorted(structure.warnings().items()), dtype=str)
-    seen = {f"view {name}": array for name, array in structure.view().items()}
-    walls = {f"walls {name}": array for name, array in structure.walls().items()}
-    described = {f"described {name}": array for name, array in structure.describe().items()}
-    more = {
-        "totals": np.array(numbers),
-        "warned": warned,
-        "notes": np.array(structure.notes(), str),
-    }
-    return {**outputs_of(structure), **seen, **walls, **described, **more}
-
-
-def run(name, steps, folder, earlier, written=""):
-    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
-    structure = make(name)
-    joined = frozenset({"node_load"} | ({"node_glue"} if name == "glued" else set()))
-    nodes = len(structure.surface)
-    structure.bind(
-        {"node_load.added_mass": np.full(nodes, 1e-5)} if name == "glued" else {}, joined
-    )
-    if earlier:
-        structure.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
-    go(structure, name, steps)
-    state, reached = structure.save(), results(structure)
-    if WORLD.rank == 0:
-        path = f"{folder}/{name}-{WORLD.size}"
-        if not earlier:
-            np.savez(f"{path}-state.npz", **state)
-        saved = {f"state {key}": array for key, array in state.items()}
-        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **saved)
-
-
-def main(folder, steps, earlier, names):
-    for name in names.split(","):
-        run(name, int(steps), folder, earlier if earlier != "0" else "")
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+    def inputs(self):
+        """Forces on the nodes of the surface, and of glued particles their mass too."""
+        if self.name not in FORCED:
+            return {}
+        number = np.arange(len(self.solver.surface))
+        force = 50.0 * np.sin(np.add.outer(number, np.arange(3.0)) + 0.1 * self.steps)
+        if self.name != "glued":
+            return {"node_load.force": force}
+        added = np.where(number < 5 * (self.steps // 20), 0.0, 1e-5)
+        return {"node_load.force": 20.0 * force, "node_mass.added": added}

@@ -8,7 +8,7 @@ from rank_runs import differences, from_states, from_the_start
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("gas_on_ranks.py")
-NAMES = ("bodies", "vortex", "steady")
+NAMES = ("bodies", "vortex", "steady", "sphere", "tube")
 STEPS = 60  # with holes cut again
 folder = from_the_start(PROGRAM, NAMES, STEPS)
 resumed = from_states(PROGRAM, NAMES, 10)
@@ -26,5 +26,10 @@ def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
 
 def test_the_case_with_bodies_cuts_holes_again(folder):
     run = np.load(folder / "bodies-1.npz")
-    assert run["moving/centre"][1, 0] > -1.1
-    assert run["moving/fresh_count"] > 0
+    assert run["state moving/centre"][1, 0] > -1.1
+    assert run["state moving/fresh_count"] > 0
+
+
+def test_a_failed_step_is_told_as_on_one_rank(folder):
+    said = str(np.load(folder / "tube-2.npz")["failure"])
+    assert "density and pressure must stay above 0" in said

@@ -1,9 +1,7 @@
 """What test_lattice_ranks.py runs on several ranks; rank 0 writes what came out."""
 
-import sys
-
 import numpy as np
-from mpi4py import MPI
+from solver_run import WORLD, SolverRun
 
 from quintet.components.particle_dynamics.component import ParticleLattice
 from quintet.components.particle_dynamics.params import (
@@ -15,9 +13,8 @@ from quintet.components.particle_dynamics.params import (
     ParticleLatticeParams,
     SevenRootForce,
 )
-from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.component import Resources
 
-WORLD = MPI.COMM_WORLD
 A, MASS, TOP = 0.01, 1e-3, 50.0  # m, kg, Hz
 UNIT = MASS * (A * 2.0 * np.pi * TOP) ** 2  # J
 
@@ -58,46 +55,22 @@ def params(name):
     return ParticleLatticeParams(lattice=lattice, boltzmann=1.0, **force, **keys)
 
 
-def make(name):
-    return ParticleLattice(params(name), Resources(communicator=WORLD))
+class Run(SolverRun):
+    """A case of a lattice, with a wall whose temperature changes from step to step."""
 
+    def build(self):
+        return ParticleLattice(params(self.name), Resources(communicator=WORLD))
 
-def go(lattice, steps):
-    for k in range(steps):
-        warm = np.full(len(lattice.wall.rows), (1.0 + k % 3) * 1e-4 * UNIT)
-        lattice.take({"wall_temperature.temperature": warm})
-        lattice.step(lattice.stable_dt())
+    def inputs(self):
+        warm = np.full(len(self.solver.wall.rows), (1.0 + self.steps % 3) * 1e-4 * UNIT)
+        return {"wall_temperature.temperature": warm}
 
-
-def results(lattice):
-    totals = lattice.totals()
-    numbers = [totals.mass, totals.kinetic, totals.internal, totals.work, *totals.momentum]
-    warned = np.array(sorted(lattice.warnings()), dtype=str)
-    return {**outputs_of(lattice), "totals": np.array(numbers), "warned": warned}
-
-
-def run(name, steps, folder, earlier):
-    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
-    lattice = make(name)
-    if earlier:
-        lattice.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
-    go(lattice, steps)
-    state, reached = lattice.save(), results(lattice)
-    # What was saved on each rank brings it back.
-    go(lattice, 3)
-    lattice.load(state)
-    again = results(lattice)
-    if WORLD.rank == 0:
-        assert all(again[key].tobytes() == value.tobytes() for key, value in reached.items())
-        path = f"{folder}/{name}-{WORLD.size}"
-        np.savez(f"{path}-state.npz", **state)
-        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **state)
-
-
-def main(folder, steps, earlier, names):
-    for name in names.split(","):
-        run(name, int(steps), folder, int(earlier))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+    def results(self):
+        """What the base says, after the state that each rank saved was brought back."""
+        saved, reached = self.save(), super().results()
+        self.advance(3)
+        self.load(saved)
+        again = super().results()
+        if WORLD.rank == 0:
+            assert all(again[key].tobytes() == value.tobytes() for key, value in reached.items())
+        return reached

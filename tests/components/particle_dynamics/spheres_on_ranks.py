@@ -1,19 +1,17 @@
 """What test_spheres_ranks.py runs on several ranks; rank 0 writes what came out."""
 
 import json
-import sys
-from itertools import pairwise
 
 import numpy as np
-from mpi4py import MPI
 from pydantic import TypeAdapter
+from solver_run import COMMUNICATOR, SolverRun
 
 from quintet.components.particle_dynamics.spheres.component import ParticleSpheres
 from quintet.components.particle_dynamics.spheres.params import ParticleSpheresParams
-from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
 
-WORLD = MPI.COMM_WORLD
+LONG = "too long steps"  # a case
 R = 0.01  # m
 RANDOM = np.random.default_rng(5)
 
@@ -46,7 +44,7 @@ STREAM["copies"] = {"number": [4, 5, 5], "spacing": [0.06, 0.06, 0.06], "interva
 PARAMS = {
     "gas": {**crowd((6, 5, 4), 1.2), "restitution": 0.9},
     "pile": {**crowd((4, 4, 4), 1.05), "restitution": 0.5, "gravity": [0.0, 0.0, -9.81]},
-    "too long steps": {**crowd((3, 3, 2), 1.2), "restitution": 0.7},
+    LONG: {**crowd((3, 3, 2), 1.2), "restitution": 0.7},
     "row": {"spheres": [*reversed(ROW), STRIKER], "restitution": 0.99},
     "streams": {  # that are launched one after another and pass through each other
         "spheres": [
@@ -71,103 +69,33 @@ PARAMS = {
 }
 
 
-def make(name):
-    params = TypeAdapter(ParticleSpheresParams).validate_json(json.dumps(PARAMS[name]))
-    return ParticleSpheres(params, Resources(communicator=WORLD if WORLD.size > 1 else None))
+class Run(SolverRun):
+    """A case of spheres under forces, torques and heat that change from step to step."""
 
+    def build(self):
+        params = TypeAdapter(ParticleSpheresParams).validate_json(json.dumps(PARAMS[self.name]))
+        return ParticleSpheres(params, Resources(communicator=COMMUNICATOR))
 
-def loads(spheres, step):
-    """Forces, torques and heat that change from step to step."""
-    number = np.arange(spheres.items())
-    wave = np.sin(number[:, None] + 0.3 * step + np.arange(3))
-    return {
-        "load.force": 2e-2 * wave,
-        "load.torque": 1e-5 * wave[:, ::-1],
-        "heat.heat_flow": 5.0 * wave[:, 0],
-    }
+    def inputs(self):
+        number = np.arange(self.solver.items())
+        wave = np.sin(number[:, None] + 0.3 * self.steps + np.arange(3))
+        return {
+            "load.force": 2e-2 * wave,
+            "load.torque": 1e-5 * wave[:, ::-1],
+            "heat.heat_flow": 5.0 * wave[:, 0],
+        }
 
+    def step_length(self):
+        """A step as it comes; far too long in one case."""
+        return (20.0 if self.name == LONG else 1.0) * min(self.solver.stable_dt(), 2e-3)
 
-def go(spheres, first, steps):
-    """Steps as they come, from the number of the first on; far too long ones of few spheres."""
-    longest = 20.0 if spheres.items() == 18 else 1.0
-    for step in range(first, first + steps):
-        spheres.take(loads(spheres, step))
-        spheres.step(longest * min(spheres.stable_dt(), 2e-3))
-
-
-def results(spheres):
-    """All that partners, files and pictures get, and what is said."""
-    totals = spheres.totals()
-    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
-    numbers += [*totals.momentum, *totals.angular_momentum, spheres.stable_dt()]
-    warned = np.array(sorted(spheres.warnings().values()), dtype=str)
-    seen = {f"view {name}": array for name, array in spheres.view().items()}
-    stated = {f"described {key}": array for key, array in spheres.describe().items()}
-    everything = {**outputs_of(spheres), **seen, **stated}
-    return everything | {"totals": np.array(numbers), "warned": warned}
-
-
-def failure(spheres):
-    """What a step says under a load that is not a number."""
-    load = np.zeros((spheres.items(), 3))
-    load[[3, 7]] = np.nan
-    spheres.take({"load.force": load})
-    try:
-        spheres.step(1e-3)
-    except StepError as error:
-        return str(error)
-    return "nothing"
-
-
-def run(name, steps, folder, earlier, first):
-    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
-    spheres = make(name)
-    if earlier:
-        spheres.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
-    go(spheres, first, steps)
-    state, reached = spheres.save(), results(spheres)
-    reached["failure"] = np.array(failure(spheres))
-    if WORLD.rank == 0:
-        path = f"{folder}/{name}-{WORLD.size}"
-        np.savez(f"{path}-state.npz", **state)
-        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **state)
-
-
-def snapshots(name, steps, folder):
-    """Write a state after each of some numbers of steps, rising."""
-    spheres, reached = make(name), 0
-    for step in steps:
-        go(spheres, reached, step - reached)
-        reached, state = step, spheres.save()
-        if WORLD.rank == 0:
-            np.savez(f"{folder}/{name}-{step}-of-{WORLD.size}.npz", **state)
-
-
-def resume(name, windows, folder, ranks):
-    """Go on with each snapshot but the last of some ranks to the next; compare with that."""
-    for first, last in pairwise(windows):
-        spheres = make(name)
-        spheres.load(dict(np.load(f"{folder}/{name}-{first}-of-{ranks}.npz")))
-        go(spheres, first, last - first)
-        state = spheres.save()
-        if WORLD.rank == 0:
-            expected = np.load(f"{folder}/{name}-{last}-of-{ranks}.npz")
-            assert set(expected.files) == set(state)
-            wrong = [k for k in state if state[k].tobytes() != expected[k].tobytes()]
-            assert not wrong, (name, first, last, wrong)
-
-
-def main(folder, steps, earlier, names, first="0"):
-    for name in names.split(","):
-        if "," in steps:
-            windows = [int(step) for step in steps.split(",")]
-            if int(earlier):
-                resume(name, windows, folder, int(earlier))
-            else:
-                snapshots(name, windows, folder)
-        else:
-            run(name, int(steps), folder, int(earlier), int(first))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+    def failure(self):
+        """What a step says under a load that is not a number."""
+        load = np.zeros((self.solver.items(), 3))
+        load[[3, 7]] = np.nan
+        self.solver.take({"load.force": load})
+        try:
+            self.solver.step(1e-3)
+        except StepError as error:
+            return str(error)
+        return "nothing"

@@ -1,8 +1,7 @@
 """Runs of a solver on several MPI ranks for its tests, and what differs between them.
 
-The program of a solver takes a folder, a number of steps, the number of ranks that left the state
-from which it goes on (0: it begins at the start), and names of cases. On rank 0 it writes the state
-and all results: ``NAME-RANKS-state.npz`` and ``NAME-RANKS.npz``, or ``NAME-RANKS-EARLIER.npz``.
+``NAME-RANKS.npz`` holds the state and all results of a run from the start, and
+``NAME-RANKS-EARLIER.npz`` of one that goes on from the state of as many ranks as EARLIER says.
 """
 
 from pathlib import Path
@@ -10,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-MOVED_BORDERS = Path(__file__).with_name("moved_borders.py")
+RANK_PROGRAM = Path(__file__).with_name("rank_program.py")
+MOVED = "moved"
 
 
 def differences(folder, first, second):
@@ -20,20 +20,20 @@ def differences(folder, first, second):
     return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
 
 
-def from_the_start(program, names, steps, *more, ranks=(1, 2)):
+def from_the_start(program, names, steps, ranks=(1, 2)):
     """Return a fixture: a folder with runs of all cases on each number of ranks."""
 
     @pytest.fixture(scope="module")
     def folder(tmp_path_factory, on_ranks):
-        folder = tmp_path_factory.mktemp("ranks")
+        folder, cases = tmp_path_factory.mktemp("ranks"), ",".join(names)
         for number in ranks:
-            on_ranks(program, number, folder, steps, 0, ",".join(names), *more, seconds=300)
+            on_ranks(RANK_PROGRAM, number, program, folder, steps, 0, cases, seconds=300)
         return folder
 
     return folder
 
 
-def from_states(program, names, steps, *more, pairs=((1, 1), (3, 2))):
+def from_states(program, names, steps, pairs=((1, 1), (3, 2))):
     """Return a fixture: runs on some ranks that go on from the states of others.
 
     Three ranks have their borders elsewhere than they would have them.
@@ -42,11 +42,8 @@ def from_states(program, names, steps, *more, pairs=((1, 1), (3, 2))):
     @pytest.fixture(scope="module")
     def resumed(folder, on_ranks):
         for ranks, earlier in pairs:
-            arguments = (folder, steps, earlier, ",".join(names), *more)
-            if ranks == 3:
-                on_ranks(MOVED_BORDERS, ranks, program, *arguments, seconds=300)
-            else:
-                on_ranks(program, ranks, *arguments, seconds=300)
+            words = [program, folder, steps, earlier, ",".join(names), *[MOVED] * (ranks == 3)]
+            on_ranks(RANK_PROGRAM, ranks, *words, seconds=300)
         return folder
 
     return resumed

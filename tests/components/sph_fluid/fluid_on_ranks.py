@@ -1,22 +1,16 @@
 """What test_sph_fluid_ranks.py runs on several ranks; rank 0 writes what came out."""
 
 import re
-import sys
-from pathlib import Path
 
 import numpy as np
-from mpi4py import MPI
-
-sys.path.append(str(Path(__file__).parent))
-
 from fluid_params import fluid_params
 from sampled_bodies import BOX, fill, mirrors
+from solver_run import COMMUNICATOR, WORLD, SolverRun
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
 
-WORLD = MPI.COMM_WORLD
 SPACING, SIZE = 0.05, np.full(3, 0.2)  # m
 ORIGIN = (0.0, 0.0, 0.0)
 TANK = (ORIGIN, (1.6, 0.4, 0.8))
@@ -82,25 +76,25 @@ PARAMS = {
 }
 
 
-def make(name):
-    params = fluid_params(spacing=SPACING, **({"sound_speed": 40.0} | PARAMS[name]))
-    communicator = WORLD if WORLD.size > 1 else None
-    threads = 2 if name == "dam" and WORLD.size > 1 else 1
-    return SphFluid(params, Resources(threads, communicator=communicator))
+class Run(SolverRun):
+    """A case of a fluid; in one of them a box of samples is pushed through it."""
 
+    def build(self):
+        params = fluid_params(spacing=SPACING, **({"sound_speed": 40.0} | PARAMS[self.name]))
+        threads = 2 if self.name == "dam" and WORLD.size > 1 else 1
+        fluid = SphFluid(params, Resources(threads, communicator=COMMUNICATOR))
+        if self.name == "body":
+            self.arm, normal, volume = fill(BOX, SIZE, SPACING, 0.5 * SPACING)
+            self.mirror = mirrors(BOX, SIZE, self.arm, normal)
+            static = {"surface.normal": normal, "surface.volume": volume}
+            static["surface.body"] = np.zeros(len(normal))
+            fluid.bind(static, frozenset({"surface"}))
+            fluid.prime(self.inputs())
+        return fluid
 
-class Body:
-    """A box of samples that is pushed through the fluid."""
-
-    def __init__(self, fluid):
-        arm, normal, volume = fill(BOX, SIZE, SPACING, 0.5 * SPACING)
-        self.arm, self.normal = arm, normal
-        self.mirror = mirrors(BOX, SIZE, arm, normal)
-        static = {"surface.normal": normal, "surface.volume": volume}
-        fluid.bind(static | {"surface.body": np.zeros(len(arm))}, frozenset({"surface"}))
-        self.time = 0.0
-
-    def fields(self):
+    def inputs(self):
+        if self.name != "body":
+            return {}
         t = self.time
         place = np.array([0.9 - 0.5 * t, 0.2, 0.3 + 0.05 * np.sin(9.0 * t)])
         velocity = np.array([-0.5, 0.0, 0.45 * np.cos(9.0 * t)])
@@ -110,71 +104,18 @@ class Body:
             "surface.mirror": place + self.mirror,
         }
 
-
-def go(fluid, body, steps):
-    for _ in range(steps):
-        if body is not None:
-            fluid.take(body.fields())
-        dt = fluid.stable_dt()
-        fluid.step(dt)
-        if body is not None:
-            body.time += dt
-
-
-def failure(fluid):
-    """What a step says that no fluid bears, without the rank that it names, which is right."""
-    text = "nothing"
-    try:
-        fluid.step(0.05)
-    except StepError as error:
-        text = str(error)
-    text = WORLD.bcast(text)
-    if WORLD.size > 1:
-        words = re.search(r"particle (\d+)( \(rank (\d+) on \S+\))", text)
-        owns = int(words[1]) in fluid.state.identity[: fluid.state.fluid]
-        assert owns == (WORLD.rank == int(words[3])), text
-        text = text.replace(words[2], "")
-    return text
-
-
-def results(fluid):
-    totals = fluid.totals()
-    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
-    numbers += [*totals.momentum, *totals.angular_momentum]
-    warned = np.array(sorted(fluid.warnings()), dtype=str)
-    view = dict(fluid.view())
-    ranks = view.pop("rank", np.zeros(0))
-    assert len(ranks) == (len(view["points"]) if WORLD.size > 1 else 0) or WORLD.rank
-    assert set(ranks) == set(range(WORLD.size)) or WORLD.size == 1
-    seen = {f"view {name}": array for name, array in view.items()}
-    return {**outputs_of(fluid), **seen, "totals": np.array(numbers), "warned": warned}
-
-
-def run(name, steps, folder, earlier):
-    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
-    fluid = make(name)
-    body = Body(fluid) if name == "body" else None
-    if body is not None:
-        fluid.prime(body.fields())
-    if earlier:
-        state = dict(np.load(f"{folder}/{name}-{earlier}-state.npz"))
-        if body is not None:
-            body.time = float(state.pop("time"))
-        fluid.load(state)
-    go(fluid, body, steps)
-    state, reached = fluid.save(), results(fluid)
-    reached["failure"] = np.array(failure(fluid))
-    if WORLD.rank == 0:
-        path = f"{folder}/{name}-{WORLD.size}"
-        time = {} if body is None else {"time": np.array(body.time)}
-        np.savez(f"{path}-state.npz", **state, **time)
-        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **state)
-
-
-def main(folder, steps, earlier, names):
-    for name in names.split(","):
-        run(name, int(steps), folder, int(earlier))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+    def failure(self):
+        """What a step says that no fluid bears, without the rank that it names, which is right."""
+        text = "nothing"
+        try:
+            self.solver.step(0.05)
+        except StepError as error:
+            text = str(error)
+        text = WORLD.bcast(text)
+        if WORLD.size > 1:
+            words = re.search(r"particle (\d+)( \(rank (\d+) on \S+\))", text)
+            state = self.solver.state
+            owns = int(words[1]) in state.identity[: state.fluid]
+            assert owns == (WORLD.rank == int(words[3])), text
+            text = text.replace(words[2], "")
+        return text

@@ -2,18 +2,16 @@
 
 import json
 import os
-import sys
 
 import numpy as np
-from mpi4py import MPI
 from pydantic import TypeAdapter
+from solver_run import COMMUNICATOR, WORLD, SolverRun
 
 from quintet.components.sph_solid.component import SphSolid
 from quintet.components.sph_solid.params import SphSolidParams
-from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
 
-WORLD = MPI.COMM_WORLD
 ORIGIN = [0.0, 0.0, 0.0]
 PLATE = {"lowest": ORIGIN, "highest": [0.08, 0.08, 0.02], "material": "steel"}
 BALL = {
@@ -57,80 +55,37 @@ PARAMS = {
 }
 
 
-def make(name):
-    params = TypeAdapter(SphSolidParams).validate_json(json.dumps(PARAMS[name]))
-    return SphSolid(params, Resources(communicator=WORLD if WORLD.size > 1 else None))
+class Run(SolverRun):
+    """A case of a solid; some particles are glued to a mesh that moves and lets some go."""
 
+    def build(self):
+        params = TypeAdapter(SphSolidParams).validate_json(json.dumps(PARAMS[self.name]))
+        solid = SphSolid(params, Resources(communicator=COMMUNICATOR))
+        glue = {"glued", "glue_activity", "glued_load"} if solid.describe() else ()
+        solid.bind({}, frozenset(glue))
+        return solid
 
-def fields(solid):
-    """Motion of the mesh that carries the glued particles, some of which it lets go."""
-    state = solid.state
-    if not len(state.active):
-        return {}
-    number = np.arange(len(state.active))
-    velocity = np.zeros((len(number), 3))
-    velocity[:, 2] = -20.0 * np.sin(3e5 * state.time) * number / len(number)
-    active = np.where(number < 5 * (state.steps // 30), 0.0, 1.0)
-    return {"glued.velocity": velocity, "glue_activity.active": active}
+    def inputs(self):
+        number = np.arange(len(self.solver.state.active))
+        if not len(number):
+            return {}
+        velocity = np.zeros((len(number), 3))
+        velocity[:, 2] = -20.0 * np.sin(3e5 * self.time) * number / len(number)
+        active = np.where(number < 5 * (self.steps // 30), 0.0, 1.0)
+        return {"glued.velocity": velocity, "glue_activity.active": active}
 
-
-def go(solid, steps):
-    for _ in range(steps):
-        solid.take(fields(solid))
-        solid.step(solid.stable_dt())
-
-
-def results(solid):
-    totals = solid.totals()
-    numbers = [totals.mass, totals.kinetic, totals.potential, totals.internal]
-    numbers += [*totals.momentum, *totals.angular_momentum]
-    warned = np.array(sorted(solid.warnings()), dtype=str)
-    view = dict(solid.view())
-    ranks = view.pop("rank", np.zeros(0))
-    assert len(ranks) == (len(view["points"]) if WORLD.size > 1 else 0) or WORLD.rank
-    assert set(ranks) == set(range(WORLD.size)) or WORLD.size == 1
-    seen = {f"view {name}": array for name, array in view.items()}
-    return {**outputs_of(solid), **seen, "totals": np.array(numbers), "warned": warned}
-
-
-def failure(solid, identity=700):
-    """What a step says of a particle whose velocity is no number, and by which rank it is owned."""
-    rows = np.flatnonzero(solid.state.identity == identity)
-    solid.state.velocity[rows] = np.nan
-    text = "nothing"
-    try:
-        solid.step(solid.stable_dt())
-    except StepError as error:
-        text = str(error)
-    text, owner = WORLD.bcast(text), WORLD.allreduce(WORLD.rank if len(rows) else 0)
-    if WORLD.size > 1:
-        assert f"particle {identity} (rank {owner} on {os.uname().nodename}) of body" in text, text
-        text = text.replace(f" (rank {owner} on {os.uname().nodename})", "")
-    return text
-
-
-def run(name, steps, folder, earlier):
-    """Go on from a state of as many ranks as `earlier` says, or from the start; write the end."""
-    solid = make(name)
-    described = solid.describe()
-    joined = frozenset({"glued", "glue_activity", "glued_load"} if described else ())
-    solid.bind({}, joined)
-    if earlier:
-        solid.load(dict(np.load(f"{folder}/{name}-{earlier}-state.npz")))
-    go(solid, steps)
-    state, reached = solid.save(), results(solid)
-    reached["failure"] = np.array(failure(solid))
-    if WORLD.rank == 0:
-        path = f"{folder}/{name}-{WORLD.size}"
-        np.savez(f"{path}-state.npz", **state)
-        reached |= {f"described {key}": array for key, array in described.items()}
-        np.savez(f"{path}-{earlier}.npz" if earlier else f"{path}.npz", **reached, **state)
-
-
-def main(folder, steps, earlier, names):
-    for name in names.split(","):
-        run(name, int(steps), folder, int(earlier))
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+    def failure(self, identity=700):
+        """What is said of a particle whose velocity is no number; the rank it names is right."""
+        solid, text = self.solver, "nothing"
+        rows = np.flatnonzero(solid.state.identity == identity)
+        solid.state.velocity[rows] = np.nan
+        try:
+            solid.step(solid.stable_dt())
+        except StepError as error:
+            text = str(error)
+        text, owner = WORLD.bcast(text), WORLD.allreduce(WORLD.rank if len(rows) else 0)
+        if WORLD.size > 1:
+            place = f" (rank {owner} on {os.uname().nodename})"
+            assert f"particle {identity}{place} of body" in text, text
+            text = text.replace(place, "")
+        return text
