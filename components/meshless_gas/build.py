@@ -59,6 +59,7 @@ class Domain(NamedTuple):
     patches: Array  # (p, PATCH_COLUMNS), what the scene says of each boundary
     mirrored: Rows  # (s,) nodes of walls that are planes of symmetry
     ghosts: Rows | None = None  # (r,) whose gradients a rank needs, from the first; None: of all
+    written: Rows | None = None  # (w,) boundary nodes whose states a rank computes; None: all
     notes: tuple[str, ...] = ()  # what was changed about the neighbours that the scene asks for
     doubts: tuple[str, ...] = ()  # why no result on this cloud is to be trusted
 

@@ -51,25 +51,26 @@ class MeshlessGas(Component):
         domain = self.motion.domain
         self.state = initial_state(params, domain.cloud, self.team)
         self.motion.soften_start(self.state)
-        self.all_ranks = features.ranks(resources)
-        nodes, ghosts = domain.cloud.nodes, len(domain.cloud.owner)
-        self.fluxes = Fluxes.empty(nodes, ghosts, self.all_ranks.room)
+        self.nodes = domain.cloud.nodes
         self.friction = features.friction(params, self.motion, self.team)
         axis = features.axis_terms(params, self.friction, self.team)
         particles = features.particles(params, self.motion)
         self.parts = [self.friction, self.motion, *axis, *particles]  # in the order of their terms
-        self.scheme = SpatialScheme(
-            params, self.motion, self.parts, self.fluxes, self.team, self.all_ranks
-        )
         self.wall_loads = features.walls(params, self.motion, self.friction)
-        self.monitor = features.monitor(
-            params, self.wall_loads, self.fluxes.primitive, domain.cloud.nodes
-        )
         self.gauges = Gauges(params, domain, self.team)
         self.coarse = coarse_clouds(params, domain)
-        parts = (*self.parts, self.gauges, self.wall_loads, self.monitor)
-        self.readers = port_readers(params, self.state, self.fluxes, self.motion, parts, self.team)
-        self.motion.divide(self.all_ranks.divide)
+        self.all_ranks = ranks = features.ranks(params, resources)
+        parts = (*self.parts, self.gauges, self.wall_loads)
+        ranks.divide(self.motion, parts, self.state)
+        domain = self.motion.domain
+        self.fluxes = Fluxes.empty(domain.cloud.nodes, len(domain.cloud.owner), ranks.room)
+        self.scheme = SpatialScheme(params, self.motion, self.parts, self.fluxes, self.team, ranks)
+        self.monitor = features.monitor(
+            params, self.wall_loads, self.fluxes.primitive, domain, ranks
+        )
+        self.readers = port_readers(
+            params, self.state, self.fluxes, self.motion, (*parts, self.monitor), self.team, ranks
+        )
         self._continue_from_state()
 
     def describe(self) -> Fields:
@@ -127,32 +128,26 @@ class MeshlessGas(Component):
 
     def _advance(self, dt: float, old: float, new: float, is_last: bool) -> None:
         """Advance all nodes by a stage; those of walls of symmetry move along them."""
-        domain, state, work = self.motion.domain, self.state, self.fluxes
-        nodes = self.all_ranks.share(domain).inner
+        domain, state, work, ranks = self.motion.domain, self.state, self.fluxes, self.all_ranks
+        nodes, first = ranks.share(domain).inner, ranks.first(domain)
         wrong = max(self.team.run(
             advance, len(nodes), nodes, work.start, work.residual, dt,
             self.scheme.steps, old, new, self.params.gas.gamma, state.conservative, work.primitive,
             fewest=LIGHT,
         ))  # fmt: skip
-        self.all_ranks.gather(domain, work.primitive)
+        ranks.exchange(domain, work.primitive)
         if is_last or len(domain.mirrored):  # else nothing needs those of other ranks
-            self.all_ranks.gather(domain, state.conservative)
-        wrong = int(
-            self.all_ranks.greatest(wrong + self.all_ranks.first(domain) if wrong >= 0 else -1)
-        )
-        if wrong >= 0:
-            node = domain.inner[wrong]
-            one_sided = -math.inf
-            if node in nodes:  # else another rank has its stencil
-                rows = np.array([node])
-                sided = sidedness(
-                    domain.cloud, domain.stencils, rows, self.params.planar, self.team
-                )
-                one_sided = float(sided[0])
-            one_sided = self.all_ranks.greatest(one_sided)
-            place, share = domain.cloud.positions[node], dt / self.scheme.shortest_step
+            ranks.exchange_conserved(domain, state.conservative)
+        failed = ranks.greatest(first + wrong if wrong >= 0 else -1)  # among all
+        if failed >= 0:
+            mine: list[int] = [wrong] if wrong >= 0 and first + wrong == failed else []
+            rows = nodes[mine].astype(np.int64)
+            sided = sidedness(domain.cloud, domain.stencils, rows, self.params.planar, self.team)
+            numbers = (domain.cloud.positions[rows], work.primitive[rows], sided[:, None])
+            where = ranks.from_owner(np.hstack(numbers).ravel())
+            share = dt / self.scheme.shortest_step
             raise StepError(
-                diagnostics.failure(place, work.primitive[node], state.time, share, one_sided)
+                diagnostics.failure(where[:3], where[3:8], state.time, share, float(where[8]))
             )
         if len(domain.mirrored):
             hold_along(domain.mirrored, domain.cloud.normals, state.conservative, work.primitive)
@@ -167,7 +162,7 @@ class MeshlessGas(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the fields of the ports that are wanted."""
-        ports = {key.partition(".")[0] for key in wanted}
+        ports = sorted({key.partition(".")[0] for key in wanted})  # as ranks sum over all nodes
         fields: dict[str, Array] = {}
         for reader in (reader for port in ports for reader in self.readers[port]):
             fields.update(reader())
@@ -175,7 +170,9 @@ class MeshlessGas(Component):
 
     def save(self) -> Fields:
         """Copy out all state; boundary nodes and ghosts follow from it."""
+        states = ("conservative", "primitive")
         saved = self.state.save() | self.monitor.save()
+        saved |= {name: self.all_ranks.collect(self.motion.domain, saved[name]) for name in states}
         for part in self.parts:
             saved |= part.save()
         return saved
@@ -184,7 +181,9 @@ class MeshlessGas(Component):
         """Come back to a saved state, bit for bit."""
         for part in (*self.parts, self.monitor):
             part.restore(state)
-        self.state.load(state)
+        rows = self.all_ranks.rows_of
+        states = {name: rows(state[name]) for name in ("conservative", "primitive")}
+        self.state.load({**state, **states})
         self._continue_from_state()
 
     def notes(self) -> tuple[str, ...]:
@@ -195,7 +194,9 @@ class MeshlessGas(Component):
         """Doubts about the cloud and the order, and about inflows at which waves have arrived."""
         doubts = self.motion.domain.doubts
         warnings = self.coarse | ({"neighbours": " ".join(doubts)} if doubts else {})
-        return warnings | blocked_inflows(self.params, self.state, self.motion.domain)
+        return warnings | blocked_inflows(
+            self.params, self.state, self.motion.domain, self.all_ranks
+        )
 
     def final_warnings(self) -> dict[str, str]:
         """Doubts about a flow that was to settle and has not."""
@@ -203,12 +204,13 @@ class MeshlessGas(Component):
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of all nodes."""
-        return diagnostics.totals(self.params, self.state, self.motion.domain.cloud, self.team)
+        domain, ranks = self.motion.domain, self.all_ranks
+        return diagnostics.totals(self.params, self.state, domain, self.team, ranks)
 
     def view(self) -> Fields:
         """Nodes, and the state at each."""
         domain, ranks = self.motion.domain, self.all_ranks
-        self.scheme.write_gradients(ranks.shown(domain), ranks.share(domain).ghosts)
+        self.scheme.write_gradients(*ranks.around_shown(domain))
         return view.view(self.state, domain, self.fluxes, self.params, ranks)
 
     def walls(self) -> Fields:
@@ -217,4 +219,4 @@ class MeshlessGas(Component):
 
     def items(self) -> int:
         """Count the nodes."""
-        return self.motion.domain.cloud.nodes
+        return self.nodes

@@ -4,7 +4,7 @@ import numpy as np
 
 from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import INNER, Cloud
+from quintet.components.meshless_gas.clouds.cloud import INNER
 from quintet.components.meshless_gas.exact_states import states_at
 from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
@@ -21,14 +21,19 @@ ROUNDING = 1e-12  # of the mass flow at the speed of sound
 
 
 def balance(
-    params: MeshlessGasParams, state: State, domain: Domain, fluxes: Fluxes, team: Team
+    params: MeshlessGasParams,
+    state: State,
+    domain: Domain,
+    fluxes: Fluxes,
+    team: Team,
+    ranks: Ranks,
 ) -> Fields:
     """Fields of the port `balance`."""
     counted = np.ones(5)
     if params.has_rings:  # across the axis whole rings have no momentum
         counted[2:4] = 0.0
     entered = counted * state.entered
-    now = counted * conserved(state.conservative, domain.cloud.volumes, team)
+    now = counted * ranks.conserved(domain, state.conservative, team)
     mass, energy = state.begun[0], state.begun[4]
     scale = np.array([mass, *[np.sqrt(2.0 * mass * energy)] * 3, energy])
     drift = (now - counted * state.begun - entered) / scale
@@ -53,14 +58,13 @@ def balance(
 
 def density_change(state: State, domain: Domain, fluxes: Fluxes, team: Team, ranks: Ranks) -> float:
     """Root mean square of the relative change of densities in the nodes' own steps."""
-    changes, nodes = fluxes.changes[: len(domain.inner)], ranks.share(domain).inner
-    first = ranks.first(domain)
+    nodes = ranks.share(domain).inner
+    changes = fluxes.changes[: len(nodes)]
     team.run(
         write_changes, len(nodes), nodes, fluxes.residual, fluxes.bounds, state.conservative,
-        changes[first : first + len(nodes)], fewest=LIGHT,
+        changes, fewest=LIGHT,
     )  # fmt: skip
-    ranks.gather_values(domain, changes)
-    return float(np.sqrt(changes.mean()))
+    return float(np.sqrt(ranks.mean(domain, changes)))
 
 
 def _through(domain: Domain, primitive: Array, gamma: float) -> Array:
@@ -71,9 +75,12 @@ def _through(domain: Domain, primitive: Array, gamma: float) -> Array:
     return np.where(np.abs(through) > ROUNDING * sound, through, 0.0)
 
 
-def errors(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) -> Fields:
+def errors(
+    params: MeshlessGasParams, state: State, domain: Domain, team: Team, ranks: Ranks
+) -> Fields:
     """Fields of the port `error`: over nodes within."""
-    inner = np.flatnonzero(cloud.kind[: cloud.nodes] == INNER)
+    cloud, rows = domain.cloud, ranks.answered(domain)
+    inner = rows.start + np.flatnonzero(cloud.kind[rows] == INNER)
     exact = np.empty((len(inner), 5))
 
     def write_exact(first: int, last: int) -> None:
@@ -81,9 +88,12 @@ def errors(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) ->
         exact[first:last] = states_at(params, places, state.time)
 
     team.run(write_exact, len(inner), fewest=WHOLESALE)
-    summed, largest = np.zeros(5), np.zeros(5)
-    add_errors(inner, cloud.volumes, state.primitive, exact, summed, largest)
-    mean = summed / cloud.volumes[inner].sum()
+    sums = np.zeros((2, 5))
+    ranks.in_turn(
+        lambda sums: add_errors(inner, cloud.volumes, state.primitive, exact, *sums), sums
+    )
+    summed, largest = sums
+    mean = summed / ranks.total(cloud.volumes[inner])
     return {
         "error.density": mean[:1],
         "error.velocity": mean[1:2],
@@ -103,12 +113,23 @@ def mach(primitive: Array, gas: Gas) -> Array:
     return np.asarray(np.sqrt(square * primitive[:, 0] / (gas.gamma * primitive[:, 4])))
 
 
-def totals(params: MeshlessGasParams, state: State, cloud: Cloud, team: Team) -> Totals:
+def totals(
+    params: MeshlessGasParams, state: State, domain: Domain, team: Team, ranks: Ranks
+) -> Totals:
     """Mass, momentum and energies of all nodes."""
-    volumes, positions = cloud.volumes[: cloud.nodes], cloud.positions[: cloud.nodes]
-    momenta = volumes[:, None] * state.conservative[:, 1:4]
-    kinetic = 0.5 * float((momenta * state.primitive[:, 1:4]).sum())
-    now = conserved(state.conservative, volumes, team)
+    cloud = domain.cloud
+    volumes, positions, conservative, primitive = (
+        ranks.collect(domain, array)
+        for array in (
+            cloud.volumes[: cloud.nodes],
+            cloud.positions[: cloud.nodes],
+            state.conservative,
+            state.primitive,
+        )
+    )
+    momenta = volumes[:, None] * conservative[:, 1:4]
+    kinetic = 0.5 * float((momenta * primitive[:, 1:4]).sum())
+    now = conserved(conservative, volumes, team)
     turning = np.cross(positions, momenta).sum(axis=0)
     if params.has_rings:
         now[2:4], turning[:] = 0.0, 0.0

@@ -4,7 +4,7 @@ Each is imported where a scene asks for it: a scene imports, and compiles, nothi
 out.
 """
 
-from quintet.components.meshless_gas.build import domain
+from quintet.components.meshless_gas.build import Domain, domain
 from quintet.components.meshless_gas.params import MeshlessGasParams, has_walls
 from quintet.components.meshless_gas.parts import (
     FixedNodes,
@@ -22,15 +22,20 @@ from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Resources
 
 
-def ranks(resources: Resources) -> Ranks:
+def ranks(params: MeshlessGasParams, resources: Resources) -> Ranks:
     """The ranks that share out the nodes."""
     communicator = resources.communicator
     if communicator is None or communicator.size == 1:
         return OneRank()
-    # Only a gas of several ranks loads mpi4py.
-    from quintet.components.meshless_gas.ranks.several import SeveralRanks
+    if params.moving is not None or params.particles is not None:
+        # Only a gas of several ranks loads mpi4py.
+        from quintet.components.meshless_gas.ranks.whole_cloud import WholeCloud
 
-    return SeveralRanks(communicator)
+        return WholeCloud(communicator)
+    # Only a gas of several ranks loads mpi4py.
+    from quintet.components.meshless_gas.ranks.divided_nodes import DividedNodes
+
+    return DividedNodes(communicator)
 
 
 def node_motion(params: MeshlessGasParams, team: Team) -> NodeMotion:
@@ -91,11 +96,13 @@ def walls(params: MeshlessGasParams, motion: NodeMotion, no_slip: WallFriction) 
     return WallLoads(params, motion.domain, no_slip)
 
 
-def monitor(params: MeshlessGasParams, loads: Walls, primitive: Array, nodes: int) -> Monitor:
+def monitor(
+    params: MeshlessGasParams, loads: Walls, primitive: Array, domain: Domain, ranks: Ranks
+) -> Monitor:
     """Judge of a flow that is to settle."""
     if params.steady is None:
         return TransientFlow()
     # Left out of scenes without `steady`.
     from quintet.components.meshless_gas.steady import SteadyMonitor
 
-    return SteadyMonitor(params.steady, loads, primitive, nodes)
+    return SteadyMonitor(params.steady, loads, primitive, domain, ranks)

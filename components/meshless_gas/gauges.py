@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.boundaries import Gas
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import Cloud
+from quintet.components.meshless_gas.clouds.cloud import Cloud, Whole
 from quintet.components.meshless_gas.diagnostics import mach, temperature
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import Part, Reader
@@ -45,6 +45,18 @@ class Gauges(Part):
         self.gas, self.cloud = params.gas, domain.cloud
         self.probed = nearest_rows(domain.cloud.positions[: domain.cloud.nodes], params.probes)
         self.lines = [line(domain.cloud, front, team) for front in params.fronts]
+
+    def reads(self) -> Whole:
+        """Nodes at the places."""
+        lines = (sampled.rows.ravel() for sampled in self.lines)
+        return np.concatenate([self.probed, *lines]).astype(np.int32)
+
+    def renumber(self, local: Whole, domain: Domain) -> None:
+        """Take the rows of nodes on this rank."""
+        self.cloud, self.probed = domain.cloud, local[self.probed].astype(np.int64)
+        self.lines = [
+            sampled._replace(rows=local[sampled.rows].astype(np.int64)) for sampled in self.lines
+        ]
 
     def readers(self, primitive: Array) -> Mapping[str, Reader]:
         """Readers of the ports `probes` and `fronts`."""

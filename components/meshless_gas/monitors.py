@@ -9,6 +9,7 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.clouds.cloud import INFLOW
 from quintet.components.meshless_gas.exact.riemann import Side, star
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.ranks.one import Ranks
 from quintet.components.meshless_gas.state import State
 from quintet.interfaces.component import Array
 
@@ -20,15 +21,19 @@ FEW, SHARE = 2, 0.25  # nodes, and share of those of the boundary, at which this
 SETTLING = 10.0  # spacings that what comes in must have run before it is judged
 
 
-def blocked_inflows(params: MeshlessGasParams, state: State, domain: Domain) -> dict[str, str]:
+def blocked_inflows(
+    params: MeshlessGasParams, state: State, domain: Domain, ranks: Ranks
+) -> dict[str, str]:
     """Say where a shock would leave through a supersonic inflow, which keeps its state instead."""
-    said = {}
+    said, answered = {}, ranks.answered(domain)
+    is_answered = (domain.edges >= answered.start) & (domain.edges < answered.stop)
     for number, (name, boundary) in enumerate(_patches(params), start=1):
         if boundary.state is None:
             continue
         density, *velocity, pressure = boundary.state.primitive(params.gas)
         place = np.flatnonzero(
-            (domain.cloud.kind[domain.edges] == INFLOW)
+            is_answered
+            & (domain.cloud.kind[domain.edges] == INFLOW)
             & (domain.cloud.patch[domain.edges] == number)
         )
         rows = domain.edges[place]
@@ -36,8 +41,17 @@ def blocked_inflows(params: MeshlessGasParams, state: State, domain: Domain) -> 
         sound = float(np.sqrt(params.gas.gamma * pressure / density))
         supersonic = into > sound
         supersonic &= into * state.time > SETTLING * domain.cloud.spacing[rows]
-        beside = _states_beside(state.primitive, domain, place)
-        strengths = np.zeros(len(rows))
+        numbers = (
+            domain.cloud.positions[rows],
+            into[:, None],
+            supersonic[:, None],
+            _states_beside(state.primitive, domain, place),
+        )
+        places, into, supersonic, beside = np.hsplit(
+            ranks.collect_answered(np.hstack(numbers)), (3, 4, 5)
+        )
+        into, supersonic = into[:, 0], supersonic[:, 0] > 0.0
+        strengths = np.zeros(len(places))
         for node in np.flatnonzero(supersonic & (beside[:, 2] > (1.0 + COMPRESSED) * pressure)):
             stream = Side(density, into[node], pressure)
             meeting = Side(*beside[node])
@@ -45,7 +59,7 @@ def blocked_inflows(params: MeshlessGasParams, state: State, domain: Domain) -> 
         # A shock from a corner of the boundary, as over a wedge, is met by one node or two.
         if (strengths > OUTGOING).sum() > max(FEW, SHARE * supersonic.sum()):
             k = int(strengths.argmax())
-            where = np.array2string(domain.cloud.positions[rows[k]], precision=4)
+            where = np.array2string(places[k], precision=4)
             said[f"boundaries.{name}"] = (
                 f"at {where} m gas comes in faster than sound at {pressure:.4g} Pa, and the gas "
                 f"beside it, at {beside[k, 2]:.4g} Pa, sends a shock out against it, which the "

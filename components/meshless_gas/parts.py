@@ -17,9 +17,22 @@ Reader = Callable[[], Fields]  # computes the fields of one port from the presen
 class Part:
     """Optional physics of a gas; a hook that a part does not define does nothing."""
 
+    couples_walls = False  # whether states of boundary nodes follow from those of others
+
     def describe(self) -> Fields:
         """Answer requests and state static fields."""
         return {}
+
+    def reads(self) -> Whole:
+        """Nodes and ghosts (r,) whose states the part reads, whichever rank they belong to."""
+        return np.zeros(0, np.int32)
+
+    def renumber(self, local: Whole, domain: Domain) -> None:
+        """Take the rows (n,) that a rank has for nodes and ghosts, -1 where none, and its domain.
+
+        It has rows for all boundary nodes and for all that the part reads, and computes the states
+        of some boundary nodes alone, `domain.written`.
+        """
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Take the static fields of partners, and the names of the ports that have one."""

@@ -62,6 +62,7 @@ class SpatialScheme:
             )  # fmt: skip
         for part in self.parts:
             part.write_walls(domain, work.primitive)
+        self.ranks.exchange_boundaries(work.primitive)
         self.team.run(
             write_ghost_states, len(cloud.owner), cloud.owner, cloud.turn, work.primitive,
             fewest=LIGHT,

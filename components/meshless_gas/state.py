@@ -29,7 +29,7 @@ class State:
         return {part.name: np.array(getattr(self, part.name)) for part in fields(self)}
 
     def load(self, saved: Fields) -> None:
-        """Come back to a saved state, in the same arrays."""
+        """Come back to a saved state, in the same arrays; a rank may hold some of its rows."""
         for name in ("conservative", "primitive", "entered", "begun"):
             getattr(self, name)[:] = saved[name]
         for name in ("time", "work", "change"):

@@ -4,7 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.parts import Monitor, Reader, Walls
+from quintet.components.meshless_gas.ranks.one import Ranks
 from quintet.components.meshless_gas.readings import Steady
 from quintet.interfaces.component import Array, Fields
 
@@ -20,11 +22,14 @@ LOADS = 0.05  # change of the forces on wall nodes, over their sum
 class SteadyMonitor(Monitor):
     """Judges, every so many steps, whether a flow has settled."""
 
-    def __init__(self, criteria: Steady, walls: Walls, primitive: Array, nodes: int) -> None:
-        self.criteria, self.walls, self.nodes = criteria, walls, nodes
+    def __init__(
+        self, criteria: Steady, walls: Walls, primitive: Array, domain: Domain, ranks: Ranks
+    ) -> None:
+        self.criteria, self.walls, self.domain, self.ranks = criteria, walls, domain, ranks
+        self.nodes, self.forces = domain.cloud.nodes, walls.forces(primitive).size
         self.memory = np.zeros(6)
         # Steps, densities of nodes and forces on walls at two marks, the older first.
-        self.marks = np.zeros((2, 1 + nodes + walls.forces(primitive).size))
+        self.marks = np.zeros((2, 1 + self.nodes + self.forces))
 
     @property
     def is_settled(self) -> bool:  # type: ignore[override]
@@ -66,8 +71,10 @@ class SteadyMonitor(Monitor):
         """Large changes since the older mark, in proportion to a quarter of the steps."""
         before, now = self.marks[0, 1:], self._mark(primitive)[1:]
         per_quarter = QUARTER / (1.0 - self.marks[0, 0] / self.memory[STEPS])
-        changes = np.abs(now[: self.nodes] / before[: self.nodes] - 1.0)
-        moving = per_quarter * float((changes > MOVED).mean())
+        rows = self.ranks.answered(self.domain)
+        changes = np.abs(now[rows] / before[rows] - 1.0)
+        many = self.ranks.total((changes > MOVED).astype(float))
+        moving = per_quarter * many / self.ranks.total(np.ones(len(changes)))
         drifts = []
         if moving > NODES:
             drifts.append(
@@ -90,8 +97,14 @@ class SteadyMonitor(Monitor):
 
     def save(self) -> dict[str, Array]:
         """Copy out the memory."""
-        return {"settling": self.memory.copy(), "settling_marks": self.marks.copy()}
+        steps, densities, forces = np.split(self.marks, (1, 1 + self.nodes), axis=1)
+        densities = self.ranks.collect(self.domain, densities.T).T
+        marks = np.hstack([steps, densities, forces])
+        return {"settling": self.memory.copy(), "settling_marks": marks}
 
     def restore(self, saved: Fields) -> None:
         """Return to a saved memory."""
-        self.memory[:], self.marks[:] = saved["settling"], saved["settling_marks"]
+        marks = saved["settling_marks"]
+        steps, densities, forces = np.split(marks, (1, marks.shape[1] - self.forces), axis=1)
+        self.memory[:] = saved["settling"]
+        self.marks[:] = np.hstack([steps, self.ranks.rows_of(densities.T).T, forces])

@@ -89,31 +89,31 @@ def turn_to_ghosts(cloud: Cloud, slopes: Array) -> None:
 def view(
     state: State, domain: Domain, fluxes: Fluxes, params: MeshlessGasParams, ranks: Ranks
 ) -> Fields:
-    """Nodes that are not left out; each rank has written the gradients of those that it shows."""
-    rows, shown, cloud = domain.every, ranks.shown(domain), domain.cloud
+    """Nodes that are not left out; each rank has written the gradients around those it shows."""
+    rows, cloud = ranks.shown(domain), domain.cloud
     slopes = fluxes.gradients[:, 0].copy()
-    ranks.gather_shown(domain, slopes)
     turn_to_ghosts(cloud, slopes)
-
-    def of_all(values: Array) -> Array:
-        """Values of all nodes that are not left out, from those of each rank."""
-        whole = np.zeros((cloud.nodes, 1))
-        whole[shown, 0] = values
-        ranks.gather_shown(domain, whole)
-        return whole[rows, 0]
-
     has_layers = params.box is None or params.moving is not None
-    gradient, primitive = slopes[rows], state.primitive[rows]
+    points, spacing, primitive, gradient, curvature = (
+        ranks.collect_shown(array)
+        for array in (
+            cloud.positions[rows],
+            reaches(domain, rows) if has_layers else cloud.spacing[rows],
+            state.primitive[rows],
+            slopes[rows],
+            laplacian(domain, rows, slopes),
+        )
+    )
     return {
-        "points": domain.cloud.positions[rows],
-        "spacing": of_all(reaches(domain, shown)) if has_layers else domain.cloud.spacing[rows],
+        "points": points,
+        "spacing": spacing,
         "density": primitive[:, 0].copy(),
         "pressure": primitive[:, 4].copy(),
         "velocity": primitive[:, 1:4].copy(),
         "temperature": temperature(primitive, params.gas),
         "mach": mach(primitive, params.gas),
         "schlieren": schlieren(np.sqrt((gradient * gradient).sum(axis=1))),
-        "shadowgraph": shadowgraph(of_all(laplacian(domain, shown, slopes))),
+        "shadowgraph": shadowgraph(curvature),
     }
 
 

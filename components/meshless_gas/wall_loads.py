@@ -15,7 +15,7 @@ from quintet.components.meshless_gas.blunt_bodies import (
 )
 from quintet.components.meshless_gas.boundaries import NO_SLIP, GasState
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.clouds.cloud import WALLS, own_areas
+from quintet.components.meshless_gas.clouds.cloud import WALLS, Whole, own_areas
 from quintet.components.meshless_gas.clouds.params import PlateCloud
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import Reader, WallFriction, Walls
@@ -49,12 +49,32 @@ class WallLoads(Walls):
         _, self.at, self.among = np.intersect1d(self.rows, walls.rows, return_indices=True)
         self.stream = free_stream(params)
         if params.sphere is not None:
-            self.nodes = cloud.nodes
             away = cloud.positions[: cloud.nodes] - np.array(params.sphere.centre)
-            distance = np.sqrt((away**2).sum(axis=1)).reshape(-1, len(self.rows))
-            self.heights = distance - params.sphere.radius  # (layers, w) m, above each wall node
             foot = away[self.rows]
             self.angle = np.arctan2(np.hypot(foot[:, 1], foot[:, 2]), -foot[:, 0])  # (w,) rad
+            self.axial = self._near(SHOCK_RAYS)
+            distance = np.sqrt((away**2).sum(axis=1)).reshape(-1, len(self.rows))
+            # (layers, s) m, above each of these wall nodes
+            self.heights = distance[:, self.axial] - params.sphere.radius
+            layers = np.arange(cloud.nodes, dtype=np.int32).reshape(distance.shape)
+            self.rays = layers[:, self.axial]  # (layers, s) nodes
+
+    def reads(self) -> Whole:
+        """Nodes of the walls, and on the rays along which a shock is sought."""
+        rays = self.rays if self._has_standoff else np.zeros(0, np.int32)
+        return np.concatenate([self.rows, rays.ravel()])
+
+    def renumber(self, local: Whole, domain: Domain) -> None:
+        """Take the rows of nodes on this rank."""
+        self.rows = local[self.rows].astype(np.int64)
+        if self._has_standoff:
+            self.rays = local[self.rays]
+
+    @property
+    def _has_standoff(self) -> bool:
+        """Whether the distance of a bow shock is given."""
+        is_fast = self.stream is not None and self.stream.mach > 1.0
+        return self.params.sphere is not None and is_fast
 
     @property
     def friction(self) -> Array:
@@ -144,7 +164,7 @@ class WallLoads(Walls):
                 pressure / (stream.pressure * pitot_pressure(stream.mach, stream.gamma)),
             ),
         ]
-        if stream.mach > 1.0:
+        if self._has_standoff:
             ratios.append(("standoff", self._standoff(primitive) / sphere.radius))
         wall = params.boundaries["wall"].temperature
         if wall is not None:
@@ -168,18 +188,16 @@ class WallLoads(Walls):
         Of the quartic in the angle that fits best on the rays near it.
         """
         assert self.stream is not None
-        count = len(self.rows)
-        density = primitive[: self.nodes, 0].reshape(-1, count)
+        density, ray = primitive[self.rays, 0], np.arange(len(self.axial))
         behind, _ = normal_shock(self.stream.mach, self.stream.gamma)
         middle = 0.5 * (1.0 + behind) * self.stream.density
-        near = self._near(SHOCK_RAYS)
-        inside = density[:, near] > middle
+        inside = density > middle
         last = len(inside) - 2 - np.argmax(inside[-2::-1], axis=0)  # outermost that is compressed
-        low, high = density[last, near], density[last + 1, near]
+        low, high = density[last, ray], density[last + 1, ray]
         share = np.clip((low - middle) / np.where(low > high, low - high, 1.0), 0.0, 1.0)
-        height = self.heights[last, near]
-        height = height + share * (self.heights[last + 1, near] - height)
-        return float(polyfit(self.angle[near] ** 2, height, 2)[0])
+        height = self.heights[last, ray]
+        height = height + share * (self.heights[last + 1, ray] - height)
+        return float(polyfit(self.angle[self.axial] ** 2, height, 2)[0])
 
 
 def no_slip_faces(params: MeshlessGasParams, areas: Array) -> NDArray[np.bool_]:

@@ -1,8 +1,8 @@
 """A gas on one rank or on several, which share out its nodes.
 
-Every rank has the states of all nodes. Ranks share out the loops over neighbours: each computes
-the rates of its own nodes, and of gradients those that it needs. Then all learn the states of all
-nodes. The rest, boundaries and walls and sums, each rank computes from the same states: no bit
-depends on the number of ranks. Where nodes stand still, a rank keeps only the stencils that it
-needs; those of clouds that move and cut holes in each other are on every rank.
+Where nodes stand still, a rank holds its own nodes, those that its stencils reach, and all
+boundary nodes with what their states follow from; after each stage it receives the states of those
+that others advance. Where clouds move or particles act on the gas, every rank holds all nodes and
+receives the states of all, but computes the rates of its own nodes alone. Either way boundaries,
+walls and sums are computed in the order of one rank: no bit depends on the number of ranks.
 """

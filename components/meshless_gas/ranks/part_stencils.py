@@ -34,6 +34,20 @@ def part_stencils(domain: Domain, computed: Rows) -> Stencils:
     )
 
 
+def needed(domain: Domain, nodes: Rows) -> tuple[Rows, Rows]:
+    """Nodes and ghosts whose gradients the fluxes of some nodes need: these, and all neighbours.
+
+    A ghost has the gradient of the node that it is an image of.
+    """
+    cloud = domain.cloud
+    is_needed = np.zeros(len(cloud.positions), bool)
+    is_needed[nodes] = True
+    is_needed[domain.stencils.neighbours[nodes]] = True
+    ghosts = np.flatnonzero(is_needed[cloud.nodes :])
+    is_needed[cloud.owner[ghosts]] = True
+    return domain.every[is_needed[domain.every]], ghosts.astype(np.int32)
+
+
 def _part(array: NDArray[Any], rows: NDArray[Any]) -> NDArray[Any]:
     """Some rows of an array in their places; the others are 0 and take no memory."""
     part = unwritten(array.shape, array.dtype)

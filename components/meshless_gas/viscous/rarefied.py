@@ -25,12 +25,14 @@ class RarefiedWalls:
         walls: list[Boundary],
         rows: Whole,
         above: Whole,
+        neighbours: Whole,
         law: Transport,
     ) -> None:
         self.law = law
         coefficients = [wall.accommodation for wall in walls]
         self.chosen = np.array([n for n, pair in enumerate(coefficients) if pair is not None])
         self.rows, self.above = rows[self.chosen], above[self.chosen]
+        self._around = neighbours[self.rows].ravel()  # nodes and ghosts
         gas = params.gas
         self.lengths = np.array(
             [
@@ -40,6 +42,16 @@ class RarefiedWalls:
             ]
         )
         self.curvature = 1.0 / params.sphere.radius if params.sphere is not None else 0.0
+
+    def reads(self) -> Whole:
+        """Nodes and ghosts around the walls."""
+        return self._around
+
+    def renumber(self, local: Whole) -> None:
+        """Take the rows of nodes on this rank."""
+        self.rows, self.above, self._around = (
+            local[rows] for rows in (self.rows, self.above, self._around)
+        )
 
     def slide(self, domain: Domain, velocity: Array, temperature: Array, primitive: Array) -> None:
         """Let the gas have its own temperature and velocity at walls that have others."""

@@ -57,21 +57,42 @@ class Viscous(WallFriction):
         self.temperature = np.array([wall.temperature or -1.0 for wall in walls])
         self.areas = own_areas(cloud, self.rows)
         self.above = nodes_above(self.rows, domain)
+        self.written = slice(0, len(self.rows))  # of these walls, those whose states are computed
         self.rarefied = []
         if any(wall.accommodation is not None for wall in walls):
             # Compiled only where a gas slips along walls.
             from quintet.components.meshless_gas.viscous.rarefied import RarefiedWalls
 
-            self.rarefied = [RarefiedWalls(params, walls, self.rows, self.above, self.law)]
+            self.couples_walls = True
+            self.rarefied = [
+                RarefiedWalls(params, walls, self.rows, self.above, neighbours, self.law)
+            ]
         whole = len(cloud.positions)
         self.transported, self.gradients = np.ones((whole, 2)), np.zeros((whole, 3))
         self.friction, self.heat = np.zeros((len(self.rows), 3)), np.zeros(len(self.rows))
 
+    def reads(self) -> Whole:
+        """Nodes of walls and those above them, and what rarefied walls read."""
+        rarefied = (slipping.reads() for slipping in self.rarefied)
+        return np.concatenate([self.rows, self.above.ravel(), *rarefied])
+
+    def renumber(self, local: Whole, domain: Domain) -> None:
+        """Take the rows of nodes on this rank."""
+        self.rows, self.above = local[self.rows], local[self.above]
+        assert domain.written is not None
+        chosen = np.flatnonzero(np.isin(self.rows, domain.written))
+        self.written = slice(chosen[0], chosen[-1] + 1) if len(chosen) else slice(0, 0)
+        for slipping in self.rarefied:
+            slipping.renumber(local)
+        whole = len(domain.cloud.positions)
+        self.transported, self.gradients = np.ones((whole, 2)), np.zeros((whole, 3))
+
     def write_walls(self, domain: Domain, primitive: Array) -> None:
         """Write the states of walls: their velocity and temperature, the gas's pressure."""
+        part = self.written
         write_no_slip_walls(
-            self.rows, domain.stencils.neighbours, self.weights, domain.cloud.normals,
-            self.velocity, self.temperature, self.gamma, self.law, primitive,
+            self.rows[part], domain.stencils.neighbours, self.weights[part], domain.cloud.normals,
+            self.velocity[part], self.temperature[part], self.gamma, self.law, primitive,
         )  # fmt: skip
         for slipping in self.rarefied:
             slipping.slide(domain, self.velocity, self.temperature, primitive)

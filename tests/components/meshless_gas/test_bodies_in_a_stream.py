@@ -7,6 +7,7 @@ import pytest
 
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.parts import Walls
+from quintet.components.meshless_gas.ranks.one import OneRank
 from quintet.components.meshless_gas.readings import Steady
 from quintet.components.meshless_gas.steady import SteadyMonitor
 from quintet.components.meshless_gas.wall_loads import sums
@@ -93,11 +94,9 @@ def test_nothing_tells_whether_a_flow_has_settled_where_no_steady_says_when() ->
 
 
 def test_a_flow_settles_only_when_densities_and_forces_do() -> None:
-    walls = PushedWall()
-    monitor, states = (
-        SteadyMonitor(Steady(steps=1, change=1e-3, force=1e-2), walls, np.ones((1, 5)), 1),
-        np.ones((1, 5)),
-    )
+    walls, domain = PushedWall(), sphere().motion.domain
+    states, criteria = np.ones((domain.cloud.nodes, 5)), Steady(steps=1, change=1e-3, force=1e-2)
+    monitor = SteadyMonitor(criteria, walls, states, domain, OneRank())
     monitor.update(states, 1e-4, 0.1)  # the force was 0 before
     assert not monitor.is_settled
     monitor.update(states, 1e-2, 0.2)

@@ -8,6 +8,7 @@ from rank_runs import differences, from_states, from_the_start
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("gas_on_ranks.py")
+SUMS = Path(__file__).with_name("sums_on_ranks.py")
 NAMES = ("bodies", "vortex", "steady", "sphere", "tube")
 STEPS = 60  # with holes cut again
 folder = from_the_start(PROGRAM, NAMES, STEPS)
@@ -22,6 +23,11 @@ def test_two_ranks_compute_what_one_does_to_the_bit(name, folder):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
     assert differences(resumed, f"{name}-1-1", f"{name}-3-2") == []
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_sums_over_ranks_have_the_bits_of_numpys(ranks, on_ranks):
+    on_ranks(SUMS, ranks)
 
 
 def test_the_case_with_bodies_cuts_holes_again(folder):
