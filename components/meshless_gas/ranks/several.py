@@ -12,6 +12,7 @@ from quintet.components.shared.domain.collection import collect
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import greatest, least
 from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
 
 
 class SeveralRanks(OneRank):
@@ -47,7 +48,18 @@ class SeveralRanks(OneRank):
 
 
 def part_of(count: int, rank: int, size: int) -> tuple[int, int]:
-    """First and last place of a rank's rows among as many as are shared out."""
+    """First and last place of a rank's nodes among as many as are advanced.
+
+    Raises
+    ------
+    SceneError
+        If there are fewer nodes than ranks.
+    """
+    if count < size:
+        raise SceneError(
+            f"ranks: each must own a node that is advanced; there are {count} for {size} ranks. "
+            "Take fewer ranks."
+        )
     return rank * count // size, (rank + 1) * count // size
 
 

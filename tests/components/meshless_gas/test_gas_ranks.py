@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from rank_runs import differences, from_states, from_the_start
 
+from quintet.components.meshless_gas.ranks.several import part_of
+from quintet.interfaces.errors import SceneError
+
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("gas_on_ranks.py")
 SUMS = Path(__file__).with_name("sums_on_ranks.py")
@@ -39,3 +42,9 @@ def test_the_case_with_bodies_cuts_holes_again(folder):
 def test_a_failed_step_is_told_as_on_one_rank(folder):
     said = str(np.load(folder / "tube-2.npz")["failure"])
     assert "density and pressure must stay above 0" in said
+
+
+def test_more_ranks_than_nodes_are_refused():
+    assert part_of(3, 1, 3) == (1, 2)
+    with pytest.raises(SceneError, match=r"ranks: each must own a node.* there are 3 for 4 ranks"):
+        part_of(3, 1, 4)
