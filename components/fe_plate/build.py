@@ -75,10 +75,11 @@ def structure(
     point_volume = _point_volumes(grid, corner, volume[element], points, depth)
     spans = [Span(part, *pair) for part, pair in enumerate(pairwise(first))]
     filled = filled_places(place, first[-1], LANES // points)
-    target, parted = targets(corner, filled, spans, ends, nodes)
+    target, acts, parted = targets(corner, filled, spans, ends, nodes)
     model = Model(
-        corner=corner,
+        corner=target[: len(corner)],
         target=target,
+        acts=acts,
         filled=filled,
         volume=point_volume,
         depth=depth,
@@ -207,11 +208,12 @@ def targets(
     ends: Callable[[int], list[int]],
     nodes: int,
     order: Whole | None = None,
-) -> tuple[Index, Parted]:
-    """Rows of forces that corners act on, and parted nodes.
+) -> tuple[Index, Index, Parted]:
+    """Rows of forces that corners act on, where those of each block begin, and parted nodes.
 
     A node all of whose elements one thread steps one after another is acted on at once; of others
     each corner has a row of its own, in the order of the elements, so that the sum is the same.
+    Blocks with such corners have rows of their own behind all corners; others act on their nodes.
 
     Parameters
     ----------
@@ -225,12 +227,13 @@ def targets(
     order : (b,) int array
         Numbers that rise in the order in which one rank has the blocks; if it is another one.
     """
+    blocks = len(filled)
+    size = len(corner) // blocks
+    acts = size * np.arange(blocks, dtype=np.uint32)
     none: Whole = np.zeros(0, np.int64)
     shares = [span.first + end for span in spans for end in ends(span.last - span.first)[1:]]
     if order is None and len(shares) == len(spans):  # whole parts
-        return corner, Parted(none, none)
-    blocks = len(filled)
-    size = len(corner) // blocks
+        return corner, acts, Parted(none, none)
     used = (np.arange(size) < filled[:, None]).ravel()
     share = np.repeat(np.searchsorted(shares, np.arange(blocks), "right"), size)
     flat, number = corner[used].ravel(), np.repeat(share[used], 8)
@@ -242,11 +245,13 @@ def targets(
     if order is not None:
         at = at[np.argsort(order[at // (8 * size)], kind="stable")]
     at = at[np.argsort(corner.ravel()[at], kind="stable")]
-    target = corner.copy()
-    target.ravel()[at] = nodes + np.arange(len(at))
+    detached, row = np.unique(at // (8 * size), return_inverse=True)  # blocks
+    behind = corner.reshape(blocks, -1)[detached]
+    behind[row, at % (8 * size)] = nodes + np.arange(len(at))
+    acts[detached] = len(corner) + size * np.arange(len(detached))
     node = np.flatnonzero(is_parted)
     begin = nodes + np.searchsorted(corner.ravel()[at], np.append(node, nodes))
-    return target, Parted(node, begin)
+    return np.concatenate([corner, behind.reshape(-1, 8)]), acts, Parted(node, begin)
 
 
 def initial_state(params: FePlateParams, built: Structure) -> State:

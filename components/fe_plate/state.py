@@ -31,7 +31,8 @@ class Model(NamedTuple):
     """
 
     corner: Index  # (places, 8) nodes
-    target: Index  # (places, 8) rows of forces that corners act on
+    target: Index  # (places or more, 8) rows of forces: these corners, then others' rows
+    acts: Index  # (b,) first row in `target` of what a block's corners act on
     filled: Index  # (b,) places of a block that are used
     volume: Array  # (b LANES,) m3, of points at the start
     depth: float  # m, along y, of elements in a plane; 0 of solids

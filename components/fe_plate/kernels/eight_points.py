@@ -84,7 +84,7 @@ def step_eight_points(
     """
     position, velocity = state.position, state.mean_velocity
     corner, start, filled = model.corner, model.volume, model.filled
-    target, forces = model.target, state.forces
+    target, acts, forces = model.target, model.acts, state.forces
     points = state.points.reshape(-1)
     work = np.zeros(ROWS * LANES)
     step, smallest, worst = HUGE, HUGE, first * LANES
@@ -105,7 +105,7 @@ def step_eight_points(
         step = min(step, advance_material(rows, work, law, resistance, dt))
         spread_stresses(rows, work, law)
         sum_forces(rows, work)
-        take_from_corners(X, work, begin, filled[block], target, forces)
+        take_from_corners(X, work, acts[block], filled[block], target, forces)
     return step, smallest, worst
 
 

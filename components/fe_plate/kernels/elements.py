@@ -69,7 +69,7 @@ def step_elements(
     # Arrays are taken out of their tuples once: each time costs a count of references.
     position, velocity = state.position, state.mean_velocity
     corner, start, filled = model.corner, model.volume, model.filled
-    target, forces = model.target, state.forces
+    target, acts, forces = model.target, model.acts, state.forces
     points, springs = state.points.reshape(-1), state.springs.reshape(-1)
     work = np.zeros(ROWS * LANES)
     stiff = 0.015625 * resistance.hourglass * (law.bulk + 4.0 / 3.0 * law.shear)
@@ -87,7 +87,7 @@ def step_elements(
             smallest, worst = ratio, smallest_of(work, begin)
         step = min(step, advance_material(rows, work, law, resistance, dt))
         hold_patterns(rows, patterns, work, stiff, dt)
-        take_from_corners(X, work, begin, filled[block], target, forces)
+        take_from_corners(X, work, acts[block], filled[block], target, forces)
     return step, smallest, worst
 
 

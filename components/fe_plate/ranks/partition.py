@@ -114,7 +114,7 @@ def cut(
     corner = row[model.corner.reshape(blocks, -1, 8)[part.block].reshape(-1, 8)].astype(np.uint32)
     filled = model.filled[part.block]
     spans = sorted((*inner, *border), key=lambda span: (span.first, span.last))
-    target, parted = targets(corner, filled, spans, ends, len(part.node), part.block)
+    target, acts, parted = targets(corner, filled, spans, ends, len(part.node), part.block)
     faces = np.flatnonzero(block_row[built.face_places.point[:, 0] // LANES] >= 0)
     face_row: Whole = np.full(len(mesh.side), -1)
     face_row[faces] = np.arange(len(faces))
@@ -127,8 +127,9 @@ def cut(
             mesh.owner[faces], {}, {},
         ),
         model=model._replace(
-            corner=corner,
+            corner=target[: len(corner)],
             target=target,
+            acts=acts,
             filled=filled,
             volume=model.volume.reshape(blocks, LANES)[part.block].ravel(),
             inverse_mass=model.inverse_mass[part.node],
