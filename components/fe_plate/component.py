@@ -67,7 +67,7 @@ class FePlate(Component):
         self.all_ranks = ranks(resources, self.team.ends)
         whole = structure(params, self.team.ends)
         self.built = built = self.all_ranks.share_out(whole)
-        self.mesh = self.all_ranks.mesh_to_show(whole.mesh)
+        self.mesh = self.all_ranks.mesh_to_keep(whole.mesh)
         self.notes_of_mesh = whole.mesh.notes
         self.model, self.places = built.model, built.places
         self.measured = measured(whole.mesh, params.gauges, self.all_ranks)
@@ -275,11 +275,13 @@ class FePlate(Component):
         nodes, elements = self.all_ranks.nodes, self.all_ranks.elements
         motion_of = np.hstack([self.state.position[nodes.rows], self.state.velocity[nodes.rows]])
         gathered = nodes.gather(motion_of), elements.gather(shown(self.places, self.state))
-        return {} if self.all_ranks.rank else view(self.mesh, *gathered)
+        mesh = self.all_ranks.mesh_to_show(self.mesh, self.built)
+        return {} if self.all_ranks.rank else view(mesh, *gathered)
 
     def walls(self) -> Fields:
         """Return rigid walls, clamped faces and planes of symmetry."""
-        return {} if self.all_ranks.rank else supports(self.params, self.mesh)
+        mesh = self.all_ranks.mesh_to_show(self.mesh, self.built)
+        return {} if self.all_ranks.rank else supports(self.params, mesh)
 
     def items(self) -> int:
         """Count the elements."""

@@ -1,7 +1,7 @@
 """What a structure asks of its ranks, be it one or several."""
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.meshes.mesh import Mesh
@@ -11,7 +11,7 @@ from quintet.components.fe_plate.state import Array, State, Whole
 class Gathering(Protocol):
     """Brings rows of all ranks together."""
 
-    def gather(self, rows: Array) -> Array:
+    def gather(self, rows: Any) -> Any:
         """All rows (k, ...) on rank 0, of each rank's own; on others something else."""
 
 
@@ -23,8 +23,8 @@ class Rows(NamedTuple):
     ids: Whole | slice  # their places in the list
     gathering: Gathering
 
-    def gather(self, rows: Array) -> Array:
-        """All rows (k, ...) in the order of the list on rank 0, of each rank's own."""
+    def gather(self, rows: Any) -> Any:
+        """All rows (k, ...), floats or ints, in the list's order on rank 0, of each rank's own."""
         return self.gathering.gather(rows)
 
 
@@ -38,8 +38,11 @@ class Ranks(Protocol):
     def share_out(self, built: Structure) -> Structure:
         """Keep what this rank computes of a structure; called once, before all others."""
 
-    def mesh_to_show(self, mesh: Mesh) -> Mesh:
+    def mesh_to_keep(self, mesh: Mesh) -> Mesh:
         """Return what this rank keeps of the whole mesh, for pictures."""
+
+    def mesh_to_show(self, mesh: Mesh, built: Structure) -> Mesh:
+        """Return the whole mesh on rank 0, from what each rank has kept of it."""
 
     def nodes_of(self, numbers: Whole) -> Rows:
         """Those of a list (k,) of nodes."""

@@ -30,7 +30,11 @@ class OneRank:
         self.nodes, self.elements = Rows(nodes, ALL, ALL, Here()), Rows(elements, ALL, ALL, Here())
         return built
 
-    def mesh_to_show(self, mesh: Mesh) -> Mesh:
+    def mesh_to_keep(self, mesh: Mesh) -> Mesh:
+        """Return the mesh."""
+        return mesh
+
+    def mesh_to_show(self, mesh: Mesh, built: Structure) -> Mesh:
         """Return the mesh."""
         return mesh
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from quintet.components.fe_plate.build import Structure, targets
 from quintet.components.fe_plate.meshes.mesh import Mesh
-from quintet.components.fe_plate.state import LANES, Array, Places, Span, Whole
+from quintet.components.fe_plate.state import LANES, Array, Index, Places, Span, Whole
 from quintet.components.shared.domain.bisection import bisect
 from quintet.interfaces.errors import SceneError
 
@@ -30,8 +30,9 @@ class Part(NamedTuple):
 
 
 def owners(built: Structure, ranks: int) -> Owners:
-    """Share blocks out by bisection of space, and nodes to the lowest rank with a block there.
+    """Share blocks out by bisection of space, and nodes to a rank with a block there.
 
+    Of the nodes that two ranks share each owns half: both step about as many blocks of the other.
     Every rank computes the same.
 
     Raises
@@ -43,9 +44,7 @@ def owners(built: Structure, ranks: int) -> Owners:
     corner = model.corner.reshape(blocks, -1)
     place, inverse, weights = _cells(built)
     of_block = bisect(place, weights, ranks)[inverse]
-    of_node: Whole = np.zeros(len(built.mesh.node), np.int64)
-    for rank in reversed(range(ranks)):
-        of_node[corner[of_block == rank]] = rank
+    of_node = _node_owners(corner, of_block, len(built.mesh.node))
     fewest = int(np.bincount(of_node, minlength=ranks).min())
     if not fewest:
         raise SceneError(
@@ -53,6 +52,21 @@ def owners(built: Structure, ranks: int) -> Owners:
             f"{len(built.mesh.corner)} elements are only {blocks} blocks. Take fewer ranks."
         )
     return Owners(of_node, of_node[corner[:, 0]])
+
+
+def _node_owners(corner: Index, of_block: Whole, nodes: int) -> Whole:
+    """Ranks (nodes,) that own the nodes at the corners (b, k) of blocks with some owners (b,)."""
+    lowest, highest = np.zeros((2, nodes), np.int64)
+    ranks = range(int(of_block.max()) + 1)
+    for rank in ranks:
+        highest[corner[of_block == rank]] = rank
+    for rank in reversed(ranks):
+        lowest[corner[of_block == rank]] = rank
+    shared = np.flatnonzero(lowest < highest)
+    for pair in np.unique(np.stack([lowest[shared], highest[shared]], axis=1), axis=0):
+        at = shared[(lowest[shared] == pair[0]) & (highest[shared] == pair[1])]
+        lowest[at[len(at) // 2 :]] = pair[1]
+    return lowest
 
 
 def _cells(built: Structure) -> tuple[Whole, Whole, Array]:

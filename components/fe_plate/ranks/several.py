@@ -62,16 +62,19 @@ class SeveralRanks:
         wanted = send_rows(self._communicator, [part.node[rows] for rows in received])
         return [np.searchsorted(part.node[: part.moving], nodes) for nodes in wanted], received
 
-    def mesh_to_show(self, mesh: Mesh) -> Mesh:
-        """Return nodes and elements on rank 0, in half the bytes; on others none."""
-        if self.rank:
-            nothing = np.zeros(0, np.int64)  # a slice would hold the whole array
-            return mesh._replace(
-                node=np.zeros((0, 3)), corner=nothing.reshape(0, 8), part=nothing, sets={},
-                groups={},
-            )  # fmt: skip
-        few: Any = mesh.corner.astype(np.uint32)
-        return mesh._replace(corner=few)
+    def mesh_to_keep(self, mesh: Mesh) -> Mesh:
+        """Return outer faces and sets of nodes on rank 0: all else can be gathered."""
+        none: Whole = np.zeros(0, np.int64)  # a slice would hold the whole array
+        side, owner, sets = (none.reshape(0, 4), none, {}) if self.rank else mesh[3:6]
+        return Mesh(np.zeros((0, 3)), none.reshape(0, 8), none, side, owner, sets, {})
+
+    def mesh_to_show(self, mesh: Mesh, built: Structure) -> Mesh:
+        """Return the mesh with the nodes and corners of all ranks on rank 0, but without parts."""
+        corner = self._part.node[built.corners(slice(None))]
+        return mesh._replace(
+            node=self.nodes.gather(built.mesh.node[self.nodes.rows]),
+            corner=self.elements.gather(corner),
+        )
 
     def nodes_of(self, numbers: Whole) -> Rows:
         """Those of a list (k,) of nodes that this rank owns."""
