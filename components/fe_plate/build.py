@@ -15,6 +15,7 @@ from quintet.components.fe_plate.state import (
     LANES,
     TEMPERATURE,
     Array,
+    Flags,
     Index,
     Model,
     Parted,
@@ -146,16 +147,16 @@ def _walls(rigid_walls: Sequence[RigidWall]) -> Array:
     return walls
 
 
-def _free_axes(grid: Mesh, params: FePlateParams) -> Array:
+def _free_axes(grid: Mesh, params: FePlateParams) -> Flags:
     """1 or 0 (n, 3): whether a node moves along an axis."""
-    free: Array = np.ones((len(grid.node), 3))
+    free: Flags = np.ones((len(grid.node), 3), np.uint8)
     for number, support in enumerate(params.fixed):
         nodes = chosen(grid, support, f"fixed.{number}")
         _require(nodes.any(), f"fixed.{number}: it must hold a node; it holds none.")
         for axis in support.directions:
-            free[nodes, AXES.index(axis)] = 0.0
+            free[nodes, AXES.index(axis)] = 0
     if params.dimensions == 2:
-        free[:, 1] = 0.0
+        free[:, 1] = 0
     return free
 
 

@@ -9,7 +9,7 @@ from quintet.components.fe_plate import MANIFEST
 from quintet.components.fe_plate.added_mass import AddedMass
 from quintet.components.fe_plate.build import initial_state, structure
 from quintet.components.fe_plate.diagnostics import inside_out, motion, not_finite, totals
-from quintet.components.fe_plate.features import Pressures, Stepped, ranks, stepping_kernel
+from quintet.components.fe_plate.features import Loads, Pressures, Stepped, ranks, stepping_kernel
 from quintet.components.fe_plate.gauges import measured, readings
 from quintet.components.fe_plate.judgement import EVERY, Judge
 from quintet.components.fe_plate.kernels.flow import HUGE
@@ -22,7 +22,7 @@ from quintet.components.fe_plate.kernels.nodes import (
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.points import integration_notes, points_of
 from quintet.components.fe_plate.ports import SHOWS
-from quintet.components.fe_plate.state import Accumulated, Array, Places
+from quintet.components.fe_plate.state import Accumulated, Array
 from quintet.components.fe_plate.supports import supports
 from quintet.components.fe_plate.view import shown, view
 from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
@@ -73,6 +73,7 @@ class FePlate(Component):
         self.measured = measured(whole.mesh, params.gauges, self.all_ranks)
         self.faces = whole.mesh.side[whole.coupled]  # (f, 4) nodes
         self.owners = self.all_ranks.elements_of(whole.mesh.owner[whole.coupled])  # of the f faces
+        self.places_of_owners = self.places.subset(self.owners.rows)
         self.surface = np.unique(self.faces[self.faces >= 0])  # nodes
         rows = np.searchsorted(self.surface, self.faces)
         self.corner = np.where(self.faces < 0, -1, rows)  # (f, 4) among these; -1 ends an edge
@@ -80,14 +81,14 @@ class FePlate(Component):
         self.on_surface = self.all_ranks.nodes_of(self.surface)
         self.state = initial_state(params, built)
         self.kernel = stepping_kernel(points_of(params))
-        self.pressures = Pressures(params.pressures, built)
+        self.all_loads = Loads(self.on_surface, Pressures(params.pressures, built))
         self.added_mass = AddedMass(self.on_surface, built.mass)
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
         self.glued = False  # whether particles are glued to it
         # m/s, that velocities at an end lack, of nodes of the surface that this rank moves.
         self.half_kick = np.zeros_like(self.loads[self.on_surface.ids])
         self.accumulated = Accumulated()
-        self.bound = self._write_forces(0.0)  # s
+        self.bound = self._write_forces(0.0, False)  # s
         self.judge = Judge(params, built, bool(len(self.state.springs)))
 
     def describe(self) -> Fields:
@@ -138,9 +139,7 @@ class FePlate(Component):
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         total, damping = self.accumulated, self.params.mass_damping
         rows, loads = self.on_surface.rows, self.loads[self.on_surface.ids]
-        self.state.load[:] = 0.0
-        self.state.load[rows] = loads
-        self.pressures.add(self.state, total.time)
+        loaded = self.all_loads.write(self.state, self.loads, total.time)
         if self.glued:
             self._kick_early(dt, loads)
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
@@ -149,12 +148,12 @@ class FePlate(Component):
         total.steps += 1
         if damping:
             add_damped(self.model, self.state, 1.0 - decay)
-        kick_and_drift(self.model, self.state, dt, damping)
+        kick_and_drift(self.model, self.state, dt, damping, loaded)
         total.time += dt
         if self.params.pressures:
             mean = self.state.mean_velocity[rows]
             self.state.partner_work[rows] += dt * (mean * loads).sum(axis=1)
-        self.bound = self._write_forces(dt)
+        self.bound = self._write_forces(dt, loaded)
         if damping:
             add_damped(self.model, self.state, 1.0 / decay - 1.0)
         if self.glued:
@@ -178,7 +177,7 @@ class FePlate(Component):
         self.state.velocity[rows] += push
         self.half_kick = push
 
-    def _write_forces(self, dt: float) -> float:
+    def _write_forces(self, dt: float, loaded: bool) -> float:
         """Advance the elements by a step and the nodes' velocities by half; return the bound."""
         built, shares, time = self.built, list[Stepped](), self.accumulated.time
         self.all_ranks.begin(self.state)
@@ -197,7 +196,8 @@ class FePlate(Component):
             raise inside_out(built, place if here == least else -1, least, time, self.all_ranks)
         sum_parted(built.parted, self.state.forces)
         ahead = 2.0 * min(bound, 1.0)  # s
-        squares, closing = kick(self.model, self.state, dt, self.params.mass_damping, ahead)
+        damping = self.params.mass_damping
+        squares, closing = kick(self.model, self.state, dt, damping, loaded, ahead)
         wrong = float(not math.isfinite(squares))
         closing, wrong = self.all_ranks.greatest(np.array([closing, wrong])).tolist()
         if wrong:
@@ -216,12 +216,9 @@ class FePlate(Component):
             (MEAN_VELOCITY, self.state.mean_velocity),
         ):
             if key in wanted:
-                values[key] = self.on_surface.gather(array[self.on_surface.rows])
+                values[key] = self.on_surface.collect(array)
         if ACTIVE in wanted:
-            owners = Places(
-                self.places.point[self.owners.rows], self.places.share[self.owners.rows]
-            )
-            values[ACTIVE] = self.owners.gather(owners.active(self.state))
+            values[ACTIVE] = self.owners.gather(self.places_of_owners.active(self.state))
         return values | readings(self.measured, self.built, self.state, wanted, self.all_ranks)
 
     def save(self) -> Fields:
@@ -237,6 +234,7 @@ class FePlate(Component):
         """Restore a saved state, bit for bit."""
         self.state.forces[:] = 0.0
         self.all_ranks.restore(self.state, state)
+        self.all_loads.left = True
         self.loads[:] = state["loads"]
         self.half_kick = np.array(state["half_kick"][self.on_surface.ids])
         self.added_mass.restore(state["added_mass"], self.model)

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable
 
+import numpy as np
+
 from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
 from quintet.components.fe_plate.loads import add_pressure
 from quintet.components.fe_plate.params import Pressure
-from quintet.components.fe_plate.ranks.method import Ranks
+from quintet.components.fe_plate.ranks.method import Ranks, Rows
 from quintet.components.fe_plate.ranks.one import OneRank
-from quintet.components.fe_plate.state import State
+from quintet.components.fe_plate.state import Array, State
 from quintet.interfaces.component import Resources
 
 Stepped = tuple[float, float, int]  # stable step [s], least volume over that at the start, of which
@@ -32,6 +34,9 @@ class Pressures:
 
     def __init__(self, pressures: tuple[Pressure, ...], built: Structure) -> None:
         self.loads, self.built = list(zip(pressures, built.pressed, strict=True)), built
+        corners = [built.mesh.side[faces].ravel() for faces in built.pressed]
+        nodes = np.unique(np.concatenate(corners)) if corners else np.zeros(0, np.int64)
+        self.nodes = nodes[nodes >= 0]  # that any of them acts on
 
     def add(self, state: State, time: float) -> None:
         """Add the loads [N] of a time [s]."""
@@ -40,6 +45,32 @@ class Pressures:
             if pressure := load.at(time):
                 intact = places.subset(faces).active(state) > 0.0
                 add_pressure(mesh, state, faces[intact], pressure)
+
+
+class Loads:
+    """Loads on nodes over a step: those of partners on the surface, and pressures."""
+
+    def __init__(self, surface: Rows, pressures: Pressures) -> None:
+        self.surface, self.pressures = surface, pressures
+        self.left = True  # whether the state may hold loads of an earlier step
+
+    def write(self, state: State, partners: Array, time: float) -> bool:
+        """Write all loads of a step that begins at a time [s]; whether any is not 0.
+
+        Parameters
+        ----------
+        state
+        partners : (k, 3) float array, N
+            On the nodes of the whole surface.
+        time : float, s
+        """
+        loaded = bool(self.pressures.loads) or bool(partners.any())
+        if loaded or self.left:
+            state.load[self.pressures.nodes] = 0.0
+            state.load[self.surface.rows] = partners[self.surface.ids]
+            self.pressures.add(state, time)
+        self.left = loaded
+        return loaded
 
 
 def stepping_kernel(points: int) -> Kernel:

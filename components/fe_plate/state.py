@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Index = NDArray[np.uint32]  # half the bytes of others, and no number from the end
+Flags = NDArray[np.uint8]  # 1 or 0
 
 LANES = 16  # points of a block, which kernels advance side by side
 # Rows of the state at quadrature points.
@@ -21,6 +22,7 @@ POINT_ROWS = 14
 # Rows of the springs that hold the hourglass patterns of elements with one point.
 SPRING, SPRING_ENERGY = 0, 12  # 12 rows N, J
 SPRING_ROWS = 13
+FEW = 0.25  # of all points: their numbers are taken one by one, without a copy of the whole row
 
 
 class Model(NamedTuple):
@@ -37,7 +39,7 @@ class Model(NamedTuple):
     volume: Array  # (b LANES,) m3, of points at the start
     depth: float  # m, along y, of elements in a plane; 0 of solids
     inverse_mass: Array  # (n,) 1/kg, with what hangs on the nodes
-    free: Array  # (n, 3) 1 or 0: whether a node moves along an axis
+    free: Flags  # (n, 3) whether a node moves along an axis
     gravity: Array  # (3,) m/s2
     walls: Array  # (w, 4) unit normal and offset of rigid walls: normal·x ≥ offset
     moving: int  # nodes that this rank moves, the first ones; others are copies
@@ -144,13 +146,13 @@ class Places(NamedTuple):
     point: Whole  # (e, q), of each of its q points
     share: Array  # (e, q) 1, of the element's mass
 
-    def subset(self, elements: Whole) -> "Places":
+    def subset(self, elements: Whole | slice) -> "Places":
         """Those of some elements, by their rows here."""
         return Places(self.point[elements], self.share[elements])
 
     def of(self, state: State, row: int) -> Array:
         """Mean of a row over the points of each element (e,)."""
-        return np.asarray((state.points[:, row].ravel()[self.point] * self.share).sum(axis=1))
+        return np.asarray((at_points(state.points, row, self.point) * self.share).sum(axis=1))
 
     def rows(self, state: State, first: int, count: int) -> Array:
         """Means of some rows over the points of each element (count, e)."""
@@ -158,10 +160,18 @@ class Places(NamedTuple):
 
     def active(self, state: State) -> Array:
         """1 of each element that is left, 0 of an eroded one (e,): any of its points failed."""
-        return np.asarray(state.points[:, ACTIVE].ravel()[self.point].min(axis=1))
+        return np.asarray(at_points(state.points, ACTIVE, self.point).min(axis=1))
 
     def spring_energy(self, state: State) -> Array:
         """Energy (e,) J of the springs of each element."""
         if not len(state.springs):  # eight points need none
             return np.zeros(len(self.point))
-        return np.asarray(state.springs[:, SPRING_ENERGY].ravel()[self.point[:, 0]])
+        return at_points(state.springs, SPRING_ENERGY, self.point[:, 0])
+
+
+def at_points(blocks: Array, row: int, point: Whole) -> Array:
+    """Numbers of a row of blocks (b, rows, LANES) at some of their points, of any shape."""
+    if point.size > FEW * len(blocks) * LANES:
+        return np.asarray(blocks[:, row].ravel()[point])
+    before = point // LANES * ((blocks.shape[1] - 1) * LANES)  # numbers of other rows
+    return blocks.reshape(-1).take(before + (point + row * LANES))

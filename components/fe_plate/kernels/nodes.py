@@ -9,7 +9,7 @@ from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> None:
+def kick_and_drift(model: Model, state: State, dt: float, damping: float, loaded: bool) -> None:
     """Advance velocities by half a step and positions by a whole one; add the works on each node.
 
     The elements' forces are then none, for the elements to write them again.
@@ -20,6 +20,8 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> Non
     dt : float, s
     damping : float, 1/s
         α: velocities decay by exp(-α dt/4) here and at the step's end.
+    loaded : bool
+        Whether any load is not 0; if none is, loads are not read.
     """
     decay = math.exp(-0.25 * damping * dt)
     position, velocity, mean = state.position, state.velocity, state.mean_velocity
@@ -30,7 +32,9 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> Non
     gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
     for i in range(model.moving):
         half = 0.5 * dt * inverse[i]
-        fx, fy, fz = load[i, 0], load[i, 1], load[i, 2]
+        fx, fy, fz = 0.0, 0.0, 0.0
+        if loaded:
+            fx, fy, fz = load[i, 0], load[i, 1], load[i, 2]
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
         u = (decay * velocity[i, 0] + half * (forces[i, 0] + fx) + gx) * free[i, 0]
         v = (decay * velocity[i, 1] + half * (forces[i, 1] + fy) + gy) * free[i, 1]
@@ -59,7 +63,7 @@ def kick_and_drift(model: Model, state: State, dt: float, damping: float) -> Non
 
 @njit(**EXACT)
 def kick(
-    model: Model, state: State, dt: float, damping: float, ahead: float
+    model: Model, state: State, dt: float, damping: float, loaded: bool, ahead: float
 ) -> tuple[float, float]:
     """Advance velocities by half a step.
 
@@ -68,6 +72,8 @@ def kick(
     model, state
     dt : float, s
     damping : float, 1/s
+    loaded : bool
+        As of `kick_and_drift`.
     ahead : float, s
         How long before a node meets a rigid wall its speed counts.
 
@@ -84,9 +90,12 @@ def kick(
     gx, gy, gz = h * gravity[0], h * gravity[1], h * gravity[2]
     for i in range(model.moving):
         half = 0.5 * dt * inverse[i]
-        u = (mean[i, 0] + half * (forces[i, 0] + load[i, 0]) + gx) * (decay * free[i, 0])
-        v = (mean[i, 1] + half * (forces[i, 1] + load[i, 1]) + gy) * (decay * free[i, 1])
-        w = (mean[i, 2] + half * (forces[i, 2] + load[i, 2]) + gz) * (decay * free[i, 2])
+        fx, fy, fz = 0.0, 0.0, 0.0
+        if loaded:
+            fx, fy, fz = load[i, 0], load[i, 1], load[i, 2]
+        u = (mean[i, 0] + half * (forces[i, 0] + fx) + gx) * (decay * free[i, 0])
+        v = (mean[i, 1] + half * (forces[i, 1] + fy) + gy) * (decay * free[i, 1])
+        w = (mean[i, 2] + half * (forces[i, 2] + fz) + gz) * (decay * free[i, 2])
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = u, v, w
         squares += u * u + v * v + w * w
         for k in range(walls.shape[0]):
