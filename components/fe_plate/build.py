@@ -42,7 +42,7 @@ class Structure(NamedTuple):
     parted: Parted
     places: Places  # of the elements' points
     laws: list[Solid]  # of the parts
-    inner: list[Span]  # blocks whose nodes this rank moves
+    inner: list[Span]  # blocks stepped first, without nodes that another rank moves
     border: list[Span]  # others
     volume: Array  # (e,) m3
     mass: Array  # (n,) kg, without added mass
@@ -208,7 +208,6 @@ def targets(
     spans: Sequence[Span],
     ends: Callable[[int], list[int]],
     nodes: int,
-    order: Whole | None = None,
 ) -> tuple[Index, Index, Parted]:
     """Rows of forces that corners act on, where those of each block begin, and parted nodes.
 
@@ -221,19 +220,20 @@ def targets(
     corner : (places, 8) int array
     filled : (b,) int array
     spans : sequence of Span
-        All blocks, in their order.
+        All blocks, in the order in which they are stepped.
     ends : function
         Ends of the shares of a number of blocks, from 0 on.
     nodes : int
-    order : (b,) int array
-        Numbers that rise in the order in which one rank has the blocks; if it is another one.
     """
     blocks = len(filled)
     size = len(corner) // blocks
     acts = size * np.arange(blocks, dtype=np.uint32)
     none: Whole = np.zeros(0, np.int64)
-    shares = [span.first + end for span in spans for end in ends(span.last - span.first)[1:]]
-    if order is None and len(shares) == len(spans):  # whole parts
+    filled_spans = [span for span in spans if span.last > span.first]
+    rising = sorted(filled_spans, key=lambda span: span.first)
+    shares = [span.first + end for span in rising for end in ends(span.last - span.first)[1:]]
+    # One thread steps all, one after another.
+    if len(shares) == len(rising) and rising == filled_spans:
         return corner, acts, Parted(none, none)
     used = (np.arange(size) < filled[:, None]).ravel()
     share = np.repeat(np.searchsorted(shares, np.arange(blocks), "right"), size)
@@ -243,8 +243,6 @@ def targets(
     np.maximum.at(highest, flat, number)
     is_parted = lowest < highest
     at = np.flatnonzero(is_parted[corner.ravel()] & np.repeat(used, 8))
-    if order is not None:
-        at = at[np.argsort(order[at // (8 * size)], kind="stable")]
     at = at[np.argsort(corner.ravel()[at], kind="stable")]
     detached, row = np.unique(at // (8 * size), return_inverse=True)  # blocks
     behind = corner.reshape(blocks, -1)[detached]

@@ -1,9 +1,11 @@
 """Which rank steps which blocks of elements, and its part of a structure."""
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.fe_plate.build import Structure, targets
 from quintet.components.fe_plate.meshes.mesh import Mesh
@@ -24,7 +26,7 @@ class Part(NamedTuple):
 
     node: Whole  # (n,) nodes that it owns, rising, then the other corners of its blocks
     moving: int  # of them it owns
-    block: Whole  # (b,) blocks that it steps, in the order of its spans
+    block: Whole  # (b,) blocks that it steps, rising
     element: Whole  # (e,) elements whose block it owns, rising
     own_blocks: Whole  # (o,) rows of the blocks that it owns among these
 
@@ -70,7 +72,11 @@ def _node_owners(corner: Index, of_block: Whole, nodes: int) -> Whole:
 
 
 def _cells(built: Structure) -> tuple[Whole, Whole, Array]:
-    """Cells (c, 3) as large as most blocks are, the cell of each block, and elements in each."""
+    """Cells (c, 3) as large as most blocks are, the cell of each block, and elements in each.
+
+    Axes stand in the order in which blocks are numbered, fastest first: of extents that are alike
+    the last is cut, and a rank's blocks and nodes stand one after another.
+    """
     model, blocks = built.model, len(built.model.filled)
     # Opposite corners of the elements of a block.
     ends = built.mesh.node[model.corner[:, [0, 6]]].reshape(blocks, -1, 3)
@@ -78,6 +84,8 @@ def _cells(built: Structure) -> tuple[Whole, Whole, Array]:
     size = np.median(high - low, axis=0)
     size[size == 0.0] = 1.0
     cell = np.floor(0.5 * (low + high) / size).astype(np.int64)
+    steps = np.count_nonzero(np.diff(cell, axis=0), axis=0)
+    cell = cell[:, np.argsort(-steps, kind="stable")]
     place, inverse = np.unique(cell, axis=0, return_inverse=True)
     inverse = inverse.reshape(-1)
     weights = np.bincount(inverse, model.filled, len(place)).astype(np.float64)
@@ -85,31 +93,47 @@ def _cells(built: Structure) -> tuple[Whole, Whole, Array]:
 
 
 def part_of(built: Structure, owner: Owners, rank: int) -> tuple[Part, list[Span], list[Span]]:
-    """What a rank computes, and the spans of its blocks: those of own nodes, and all others."""
-    blocks = len(built.model.filled)
-    is_own = (owner.node == rank)[built.model.corner.reshape(blocks, -1)]
-    touches, is_inner = is_own.any(axis=1), is_own.all(axis=1)
-    inner: list[Span] = []
-    border: list[Span] = []
-    order, first = [], 0
-    for span in built.inner:
-        of_part = np.arange(span.first, span.last)
-        for spans, chosen in (
-            (inner, is_inner[of_part]),
-            (border, touches[of_part] & ~is_inner[of_part]),
-        ):
-            numbers = of_part[chosen]
-            order.append(numbers)
-            spans.append(Span(span.part, first, first + len(numbers)))
-            first += len(numbers)
-    block = np.concatenate(order)
-    corners = np.unique(built.model.corner.reshape(blocks, -1)[block]).astype(np.int64)
+    """What a rank computes, and the spans of its blocks: those stepped before copies come, others.
+
+    The first are the longest run of blocks without copies: they stand one after another in memory,
+    and few nodes have elements of both.
+    """
+    corner = built.model.corner.reshape(len(built.model.filled), -1)
+    is_own = (owner.node == rank)[corner]
+    block = np.flatnonzero(is_own.any(axis=1))
+    corners = np.unique(corner[block]).astype(np.int64)
     moving = np.flatnonzero(owner.node == rank)
     node = np.concatenate([moving, corners[owner.node[corners] != rank]])
     block_of = built.places.point[:, 0] // LANES
     element = np.flatnonzero(owner.block[block_of] == rank)
     own_blocks = np.flatnonzero(owner.block[block] == rank)
-    return Part(node, len(moving), block, element, own_blocks), inner, border
+    part = Part(node, len(moving), block, element, own_blocks)
+    begin, end = _longest_run(is_own[block].all(axis=1))
+    inner: list[Span] = []
+    border: list[Span] = []
+    for span in built.inner:
+        first, last = np.searchsorted(block, (span.first, span.last)).tolist()
+        cuts = [first, min(max(begin, first), last), min(max(end, first), last), last]
+        before, run, after = (Span(span.part, *pair) for pair in pairwise(cuts))
+        inner.append(run)
+        border += [before, after]
+    return part, inner, border
+
+
+def at_once(inner: list[Span], border: list[Span]) -> list[Span]:
+    """Spans of all blocks in the order of one rank, from the two lists of `part_of`."""
+    befores, afters = border[::2], border[1::2]
+    return [
+        Span(run.part, before.first, after.last)
+        for run, before, after in zip(inner, befores, afters, strict=True)
+    ]
+
+
+def _longest_run(chosen: NDArray[np.bool_]) -> tuple[int, int]:
+    """First of the longest run of chosen rows (n,), and the row behind its last."""
+    others = np.concatenate([[-1], np.flatnonzero(~chosen), [len(chosen)]])
+    longest = int(np.argmax(np.diff(others)))
+    return int(others[longest]) + 1, int(others[longest + 1])
 
 
 def cut(
@@ -127,8 +151,7 @@ def cut(
     block_row[part.block] = np.arange(len(part.block))
     corner = row[model.corner.reshape(blocks, -1, 8)[part.block].reshape(-1, 8)].astype(np.uint32)
     filled = model.filled[part.block]
-    spans = sorted((*inner, *border), key=lambda span: (span.first, span.last))
-    target, acts, parted = targets(corner, filled, spans, ends, len(part.node), part.block)
+    target, acts, parted = targets(corner, filled, [*inner, *border], ends, len(part.node))
     faces = np.flatnonzero(block_row[built.face_places.point[:, 0] // LANES] >= 0)
     face_row: Whole = np.full(len(mesh.side), -1)
     face_row[faces] = np.arange(len(faces))
