@@ -38,6 +38,7 @@ class Halo:
     ) -> None:
         self._sent = _Buffers(sent, widths)
         self._received = _Buffers(received, widths)
+        self._into = [(_as_slice(rows), views) for rows, *views in self._received.blocks]
         self._communicator = communicator
         self._requests: list[Any] = []
         self._bytes = sum(buffer.nbytes for buffer in self._sent.buffers.values())
@@ -56,7 +57,7 @@ class Halo:
     def finish(self, *arrays: Array) -> None:
         """Wait for the rows of the others and write them into the same arrays."""
         wait(*self._requests)
-        for rows, *views in self._received.blocks:
+        for rows, views in self._into:
             for array, view in zip(arrays, views, strict=True):
                 array[rows] = view
 
@@ -80,3 +81,10 @@ class _Buffers:
                 views = (part.reshape(len(rows), width) for part, width in parts)
                 self.buffers[rank] = buffer
                 self.blocks.append((rows, *views))
+
+
+def _as_slice(rows: Whole) -> Whole | slice:
+    """Rows (k,), as a slice where they stand one after another: they are written faster."""
+    first = int(rows[0])
+    is_block = np.array_equal(rows, np.arange(first, first + len(rows)))
+    return slice(first, first + len(rows)) if is_block else rows
