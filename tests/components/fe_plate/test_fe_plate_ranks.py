@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
-from rank_runs import differences, from_states, from_the_start
+from rank_runs import MOVED, RANK_PROGRAM, differences, from_states, from_the_start
 
 from quintet.components.fe_plate.build import structure
 from quintet.components.fe_plate.params import FePlateParams
-from quintet.components.fe_plate.ranks.partition import owners, part_of
+from quintet.components.fe_plate.ranks.partition import at_once, owners, part_of
+from quintet.components.shared.domain import bisection
 from quintet.interfaces.errors import SceneError
 
 pytestmark = pytest.mark.mpi
@@ -31,6 +32,13 @@ def test_several_ranks_compute_what_one_does_to_the_bit(name, ranks, folder):
 @pytest.mark.parametrize("goes_on", ["1-2", "3-2", "2-1"])
 def test_a_state_goes_on_with_any_number_of_ranks(name, goes_on, resumed):
     assert differences(resumed, f"{name}-1-1", f"{name}-{goes_on}") == []
+
+
+def test_borders_elsewhere_change_no_bit(folder, tmp_path, on_ranks):
+    on_ranks(RANK_PROGRAM, 2, PROGRAM, tmp_path, STEPS, 0, ",".join(NAMES), MOVED)
+    for name in NAMES:
+        (tmp_path / f"{name}-1.npz").symlink_to(folder / f"{name}-1.npz")
+    assert [differences(tmp_path, f"{name}-1", f"{name}-2") for name in NAMES] == [[]] * len(NAMES)
 
 
 def test_elements_erode_in_what_is_compared(folder):
@@ -67,3 +75,28 @@ def test_every_node_and_element_has_one_owner_that_computes_it():
 def test_more_ranks_than_a_mesh_can_feed_are_refused():
     with pytest.raises(SceneError, match=r"ranks: each must"):
         owners(structure(block([2, 2, 2])), 3)
+
+
+@pytest.mark.parametrize("moved", [0, 1, -7])
+def test_ranks_step_few_blocks_twice_and_most_without_waiting(moved, monkeypatch):
+    """The cut lies between two layers, or within one; then its edge is stepped twice too."""
+    cut = bisection._cut
+    monkeypatch.setattr(bisection, "_cut", lambda *arguments: cut(*arguments) + moved)
+    built = structure(block([20, 16, 32]))  # 640 blocks, 32 in a layer
+    owner = owners(built, 2)
+    numbers = []
+    for rank in range(2):
+        part, inner, border = part_of(built, owner, rank)
+        (run,), (before, after) = inner, border
+        ends = [before.first, before.last, run.first, run.last, after.first, after.last]
+        assert ends == [0, run.first, run.first, run.last, run.last, len(part.block)]
+        assert at_once(inner, border) == [(0, 0, len(part.block))]
+        corner = built.model.corner.reshape(640, -1)[part.block]
+        assert (owner.node[corner[run.first : run.last]] == rank).all()
+        assert run.last - run.first > 0.8 * len(part.block)
+        numbers.append(part.block)
+    assert all((np.diff(blocks) > 0).all() for blocks in numbers)
+    twice = len(np.intersect1d(*numbers))
+    assert 640 == len(np.union1d(*numbers))
+    assert twice <= 32 + 4  # two rows
+    assert abs(len(numbers[0]) - len(numbers[1])) <= 4 + 2 * abs(moved)
