@@ -13,7 +13,7 @@ from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import SHOWS
 from quintet.components.dem_bodies.shapes.sampling import sample
 from quintet.components.dem_bodies.shapes.solid import solids
-from quintet.components.dem_bodies.start import described
+from quintet.components.dem_bodies.start import described, masses
 from quintet.components.dem_bodies.view import planes_view, view
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -52,24 +52,22 @@ class DemBodies(Component):
 
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
-        self.bodies, self.solids = list(params.placed), solids(params.placed)
+        self.bodies, self.solids = params.placed, solids(params.placed)  # of the kinds of bodies
         number = build.balls_first(self.bodies)
-        bodies, sorted_solids = [self.bodies[k] for k in number], [self.solids[k] for k in number]
-        self.model = build.model(params, bodies, sorted_solids)
-        self.state = build.state(bodies, number, sorted_solids)
+        self.model = build.model(params, self.bodies, number, self.solids)
+        self.state = build.state(self.bodies, number, self.solids)
         parts = self.model, self.bodies, self.solids
         self.stepping = features.stepping(params, *parts, resources)
         self.lists = self.stepping.lists
         self.limit = features.step_limit(params, *parts)
         self.accumulated = Accumulated()
-        self.count = len(self.solids)
-        self.mass = np.array([solid.mass for solid in self.solids])  # (m,) kg
+        self.count, self.mass = len(self.bodies), masses(self.bodies, self.solids)  # (m,) kg
         self.loaded = False  # whether any body has a load
         self.begun = False  # whether the contacts of the start are known
 
     def describe(self) -> Fields:
         """State masses, and whether there are two dimensions."""
-        return described(self.params, self.solids)
+        return described(self.params, self.mass)
 
     def sample(self, request: Fields) -> Fields:
         """Sample the surfaces of all bodies as a partner requests."""

@@ -10,7 +10,7 @@ from quintet.components.dem_bodies.contact.lists import ContactLists
 from quintet.components.dem_bodies.contact.step_limit import FixedStep, StepLimit
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ranks.one import OneRank
-from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.solid import Solid, contact_length
 from quintet.components.dem_bodies.state import Model
 from quintet.interfaces.component import Resources
@@ -22,7 +22,7 @@ SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are li
 def stepping(
     params: DemBodiesParams,
     model: Model,
-    bodies: Sequence[RigidBody],
+    bodies: Bodies,
     solids: Sequence[Solid],
     resources: Resources,
 ) -> OneRank:
@@ -32,7 +32,7 @@ def stepping(
     plate, is no measure of how far it moves before it touches: lists would be renewed at every
     step. Lists of pairs of balls are absent where there are no balls.
     """
-    skin = SKIN * min(map(contact_length, bodies, solids))
+    skin = SKIN * min(map(contact_length, bodies.kinds, solids))
     balls, communicator = no_ball_pairs(model), resources.communicator
     if communicator is None or communicator.size == 1:
         lists = ContactLists(model, balls, skin, params.contact_forces)
@@ -53,13 +53,13 @@ def stepping(
 
 
 def step_limit(
-    params: DemBodiesParams, model: Model, bodies: Sequence[RigidBody], solids: Sequence[Solid]
+    params: DemBodiesParams, model: Model, bodies: Bodies, solids: Sequence[Solid]
 ) -> FixedStep | StepLimit:
     """The step that a scene sets, or the limit of stability."""
     if params.fixed_step is not None:
         return FixedStep(params.fixed_step)
     return StepLimit(
-        frequency=expected_frequency(params, bodies, solids),
+        frequency=expected_frequency(params, bodies.kinds, solids),
         damping=float(model.material_pairs[:, :, 2].max()),
         steps_per_contact=params.steps_per_contact,
         longest=params.longest_step,

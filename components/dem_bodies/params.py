@@ -214,7 +214,7 @@ class DemBodiesParams:
         for k, pair in enumerate(self.pairs):
             for name in pair.between:
                 self._known(f"pairs[{k}].between", name)
-        bodies = [rigid_body(f"bodies[{k}]", body) for k, body in enumerate(self.bodies)]
+        bodies = (rigid_body(f"bodies[{k}]", body) for k, body in enumerate(self.bodies))
         object.__setattr__(self, "bodies", Bodies(bodies))
         check_plane(self.placed, self.planes, self.gravity, self.dimensions)
         check_pairs(self.pairs)

@@ -1,23 +1,24 @@
 """What a run of bodies will need: its rows, step and time, estimated without making the bodies."""
 
+import numpy as np
+
 from quintet.components.dem_bodies.contact.expected import expected_frequency
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.shapes.solid import is_ball, measure
+from quintet.components.dem_bodies.shapes.solid import is_ball, solids
 from quintet.interfaces.manifest import Plan
 
 
 def plan(params: DemBodiesParams) -> Plan:
     """What a run will need."""
-    bodies, count = params.placed.templates, len(params.bodies)
-    solids = [measure(body) for body in bodies]
-    ω = expected_frequency(params, bodies, solids)
+    bodies, count = params.placed, len(params.bodies)
+    ω = expected_frequency(params, bodies.kinds, solids(bodies))
     dt = DURATION * SPEED_UP / ω / params.steps_per_contact
     if count == 1 and not params.planes:  # nothing to touch
         dt = params.longest_step
     dt = min(params.longest_step, dt) if params.fixed_step is None else params.fixed_step
     # Of a step, some time is for calling it, and some for each body: more where it is no ball.
-    counts = zip(bodies, params.placed.counts, strict=True)
-    balls = sum(n for body, n in counts if is_ball(body))
+    is_ball_of_kind = np.array([is_ball(kind) for kind in bodies.kinds])
+    balls = int(bodies.counts[is_ball_of_kind[bodies.kind]].sum())
     step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
     return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.solid import Solid, solids
 from quintet.interfaces.component import Array
 
@@ -13,19 +14,24 @@ def initial(params: DemBodiesParams) -> dict[str, Array]:
     """Fields of the port `motion` at the start, static ones first; empty for very many bodies."""
     if len(params.bodies) > MOST:
         return {}
-    bodies = list(params.placed)
-    turns = np.array([body.orientation for body in bodies])
-    return described(params, solids(params.placed)) | {
-        "motion.position": np.array([body.position for body in bodies]),
+    bodies = params.placed
+    turns = bodies.of_each("orientation")
+    return described(params, masses(bodies, solids(bodies))) | {
+        "motion.position": bodies.positions(),
         "motion.orientation": turns / np.linalg.norm(turns, axis=1, keepdims=True),
-        "motion.velocity": np.array([body.velocity for body in bodies]),
-        "motion.angular_velocity": np.array([body.angular_velocity for body in bodies]),
+        "motion.velocity": bodies.of_each("velocity"),
+        "motion.angular_velocity": bodies.of_each("angular_velocity"),
     }
 
 
-def described(params: DemBodiesParams, solids: list[Solid]) -> dict[str, Array]:
-    """Masses; and the number of dimensions where it is two."""
-    stated = {"motion.mass": np.array([solid.mass for solid in solids])}
+def masses(bodies: Bodies, solids: list[Solid]) -> Array:
+    """Mass (m,) [kg] of each body; `solids` are those of the kinds."""
+    return np.array([solid.mass for solid in solids])[bodies.kind_of_each()]
+
+
+def described(params: DemBodiesParams, mass: Array) -> dict[str, Array]:
+    """Masses (m,) [kg]; and the number of dimensions where it is two."""
+    stated = {"motion.mass": mass.copy()}
     if params.dimensions == 2:
         stated["motion.dimensions"] = np.array([2.0])
     return stated

@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import Solid
 from quintet.components.dem_bodies.state import Numbers, State
@@ -17,10 +18,11 @@ REACH = 1.0  # sizes of what holds bodies and planes, by which planes are shown 
 ON = 1e-9  # of that size: what lies on a plane is not beyond it
 
 
-def view(bodies: Sequence[RigidBody], solids: Sequence[Solid], state: State) -> Fields:
+def view(bodies: Bodies, solids: Sequence[Solid], state: State) -> Fields:
     """Corners and faces of boxes, polygons and meshes, centres and radii of spheres; velocities."""
     row = state.row[:-1]
-    outlines = [_outline(body, solid) for body, solid in zip(bodies, solids, strict=True)]
+    of_kinds = [_outline(body, solid) for body, solid in zip(bodies.kinds, solids, strict=True)]
+    outlines = [of_kinds[kind] for kind in bodies.kind_of_each().tolist()]
     motion = state.velocity[row], state.angular_velocity[row]
     axes = state.axes[row].reshape(-1, 3, 3)
     return body_view.bodies_view(outlines, state.position[row], axes, *motion)

@@ -1,43 +1,72 @@
 """The bodies of a scene as described; their copies are made on request."""
 
 import math
+from array import array
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from itertools import accumulate
-from typing import overload
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import fields, replace
+from typing import Any, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.dem_bodies.shapes import planar
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.shared.geometry.lattice import lattice_points
 from quintet.interfaces.component import Array
 
+Whole = NDArray[np.integer[Any]]
 MOST = 2**31 - 1  # bodies: so many can be numbered
+# Numbers that each body has of its own. A geometry's place is not used.
+POSE = {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3}
+COMMON = [f.name for f in fields(RigidBody) if f.name not in (*POSE, "geometry")]
 
 
 class Bodies(Sequence[RigidBody]):
     """All bodies, copies in their lattices' order, as a sequence that holds descriptions alone.
 
+    What bodies have in common is held once, as their kind; of each body only its pose and velocity
+    are held, in arrays.
+
     Parameters
     ----------
-    templates : sequence of Body
+    templates : iterable of RigidBody
         Bodies as they are described, each with its lattice of copies.
     """
 
-    def __init__(self, templates: Sequence[RigidBody]) -> None:
-        self.templates = tuple(templates)
-        self.counts = [number(body) for body in self.templates]
-        self.first = [0, *accumulate(self.counts)]  # number of the first body of each, and of all
-        if self.first[-1] > MOST:
+    def __init__(self, templates: Iterable[RigidBody]) -> None:
+        known: dict[object, int] = {}
+        self.kinds: list[RigidBody] = []  # with the pose of their first body
+        kinds, poses = array("q"), array("d")
+        for body in templates:
+            kind = known.setdefault(common(body), len(known))
+            if kind == len(self.kinds):
+                self.kinds.append(body)
+            kinds.append(kind)
+            for name in POSE:
+                poses.extend(getattr(body, name))
+        columns = np.array(poses).reshape(-1, sum(POSE.values()))
+        parts = np.split(columns, np.cumsum(list(POSE.values()))[:-1], axis=1)
+        self.poses = dict(zip(POSE, map(compact, parts), strict=True))  # (t, 3 or 4) of templates
+        self.kind = np.array(kinds, np.int32)  # (t,) of templates
+        times: list[int] = np.bincount(self.kind).tolist()
+        count = sum(n * number(kind) for n, kind in zip(times, self.kinds, strict=True))
+        if count > MOST:
             raise ValueError(
-                f"bodies, with their copies, must be at most {MOST}; found {self.first[-1]:.3g}. "
+                f"bodies, with their copies, must be at most {MOST}; found {count:.3g}. "
                 "Make fewer copies."
             )
+        # Number of the first body of each template, and of all.
+        self.first = np.concatenate([[0], np.cumsum(self.counts)])
+        self.templates = Templates(self.kinds, self.kind, self.poses)
+
+    @property
+    def counts(self) -> Whole:
+        """Number (t,) of the bodies of each template."""
+        return np.array([number(body) for body in self.kinds], np.int64)[self.kind]
 
     def __len__(self) -> int:
-        return self.first[-1]
+        return int(self.first[-1])
 
     def __iter__(self) -> Iterator[RigidBody]:
         for body in self.templates:
@@ -56,6 +85,67 @@ class Bodies(Sequence[RigidBody]):
         group = bisect_right(self.first, number) - 1
         body = self.templates[group]
         return at(body, places(body)[number - self.first[group]])
+
+    def have_copies(self) -> NDArray[np.bool_]:
+        """Whether the bodies of each kind stand on lattices."""
+        return np.array([body.copies is not None for body in self.kinds])
+
+    def kind_of_each(self) -> NDArray[np.int64]:
+        """Kind (n,) of each body."""
+        return np.repeat(self.kind.astype(np.int64), self.counts)
+
+    def positions(self) -> Array:
+        """Where all bodies stand; (n, 3) m."""
+        points = np.repeat(self.poses["position"], self.counts, axis=0)
+        for k in np.flatnonzero(self.have_copies()[self.kind]).tolist():
+            points[self.first[k] : self.first[k + 1]] = places(self.templates[k])
+        return points
+
+    def of_each(self, name: str) -> Array:
+        """Orientation, velocity or angular velocity (n, 3 or 4) of each body."""
+        return np.repeat(self.poses[name], self.counts, axis=0)
+
+
+class Templates(Sequence[RigidBody]):
+    """Bodies as they are described, each made of its kind and pose on request.
+
+    Parameters
+    ----------
+    kinds : sequence of RigidBody
+    kind : (t,) int array
+        Kind of each.
+    poses : mapping of (t, 3 or 4) float array
+        Position, orientation and velocities of each.
+    """
+
+    def __init__(self, kinds: Sequence[RigidBody], kind: Whole, poses: dict[str, Array]) -> None:
+        self.kinds, self.kind, self.poses = kinds, kind, poses
+
+    def __len__(self) -> int:
+        return len(self.kind)
+
+    @overload
+    def __getitem__(self, k: int) -> RigidBody: ...
+    @overload
+    def __getitem__(self, k: slice) -> Sequence[RigidBody]: ...
+    def __getitem__(self, k: int | slice) -> RigidBody | Sequence[RigidBody]:
+        if isinstance(k, slice):
+            return tuple(self)[k]
+        pose: dict[str, Any] = {name: tuple(rows[k].tolist()) for name, rows in self.poses.items()}
+        return replace(self.kinds[self.kind[k]], **pose)
+
+
+def common(body: RigidBody) -> tuple[object, ...]:
+    """What bodies of one kind have in common: all but pose and velocity."""
+    return tuple(getattr(body, name) for name in COMMON)
+
+
+def compact(rows: Array) -> Array:
+    """The same rows (n, k); if all are equal to the bit, only one is held."""
+    bits = np.ascontiguousarray(rows).view(np.int64)
+    if len(rows) and (bits == bits[0]).all():
+        return np.broadcast_to(rows[0].copy(), rows.shape)
+    return rows.copy()
 
 
 def number(body: RigidBody) -> int:

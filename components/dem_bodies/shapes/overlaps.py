@@ -10,6 +10,7 @@ from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.dem_bodies.shapes import placement, planar
 from quintet.components.dem_bodies.shapes.copies import Bodies, at, places, some_places
@@ -17,27 +18,41 @@ from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
 from quintet.components.shared.search.overlapping import overlapping
 from quintet.interfaces.component import Array
 
+Mask = NDArray[np.bool_]
+
 MOST_SCATTERED = 400_000  # copies whose places are looked at one by one
 MOST_NEIGHBOURS = 20_000  # of a copy, within whose reach it stands
 
 
 def check(bodies: Bodies, planes: Sequence[Plane]) -> None:
     """Refuse bodies that start inside one another or below a plane."""
-    for first, body in zip(bodies.first, bodies.templates, strict=False):
+    for k in np.flatnonzero(may_be_low(bodies, planes)).tolist():
         for m, plane in enumerate(planes):
-            require_above(first, body, m, plane)
-    for first, body in zip(bodies.first, bodies.templates, strict=False):
-        if body.copies is not None:
-            require_apart(first, body)
+            require_above(bodies.first[k], bodies.templates[k], m, plane)
+    for k in np.flatnonzero(bodies.have_copies()[bodies.kind]).tolist():
+        require_apart(bodies.first[k], bodies.templates[k])
     check_others(bodies)
+
+
+def may_be_low(bodies: Bodies, planes: Sequence[Plane]) -> Mask:
+    """Whether each template has copies, or is not above a plane by its bounding radius."""
+    low, reach = bodies.have_copies()[bodies.kind], bounding_radii(bodies)
+    x, y, z = bodies.poses["position"].T
+    for plane in planes:
+        (a, b, c), (nx, ny, nz) = plane.point, plane.normal
+        rise = (x - a) * nx + (y - b) * ny + (z - c) * nz
+        low = low | ~(rise / math.hypot(*plane.normal) > reach)
+    return low
+
+
+def bounding_radii(bodies: Bodies) -> Array:
+    """Radius (t,) m about the centre of mass that holds each template."""
+    return np.array([placement.bounding_radius(kind) for kind in bodies.kinds])[bodies.kind]
 
 
 def require_above(first: int, body: RigidBody, m: int, plane: Plane) -> None:
     """Refuse a body, or the lowest of its copies, that reaches below a plane."""
-    reach = placement.bounding_radius(body)
-    if body.copies is None and placement.height(body, plane) > reach:
-        return
-    allowed = placement.ALLOWED * reach
+    allowed = placement.ALLOWED * placement.bounding_radius(body)
     number, gap = 0, placement.plane_gap(body, plane)
     if body.copies is not None:
         number, gap = lowest_copy(body, plane, gap, allowed)
@@ -147,15 +162,14 @@ def refuse_pairs(first: int, body: RigidBody) -> None:
 
 def check_others(bodies: Bodies) -> None:
     """Refuse bodies that overlap others than their own copies."""
-    single = [k for k, count in enumerate(bodies.counts) if count == 1]
-    several = [k for k, count in enumerate(bodies.counts) if count > 1]
+    single = np.flatnonzero(bodies.counts == 1)
+    several = np.flatnonzero(bodies.counts > 1).tolist()
     if len(single) > 1:
-        where = np.array([bodies.templates[k].position for k in single])
-        radius = np.array([placement.bounding_radius(bodies.templates[k]) for k in single])
-        compare(bodies, np.array(single), np.zeros(len(single), np.int64), where, radius)
+        where, radius = bodies.poses["position"][single], bounding_radii(bodies)[single]
+        compare(bodies, single, np.zeros_like(single), where, radius)
     boxes = {k: bounds(bodies.templates[k]) for k in several}
     for k in several:
-        beside = [j for j in single if meet(boxes[k], bounds(bodies.templates[j]))]
+        beside = [j for j in single.tolist() if meet(boxes[k], bounds(bodies.templates[j]))]
         if beside:
             compare_lattice(bodies, k, beside)
     for k, j in combinations(several, 2):
@@ -200,10 +214,10 @@ def compare_lattice(bodies: Bodies, k: int, others: list[int]) -> None:
 
 def compare(bodies: Bodies, group: Array, number: Array, where: Array, radius: Array) -> None:
     """Refuse two of these bodies that overlap: their templates, numbers, places (n, 3) m, radii."""
-    first = np.array(bodies.first)[group] + number
-    round_ = np.array([bodies.templates[k].radius is not None for k in group])
+    first, counts = bodies.first[group] + number, bodies.counts
+    round_ = np.array([kind.radius is not None for kind in bodies.kinds])[bodies.kind[group]]
     for i, j in overlapping(where, radius):
-        other = (group[i] != group[j]) | (np.array(bodies.counts)[group[i]] == 1)
+        other = (group[i] != group[j]) | (counts[group[i]] == 1)
         i, j = i[other], j[other]
         gap = np.linalg.norm(where[i] - where[j], axis=1) - radius[i] - radius[j]
         for k in np.flatnonzero(~(round_[i] & round_[j])):

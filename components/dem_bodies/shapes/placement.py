@@ -1,7 +1,5 @@
 """How far bodies are from one another and from planes, as they stand at the start."""
 
-import math
-
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
@@ -71,14 +69,6 @@ def bounding_radius(body: RigidBody) -> float:
         return body.radius
     centres, radii = contact_spheres(body)
     return float((np.linalg.norm(centres, axis=1) + radii).max())
-
-
-def height(body: RigidBody, plane: Plane) -> float:
-    """Distance [m] of a body's centre of mass from a plane."""
-    rise = sum(
-        (a - b) * n for a, b, n in zip(body.position, plane.point, plane.normal, strict=True)
-    )
-    return rise / math.hypot(*plane.normal)
 
 
 def plane_gap(body: RigidBody, plane: Plane) -> float:

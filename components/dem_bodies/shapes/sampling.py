@@ -1,21 +1,22 @@
 """How the surfaces of bodies are sampled for a partner."""
 
-from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 
 from quintet.components.dem_bodies.shapes import planar
+from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
 from quintet.components.shared.geometry import surface_samples as surfaces
 from quintet.interfaces.component import Array, Fields
 
 
-def sample(bodies: Sequence[RigidBody], request: Fields) -> dict[str, Array]:
+def sample(bodies: Bodies, request: Fields) -> dict[str, Array]:
     """Samples of all bodies; equal ones are sampled once."""
     known: dict[object, surfaces.Sampler] = {}
-    samplers = [known.setdefault(_form(body), _sampler(body)) for body in bodies]
+    of_kinds = [known.setdefault(_form(kind), _sampler(kind)) for kind in bodies.kinds]
+    samplers = [of_kinds[kind] for kind in bodies.kind_of_each().tolist()]
     return surfaces.rigid_answer("motion", request, samplers)
 
 

@@ -20,7 +20,7 @@ THIN = 0.1  # of a box's longest edge: a thinner box is listed as if it were as 
 
 
 class Solid(NamedTuple):
-    """Mass and inertia of one body, and the spheres that make its contacts."""
+    """Mass and inertia of one kind of body, and the spheres that make its contacts."""
 
     mass: float  # kg
     inertia: Array  # (3, 3) kg m2, body axes
@@ -30,9 +30,8 @@ class Solid(NamedTuple):
 
 
 def solids(bodies: Bodies) -> list[Solid]:
-    """Measure all bodies; copies share the result of the first."""
-    templates = zip(bodies.templates, bodies.counts, strict=True)
-    return [solid for body, count in templates for solid in count * [measure(body)]]
+    """Measure the kinds of bodies."""
+    return [measure(kind) for kind in bodies.kinds]
 
 
 def measure(body: RigidBody) -> Solid:
