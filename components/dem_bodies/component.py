@@ -8,7 +8,6 @@ import numpy as np
 from quintet.components.dem_bodies import MANIFEST, build, diagnostics, features
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.diagnostics import ALLOWED_DEPTH, Accumulated
-from quintet.components.dem_bodies.kernels import step as kernels
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ports import SHOWS
 from quintet.components.dem_bodies.shapes.sampling import sample
@@ -28,7 +27,7 @@ from quintet.interfaces.errors import StepError
 
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 LOADS = ("load.force", "load.torque")
-# Of the port, in the order that kernels.copy_motion takes.
+# Of the port, in the order in which rows are copied out.
 MOTION = ("motion.position", "motion.velocity", "motion.orientation", "motion.angular_velocity")
 CONTACT_FIELDS = ("contact.force", "contact.torque")
 
@@ -54,12 +53,12 @@ class DemBodies(Component):
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.bodies, self.solids = params.placed, solids(params.placed)  # of the kinds of bodies
         number = build.balls_first(self.bodies)
-        self.model = build.model(params, self.bodies, number, self.solids)
-        self.state = build.state(self.bodies, number, self.solids)
-        parts = self.model, self.bodies, self.solids
-        self.stepping = features.stepping(params, *parts, resources)
+        model = build.model(params, self.bodies, number, self.solids)
+        state, parts = build.state(self.bodies, number, self.solids), (self.bodies, self.solids)
+        self.stepping = features.stepping(params, model, state, *parts, resources)
+        self.model, self.state = self.stepping.model, self.stepping.state
         self.lists = self.stepping.lists
-        self.limit = features.step_limit(params, *parts)
+        self.limit = features.step_limit(params, self.model, *parts)
         self.accumulated = Accumulated()
         self.count, self.mass = len(self.bodies), masses(self.bodies, self.solids)  # (m,) kg
         self.loaded = False  # whether any body has a load
@@ -94,11 +93,12 @@ class DemBodies(Component):
         """Set force [N] and torque [N m] on each body; 0 where none is given."""
         if not self.loaded and fields.keys().isdisjoint(LOADS):
             return
-        load, row = self.state.load, self.state.row[: self.count]
-        load[row, :3] = fields.get("load.force", 0.0)
-        load[row, 3:] = fields.get("load.torque", 0.0)
+        load = np.zeros((self.count, 6))
+        load[:, :3] = fields.get("load.force", 0.0)
+        load[:, 3:] = fields.get("load.torque", 0.0)
         if self.params.dimensions == 2:
             load[:, LEAVE_PLANE] = 0.0
+        self.stepping.set_loads(load)
         self.loaded = bool(load.any())
 
     def step(self, dt: float) -> None:
@@ -120,25 +120,22 @@ class DemBodies(Component):
 
     def _failure(self, dt: float) -> StepError:
         time, balls = self.accumulated.time + dt, self.stepping.pairs_of_all()
-        self.stepping.gather(self.state)
-        return diagnostics.failure(self.state, balls, self.lists.bodies, time)
+        _, state = self.stepping.whole()
+        others, answers = self.lists.bodies, self.stepping.answers
+        text = diagnostics.failure(state, balls, others, time) if answers else ""
+        return StepError(self.stepping.said(text))
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of all bodies; if wanted, the loads of contacts in the last step."""
-        s, n, fields = self.state, self.count, dict[str, Array]()
+        fields = dict[str, Array]()
         if not wanted.isdisjoint(CONTACT_FIELDS):
             self._begin()
-            self.stepping.gather(s, "contact_load", "previous_contact_load")
+            _, s = self.stepping.whole("contact_load", "previous_contact_load")
             # The mean of both ends gives the change of momentum to rounding.
             mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
             fields |= {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
         if not wanted.isdisjoint(MOTION):
-            self.stepping.gather(s, "motion", "orientation")
-            # One piece of memory: separate ones are requested from the system at every call.
-            parts = np.split(np.empty(13 * n), [3 * n, 6 * n, 10 * n])
-            motion = dict(zip(MOTION, (part.reshape(n, -1) for part in parts), strict=True))
-            kernels.copy_motion(s.row, s.motion, s.orientation, *motion.values())
-            fields |= motion
+            fields |= dict(zip(MOTION, self.stepping.motion(), strict=False))
         return {key: array for key, array in fields.items() if key in wanted}
 
     def contact_points(self) -> Fields:
@@ -154,28 +151,22 @@ class DemBodies(Component):
         if not self.params.contact_forces:
             raise ValueError("contact_forces must be true to list contacts; found false. Set it.")
         self._begin()
-        balls = self.stepping.pairs_of_all()
-        self.stepping.gather(self.state)
-        return diagnostics.contact_points(self.model, self.state, balls, self.lists.bodies)
+        balls, whole = self.stepping.pairs_of_all(), self.stepping.whole()
+        return diagnostics.contact_points(*whole, balls, self.lists.bodies)
 
     def save(self) -> Fields:
         """Copy out all state: bodies, listed pairs and their history, accumulated numbers."""
         self._begin()
-        self.stepping.gather(self.state)
-        arrays = {name: array.copy() for name, array in self.state._asdict().items()}
+        _, state = self.stepping.whole()
+        arrays = {name: array.copy() for name, array in state._asdict().items()}
         accumulated = np.array(astuple(self.accumulated))
         return arrays | self.lists.save() | {"accumulated": accumulated}
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
         self.begun = True
-        balls = np.count_nonzero(self.model.ball)
-        rows.sort_rows(self.model, self.state, self.state.row[state["body"][:balls]])
-        for name, array in self.state._asdict().items():
-            array[:] = state[name]
-        self.lists.load(state)
-        self.stepping.load(self.state)
-        self.loaded = bool(self.state.load.any())
+        self.stepping.load(state)
+        self.loaded = bool(np.any(state["load"]))
         self.accumulated = Accumulated(*state["accumulated"].tolist())
 
     def warnings(self) -> dict[str, str]:
@@ -185,18 +176,18 @@ class DemBodies(Component):
     def totals(self) -> Totals:
         """Mass, momentum and energies of the bodies; internal is the contacts' elastic energy."""
         self._begin()
-        self.stepping.gather(self.state)
-        return diagnostics.totals(self.model, self.state, self.mass)
+        whole = self.stepping.whole("motion", "angular_momentum")
+        return diagnostics.totals(*whole, self.mass) if self.stepping.answers else Totals()
 
     def view(self) -> Fields:
         """Corners and faces of boxes and polygons, centres and radii of spheres, velocities."""
-        self.stepping.gather(self.state)
-        return view(self.bodies, self.solids, self.state)
+        _, state = self.stepping.whole("motion")
+        return view(self.bodies, self.solids, state) if self.stepping.answers else {}
 
     def walls(self) -> Fields:
         """Polygons on the planes, near the bodies."""
-        self.stepping.gather(self.state)
-        return planes_view(self.model.plane, self.state)
+        model, state = self.stepping.whole("motion")
+        return planes_view(model.plane, state) if self.stepping.answers else {}
 
     def items(self) -> int:
         """Count the bodies."""

@@ -23,28 +23,27 @@ from quintet.components.dem_bodies.state import (
     State,
 )
 from quintet.interfaces.component import Fields, Totals
-from quintet.interfaces.errors import StepError
 
 DOUBTFUL_DEPTH = 0.2  # overlap over contact radius: stiff bodies overlap less
 FEWEST_STEPS = 5  # of a contact
 ALLOWED_DEPTH = 0.5  # overlap over contact radius; Hertz's law is for small ones
 
 
-def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: float) -> StepError:
+def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: float) -> str:
     """Say which body is wrong at a time [s], and what to do."""
     after, bodies = f"dem_bodies, t = {time:.6g} s", len(state.body) - 1
     finite = np.isfinite(state.motion.sum(axis=1))[state.row]
     if not finite.all():
         k = int(np.argmin(finite))
         a = state.row[k]
-        return StepError(
+        return (
             f"{after}: the state must stay finite; body {k} is at {state.position[a].tolist()} m "
             f"with {state.velocity[a].tolist()} m/s under a load of {state.load[a].tolist()} N, "
             "N m. Check its load, or increase steps_per_contact."
         )
     i, j = deepest_pair(state, balls, others)
     other, where = f"body {j}" if j < bodies else "a plane", state.position[state.row[i]]
-    return StepError(
+    return (
         f"{after}: the overlap of a contact must be at most {ALLOWED_DEPTH} of its radius; that of "
         f"body {i} with {other} is {state.report[DEEPEST]:.3g} of it, near "
         f"{where.round(4).tolist()} m. Increase youngs_modulus or edge_radius, or set impact_speed "

@@ -12,7 +12,7 @@ from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ranks.one import OneRank
 from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.solid import Solid, contact_length
-from quintet.components.dem_bodies.state import Model
+from quintet.components.dem_bodies.state import Model, State
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError
 
@@ -22,6 +22,7 @@ SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are li
 def stepping(
     params: DemBodiesParams,
     model: Model,
+    state: State,
     bodies: Bodies,
     solids: Sequence[Solid],
     resources: Resources,
@@ -36,7 +37,7 @@ def stepping(
     balls, communicator = no_ball_pairs(model), resources.communicator
     if communicator is None or communicator.size == 1:
         lists = ContactLists(model, balls, skin, params.contact_forces)
-        return OneRank(model, lists, resources.threads)
+        return OneRank(state, lists, resources.threads)
     if balls is None:
         raise SceneError(
             f"ranks must be 1 where no body is a single sphere, as only spheres are shared out; "
@@ -44,12 +45,14 @@ def stepping(
         )
     # Only bodies on several ranks load mpi4py.
     from quintet.components.dem_bodies.ranks.lists import SharedLists
+    from quintet.components.dem_bodies.ranks.rows import RowsOfRank
     from quintet.components.dem_bodies.ranks.several import SeveralRanks
     from quintet.components.dem_bodies.ranks.shares import Shares
 
     shares = Shares(communicator, len(model.kind), int(np.count_nonzero(model.ball)))
-    shared_lists = SharedLists(model, balls, skin, params.contact_forces, shares)
-    return SeveralRanks(model, shared_lists, resources.threads)
+    rows = RowsOfRank(model, state, bodies.kind_of_each(np.int32), shares)
+    shared_lists = SharedLists(rows, balls, skin, params.contact_forces)
+    return SeveralRanks(rows, shared_lists, resources.threads)
 
 
 def step_limit(

@@ -21,4 +21,4 @@ def plan(params: DemBodiesParams) -> Plan:
     is_ball_of_kind = np.array([is_ball(kind) for kind in bodies.kinds])
     balls = int(bodies.counts[is_ball_of_kind[bodies.kind]].sum())
     step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
-    return Plan(count, dt, rate=count / step, bytes_per_item=2600.0)
+    return Plan(count, dt, rate=count / step, bytes_per_item=1200.0)

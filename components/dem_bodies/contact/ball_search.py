@@ -50,12 +50,14 @@ def list_ball_pairs(
     skin: float,
     records_forces: bool,
     rows: slice | None = None,
+    begin: Whole | None = None,
 ) -> BallPairs:
     """List all pairs of balls, and of balls and planes, nearer than the skin [m]; or of some rows.
 
-    The history of `old` pairs is taken over: their rows are those of `old_body`.
+    The history of `old` pairs is taken over: their rows are those of `old_body`. With `rows` comes
+    `begin` (b + 1,), all zeros, into which is written where the pairs of these begin.
     """
-    begin = np.empty(len(cells.keys) + 1, np.int64)
+    begin = np.empty(len(cells.keys) + 1, np.int64) if begin is None else begin
     partner = np.empty(2 * len(old.partner) + 64, np.uint32)
     first, last, _ = (rows or slice(None)).indices(len(cells.keys))
     arguments = first, last, model, state.motion, cells.keys, skin

@@ -58,18 +58,18 @@ class ContactLists:
 
     def count_contacts(self, listed: bool = False) -> int:
         """Most contacts of any row; with `listed` as if all listed pairs touched."""
+        self._count_others(listed)
+        if (balls := self.balls) is not None:
+            history = np.ones_like(balls.history) if listed else balls.history
+            count_ball_contacts(balls.row, balls.partner, history, self.contacts)
+        return int(self.contacts.max())
+
+    def _count_others(self, listed: bool) -> None:
+        """Count the contacts of each row but those of balls with each other and with planes."""
         pairs, model = self.bodies, self.model
         history = np.ones_like(pairs.history) if listed else pairs.history
         ends = (pairs.ends, pairs.begin, model.sphere_row, model.edge_ends)
         count_contacts(history, *ends, self.contacts)
-        self._add_balls(listed)
-        return int(self.contacts.max())
-
-    def _add_balls(self, listed: bool) -> None:
-        """Add the contacts of balls to those of each row."""
-        if (balls := self.balls) is not None:
-            history = np.ones_like(balls.history) if listed else balls.history
-            count_ball_contacts(balls.row, balls.partner, history, self.contacts)
 
     def save(self) -> dict[str, Array]:
         """Copy out the listed pairs and their history."""

@@ -35,11 +35,10 @@ def list_partners(
 ) -> int:  # fmt: skip
     """Write partners of the rows [first_row, last_row), while there is room, and where rows begin.
 
-    Other rows have none. Return the number of partners.
+    Return the number of partners. Nothing is written of other rows.
     """
     planes, rows, count, listed = model.plane.shape[0], motion.shape[0], keys.shape[0], 0
     low, high = np.zeros(5, np.int64), np.zeros(5, np.int64)
-    begin[:first_row] = 0
     for a in range(first_row, last_row):
         begin[a] = listed
         x, radius = row_vector(motion, a), motion[a, RADIUS]
@@ -61,5 +60,5 @@ def list_partners(
                     if listed < partner.shape[0]:
                         partner[listed] = b
                     listed += 1
-    begin[last_row:] = listed
+    begin[last_row] = listed
     return listed

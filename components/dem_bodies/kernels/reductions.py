@@ -23,9 +23,8 @@ from quintet.components.dem_bodies.state import (
     TRAVEL,
     VELOCITY2,
     Numbers,
-    State,
 )
-from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.numba_options import EXACT, INNER
 
 
 @njit(**INNER)
@@ -42,9 +41,9 @@ def reduce_pairs(report: Numbers, sums: Numbers) -> None:
 
 
 @njit(**INNER)
-def reduce_bodies(state: State, sums: Numbers) -> None:
+def reduce_bodies(report: Numbers, contact_load: Numbers, sums: Numbers) -> None:
     """Report work, travel and how fast points may move; the ground gets the load on planes."""
-    report, ground = state.report, state.contact_load.shape[0] - 1
+    ground = contact_load.shape[0] - 1
     report[CONTACT_WORK], report[LOAD_WORK] = 0.0, 0.0
     report[TRAVEL] = sums[:, TRAVEL].max()
     velocity2, rotation2, acceleration2, spin_up2, centripetal = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -52,7 +51,7 @@ def reduce_bodies(state: State, sums: Numbers) -> None:
         report[CONTACT_WORK] += sums[b, CONTACT_WORK]
         report[LOAD_WORK] += sums[b, LOAD_WORK]
         for k in range(6):
-            state.contact_load[ground, k] += sums[b, GROUND_LOAD + k]
+            contact_load[ground, k] += sums[b, GROUND_LOAD + k]
         velocity2 = max(velocity2, sums[b, VELOCITY2])
         rotation2 = max(rotation2, sums[b, ROTATION2])
         acceleration2 = max(acceleration2, sums[b, ACCELERATION2])
@@ -60,3 +59,11 @@ def reduce_bodies(state: State, sums: Numbers) -> None:
         centripetal = max(centripetal, sums[b, CENTRIPETAL])
     report[LARGEST_SPEED] = math.sqrt(velocity2) + math.sqrt(rotation2)
     report[LARGEST_ACCELERATION] = math.sqrt(acceleration2) + math.sqrt(spin_up2) + centripetal
+
+
+@njit(**EXACT)
+def number_pairs(sums: Numbers, first: int, last: int, before: int) -> None:
+    """Number the deepest pairs of the blocks [first, last) behind those of earlier ranks."""
+    for b in range(first, last):
+        if sums[b, DEEPEST_PAIR] >= 0.0:
+            sums[b, DEEPEST_PAIR] += before

@@ -1,4 +1,4 @@
-"""Loops over bodies: the stages of a velocity-Verlet step, and copies of its result."""
+"""Loops over bodies: the stages of a velocity-Verlet step."""
 
 import math
 
@@ -7,23 +7,16 @@ from numba import njit
 from quintet.components.dem_bodies.kernels.ball_contacts import ball_loads, begin_block
 from quintet.components.dem_bodies.kernels.batch import batch_of
 from quintet.components.dem_bodies.kernels.body_contacts import contact_loads, detect_contacts
-from quintet.components.dem_bodies.kernels.geometry import (
-    row_vector,
-    set_row_vector,
-)
 from quintet.components.dem_bodies.kernels.reductions import reduce_bodies, reduce_pairs
 from quintet.components.dem_bodies.kernels.velocity_verlet import drift, end_kick
 from quintet.components.dem_bodies.state import (
-    OMEGA,
     TOUCHING,
     TRAVEL,
-    VELOCITY,
     BallPairs,
     BodyPairs,
     Model,
     Numbers,
     State,
-    Whole,
 )
 from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.search.verlet_list import slack
@@ -98,20 +91,13 @@ def step(
             elif not (alone and balls.earliest[block] >= first):
                 end_kick(block, model, state, balls, sums, dt, loaded)
     if begin <= REPORT < end:
-        reduce_bodies(state, sums)
+        reduce_bodies(state.report, state.contact_load, sums)
     return end
 
 
 @njit(**EXACT)
-def copy_motion(
-    row: Whole, motion: Numbers, orientations: Numbers, position: Numbers, velocity: Numbers,
-    orientation: Numbers, angular_velocities: Numbers,
-) -> None:  # fmt: skip
-    """Copy out the motion of all bodies, in the scene's order."""
-    for k in range(position.shape[0]):
-        i = row[k]
-        set_row_vector(position, k, 0, row_vector(motion, i))
-        set_row_vector(velocity, k, 0, row_vector(motion, i, VELOCITY))
-        set_row_vector(angular_velocities, k, 0, row_vector(motion, i, OMEGA))
-        for d in range(4):
-            orientation[k, d] = orientations[i, d]
+def report_balls(report: Numbers, contact_load: Numbers, sums: Numbers) -> None:
+    """Report on a step of balls alone, of which the sums of all blocks are known."""
+    reduce_pairs(report, sums)
+    report[TOUCHING] = 0.0
+    reduce_bodies(report, contact_load, sums)

@@ -7,33 +7,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs
-from quintet.components.dem_bodies.contact.ball_search import list_ball_pairs, sorted_balls
+from quintet.components.dem_bodies.contact.ball_search import list_ball_pairs
 from quintet.components.dem_bodies.contact.body_search import (
     body_pairs_of,
     list_body_pairs,
     with_sorted_rows,
 )
 from quintet.components.dem_bodies.contact.lists import ContactLists, history_of
+from quintet.components.dem_bodies.kernels.ball_lists import Sorted
 from quintet.components.dem_bodies.kernels.contact_counts import count_ball_contacts
-from quintet.components.dem_bodies.ranks.shares import Shares
+from quintet.components.dem_bodies.ranks.rows import RowsOfRank
 from quintet.components.dem_bodies.state import (
     BLOCK,
     COLUMNS,
     BallPairs,
-    Model,
     State,
     Whole,
     body_pairs,
-    sort_rows,
 )
 from quintet.components.shared.domain.collection import collect
 from quintet.components.shared.domain.exchange import send_rows, share
-from quintet.components.shared.domain.extremes import counted
+from quintet.components.shared.domain.extremes import greatest
 from quintet.components.shared.domain.halo import Halo
+from quintet.components.shared.search.cells import LAYER, ROW, keys_of
 from quintet.interfaces.component import Array, Fields
-
-# Of a row that moves to another rank, with their widths. Loads from outside are known everywhere.
-MOVED = {"motion": COLUMNS, "orientation": 4, "contact_load": 6, "previous_contact_load": 6}
 
 
 class SharedLists(ContactLists):
@@ -41,70 +38,100 @@ class SharedLists(ContactLists):
 
     Parameters
     ----------
-    model : Model
+    rows : RowsOfRank
     balls : BallPairs
         None yet.
     skin : float, m
         Distance within which pairs are listed.
     records_forces : bool
         Whether the force of each pair is recorded.
-    shares : Shares
     """
 
     balls: BallPairs
 
     def __init__(
-        self, model: Model, balls: BallPairs, skin: float, records_forces: bool, shares: Shares
+        self, rows: RowsOfRank, balls: BallPairs, skin: float, records_forces: bool
     ) -> None:
-        super().__init__(model, balls, skin, records_forces)
-        self.shares, self.pairs_before, self.pairs = shares, 0, 0
+        super().__init__(rows.model, balls, skin, records_forces)
+        self.rows, self.shares, self.pairs_before, self.pairs = rows, rows.shares, 0, 0
+        self.begin = rows.sparse.zeros((self.shares.balls + 1,), np.int64)
+        self.incoming_begin = rows.sparse.zeros((self.shares.rows + 1,), np.int64)
+        self.of_balls = rows.sparse.zeros((self.shares.rows,), np.int64)  # contacts of balls alone
+        self.listed = slice(0, 0)  # rows in `begin`
 
     def renew(self, state: State) -> None:
         """Sort the rows of all balls, cut them into shares, and list the pairs of own rows."""
-        model, shares, body = self.model, self.shares, state.body.copy()
-        cells, order = sorted_balls(model, state, self.skin)
-        owner = shares.owners(order)  # before; in the new order
-        sort_rows(model, state, order)
+        model, shares, before = self.model, self.shares, self.shares.ends()
+        cells, order = self._sorted_balls(state)
+        touching = self._pairs_in_contact(state)
         shares.cut()
-        self._move_rows(state, owner)
-        known = self._pairs_by_body(state, body)
-        rows = shares.rows_of(shares.rank)
-        all_bodies = np.arange(shares.rows)
+        self.rows.move(order, before)
+        self._know_near(state, cells)
+        balls = self._begin_rows(), self._at_owners(state, *touching)
         self.balls = list_ball_pairs(
-            model, state, cells, known, all_bodies, self.skin, self.records_forces, rows
-        )
-        self.link_ranks(state)
-        self.bodies = with_sorted_rows(self.bodies, order)
-        self.bodies = list_body_pairs(model, state, cells, self.bodies, self.skin)
-        state.listed_centre[:] = state.centre
-        state.listed_centre[: shares.balls] = state.motion[: shares.balls, :3]
+            model, state, cells, balls[1], np.arange(shares.rows), self.skin, self.records_forces,
+            self.rows.owned, balls[0],
+        )  # fmt: skip
+        self.link_ranks()
+        if self.rows.are_all:
+            self.bodies = with_sorted_rows(self.bodies, order)
+            self.bodies = list_body_pairs(model, state, cells, self.bodies, self.skin)
+            state.listed_centre[shares.balls :] = state.centre[shares.balls :]
+        owned = self.rows.owned_balls
+        state.listed_centre[owned] = state.motion[owned, :3]
         self.most_contacts = self.count_contacts(listed=True)
 
-    def _move_rows(self, state: State, before: Whole) -> None:
-        """Send what moves of a row to its new owner; `before` holds the old owner of each ball."""
-        shares, rank = self.shares, self.shares.rank
-        after = shares.owners(np.arange(len(before)))
-        leaving = [
-            np.flatnonzero((before == rank) & (after == other) & (before != after))
-            for other in range(shares.size)
-        ]
-        arrays = [getattr(state, name) for name in MOVED]
-        packed = [np.concatenate([array[rows] for array in arrays], axis=1) for rows in leaving]
-        arrived = send_rows(shares.communicator, packed)
-        ends = np.cumsum(list(MOVED.values()))[:-1]
-        for other, rows in enumerate(arrived):
-            to = np.flatnonzero((after == rank) & (before == other) & (before != after))
-            for array, part in zip(arrays, np.split(rows, ends, axis=1), strict=True):
-                array[to] = part
+    def _sorted_balls(self, state: State) -> tuple[Sorted, Whole]:
+        """Keys of the cells of all ranks' balls, and the present rows of these in their order."""
+        width, owned = 2.0 * self.rows.largest + self.skin, self.rows.owned_balls
+        own_keys = keys_of(state.motion, np.arange(owned.start, owned.stop), width)
+        keys = np.concatenate(share(self.shares.communicator, own_keys))
+        order = np.argsort(keys, kind="stable")
+        return Sorted(keys[order], width), order
 
-    def _pairs_by_body(self, state: State, body: Whole) -> BallPairs:
+    def _know_near(self, state: State, cells: Sorted) -> None:
+        """Get the motion of rows of later ranks that may be near own ones."""
+        shares, rows = self.shares, self.rows
+        ends = np.minimum(shares.ends(), shares.balls)
+        reached = ends[1:].copy()  # by the cells that each rank looks at
+        some = np.flatnonzero(ends[1:] > ends[:-1])
+        furthest = cells.keys[ends[some + 1] - 1] + LAYER + ROW + 1
+        reached[some] = np.searchsorted(cells.keys, furthest, side="right")
+        rows.know(int(reached[shares.rank]))
+        if rows.are_all:
+            rows.exchange_all()
+            return
+        here, ranks = shares.rank, range(shares.size)
+
+        def near(looking: int, owning: int) -> Whole:
+            """Rows of a rank that may be near those of another."""
+            low, high = max(ends[looking + 1], ends[owning]), ends[owning + 1]
+            return np.arange(low, max(low, min(reached[looking], high)))
+
+        sent = [near(rank, here) for rank in ranks]
+        received = [near(here, rank) for rank in ranks]
+        Halo(shares.communicator, sent, received, (COLUMNS,)).exchange(state.motion)
+
+    def _begin_rows(self) -> Whole:
+        """Room for where the pairs of own rows begin, all zeros."""
+        self.begin[self.listed.start : self.listed.stop + 1] = 0
+        self.listed = self.rows.owned_balls
+        self.begin[self.listed.start : self.listed.stop + 1] = 0
+        return self.begin
+
+    def _pairs_in_contact(self, state: State) -> tuple[Whole, Whole, Whole]:
+        """Pairs that touch, the body of each, and its partner: a body, or beyond them a plane."""
+        old, bodies = self.balls, len(state.body)
+        some = np.flatnonzero(old.history[3])
+        partner = old.partner[some].astype(np.int64)
+        of_ball = partner < bodies
+        second = np.where(of_ball, state.body[np.where(of_ball, partner, 0)], partner)
+        return some, state.body[old.row[some]], second
+
+    def _at_owners(self, state: State, some: Whole, first: Whole, second: Whole) -> BallPairs:
         """Pairs in contact whose rows are now on this rank; `row` and `partner` are bodies."""
         old, shares = self.balls, self.shares
-        some, bodies = np.flatnonzero(old.history[3]), len(body)
-        first, partner = body[old.row[some]], old.partner[some].astype(np.int64)
-        of_ball = partner < bodies
-        second = np.where(of_ball, body[np.where(of_ball, partner, 0)], partner)
-        row = state.row[first]
+        row, of_ball = state.row[first], second < len(state.body)
         row[of_ball] = np.minimum(row[of_ball], state.row[second[of_ball]])
         owner = shares.owners(row)
         columns = [first[:, None].astype(float), second[:, None].astype(float)]
@@ -122,25 +149,24 @@ class SharedLists(ContactLists):
             rolling_moment=rolling,
         )
 
-    def link_ranks(self, state: State) -> None:
+    def link_ranks(self) -> None:
         """Prepare the exchange of motion, and of loads on rows of other ranks, of these pairs."""
         shares, pairs = self.shares, self.balls
-        rows = shares.rows_of(shares.rank)
         all_pairs = np.concatenate(share(shares.communicator, np.array([len(pairs.partner)])))
         self.pairs_before, self.pairs = int(all_pairs[: shares.rank].sum()), int(all_pairs.sum())
-        self._link_motion(rows)
-        self._link_loads()
+        self._link_motion(self.rows.owned)
+        self._link_loads(self.rows.owned)
 
     def _link_motion(self, rows: slice) -> None:
         shares = self.shares
         partner = self.balls.partner.astype(np.int64)
         beyond = np.unique(partner[(partner >= rows.stop) & (partner < shares.rows)])
         owner = shares.owners(beyond)
-        needed = [beyond[owner == rank] for rank in range(shares.size)]
-        asked = send_rows(shares.communicator, needed)
-        self.motion_halo = Halo(shares.communicator, asked, needed, (COLUMNS,))
+        self.needed = [beyond[owner == rank] for rank in range(shares.size)]
+        self.asked = send_rows(shares.communicator, self.needed)
+        self.motion_halo = Halo(shares.communicator, self.asked, self.needed, (COLUMNS,))
 
-    def _link_loads(self) -> None:
+    def _link_loads(self, rows: slice) -> None:
         """Put the loads of other ranks' pairs behind own ones, in the order of one rank's pairs."""
         shares, pairs = self.shares, self.balls
         partner, row = pairs.partner.astype(np.int64), pairs.row.astype(np.int64)
@@ -157,22 +183,34 @@ class SharedLists(ContactLists):
         all_targets = np.concatenate([*arrived, target[here]])
         all_slots = np.concatenate([*slots, here])
         order = np.argsort(all_targets, kind="stable")
-        counts = np.bincount(all_targets, minlength=shares.rows)
+        counts = np.bincount(all_targets - rows.start, minlength=rows.stop - rows.start)
+        self.incoming_begin[rows.start : rows.stop + 1] = np.concatenate([[0], np.cumsum(counts)])
         earliest = pairs.earliest.copy()
         earliest[np.unique(np.concatenate(arrived)) // BLOCK] = -1  # not before all have come
         self.balls = pairs._replace(
             outgoing=np.zeros((int(ends[-1]), 6)),
             incoming=all_slots[order].astype(np.uint32),
-            incoming_begin=np.concatenate([[0], np.cumsum(counts)]),
+            incoming_begin=self.incoming_begin,
             earliest=earliest,
         )
         self.load_halo = Halo(shares.communicator, sent, slots, (6,))
 
-    def _add_balls(self, listed: bool) -> None:
-        of_balls, balls = np.zeros_like(self.contacts), self.balls
-        history = np.ones_like(balls.history) if listed else balls.history
-        count_ball_contacts(balls.row, balls.partner, history, of_balls)
-        self.contacts += counted(self.shares.communicator, of_balls)
+    def count_contacts(self, listed: bool = False) -> int:
+        """Most contacts of any row; with `listed` as if all listed pairs touched."""
+        owned, count, pairs = self.rows.owned, self.of_balls, self.balls
+        count[owned] = 0
+        for rows in self.needed:
+            count[rows] = 0
+        history = np.ones_like(pairs.history) if listed else pairs.history
+        count_ball_contacts(pairs.row, pairs.partner, history, count)
+        arrived = send_rows(self.shares.communicator, [count[rows] for rows in self.needed])
+        for rows, counts in zip(self.asked, arrived, strict=True):
+            count[rows] += counts
+        most = count[owned]
+        if self.rows.are_all:
+            self._count_others(listed)
+            most = most + self.contacts[owned]
+        return int(greatest(self.shares.communicator, np.array([most.max(initial=0)]))[0])
 
     def pairs_of_all(self) -> BallPairs:
         """Pairs of all ranks, on every rank."""
@@ -192,9 +230,8 @@ class SharedLists(ContactLists):
     def save(self) -> dict[str, Array]:
         """Copy out the listed pairs of all ranks on rank 0."""
         pairs, communicator = self.balls, self.shares.communicator
-        rows = self.shares.rows_of(self.shares.rank)
-        stop = min(rows.stop, self.shares.balls)
-        counts = np.diff(pairs.begin)[rows.start : stop]
+        owned = self.rows.owned_balls
+        counts = np.diff(pairs.begin[owned.start : owned.stop + 1])
         begin = np.concatenate([[0], np.cumsum(collect(communicator, counts))])
         partner = collect(communicator, pairs.partner.astype(np.int64))
         arrays = {
@@ -216,12 +253,16 @@ class SharedLists(ContactLists):
         pairs.key[:] = saved["others.key"]
         pairs.history[:] = saved["others.history"]
         self.bodies = body_pairs_of(pairs.key, pairs)
-        rows, begin = self.shares.rows_of(self.shares.rank), np.array(saved["balls.begin"])
-        balls = self.shares.balls
-        some = slice(begin[min(rows.start, balls)], begin[min(rows.stop, balls)])
+        owned, all_begin = self.rows.owned_balls, np.asarray(saved["balls.begin"])
+        some = slice(all_begin[owned.start], all_begin[owned.stop])
         partner = np.asarray(saved["balls.partner"])[some].astype(np.uint32)
-        begin = np.clip(begin - some.start, 0, len(partner))
+        near = partner[partner < self.shares.balls]
+        self.rows.know(max(owned.stop, int(near.max(initial=0)) + 1))
+        begin = self._begin_rows()
+        begin[owned.start : owned.stop + 1] = all_begin[owned.start : owned.stop + 1] - some.start
         self.balls = ball_pairs(self.model, begin, partner, self.records_forces)
         for name, array in history_of(self.balls).items():
             of_all = np.asarray(saved[f"balls.{name}"])
             array[:] = of_all[:, some] if name == "history" else of_all[some]
+        self.link_ranks()
+        self.most_contacts = self.count_contacts(listed=True)

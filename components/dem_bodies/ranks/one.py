@@ -1,18 +1,24 @@
 """All rows on one rank."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quintet.components.dem_bodies.contact.lists import ContactLists
 from quintet.components.dem_bodies.kernels import step as kernels
+from quintet.components.dem_bodies.kernels.motion_copies import copy_motion
 from quintet.components.dem_bodies.state import (
     SUMS,
     TRAVEL,
     BallPairs,
     Model,
+    Numbers,
     State,
     blocks_of,
+    sort_rows,
 )
 from quintet.components.shared.threads import Team
+from quintet.interfaces.component import Fields
 
 FEWEST = 8  # blocks of rows that are worth handing to another thread
 SHARED = (kernels.DRIFT, kernels.BALLS, kernels.KICK)  # stages of a step that threads share out
@@ -23,14 +29,16 @@ class OneRank:
 
     Parameters
     ----------
-    model : Model
+    state : State
     lists : ContactLists
     threads : int
     """
 
-    def __init__(self, model: Model, lists: ContactLists, threads: int) -> None:
-        self.model, self.lists = model, lists
-        self.sums = np.zeros((blocks_of(len(model.kind)), SUMS))
+    answers = True  # whether the rows of all are here on request
+
+    def __init__(self, state: State, lists: ContactLists, threads: int) -> None:
+        self.model, self.state, self.lists = lists.model, state, lists
+        self.sums = np.zeros((blocks_of(len(self.model.kind)), SUMS))
         several = threads > 1 and len(self.sums) >= 2 * FEWEST
         self.team = Team(threads if several else 1, FEWEST, 1)
 
@@ -58,12 +66,40 @@ class OneRank:
             return min(self.team.run(kernels.step, blocks, *stages, *arguments))
         return int(kernels.step(0, blocks, *stages, *arguments))
 
-    def gather(self, state: State, *names: str) -> None:
-        """Nothing to do: all rows are here."""
+    def set_loads(self, load: Numbers) -> None:
+        """Set the loads (m, 6) [N, N m] on all bodies."""
+        self.state.load[self.state.row[: len(load)]] = load
+
+    def motion(self) -> Sequence[Numbers]:
+        """Position, velocity, orientation and angular velocity of all bodies."""
+        state, count = self.state, len(self.state.row) - 1
+        parts = room_for_motion(count)
+        copy_motion(state.row, state.motion, state.orientation, *parts)
+        return parts
+
+    def whole(self, *names: str) -> tuple[Model, State]:
+        """Model and state of all rows."""
+        return self.model, self.state
 
     def pairs_of_all(self) -> BallPairs | None:
         """Pairs of balls of all rows."""
         return self.lists.balls
 
-    def load(self, state: State) -> None:
-        """Nothing to do: all rows are here."""
+    def said(self, text: str) -> str:
+        """What is said where the rows of all are known."""
+        return text
+
+    def load(self, saved: Fields) -> None:
+        """Restore a saved state, bit for bit."""
+        state, balls = self.state, np.count_nonzero(self.model.ball)
+        sort_rows(self.model, state, state.row[saved["body"][:balls]])
+        for name, array in state._asdict().items():
+            array[:] = saved[name]
+        self.lists.load(saved)
+
+
+def room_for_motion(count: int) -> Sequence[Numbers]:
+    """Room for the position, velocity, orientation and angular velocity of bodies."""
+    # One piece of memory: separate ones are requested from the system at every call.
+    parts = np.split(np.empty(13 * count), [3 * count, 6 * count, 10 * count])
+    return [part.reshape(count, width) for part, width in zip(parts, (3, 3, 4, 3), strict=True)]

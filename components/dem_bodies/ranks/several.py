@@ -1,12 +1,21 @@
 """Rows shared out among several ranks: each moves its own, and sends what pairs need of them."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from quintet.components.dem_bodies.kernels import step as kernels
+from quintet.components.dem_bodies.kernels.motion_copies import (
+    PACKED,
+    copy_first_motion,
+    copy_packed_motion,
+    pack_motion,
+)
+from quintet.components.dem_bodies.kernels.reductions import number_pairs
 from quintet.components.dem_bodies.ranks.lists import SharedLists
-from quintet.components.dem_bodies.ranks.one import FEWEST, OneRank
+from quintet.components.dem_bodies.ranks.one import FEWEST, OneRank, room_for_motion
+from quintet.components.dem_bodies.ranks.rows import RowsOfRank
 from quintet.components.dem_bodies.state import (
     DEEPEST,
     DEEPEST_PAIR,
@@ -14,11 +23,15 @@ from quintet.components.dem_bodies.state import (
     TRAVEL,
     BallPairs,
     Model,
+    Numbers,
     State,
 )
-from quintet.components.shared.domain.extremes import greatest
+from quintet.components.shared.domain.exchange import share
+from quintet.components.shared.domain.extremes import greatest, least
+from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.components.shared.search.verlet_list import slack
 from quintet.components.shared.threads import Team
+from quintet.interfaces.component import Fields
 
 
 class SeveralRanks(OneRank):
@@ -30,7 +43,7 @@ class SeveralRanks(OneRank):
 
     Parameters
     ----------
-    model : Model
+    rows : RowsOfRank
     lists : SharedLists
     threads : int
         Of each rank.
@@ -38,12 +51,14 @@ class SeveralRanks(OneRank):
 
     lists: SharedLists
 
-    def __init__(self, model: Model, lists: SharedLists, threads: int) -> None:
-        self.model, self.lists, self.shares = model, lists, lists.shares
+    def __init__(self, rows: RowsOfRank, lists: SharedLists, threads: int) -> None:
+        self.model, self.state, self.rows = rows.model, rows.state, rows
+        self.lists, self.shares = lists, rows.shares
+        self.answers = self.shares.rank == 0
         self.sums = np.zeros((self.shares.blocks, SUMS))
         several = threads > 1 and len(self.sums) >= 2 * FEWEST * self.shares.size
         self.team = Team(threads if several else 1, FEWEST, 1)
-        self.mixed = len(model.others) > 0  # whether all ranks need all balls
+        self.mixed = rows.are_all
 
     def advance(self, state: State, dt: float, loaded: bool) -> bool:
         """Advance by dt [s]; return False where a position is not finite."""
@@ -64,9 +79,10 @@ class SeveralRanks(OneRank):
         lists.load_halo.finish(lists.balls.outgoing)
         self._blocks(state, kernels.KICK, dt, loaded)
         shares.blocks_everywhere(self.sums)
-        if not self.mixed:
-            self._all_blocks(state, kernels.OTHERS, dt, loaded)
-        self._all_blocks(state, kernels.REPORT, dt, loaded)
+        if self.mixed:
+            self._all_blocks(state, kernels.REPORT, dt, loaded)
+        else:
+            kernels.report_balls(state.report, state.contact_load, self.sums)
         shares.work.end()
         return True
 
@@ -99,35 +115,26 @@ class SeveralRanks(OneRank):
 
     def _renew(self, state: State) -> bool:
         """List pairs again; return False if a position is not finite."""
-        shares = self.shares
-        position = np.ascontiguousarray(state.position)
-        shares.everywhere(position)
-        state.position[:] = position
-        if not np.isfinite(position).all():
+        shares, owned = self.shares, state.position[self.rows.owned]
+        finite = np.array([float(np.isfinite(owned).all())])
+        if least(shares.communicator, finite)[0] == 0.0:
             return False
-        if self.mixed:
-            self._exchange_motion(state)
         # Blocks may get another owner, who goes on with the works of the drift.
         shares.blocks_everywhere(self.sums)
         self.lists.renew(state)
-        self._exchange_motion(state)
         self.sums[:, TRAVEL] = 0.0
         return True
 
     def _exchange_motion(self, state: State) -> None:
         """Bring up to date what own pairs need of other ranks' rows."""
-        if not self.mixed:
+        if self.mixed:
+            self.rows.exchange_all()
+        else:
             self.lists.motion_halo.exchange(state.motion)
-            return
-        self.shares.everywhere(state.motion)
-        self.shares.from_last(state)
-        balls = self.shares.balls
-        state.centre[:balls] = state.motion[:balls, :3]
 
     def _number_deepest(self) -> None:
         """Number the pairs of own blocks among those of all ranks."""
-        block_sums = self.sums[self.shares.first : self.shares.last]
-        block_sums[block_sums[:, DEEPEST_PAIR] >= 0.0, DEEPEST_PAIR] += self.lists.pairs_before
+        number_pairs(self.sums, self.shares.first, self.shares.last, self.lists.pairs_before)
 
     def _touch_others(self, state: State, dt: float, loaded: bool) -> None:
         """Contacts of bodies that are no balls, on every rank."""
@@ -139,15 +146,39 @@ class SeveralRanks(OneRank):
             # Of these pairs, which are numbered after all pairs of balls.
             state.report[DEEPEST_PAIR] += self.lists.pairs - len(self.lists.balls.partner)
 
-    def gather(self, state: State, *names: str) -> None:
-        """Bring the rows of all ranks in some arrays up to date on rank 0; in all, if none."""
-        self.shares.gather(state, *names)
+    def set_loads(self, load: Numbers) -> None:
+        """Set the loads (m, 6) [N, N m] on own bodies, of those on all."""
+        owned = slice(self.rows.owned.start, min(self.rows.owned.stop, len(load)))
+        self.state.load[owned] = load[self.state.body[owned]]
+
+    def motion(self) -> Sequence[Numbers]:
+        """Position, velocity, orientation and angular velocity of all bodies, on rank 0."""
+        state, owned, work = self.state, self.rows.owned, self.shares.work
+        work.begin()
+        packed = np.empty((0 if self.answers else owned.stop - owned.start, PACKED))
+        pack_motion(owned.start, state.motion, state.orientation, packed)
+        request, received = self.shares.gather_behind(packed)
+        parts = room_for_motion(self.shares.rows - 1 if self.answers else 0)
+        copy_first_motion(state.row, owned.stop, state.motion, state.orientation, *parts)
+        wait_for_all(request, received.nbytes if self.answers else 0)
+        copy_packed_motion(state.row, owned.stop, received, *parts)
+        work.end(steps=0)
+        return parts if self.answers else ()
+
+    def whole(self, *names: str) -> tuple[Model, State]:
+        """Model and some arrays of the state, or all, of all rows on rank 0."""
+        return self.rows.whole(*names)
 
     def pairs_of_all(self) -> BallPairs:
         """Pairs of balls of all rows."""
         return self.lists.pairs_of_all()
 
-    def load(self, state: State) -> None:
-        """Prepare exchanges for pairs that were loaded."""
-        self.lists.link_ranks(state)
-        self.lists.most_contacts = self.lists.count_contacts(listed=True)
+    def said(self, text: str) -> str:
+        """What rank 0 says."""
+        letters = np.array([ord(letter) for letter in text if self.answers], np.int64)
+        return "".join(map(chr, np.concatenate(share(self.shares.communicator, letters))))
+
+    def load(self, saved: Fields) -> None:
+        """Restore own rows of a saved state, bit for bit."""
+        self.rows.load(saved)
+        self.lists.load(saved)

@@ -13,14 +13,9 @@ from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.waiting import wait, wait_for_all
 from quintet.components.shared.domain.work import Work
 
-# Arrays of the state with a row for each sphere; of one number for all; others have one a body.
-OF_SPHERES, OF_ALL = ("centre", "listed_centre"), ("report",)
-
 
 class Shares:
     """Rows of each rank.
-
-    Every rank has the arrays of all rows, but what it does not own is out of date there.
 
     Parameters
     ----------
@@ -90,21 +85,41 @@ class Shares:
         target, others = [array.reshape(-1), (counts, begins)], sum(counts) - counts[self.rank]
         wait_for_all(self.communicator.Iallgatherv(MPI.IN_PLACE, target), 8 * others)
 
-    def gather(self, state: State, *names: str) -> None:
-        """Bring the rows of all ranks in some arrays up to date on rank 0; in all, if none."""
-        for name in names or state._fields:
-            array: Any = getattr(state, name)
-            if name in ("body", "row", *OF_ALL):
-                continue  # every rank knows them
-            spheres = name in OF_SPHERES
-            width = int(np.prod(array.shape[1:]))
-            counts, begins = self._counts(width, self.balls if spheres else self.rows, len(array))
-            flat = array.reshape(-1)
-            begin, count = begins[self.rank], counts[self.rank]
-            sent = MPI.IN_PLACE if self.rank == 0 else flat[begin : begin + count]
-            target = [flat, (counts, begins)] if self.rank == 0 else None
-            others = 0 if self.rank else 8 * (sum(counts) - count)
-            wait_for_all(self.communicator.Igatherv(sent, target), others)
+    def gathered(self, array: Numbers, of_spheres: bool = False) -> Numbers:
+        """Rows (n, width) of all ranks on rank 0; on others the array itself.
+
+        An array of spheres has a row for each sphere, others one for each row of bodies.
+        """
+        width = int(np.prod(array.shape[1:]))
+        rows = self.balls if of_spheres else self.rows
+        counts, begins = self._counts(width, rows, len(array))
+        begin, count = begins[self.rank], counts[self.rank]
+        sent = array.reshape(-1)[begin : begin + count]
+        if self.rank:
+            wait_for_all(self.communicator.Igatherv(sent, None))
+            return array
+        of_all = np.empty_like(array)
+        target = [of_all.reshape(-1), (counts, begins)]
+        wait_for_all(self.communicator.Igatherv(sent, target), 8 * (sum(counts) - count))
+        return of_all
+
+    def gather_behind(self, rows: Numbers) -> tuple[Any, Numbers]:
+        """Begin to bring rows (k, width) of all ranks behind rank 0 to it, one after another.
+
+        Returns
+        -------
+        request
+            To wait for; until then no rank may change its rows.
+        rows : (m, width) float array
+            Those of all on rank 0, once they are there.
+        """
+        counts = rows.shape[1] * np.diff(self.ends())
+        counts[0] = 0
+        if self.rank:
+            return self.communicator.Igatherv(rows.reshape(-1), None), rows
+        received = np.empty((self.rows - int(self.ends()[1]), rows.shape[1]))
+        target = [received.reshape(-1), counts.tolist()]
+        return self.communicator.Igatherv(np.zeros(0), target), received
 
     def from_last(self, state: State) -> None:
         """Bring bodies that are no balls, which the last rank moves, up to date on every rank."""

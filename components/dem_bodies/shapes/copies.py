@@ -90,9 +90,9 @@ class Bodies(Sequence[RigidBody]):
         """Whether the bodies of each kind stand on lattices."""
         return np.array([body.copies is not None for body in self.kinds])
 
-    def kind_of_each(self) -> NDArray[np.int64]:
+    def kind_of_each(self, dtype: Any = np.int64) -> NDArray[Any]:
         """Kind (n,) of each body."""
-        return np.repeat(self.kind.astype(np.int64), self.counts)
+        return np.repeat(self.kind.astype(dtype), self.counts)
 
     def positions(self) -> Array:
         """Where all bodies stand; (n, 3) m."""

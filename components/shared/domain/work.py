@@ -19,13 +19,13 @@ class Work:
         self._began, self._seconds, self._steps = 0.0, 0.0, 0
 
     def begin(self) -> None:
-        """Begin a step."""
+        """Begin a step, or what is done after it."""
         self._began = time.perf_counter() - WAITED.seconds
 
-    def end(self) -> None:
-        """End it."""
+    def end(self, steps: int = 1) -> None:
+        """End it: a step, or none where its time belongs to the last one."""
         self._seconds += time.perf_counter() - WAITED.seconds - self._began
-        self._steps += 1
+        self._steps += steps
 
     def weights(self, rows: int) -> Whole:
         """Weight (rows,) of each row, by the steps since the last call; alike at the start."""

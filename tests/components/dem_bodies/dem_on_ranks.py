@@ -7,6 +7,7 @@ from solver_run import COMMUNICATOR, SolverRun
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import StepError
 from quintet.interfaces.params import read
 
 DIAMETER = 0.02  # m
@@ -67,3 +68,13 @@ class Run(SolverRun):
         force = np.zeros((len(number), 3))
         force[:, 0] = 1e-3 * np.sin(40.0 * self.time + number)
         return {"load.force": force, "load.torque": 1e-3 * force}
+
+    def failure(self):
+        force = np.zeros((self.solver.items(), 3))
+        force[7, 0] = np.inf
+        self.solver.take({"load.force": force})
+        try:
+            self.solver.step(1e-5)
+        except StepError as error:
+            return str(error)
+        return "none"

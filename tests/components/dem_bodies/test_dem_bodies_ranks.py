@@ -8,6 +8,8 @@ from dem_scenes import box, params
 from rank_runs import differences, from_states, from_the_start
 
 from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.ranks.sparse import SparseArrays
+from quintet.coupler.bench.worker import resident
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError
 
@@ -45,3 +47,23 @@ def test_bodies_without_spheres_are_refused_on_several_ranks():
     boxes = params([box((0.0, 0.0, 1.0))])
     with pytest.raises(SceneError, match=r"ranks must be 1 where no body is a single sphere"):
         DemBodies(boxes, Resources(communicator=Several()))
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_the_body_that_fails_is_named(ranks, folder):
+    text = str(np.load(folder / f"heap-{ranks}.npz")["failure"])
+    assert "must stay finite; body 7 is at" in text
+
+
+def test_rows_that_are_not_kept_are_zero_and_take_no_memory():
+    arrays = SparseArrays()
+    before = resident()
+    motion, numbers = arrays.zeros((1_000_000, 16)), arrays.zeros((1_000_000,), np.int64)
+    assert not motion[::10_000].any() and resident() - before < 1e6
+    motion[400_000:600_000], numbers[400_000:600_000] = 1.0, 2
+    written = resident() - before
+    assert written > 0.9 * 200_000 * (16 + 1) * 8
+    arrays.keep(450_000, 460_000)
+    assert (motion[450_000:460_000] == 1.0).all() and (numbers[450_000:460_000] == 2).all()
+    assert not motion[:440_000].any() and not numbers[470_000:].any()
+    assert resident() - before < 0.2 * written
