@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from quintet.coupler.launch.connect import free_port
 from quintet.coupler.launch.mpi_job import find_launcher
 from quintet.coupler.launch.processes import GRACE, PYTHON, environment
 from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.lines.endpoint import free_port
 
 WARM = 100  # windows before the clock starts
 PATIENCE = 120.0  # s for all windows

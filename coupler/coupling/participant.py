@@ -12,7 +12,7 @@ from quintet.coupler.coupling.answers import AnswerSums, check_answer, check_out
 from quintet.interfaces.component import Array, Field, Fields
 from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message, Shapes, order_of, require_finite
-from quintet.interfaces.lines.transport import FramedLine
+from quintet.interfaces.lines.transport import WatchedLine
 from quintet.interfaces.serving.serve import sendable
 
 BEFORE = {"", "go", "describe", "sample", "bind", "prime"}  # orders in which a scene is refused
@@ -76,7 +76,7 @@ class Waiting:
 class Participant:
     """A component behind a line: orders go out, answers come back checked."""
 
-    def __init__(self, name: str, line: FramedLine) -> None:
+    def __init__(self, name: str, line: WatchedLine) -> None:
         self.name, self.line = name, line
         self.components = {name: self}
         self.order = ""  # the last that it got
@@ -164,6 +164,11 @@ class Participant:
         except LineError as error:
             cause = f"did not join: {error}"
             raise self.verdict() or ComponentFailed(self.name, 0, cause) from error
+
+    def wait_for_replay(self, built: bool) -> None:
+        """Begin the present wait again: another process takes over, built already or not."""
+        self.built = built
+        self.keeping_others_waiting.__enter__()
 
     def call(self, order: str, fields: Fields | None = None, **header: Any) -> Message:
         """Send an order and wait for the answer."""
@@ -273,3 +278,13 @@ def describe_all(participants: Mapping[str, Participant]) -> dict[str, Fields]:
         participant.timing.build = float(answer.header["seconds"])
         described[name] = answer.fields
     return described
+
+
+def finish_all(participants: Mapping[str, Participant]) -> None:
+    """Order every component to finish, and await its answer."""
+    for participant in participants.values():
+        participant.send_order("finish")
+    for participant in participants.values():
+        used = participant.receive().header
+        participant.timing.memory = int(used["memory"])
+        participant.timing.cpu += float(used["cpu"])

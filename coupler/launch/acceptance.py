@@ -48,31 +48,38 @@ def accept(
 
     `first` is the number of its first rank in its MPI job.
     """
-    expected = scene.components[participant.name].manifest.kind
+    identify(scene, participant.name, hello, probe, folder, first)
+    participant.send_order("go", **settings(scene, participant.name))
+
+
+def identify(
+    scene: Scene, name: str, hello: Message, probe: ProcessProbe, folder: Path, first: int
+) -> None:
+    """Check who a component says that it is, and let its probe find its processes."""
+    expected = scene.components[name].manifest.kind
     header = hello.header
     if hello.order != "hello" or header.get("kind") != expected:
         raise ComponentFailed(
-            participant.name,
+            name,
             0,
             f"{expected} must say hello; found {header.get('kind')!r}. Start that.",
         )
     probe.awaited = False
     others = header.get("ranks", [])
-    count = scene.components[participant.name].ranks
+    count = scene.components[name].ranks
     if not isinstance(others, list) or len(others) != count - 1:
         said = f"its hello must tell of {count - 1} further ranks; found {others!r:.80}."
-        raise ComponentFailed(participant.name, 0, said)
-    log = log_of(folder, participant.name)
+        raise ComponentFailed(name, 0, said)
+    log = log_of(folder, name)
     find_process(probe, header, log)
     if isinstance(probe, RanksProbe):
-        exits = exit_files(folder, participant.name, count, first)
+        exits = exit_files(folder, name, count, first)
         for rank, (about, path) in enumerate(zip([header, *others], exits, strict=True)):
-            name = f"rank {rank} on {str(about.get('host'))[:80]}"
-            process = ProcessProbe(name, exit_file=path)
+            place = f"rank {rank} on {str(about.get('host'))[:80]}"
+            process = ProcessProbe(place, exit_file=path)
             find_process(process, about, Path(log_of_rank(str(log), rank)))
             probe.ranks.append(process)
         probe.where = probe.calls
-    participant.send_order("go", **settings(scene, participant.name))
 
 
 def find_process(probe: ProcessProbe, about: dict[str, Any], log: Path) -> None:

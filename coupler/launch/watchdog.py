@@ -20,6 +20,7 @@ from typing import Protocol
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.launch import stack
 from quintet.coupler.launch.process_probe import IDLE, ProcessProbe
+from quintet.coupler.launch.restarts import Restarts
 
 INTERVAL = 0.05  # s between two rounds of all components
 LONGEST_ROUND = 1.0  # s; if more has passed, this process itself was stopped meanwhile
@@ -62,6 +63,7 @@ class Watched:
     participant: Participant
     probe: ProcessProbe
     patience: float  # s
+    restarts: Restarts = field(default_factory=Restarts)
     since: float = 0.0  # when the wait began, as the participant has it
     waited: float = 0.0  # s
     idle: float = 0.0  # s in a row that its process did nothing while it was to be built
@@ -131,9 +133,16 @@ class Watchdog:
     _closed: threading.Event = field(default_factory=threading.Event)
     _thread: threading.Thread | None = None
 
-    def add(self, participant: Participant, probe: ProcessProbe, patience: float) -> None:
-        """Watch a component too."""
-        component = self._all[participant.name] = Watched(participant, probe, patience)
+    def add(
+        self,
+        participant: Participant,
+        probe: ProcessProbe,
+        patience: float,
+        restarts: Restarts | None = None,
+    ) -> None:
+        """Watch a component too; its death ends the run where no restarts are left."""
+        component = Watched(participant, probe, patience, restarts or Restarts())
+        self._all[participant.name] = component
         participant.verdict = lambda: self.verdict
         participant.line.watch = lambda: self.check(component)
         if self.substitute:
@@ -142,6 +151,11 @@ class Watchdog:
             self._last = time.monotonic()
             self._thread = threading.Thread(target=self._run, name="watchdog", daemon=True)
             self._thread.start()
+
+    def watch_instead(self, name: str, probe: ProcessProbe) -> None:
+        """Watch another process of a component, if it is watched."""
+        if component := self._all.get(name):
+            component.probe, component.dead_since = probe, 0.0
 
     def check(self, awaited: Watched) -> str:
         """Say why an answer will not come; raise what ends the run. For the thread that couples."""
@@ -203,10 +217,13 @@ class Watchdog:
     def _check_death(self, component: Watched, now: float) -> None:
         if component.may_end or component.probe.alive():
             return
+        if component.restarts.left:  # its line sees to that
+            return
         component.dead_since = component.dead_since or now
         if now - component.dead_since > DEAD:
             joined = "" if component.participant.order else "did not join: "
-            self.fail(component, joined + component.probe.ending())
+            ending = component.probe.ending() + component.restarts.remark()
+            self.fail(component, joined + ending)
 
     def check_wait(self, component: Watched, passed: float) -> None:
         """Tell of a component that keeps the others waiting; end it if that takes too long."""
@@ -259,8 +276,13 @@ class Watchdog:
         say(f"{participant.name} {wait} {what}{usual}: {doing}", where)
 
     def fail(self, component: Watched, cause: str, calls: str = "") -> None:
-        """Decide that the run ends, as a component has failed."""
+        """Decide that the run ends, as a component has failed, or that its process does."""
         participant = component.participant
+        if component.restarts.left and component.probe.process:  # another can take over
+            if component.probe.alive():
+                say(f"{participant.name} {cause}")
+                component.probe.kill()
+            return
         self._judge(ComponentFailed(participant.name, participant.window, cause, calls))
 
     def _judge(self, verdict: BaseException) -> None:

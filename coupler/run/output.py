@@ -18,6 +18,7 @@ from quintet.coupler.launch.watchdog import ENDING
 from quintet.coupler.measures.expectation import lacking_items
 from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport, Reading
+from quintet.coupler.run.restart_points import RestartPoints
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.snapshots import save
 from quintet.coupler.scene.scene import Scene
@@ -27,8 +28,9 @@ from quintet.interfaces.ports import only_fields
 
 WALLS = "walls."  # what fields of walls begin with, beside those of the view
 # Wall time [s] between two snapshots where the scene gives none: of windows that are over before an
-# interrupted run is ended, and of longer ones, which an interruption loses.
-SNAPSHOT_INTERVAL, OFTEN = 600.0, 60.0
+# interrupted run is ended, of longer ones, which an interruption loses, and where components may be
+# started again.
+SNAPSHOT_INTERVAL, OFTEN, RESTARTABLE = 600.0, 60.0, 5.0
 COST = 50.0  # times as long as a snapshot takes is there none after it
 
 
@@ -54,6 +56,7 @@ class OutputWriter:
         self.done, self.time = first or 0, 0.0  # windows, s
         self._kept = time.monotonic()  # when the last snapshot was made
         self._cost = 0.0  # s that it took
+        self._restart_points = RestartPoints() if scene.file.restarts else None
         self._views = 0  # ticks between two views; 0: none
         self._totals = 0  # ticks between two rows of the ledger
         self._snapshots = 0  # ticks between two snapshots; 0: by the clock
@@ -146,6 +149,8 @@ class OutputWriter:
         late = time.monotonic() - self._kept > self._interval(coupling)
         if self._passes(self._snapshots, now) if self._snapshots else late:
             self._keep(coupling)
+        elif self._restart_points:
+            self._restart_points.end_window(coupling)
         self._now = now
 
     def _reading(self, coupling: Coupling) -> Reading:
@@ -167,6 +172,8 @@ class OutputWriter:
 
     def _interval(self, coupling: Coupling) -> float:
         """Wall time until the next snapshot [s]."""
+        if self._restart_points:
+            return max(RESTARTABLE, COST * self._cost)
         usual = sum(component.timing.usual for component in coupling.components.values())
         return SNAPSHOT_INTERVAL if usual < 0.5 * ENDING else max(OFTEN, COST * self._cost)
 
@@ -179,6 +186,8 @@ class OutputWriter:
         save(coupling, self.scene, self.folder, self.logs, self._judgement, checks)
         self._kept = time.monotonic()
         self._cost = self._kept - began
+        if self._restart_points:
+            self._restart_points.note()
 
     def wants_end(self) -> bool:
         """See `Observer.wants_end`."""

@@ -38,7 +38,7 @@ from quintet.interfaces.errors import SceneError
 
 KEPT = 2  # snapshots of a run
 # Keys that may differ when a run goes on: no bit does.
-FREE = ("transport", "endpoint", "tls", "minutes", "patience")
+FREE = ("transport", "endpoint", "tls", "minutes", "patience", "restarts")
 
 
 def snapshots(folder: Path) -> list[Path]:

@@ -202,13 +202,20 @@ def _also_tables(mistake: str) -> str:
 
 
 def _alone(file: SceneFile, components: Mapping[str, ComponentPlan]) -> list[str]:
-    """Refuse several ranks where all components are one process."""
-    return [
+    """Refuse what needs processes that end alone, over a transport that has none."""
+    mistakes = [
         f"components.{name}.ranks must be 1 over the transport memory, which is one process; found "
         f"{plan.ranks}. Choose the transport mpi or zenoh."
         for name, plan in components.items()
         if plan.ranks > 1 and file.transport == "memory"
     ]
+    if file.restarts and file.transport != "zenoh":
+        mistakes.append(
+            f"scene.restarts must be 0 over the transport {file.transport}, where all processes "
+            f"end with the first that dies; found {file.restarts}. Choose the transport zenoh, or "
+            "set restarts=0."
+        )
+    return mistakes
 
 
 def _reachable(file: SceneFile) -> list[str]:

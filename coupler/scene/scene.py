@@ -88,7 +88,8 @@ class OutputSettings:
         Between two rows of the ledger; 0: with the views. Rows of the start and the end always
         stand there.
     snapshots : s
-        Between two, to resume from; 0: every ten minutes of the clock, and at an interruption.
+        Between two, to resume from; 0: every ten minutes of the clock, every 5 s where components
+        may be started again, and at an interruption.
     record
         Whether every exchange is recorded.
     fields
@@ -145,6 +146,9 @@ class SceneFile:
     patience : s
         How long a component may keep others waiting beyond three usual windows before it is ended;
         0: as its kind says, 60 s if it does not.
+    restarts : 1
+        How often each component may be started again when its process dies, over the transport
+        zenoh: another process takes over with the same bits. 0: its death ends the run.
     iteration
         How windows are repeated, under the scheme iterated.
     output
@@ -163,6 +167,7 @@ class SceneFile:
     tls: tuple[str, ...] = ()
     minutes: Number = 0.0
     patience: NotNegative = 0.0
+    restarts: Annotated[int, pydantic.Field(ge=0, le=1000)] = 0
     iteration: IterationSettings = IterationSettings()
     output: OutputSettings = OutputSettings()
 

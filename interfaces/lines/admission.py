@@ -118,7 +118,7 @@ class Admission:
     ) -> None:
         self.awaited, self.others, self.foreign = awaited, others, foreign
         self.joined: dict[str, str] = {}  # who, by name
-        self._secret = secret
+        self._secrets = dict.fromkeys(awaited, secret)
         self._lock = threading.Lock()
         self._requests = session.declare_queryable(f"{JOIN}/*", self._answer)
 
@@ -127,11 +127,17 @@ class Admission:
         name = key.removeprefix(f"{JOIN}/")
         payload = query.payload.to_bytes() if query.payload is not None else b""
         with self._lock:
-            refusal = self.refusal(name, payload)
+            refusal, secret = self.refusal(name, payload), self._secrets.get(name, "")
         if refusal:
             query.reply_err(self.foreign.refuse(refusal).encode())
         else:
-            query.reply(key, self._secret.encode())
+            query.reply(key, secret.encode())
+
+    def await_join(self, name: str, secret: str) -> None:
+        """Let somebody join under a name, whoever did before; hand out this secret."""
+        with self._lock:
+            self.joined.pop(name, None)
+            self._secrets[name] = secret
 
     def refusal(self, name: str, request: bytes) -> str:
         """Why a component may not join; "" where it may, and from then on nobody else."""

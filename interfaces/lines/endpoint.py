@@ -66,3 +66,10 @@ def require_free(endpoint: str) -> None:
             f"({error.strerror or error}). End what uses the port, name another, or give no "
             "endpoint."
         ) from error
+
+
+def free_port() -> int:
+    """Return a free port of the loopback."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

@@ -36,6 +36,15 @@ class Line(Protocol):
         """Close the line; a second call does nothing."""
 
 
+class WatchedLine(Line, Protocol):
+    """The coupler's end of a line."""
+
+    watch: Callable[[], str]  # why an answer will not come, if known
+
+    def peek(self) -> Frame | None:
+        """Return the next frame if it has arrived; it stays the next to be received."""
+
+
 def wait(poll: Callable[[], T | None], seconds: float, broken: Callable[[], str]) -> T:
     """Poll until there is a result: first without sleep, then with growing sleeps.
 

@@ -6,6 +6,7 @@ peer of the network, and a publisher's messages are lost until a subscriber is m
 """
 
 import contextlib
+import copy
 import json
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -103,6 +104,18 @@ class Session:
             f"{self.root}/alive/*", handlers.FifoChannel(CAPACITY), history=True
         )
 
+    def under(self, secret: str) -> "Session":
+        """Return this session with the keys of another secret, for one line."""
+        other = copy.copy(self)
+        other.alive, other.ended = set(), set()
+        other.enter(secret)
+        return other
+
+    def leave(self) -> None:
+        """Take no part any more under the present secret; the connection stays."""
+        self._token.undeclare()
+        self._liveliness.undeclare()
+
     def update(self) -> None:
         """Update which peers are alive and which have ended."""
         while (sample := self._liveliness.try_recv()) is not None:
@@ -159,8 +172,18 @@ class ZenohLine(FramedLine):
         return None if sample is None else sample.payload.to_bytes()
 
     def _broken(self) -> str:
+        return f"{self.other} is gone" if self.partner_has_left() else ""
+
+    def partner_has_left(self) -> bool:
+        """Whether the other side has ended, or is not connected any more."""
         self.session.update()
-        return f"{self.other} is gone" if self.other in self.session.ended else ""
+        return self.other in self.session.ended
+
+    def leave(self) -> None:
+        """Close this line, the only one of its session's secret; the connection stays."""
+        self._inbox.undeclare()
+        self._outbox.undeclare()
+        self.session.leave()
 
     def close(self) -> None:
         """See `Line.close`."""

@@ -9,9 +9,9 @@ from started import Started, write_scene
 
 import quintet
 from quintet.coupler.cli import main, parser
-from quintet.coupler.launch.connect import free_port
 from quintet.coupler.scene.listing import print_list
 from quintet.coupler.scene.read import library, load
+from quintet.interfaces.lines.endpoint import free_port
 
 EXPECT = """
 [[expect]]

@@ -11,10 +11,10 @@ from rank_rows import start
 from started import Started
 
 from quintet.coupler.cli import main
-from quintet.coupler.launch.connect import free_port
 from quintet.coupler.report.diff import compare
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.lines.endpoint import free_port
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 

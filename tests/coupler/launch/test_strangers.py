@@ -10,7 +10,7 @@ import time
 import pytest
 from started import Started, same, write_scene
 
-from quintet.coupler.launch.connect import free_port
+from quintet.interfaces.lines.endpoint import free_port
 
 pytestmark = pytest.mark.zenoh
 STRANGER = """

@@ -6,7 +6,6 @@ import time
 import numpy as np
 import pytest
 
-from quintet.coupler.launch.connect import free_port
 from quintet.interfaces.errors import LineError
 from quintet.interfaces.lines.admission import (
     LONGEST_REQUEST,
@@ -14,6 +13,7 @@ from quintet.interfaces.lines.admission import (
     Admission,
     ForeignMessages,
 )
+from quintet.interfaces.lines.endpoint import free_port
 from quintet.interfaces.lines.zenoh import Session, ZenohLine, configuration, connect, join
 
 pytestmark = pytest.mark.zenoh
@@ -114,6 +114,29 @@ def test_who_is_awaited_joins_once(coupler, endpoint):
     assert other.receive(5.0).order == "go"  # the second one has ended nothing
     assert "1 request(s) to join were refused" in coupler.foreign.look()
     other.close()
+
+
+def test_whose_former_process_has_died_joins_with_another_secret(coupler, endpoint):
+    before = ZenohLine(coupler, "r1", "pong")
+    former = join(endpoint, "pong", WHO)
+    coupler.admission.await_join("pong", "an0ther")
+    line = ZenohLine(coupler.under("an0ther"), "r1", "pong")
+    before.send({"order": "go"}, {})  # which the former process alone hears
+    other = join(endpoint, "pong", {**WHO, "pid": 8})
+    with pytest.raises(LineError, match=r"pong has joined already \(process 8 on here\)"):
+        join(endpoint, "pong", WHO)
+    former.send({"order": "late"}, {})
+    other.send({"order": "hello"}, {})
+    former.close()
+    assert line.receive(5.0).order == "hello"
+    line.send({"order": "load"}, {})
+    assert other.receive(5.0).order == "load"
+    assert line.peek() is None and not line.partner_has_left()
+    other.close()
+    limit = time.monotonic() + 5.0
+    while not line.partner_has_left():
+        assert time.monotonic() < limit
+    line.leave()
 
 
 @pytest.mark.parametrize(

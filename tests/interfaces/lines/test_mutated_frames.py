@@ -13,10 +13,11 @@ from started import write_scene
 from quintet.coupler.coupling.group import assemble
 from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.ledger import Ledger
-from quintet.coupler.launch.connect import InMemory, free_port
+from quintet.coupler.launch.connect import InMemory
 from quintet.coupler.run.loop import run
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.lines.endpoint import free_port
 from quintet.interfaces.lines.memory import MemoryLine
 from quintet.interfaces.lines.message import decode, encode
 from quintet.interfaces.lines.zenoh import Session, ZenohLine

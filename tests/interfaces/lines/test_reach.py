@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import pytest
 
-from quintet.coupler.launch.connect import free_port
 from quintet.interfaces.errors import LineError
+from quintet.interfaces.lines.endpoint import free_port
 from quintet.interfaces.lines.reach import obstacle
 from quintet.interfaces.lines.zenoh import Session, connect
 

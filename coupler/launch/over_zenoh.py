@@ -1,0 +1,186 @@
+"""Components as processes that zenoh joins to the coupler, started here or by hand."""
+
+import contextlib
+import secrets
+import shlex
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from quintet.coupler.coupling.participant import LONGEST_WAIT, Participant, finish_all
+from quintet.coupler.launch.acceptance import accept, identify, log_of, probe_of
+from quintet.coupler.launch.life import Life
+from quintet.coupler.launch.mpi_job import exit_files, find_launcher, under_shell
+from quintet.coupler.launch.process_probe import ProcessProbe
+from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
+from quintet.coupler.launch.restarts import Restarts
+from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.scene.overrides import run_arguments
+from quintet.coupler.scene.read import library
+from quintet.coupler.scene.scene import Scene
+from quintet.interfaces.errors import LineError, QuintetError, SceneError
+from quintet.interfaces.lines.admission import Admission, ForeignMessages
+from quintet.interfaces.lines.endpoint import Security, free_port
+from quintet.interfaces.lines.zenoh import Session, ZenohLine
+
+JOINING_BY_HAND = 3600.0  # s until a component says hello that somebody starts elsewhere
+ABORTING = 0.2  # s for components to end by themselves when a run fails
+
+
+class OverZenoh:
+    """One process per component, started here or joined by hand."""
+
+    def __init__(self, scene: Scene, folder: Path, watchdog: Watchdog) -> None:
+        self.scene, self.folder, self.watchdog = scene, folder, watchdog
+        self.endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
+        self.participants: dict[str, Participant] = {}
+        self.probes: dict[str, ProcessProbe] = {}
+        self.secret = secrets.token_hex(16)
+        try:
+            self.session = Session(self.endpoint, True, "coupler", scene.security, self.secret)
+        except LineError as error:
+            raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
+        self.foreign = ForeignMessages(self.session.zenoh)
+        kinds = {name: plan.manifest.kind for name, plan in scene.components.items()}
+        awaited = {name: kind for name, kind in kinds.items() if name in scene.elsewhere}
+        self.admission = Admission(
+            self.session.zenoh, self.secret, awaited, kinds.keys() - awaited.keys(), self.foreign
+        )
+        watchdog.news = self.foreign.look
+        self.run = watchdog.mark
+        try:
+            if scene.security and kinds.keys() - awaited.keys():
+                require_reachable(self.endpoint, scene.security)
+            waits = {name: self._join(name) for name in scene.components}
+            for name, wait_for_partner in waits.items():
+                seconds = JOINING_BY_HAND if name in scene.elsewhere else LONGEST_WAIT
+                hello = self.participants[name].await_hello(seconds, wait_for_partner)
+                accept(scene, self.participants[name], hello, self.probes[name], folder, 0)
+        except BaseException:
+            self.close(False)
+            raise
+
+    def _join(self, name: str) -> Callable[[float], None]:
+        """Start a component, or await it; return what waits until it is connected."""
+        restarts = Restarts(self.scene.file.restarts)
+        if restarts.limit:
+            return self._join_lastingly(name, restarts)
+        line = self._begin(name, self.session, self.secret).line
+        self._watch(Participant(name, line), restarts)
+        return line.wait_for_partner
+
+    def _join_lastingly(self, name: str, restarts: Restarts) -> Callable[[float], None]:
+        """Do so with a component that is started again if its process dies."""
+        # Only runs that restart components keep their orders.
+        from quintet.coupler.launch.lasting_line import LastingLine
+
+        told = partial(identify, self.scene, name, folder=self.folder, first=0)
+        line = LastingLine(name, restarts, partial(self._begin_life, name), told, self.folder)
+        participant = Participant(name, line)
+        line.on_replay, line.on_return = participant.wait_for_replay, participant.notes.append
+        self._watch(participant, restarts)
+        return line.wait_for_partner
+
+    def _watch(self, participant: Participant, restarts: Restarts) -> None:
+        name = participant.name
+        self.participants[name] = participant
+        self.watchdog.add(participant, self.probes[name], self.scene.patience(name), restarts)
+
+    def _begin_life(self, name: str) -> Life:
+        """Begin with a secret of its own, so that nobody hears the process that was before."""
+        secret = secrets.token_hex(16)
+        self.admission.await_join(name, secret)
+        life = self._begin(name, self.session.under(secret), secret)
+        self.watchdog.watch_instead(name, life.probe)
+        return life
+
+    def _begin(self, name: str, session: Session, secret: str) -> Life:
+        """Start a process of a component, or await it, with a line to it."""
+        line, mark = ZenohLine(session, self.run, name), secrets.token_hex(8)
+        awaited = name in self.scene.elsewhere
+        probe = self.probes[name] = probe_of(self.scene, name, awaited=awaited)
+        if awaited:
+            command = join_command(self.scene, name, self.endpoint)
+            print(f"{name} is awaited: {command}", flush=True)
+            return Life(line, probe, self.scene.patience(name), mark)
+        self._start(name, probe, secret, mark)
+        return Life(line, probe, LONGEST_WAIT, mark)
+
+    def _start(self, name: str, probe: ProcessProbe, secret: str, mark: str) -> None:
+        scene, folder = self.scene, self.folder
+        plan, log = scene.components[name], log_of(folder, name)
+        arguments = [
+            "-m",
+            "quintet.interfaces.serving.process",
+            plan.kind,
+            "--name",
+            name,
+            "--at",
+            self.endpoint,
+        ]
+        if scene.tls:
+            arguments += ["--tls", *scene.tls]
+        for place in scene.import_folders:
+            arguments += ["--look-in", place]
+        launcher: list[str] = []
+        if plan.ranks > 1:
+            for path in exit_files(folder, name, plan.ranks, 0):
+                path.unlink(missing_ok=True)  # of ranks that were before
+            arguments = ["-m", "mpi4py", *arguments, "--ranks", str(plan.ranks)]
+            arguments += ["--log", str(log)]
+            launcher = [*find_launcher(), "-n", str(plan.ranks)]
+            launcher += under_shell(folder, name, plan.ranks)
+        process = start(arguments, log, plan.threads, self.run, secret, launcher, mark)
+        probe.pid, probe.process = process.pid, process
+
+    def close(self, well: bool) -> None:
+        """See `Connection.close`."""
+        self.watchdog.expect_ends()
+        end_all(self.participants, self.probes, well, self.watchdog)
+        self.watchdog.close()
+        self.watchdog.news = lambda: ""
+        end_marked(RUN, self.run)
+        for participant in self.participants.values():
+            participant.line.close()
+        self.session.close()
+
+    def notes(self) -> list[str]:
+        """See `Connection.notes`."""
+        return self.foreign.summary()
+
+
+def require_reachable(endpoint: str, security: Security) -> None:
+    """Refuse certificates with which the components that are started here could not connect."""
+    # Only runs over zenoh with certificates look at them.
+    from quintet.interfaces.lines.reach import obstacle
+
+    hindrance = obstacle(endpoint, security)
+    if hindrance.text and hindrance.certain:
+        raise SceneError(f"scene.endpoint {endpoint}: {hindrance.text}")
+
+
+def join_command(scene: Scene, name: str, endpoint: str) -> str:
+    """Command that starts a component elsewhere and joins it to the coupler at an endpoint."""
+    known = library().get(scene.path.parent.name)
+    name_or_path = {"scene": scene.path.parent.name} if known == scene.path else {}
+    asked = run_arguments(**{**scene.asked, **name_or_path})
+    return shlex.join(["quintet", "join", *asked, name, "--at", endpoint])
+
+
+def end_all(
+    participants: dict[str, Participant], probes: dict[str, ProcessProbe], well: bool, dog: Watchdog
+) -> None:
+    """End all component processes: in order, or at once."""
+    if well:
+        finish_all(participants)
+    elif dog.verdict:  # some may not listen any more
+        for probe in probes.values():
+            probe.kill()
+    else:
+        for participant in participants.values():
+            with contextlib.suppress(QuintetError):
+                participant.line.send({"order": "abort"}, {})
+    limit = time.monotonic() + (GRACE if well and not dog.stop() else ABORTING)
+    for probe in probes.values():
+        probe.end(max(0.0, limit - time.monotonic()))
