@@ -10,7 +10,7 @@ from pathlib import Path
 
 from quintet.coupler.coupling.participant import LONGEST_WAIT, Participant, finish_all
 from quintet.coupler.launch.acceptance import accept, identify, log_of, probe_of
-from quintet.coupler.launch.life import Life
+from quintet.coupler.launch.component_process import ComponentProcess
 from quintet.coupler.launch.mpi_job import exit_files, find_launcher, under_shell
 from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
@@ -65,18 +65,20 @@ class OverZenoh:
         """Start a component, or await it; return what waits until it is connected."""
         restarts = Restarts(self.scene.file.restarts)
         if restarts.limit:
-            return self._join_lastingly(name, restarts)
+            return self._join_restartable(name, restarts)
         line = self._begin(name, self.session, self.secret).line
         self._watch(Participant(name, line), restarts)
         return line.wait_for_partner
 
-    def _join_lastingly(self, name: str, restarts: Restarts) -> Callable[[float], None]:
+    def _join_restartable(self, name: str, restarts: Restarts) -> Callable[[float], None]:
         """Do so with a component that is started again if its process dies."""
         # Only runs that restart components keep their orders.
-        from quintet.coupler.launch.lasting_line import LastingLine
+        from quintet.coupler.launch.restartable_line import RestartableLine
 
         told = partial(identify, self.scene, name, folder=self.folder, first=0)
-        line = LastingLine(name, restarts, partial(self._begin_life, name), told, self.folder)
+        line = RestartableLine(
+            name, restarts, partial(self._begin_process, name), told, self.folder
+        )
         participant = Participant(name, line)
         line.on_replay, line.on_return = participant.wait_for_replay, participant.notes.append
         self._watch(participant, restarts)
@@ -87,15 +89,15 @@ class OverZenoh:
         self.participants[name] = participant
         self.watchdog.add(participant, self.probes[name], self.scene.patience(name), restarts)
 
-    def _begin_life(self, name: str) -> Life:
+    def _begin_process(self, name: str) -> ComponentProcess:
         """Begin with a secret of its own, so that nobody hears the process that was before."""
         secret = secrets.token_hex(16)
         self.admission.await_join(name, secret)
-        life = self._begin(name, self.session.under(secret), secret)
-        self.watchdog.watch_instead(name, life.probe)
-        return life
+        process = self._begin(name, self.session.under(secret), secret)
+        self.watchdog.watch_instead(name, process.probe)
+        return process
 
-    def _begin(self, name: str, session: Session, secret: str) -> Life:
+    def _begin(self, name: str, session: Session, secret: str) -> ComponentProcess:
         """Start a process of a component, or await it, with a line to it."""
         line, mark = ZenohLine(session, self.run, name), secrets.token_hex(8)
         awaited = name in self.scene.elsewhere
@@ -103,9 +105,9 @@ class OverZenoh:
         if awaited:
             command = join_command(self.scene, name, self.endpoint)
             print(f"{name} is awaited: {command}", flush=True)
-            return Life(line, probe, self.scene.patience(name), mark)
+            return ComponentProcess(line, probe, self.scene.patience(name), mark)
         self._start(name, probe, secret, mark)
-        return Life(line, probe, LONGEST_WAIT, mark)
+        return ComponentProcess(line, probe, LONGEST_WAIT, mark)
 
     def _start(self, name: str, probe: ProcessProbe, secret: str, mark: str) -> None:
         scene, folder = self.scene, self.folder

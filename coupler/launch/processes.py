@@ -20,7 +20,7 @@ PYTHON = (sys.executable, "-P")
 GRACE = 2.0  # s for a process to end by itself
 KILLED = 1.0  # s within which the system has ended what was killed
 SET_CHILD_SUBREAPER = 36  # of prctl
-LIFE = "QUINTET_LIFE"  # in the environment of one process of a component, and of those it starts
+PROCESS = "QUINTET_PROCESS"  # in the environment of a process, and of those that it starts
 RUN = "QUINTET_RUN"  # in the environment of all processes of a run, and of those that they start
 
 
@@ -31,7 +31,7 @@ def start(
     run: str = "",
     secret: str = "",
     launcher: Sequence[str] = (),
-    life: str = "",
+    mark: str = "",
 ) -> subprocess.Popen[bytes]:
     """Start a Python program, part of a run, in a session of its own, its output in a log.
 
@@ -46,7 +46,7 @@ def start(
             stdout=file,
             stderr=file,
             start_new_session=True,
-            env={**environment(threads), RUN: run, SECRET: secret, LIFE: life},
+            env={**environment(threads), RUN: run, SECRET: secret, PROCESS: mark},
         )
 
 

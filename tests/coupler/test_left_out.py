@@ -113,7 +113,8 @@ def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
     assert "zenoh" in names and not names & (HEAVY - {"zenoh"})
     assert solvers(names) == ({"stand_ins"}, {"params", "recorded"})
     assert "quintet.interfaces.lines.memory" not in names
-    assert not {f"quintet.coupler.launch.{part}" for part in ("lasting_line", "order_log")} & names
+    restarts = {f"quintet.coupler.launch.{part}" for part in ("restartable_line", "order_log")}
+    assert not restarts & names
 
 
 @pytest.fixture(scope="module")

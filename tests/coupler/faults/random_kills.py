@@ -23,15 +23,15 @@ SERVES = b"quintet.interfaces.serving.process"
 
 def components(run):
     """Processes of the components of a run, ranks included."""
-    found = []
+    pids = []
     for pid in run.processes():
         try:
             words = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
         except OSError:
             continue
         if SERVES in words and words[0].endswith((b"python", b"python3")):
-            found.append(pid)
-    return found
+            pids.append(pid)
+    return pids
 
 
 def kill_at_random(run, seed, kills, seconds):

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 from quintet.coupler.launch.process_probe import ProcessProbe
-from quintet.coupler.launch.processes import LIFE, end_marked
+from quintet.coupler.launch.processes import PROCESS, end_marked
 from quintet.interfaces.lines.zenoh import ZenohLine
 
 
 @dataclass(slots=True)
-class Life:
+class ComponentProcess:
     """A process of a component, or the MPI job of its ranks, and the line to it.
 
     Parameters
@@ -31,5 +31,5 @@ class Life:
     def end(self) -> None:
         """End what is left of it: other ranks, processes that it has started, and its line."""
         self.probe.end(0.0)
-        end_marked(LIFE, self.mark)
+        end_marked(PROCESS, self.mark)
         self.line.leave()

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from quintet.coupler.coupling.participant import LONGEST_WAIT
-from quintet.coupler.launch.life import Life
+from quintet.coupler.launch.component_process import ComponentProcess
 from quintet.coupler.launch.order_log import Entry, OrderLog
 from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.restarts import Restarts
@@ -29,7 +29,7 @@ class ReplayError(LineError):
     """A process that is to take over does not do what the one before it did."""
 
 
-class LastingLine:
+class RestartableLine:
     """A line to a component whose process may be replaced.
 
     Parameters
@@ -50,7 +50,7 @@ class LastingLine:
         self,
         name: str,
         restarts: Restarts,
-        begin: Callable[[], Life],
+        begin: Callable[[], ComponentProcess],
         identify: Callable[[Message, ProcessProbe], None],
         folder: Path,
     ) -> None:
@@ -60,44 +60,39 @@ class LastingLine:
         self.on_return: Callable[[str], None] = lambda note: None  # called when it goes on
         self._begin, self._identify = begin, identify
         self._log = OrderLog(folder)
-        self._life = self._begin_life()
+        self._process = self._begin_process()
         self._lost = ""  # why its process is gone, while no other has taken over
-
-    @property
-    def life(self) -> Life:
-        """The present process."""
-        return self._life
 
     def wait_for_partner(self, seconds: float) -> None:
         """See `ZenohLine.wait_for_partner`."""
-        self._lasting(lambda: self._life.line.wait_for_partner(seconds))
+        self._with_restarts(lambda: self._process.line.wait_for_partner(seconds))
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """See `Line.send`; if the process has died, that is noticed when the answer is awaited."""
         self._log.add(header, fields)
-        self._life.line.send(header, fields)
+        self._process.line.send(header, fields)
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
         """See `Line.receive`."""
-        message = self._lasting(lambda: self._life.line.receive(seconds, expected))
+        message = self._with_restarts(lambda: self._process.line.receive(seconds, expected))
         self._log.answered(message)
         return message
 
     def peek(self) -> Frame | None:
         """See `FramedLine.peek`."""
-        return self._life.line.peek()
+        return self._process.line.peek()
 
     def close(self) -> None:
         """See `Line.close`."""
         self._log.close()
-        self._life.line.close()
+        self._process.line.close()
 
-    def _begin_life(self) -> Life:
-        life = self._begin()
-        life.line.watch = lambda: self.watch()
-        return life
+    def _begin_process(self) -> ComponentProcess:
+        process = self._begin()
+        process.line.watch = lambda: self.watch()
+        return process
 
-    def _lasting(self, act: Callable[[], T]) -> T:
+    def _with_restarts(self, act: Callable[[], T]) -> T:
         """Do something with the line, if need be with another process."""
         while True:
             try:
@@ -109,13 +104,13 @@ class LastingLine:
 
     def _lose(self, error: LineError) -> None:
         """Note that the process has died; raise what is no death, and one too many."""
-        if isinstance(error, ReplayError) or not self._life.is_over():
+        if isinstance(error, ReplayError) or not self._process.is_over():
             told = f"{self._lost}; no other process took over: {error}"
             raise LineError(told) if self._lost else error
         self._lost = str(error)
         if not self.restarts.left:
             raise LineError(self._lost + self.restarts.remark()) from error
-        self._life.end()
+        self._process.end()
         self.restarts.used += 1
         number = f"restart {self.restarts.used} of {self.restarts.limit}"
         say(f"{self.name}: {self._lost}; it is started again ({number})")
@@ -124,10 +119,10 @@ class LastingLine:
         """Bring another process to where the one before it died."""
         began = time.monotonic()
         self.on_replay(False)
-        self._life = life = self._begin_life()
-        life.line.wait_for_partner(life.joining)
+        self._process = process = self._begin_process()
+        process.line.wait_for_partner(process.joining)
         if self._log.begun:  # else the first message is still awaited
-            self._identify(life.line.receive(life.joining), life.probe)
+            self._identify(process.line.receive(process.joining), process.probe)
         windows = sum(self._repeat(entry) for entry in self._log)
         cause, self._lost = self._lost, ""
         note = (
@@ -139,7 +134,7 @@ class LastingLine:
 
     def _repeat(self, entry: Entry) -> bool:
         """Send an order again and compare the answer; tell whether it was a window."""
-        order, line = entry.order, self._life.line
+        order, line = entry.order, self._process.line
         self.on_replay(order.order not in BUILDS)
         line.send(order.header, order.fields)
         if entry.answer is None:
