@@ -1,6 +1,7 @@
 """One process of a run: whether it lives, what it does, and where in its code it is."""
 
 import contextlib
+import math
 import os
 import signal
 import subprocess
@@ -88,6 +89,13 @@ class ProcessProbe:
             reason = self._reason(-code) if self.pid else ""
             return f"{who} was killed by signal {-code} ({name}){reason}"
         return f"{who} ended by itself with status {code}, before it was told to"
+
+    def ended_at(self) -> float:
+        """When its exit status was written, s since the epoch; inf if it was not."""
+        try:
+            return self.exit_file.stat().st_mtime if self.exit_file else math.inf
+        except OSError:
+            return math.inf
 
     def _written(self) -> int | None:
         """Exit status of a process of another parent; negative: the signal that killed it."""

@@ -35,11 +35,15 @@ class RanksProbe(ProcessProbe):
 
     def ending(self) -> str:
         """Describe how the first that ended did; others may end as they miss it."""
-        ended = [rank for rank in self.ranks if not rank.alive() or _ended_at(rank) < math.inf]
+        ended = [rank for rank in self.ranks if not rank.alive() or rank.ended_at() < math.inf]
         if not ended:
             return ProcessProbe.ending(self)
-        first = min(ended, key=_ended_at)
+        first = min(ended, key=ProcessProbe.ended_at)
         return f"{first.name}: {first.ending()}"
+
+    def ended_at(self) -> float:
+        """When the exit status of the first that ended was written; inf if none was."""
+        return min((rank.ended_at() for rank in self.ranks), default=math.inf)
 
     def stopped(self) -> bool:
         """Whether a rank was stopped; asked again and again."""
@@ -121,11 +125,3 @@ def _descendants(pid: int) -> list[psutil.Process]:
         return psutil.Process(pid).children(recursive=True)
     except psutil.Error:
         return []
-
-
-def _ended_at(rank: ProcessProbe) -> float:
-    """When the exit status of a rank was written, s since the epoch; inf if it was not."""
-    try:
-        return rank.exit_file.stat().st_mtime if rank.exit_file else math.inf
-    except OSError:
-        return math.inf

@@ -168,7 +168,20 @@ class Watchdog:
                 if component is not awaited and component.participant.has_failed():
                     component.participant.receive()  # raises its failure
             self._peeked_at = now
-        return "" if awaited.probe.alive() else awaited.probe.ending()
+        if awaited.probe.alive():
+            return ""
+        ending = awaited.probe.ending()
+        first = self._first_dead(awaited)
+        if first is not awaited and not awaited.restarts.left:
+            self.fail(first, first.probe.ending())
+            if self.verdict:
+                raise self.verdict
+        return ending
+
+    def _first_dead(self, component: Watched) -> Watched:
+        """Which died first, of a dead component and others: an MPI job ends all with one."""
+        dead = [other for other in self._all.values() if not (other.may_end or other.probe.alive())]
+        return min([component, *dead], key=lambda other: other.probe.ended_at())
 
     def expect_ends(self) -> None:
         """From now on components may end."""
@@ -221,9 +234,10 @@ class Watchdog:
             return
         component.dead_since = component.dead_since or now
         if now - component.dead_since > DEAD:
-            joined = "" if component.participant.order else "did not join: "
-            ending = component.probe.ending() + component.restarts.remark()
-            self.fail(component, joined + ending)
+            first = self._first_dead(component)
+            joined = "" if first.participant.order else "did not join: "
+            ending = first.probe.ending() + first.restarts.remark()
+            self.fail(first, joined + ending)
 
     def check_wait(self, component: Watched, passed: float) -> None:
         """Tell of a component that keeps the others waiting; end it if that takes too long."""
