@@ -274,10 +274,20 @@ def end_rank(folder: Path, status: int) -> None:
 
 
 def _write(folder: Path, content: dict[str, object]) -> None:
-    path = folder / "log" / JOB_FILE
+    path, text = folder / "log" / JOB_FILE, json.dumps(content)
     part = path.with_suffix(".part")
-    part.write_text(json.dumps(content))
-    part.replace(path)
+    try:
+        part.write_text(text)
+        part.replace(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        if not path.exists():
+            raise
+        # On a full disk the file that is there still has room in its last block. Who reads it
+        # half written reads it again.
+        with open(path, "r+") as file:
+            file.write(text)
+            file.truncate()
 
 
 def _see_to_end(job_file: Path, output: Sequence[IO[bytes]], starter: Starter) -> None:

@@ -1,13 +1,17 @@
 """A disk that is full ends a run in a sentence; with room again it goes on to the same bits."""
 
+import errno
 import shutil
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from full_disk import WRITERS, broken_rules, fill, make_disk, start
 from started import same
+
+from quintet.coupler.launch.mpi_job import JOB_FILE, _read, _write
 
 SOON = 5.0  # s, with what reading the results of a machine under load takes
 
@@ -111,3 +115,16 @@ def test_files_of_hdf5_whose_writing_fails_end_no_process(tmp_path):
     lines = found.stdout.splitlines()
     assert [line.partition(":")[0] for line in lines] == ["recording.h5", "views.vtkhdf"]
     assert all("allows no file so large" in line for line in lines)
+
+
+def test_the_end_of_an_mpi_job_is_noted_on_a_full_disk(tmp_path, monkeypatch):
+    (tmp_path / "log").mkdir()
+    _write(tmp_path, {"coupler": 7, "status": 0, "launcher": ["a long name"]})
+
+    def no_room(path, text):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", no_room)
+    _write(tmp_path, {"coupler": 7, "status": 3})
+    assert _read(tmp_path / "log" / JOB_FILE) == {"coupler": 7, "status": 3}
+    assert [path.name for path in (tmp_path / "log").iterdir()] == [JOB_FILE]
