@@ -75,9 +75,9 @@ class OverZenoh:
         # Only runs that restart components keep their orders.
         from quintet.coupler.launch.restartable_line import RestartableLine
 
-        told = partial(identify, self.scene, name, folder=self.folder, first=0)
+        check_hello = partial(identify, self.scene, name, folder=self.folder, first=0)
         line = RestartableLine(
-            name, restarts, partial(self._begin_process, name), told, self.folder
+            name, restarts, partial(self._begin_process, name), check_hello, self.folder
         )
         participant = Participant(name, line)
         line.on_replay, line.on_return = participant.wait_for_replay, participant.notes.append

@@ -105,8 +105,8 @@ class RestartableLine:
     def _lose(self, error: LineError) -> None:
         """Note that the process has died; raise what is no death, and one too many."""
         if isinstance(error, ReplayError) or not self._process.is_over():
-            told = f"{self._lost}; no other process took over: {error}"
-            raise LineError(told) if self._lost else error
+            cause = f"{self._lost}; no other process took over: {error}"
+            raise LineError(cause) if self._lost else error
         self._lost = str(error)
         if not self.restarts.left:
             raise LineError(self._lost + self.restarts.remark()) from error

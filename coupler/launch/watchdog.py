@@ -180,8 +180,9 @@ class Watchdog:
 
     def _first_dead(self, component: Watched) -> Watched:
         """Which died first, of a dead component and others: an MPI job ends all with one."""
-        dead = [other for other in self._all.values() if not (other.may_end or other.probe.alive())]
-        return min([component, *dead], key=lambda other: other.probe.ended_at())
+        every = self._all.values()
+        dead = [each for each in every if not (each.may_end or each.probe.alive())]
+        return min([component, *dead], key=lambda each: each.probe.ended_at())
 
     def expect_ends(self) -> None:
         """From now on components may end."""

@@ -97,7 +97,7 @@ def step(
 
 @njit(**EXACT)
 def report_balls(report: Numbers, contact_load: Numbers, sums: Numbers) -> None:
-    """Report on a step of balls alone, of which the sums of all blocks are known."""
+    """Write the report of a step from the sums of all blocks; all bodies are balls."""
     reduce_pairs(report, sums)
     report[TOUCHING] = 0.0
     reduce_bodies(report, contact_load, sums)

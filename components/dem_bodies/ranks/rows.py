@@ -16,7 +16,7 @@ MOVED = {
     "world_inverse_inertia": 6,
 }  # fmt: skip
 OF_ALL = ("body", "row", "report")  # that every rank has whole
-# Numbers of rows that follow from the kind of a ball, and those that balls alone do not need.
+# Arrays of the model that the kind of a ball determines, and arrays that only other bodies need.
 OF_KINDS = (
     "inverse_mass", "inverse_inertia", "inverse_moment", "bounding_radius", "material", "kind",
     "sphere_radius",

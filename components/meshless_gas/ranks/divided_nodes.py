@@ -88,7 +88,7 @@ class DividedNodes(SeveralRanks):
         return self._collection.gather(array[self._answered])
 
     def collect_answered(self, values: Array) -> Array:
-        """Rows of all nodes of a kind, on rank 0; each rank gives those that it answers for."""
+        """Collect rows of one kind of node on rank 0; each rank passes those of its own nodes."""
         return self.collect_shown(values)
 
     def rows_of(self, array: Array) -> Array:
@@ -130,5 +130,5 @@ class DividedNodes(SeveralRanks):
         wait(*([sent] if rank else [sent, self._communicator.Irecv(sums, size - 1, TAG)]))
 
     def first(self, domain: Domain) -> int:
-        """Place of this rank's first node among those that are advanced."""
+        """Index of this rank's first node in the list of all nodes that are advanced."""
         return self._first

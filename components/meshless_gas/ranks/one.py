@@ -41,13 +41,13 @@ class Ranks(Protocol):
         """Nodes and ghosts whose gradients a view needs; None: all ghosts."""
 
     def collect_shown(self, values: Array) -> Array:
-        """Rows of all nodes that are shown, on rank 0; each rank gives those that it shows."""
+        """Collect rows for a view on rank 0; each rank passes the rows that it computed."""
 
     def collect(self, domain: Domain, array: Array) -> Array:
         """Rows of all nodes, on rank 0, of an array (nodes, *shape); others get their own."""
 
     def collect_answered(self, values: Array) -> Array:
-        """Rows of all nodes of a kind, on rank 0; each rank gives those that it answers for."""
+        """Collect rows of one kind of node on rank 0; each rank passes those of its own nodes."""
 
     def rows_of(self, array: Array) -> Array:
         """Rows that this rank holds, of an array (n, *shape) of all nodes."""
@@ -74,7 +74,7 @@ class Ranks(Protocol):
         """Let one rank after another add to sums (k,), of which rank 0 then has the last."""
 
     def first(self, domain: Domain) -> int:
-        """Place of this rank's first node among those that are advanced."""
+        """Index of this rank's first node in the list of all nodes that are advanced."""
 
     def from_owner(self, values: Array) -> Array:
         """Values (k,) that one rank gives to all; others give none."""

@@ -31,7 +31,7 @@ class SeveralRanks(OneRank):
         return unwritten(shape, np.float64)
 
     def collect_shown(self, values: Array) -> Array:
-        """Rows of all nodes that are shown, on rank 0; each rank gives those that it shows."""
+        """Collect rows for a view on rank 0; each rank passes the rows that it computed."""
         return collect(self._communicator, values)
 
     def from_owner(self, values: Array) -> Array:

@@ -82,7 +82,7 @@ class WholeCloud(SeveralRanks):
         return float(self._gathered(domain, values[:, np.newaxis])[:, 0].mean())
 
     def first(self, domain: Domain) -> int:
-        """Place of this rank's first node among those that are advanced."""
+        """Index of this rank's first node in the list of all nodes that are advanced."""
         return self._part(domain, self._communicator.rank)[0]
 
     def _part(self, domain: Domain, rank: int) -> tuple[int, int]:
