@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from quintet.coupler.cli import kinds, launching, reference, runs, scaling, studies
+from quintet.coupler.cli import kinds, launching, pictures, reference, runs, scaling, studies
 from quintet.coupler.cli.options import BAD, Action
 from quintet.interfaces.errors import QuintetError, SceneError
 
@@ -63,7 +63,7 @@ def parser() -> argparse.ArgumentParser:
         added.set_defaults(action=action, command=name)
         return added
 
-    for group in (reference, runs, launching, studies, kinds, scaling):
+    for group in (reference, runs, pictures, launching, studies, kinds, scaling):
         group.add_commands(command)
     return top
 

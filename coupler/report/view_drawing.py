@@ -1,4 +1,4 @@
-"""What stands in a panel of a side view: walls, points, spheres, faces, and their colours.
+"""What stands in a panel of a picture: walls, points, spheres, faces, and their colours.
 
 Matplotlib is loaded by the functions that draw: a run without pictures does not need it.
 """
@@ -14,7 +14,7 @@ from quintet.interfaces.component import Array
 from quintet.interfaces.faces import CLAMPED, SYMMETRY
 from quintet.interfaces.faces import WALL as WALL_FACE
 
-LIGHT = np.array([-0.4, -0.8, 0.6])  # towards the light; the eye looks along +y
+LIGHT = np.array([-0.4, -0.8, 0.6])  # towards the light; the eye looks along the second axis
 PLAIN = ("#ccaa7a", "#8fb0c9", "#b5c98f", "#c99a8f")  # of what no field colours, by component
 MAPS = ("viridis", "plasma", "cividis", "inferno")  # of quantities
 PHOTOGRAPHS = ("schlieren", "shadowgraph")  # quantities in grey, as on photographs of flows
@@ -44,26 +44,34 @@ def _is_named(shown: Shown) -> bool:
     return is_mark(shown) and len(shown.points) <= NAMED
 
 
-def colour_scales(views: Sequence[Sequence[Shown]]) -> dict[Quantity, Any]:
-    """Colours of each quantity, the same in all panels."""
+def colour_scales(
+    views: Sequence[Sequence[Shown]], ranges: Mapping[str, tuple[float, float]]
+) -> dict[Quantity, Any]:
+    """Colours of each quantity, the same in all panels; `ranges` are those of components."""
     # A run without pictures does not load matplotlib.
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
+    chosen = {shown.quantity: ranges[shown.name] for shown in views[0] if shown.name in ranges}
     scales: dict[Quantity, Any] = {}
     for quantity in dict.fromkeys(shown.quantity for view in views for shown in view):
         values = _values(views, quantity)
         if quantity is None or not len(values):
             continue
-        clipped = CLIPPED if len(values) > ENOUGH else 0.0
-        low, high = np.percentile(values, [clipped, 100.0 - clipped])
-        low = min(low, 0.0) if values.min() >= 0.0 and low < 0.3 * high else low
-        if not high > low:
-            low, high = (0.0, 1.0) if not high else (high - abs(high), high + abs(high))
-        norm = Normalize(float(low), float(high))
+        norm = Normalize(*(chosen.get(quantity) or _range(values)))
         colours = "gray" if quantity.name in PHOTOGRAPHS else MAPS[len(scales) % len(MAPS)]
         scales[quantity] = ScalarMappable(norm, colours)
     return scales
+
+
+def _range(values: Array) -> tuple[float, float]:
+    """Lowest and highest value of the colours, but for a few values far away."""
+    clipped = CLIPPED if len(values) > ENOUGH else 0.0
+    low, high = np.percentile(values, [clipped, 100.0 - clipped]).tolist()
+    low = min(low, 0.0) if values.min() >= 0.0 and low < 0.3 * high else low
+    if high > low:
+        return low, high
+    return (high - abs(high), high + abs(high)) if high else (0.0, 1.0)
 
 
 def _values(views: Sequence[Sequence[Shown]], quantity: Quantity | None) -> Array:
@@ -162,8 +170,8 @@ def draw_view(
     scales: Mapping[Quantity, Any],
     sizes: Mapping[str, float],
 ) -> None:
-    """Draw all components: bodies last, for what is in front of them would hide them."""
-    for place, shown in enumerate(view):
+    """Draw all components: particles, then spheres, then faces; later ones hide earlier ones."""
+    for place, shown in sorted(enumerate(view), key=lambda item: bool(item[1].radius.any())):
         if is_field(shown):
             draw_field(panel, shown, scales)
             continue

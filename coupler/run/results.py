@@ -5,7 +5,7 @@ import platform
 import shlex
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -21,11 +21,11 @@ from quintet.coupler.measures.advice import Load, advice, serial_share, stages
 from quintet.coupler.measures.expectation import ROUNDING, Expectation, Outcome, evaluate
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.panels import can_draw
-from quintet.coupler.report.side_views import side_views
+from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.view_steps import view_files
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.planned_times import cores_here, serial_of
-from quintet.coupler.scene.scene import ComponentPlan, Scene
+from quintet.coupler.scene.scene import ComponentPlan, OutputSettings, Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
 
@@ -81,6 +81,12 @@ def _unknown(expectation: Expectation) -> Outcome:
     )
 
 
+def picture_of(output: OutputSettings, times: Sequence[float]) -> Picture:
+    """Choose what a scene wants to be shown, at some times [s]."""
+    region, scale = output.region, output.displacement_scale
+    return Picture(times, output.colours, region=region, displacement_scale=scale)
+
+
 def draw_until(scene: Scene, folder: Path, reached: float) -> None:
     """Draw what was due before a failure at a time [s]; what is torn is left out, and told."""
     output, out = scene.file.output, folder / PICTURES[0]
@@ -89,8 +95,7 @@ def draw_until(scene: Scene, folder: Path, reached: float) -> None:
         return
     try:
         if view_files(folder):
-            scale = output.displacement_scale
-            side_views(folder, out, due, scene.headline, output.colours, output.region, scale)
+            draw_run(folder, out, picture_of(output, due), scene.headline)
     except (Exception, KeyboardInterrupt) as error:  # the fault is what counts
         print(f"quintet: pictures before the fault left out: {error}", file=sys.stderr, flush=True)
 
@@ -101,14 +106,13 @@ def draw(scene: Scene, folder: Path, outcomes: list[Outcome]) -> None:
     if not ((output.pictures or outcomes) and can_draw()):
         return
     if output.pictures and view_files(folder):
-        out, scale = folder / PICTURES[0], output.displacement_scale
-        end = scene.file.end
+        out, end = folder / PICTURES[0], scene.file.end
         if late := [f"{time:g}" for time in output.pictures if time > end * (1.0 + ROUNDING)]:
             beyond = f"pictures at t = {', '.join(late)} s lie beyond the run's end"
             instead = f"its last state, at {end:g} s, is drawn in their place"
             print(f"quintet: {beyond}: {instead}", file=sys.stderr, flush=True)
         with reporting_disk(out):
-            side_views(folder, out, output.pictures, title, output.colours, output.region, scale)
+            draw_run(folder, out, picture_of(output, output.pictures), title)
     if outcomes:
         out, values = folder / PICTURES[1], bool(output.pictures)
         with Recording(folder / "recording.h5") as recording, reporting_disk(out):

@@ -47,7 +47,7 @@ def test_a_cloud_that_fills_space_is_drawn_as_points(nodes):
 
 def test_schlieren_pictures_are_grey(nodes):
     views = [[read(nodes, 0.0, {"gas": name})] for name in ("density", "schlieren")]
-    assert [one.cmap.name for one in colour_scales(views).values()] == ["viridis", "gray"]
+    assert [one.cmap.name for one in colour_scales(views, {}).values()] == ["viridis", "gray"]
 
 
 def test_a_field_is_filled_between_its_nodes_and_has_no_marks(nodes):
@@ -56,7 +56,7 @@ def test_a_field_is_filled_between_its_nodes_and_has_no_marks(nodes):
 
     views = [[read(nodes, 0.0, {"gas": "density"})]]
     panel = Figure().subplots()
-    draw_view(panel, views[0], colour_scales(views), diameters(views[0]))
+    draw_view(panel, views[0], colour_scales(views, {}), diameters(views[0]))
     (drawn,) = panel.collections
     assert isinstance(drawn, TriMesh)
     assert drawn.get_array().max() == pytest.approx(2.0 - STEP)

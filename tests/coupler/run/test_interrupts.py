@@ -74,7 +74,7 @@ def test_an_interruption_while_pictures_are_drawn_keeps_the_results(tmp_path, mo
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(10.0)
 
-    monkeypatch.setattr(results, "side_views", interrupted)
+    monkeypatch.setattr(results, "draw_run", interrupted)
     monkeypatch.setattr(results, "view_files", lambda _: [tmp_path])
     path = write_scene(tmp_path, end=0.01)
     with pytest.raises(SystemExit) as ended:

@@ -1,4 +1,4 @@
-"""Side views show what the files hold, and cost nothing to a run that wants none."""
+"""Pictures show what the files hold, and cost nothing to a run that wants none."""
 
 import re
 import subprocess
@@ -12,8 +12,9 @@ from started import write_scene
 from quintet.components.shared.geometry.box_faces import CORNERS, FACES, box
 from quintet.coupler.cli import main
 from quintet.coupler.files.vtkhdf import VtkHdf
-from quintet.coupler.report import side_views as drawing
-from quintet.coupler.report.side_views import side_views
+from quintet.coupler.report import picture as drawing
+from quintet.coupler.report.cut import cut_and_sorted
+from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.view_steps import Quantity, moments, read, view_files
 from quintet.coupler.run import results
 from quintet.interfaces.errors import SceneError
@@ -64,9 +65,9 @@ def figure(monkeypatch, tmp_path):
     """Draw, and return the figure as matplotlib holds it."""
     kept = []
 
-    def draw(times, **options):
+    def draw(times, title="", **options):
         monkeypatch.setattr(drawing, "save", lambda figure, out: kept.append(figure) or out)
-        side_views(tmp_path, tmp_path / "a.png", times, **options)
+        draw_run(tmp_path, tmp_path / "a.png", Picture(times, **options), title)
         return kept[-1]
 
     return draw
@@ -87,7 +88,7 @@ def _image(path):
 
 
 def test_a_run_without_pictures_imports_no_drawing():
-    names = "side_views, quintet.coupler.report.comparison"
+    names = "picture, quintet.coupler.report.comparison"
     script = f"import sys, quintet.coupler.report.{names}; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
@@ -154,11 +155,11 @@ def test_a_solid_of_elements_is_cut_open_where_it_shows_a_field(tmp_path):
     file.append(0.0, {"points": np.concatenate(slices), "cells": cells, "stress": np.arange(18.0)})
     file.close()
     (path,) = view_files(tmp_path)
-    region = ((-1.0, 0.75, -1.0), (1.0, 9.0, 1.0))
-    cut = drawing._within(read(path, 0.0, {"block": "stress"}), region)
+    between = 0.75, 9.0
+    cut = cut_and_sorted(read(path, 0.0, {"block": "stress"}), between)
     assert min(face[:, 1].mean() for face in cut.faces) >= 0.75
     assert 0 < len(cut.faces) == len(cut.face_values) < 18
-    assert len(drawing._within(read(path, 0.0, {}), region).faces) == 18  # a plain body is whole
+    assert len(cut_and_sorted(read(path, 0.0, {}), between).faces) == 18  # a plain body is whole
 
 
 def test_walls_are_drawn_and_do_not_shrink_what_moves(tmp_path, figure):
@@ -222,7 +223,7 @@ def test_times_are_those_of_steps(tmp_path):
 def test_snapshots_show_particles_and_bodies_in_each_panel(tmp_path):
     _cloud(tmp_path / "water.vtkhdf", 500)
     _box(tmp_path / "cube.vtkhdf")
-    out = side_views(tmp_path, tmp_path / "pictures" / "all.png", [0.0, 0.11, 5.0])
+    out = draw_run(tmp_path, tmp_path / "pictures" / "all.png", Picture([0.0, 0.11, 5.0]))
     image = _image(out)
     solid = (image[..., RED] - image[..., BLUE] > 0.15) & (image[..., RED] < 0.85)
     columns = np.flatnonzero(solid.any(axis=0))
@@ -235,7 +236,7 @@ def test_a_picture_of_a_time_beyond_the_end_shows_the_last_state(tmp_path, monke
     path = write_scene(tmp_path, end=0.01, ping="seen = true")
     drawn = []
     monkeypatch.setattr(
-        results, "side_views", lambda run, _, times, *__: drawn.append((run, times))
+        results, "draw_run", lambda run, _, picture, *__: drawn.append((run, picture.times))
     )
     with pytest.raises(SystemExit) as ended:
         main(
@@ -262,16 +263,16 @@ def test_snapshots_need_neither_particles_nor_bodies(tmp_path, only):
         _box(tmp_path / "a.vtkhdf")
     else:
         _cloud(tmp_path / "a.vtkhdf", 40 if only == "cloud" else 1, speed=0.0)
-    assert side_views(tmp_path, tmp_path / "a.png", [0.1]).stat().st_size > 1000
+    assert draw_run(tmp_path, tmp_path / "a.png", Picture([0.1])).stat().st_size > 1000
 
 
 def test_snapshots_of_many_particles_are_quick(tmp_path):
     _cloud(tmp_path / "water.vtkhdf", 200_000)
     begin = time.process_time()
-    side_views(tmp_path, tmp_path / "a.png", [0.2])
+    draw_run(tmp_path, tmp_path / "a.png", Picture([0.2]))
     assert time.process_time() - begin < 12.0
 
 
 def test_a_picture_of_nothing_is_refused(tmp_path):
     with pytest.raises(SceneError, match=r"needs a \.vtkhdf file with steps"):
-        side_views(tmp_path, tmp_path / "a.png", [0.0])
+        draw_run(tmp_path, tmp_path / "a.png", Picture([0.0]))

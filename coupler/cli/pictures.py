@@ -1,0 +1,99 @@
+"""Commands that draw what runs left: draw."""
+
+import argparse
+import math
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from quintet.coupler.cli.options import BAD, Command
+
+if TYPE_CHECKING:
+    from quintet.coupler.report.viewpoint import Box
+
+TIMES = "s, one panel each: 0.1,0.2 (default: those of the scene, else the last)"
+COLOUR = "colour a component by what it shows: NAME.FIELD, as water.pressure; may be repeated"
+RANGE = "ends of the colours of a component: NAME=LOW,HIGH; may be repeated"
+VIEW = "side along y, front against x, top against z (default: side)"
+SECTION = "m, on the axis along which one looks: leave out particles in front of it"
+REGION = "m, corners of the box that is shown: X Y Z X Y Z (default: that of the scene)"
+SCALE = "draw displacements so many times as large"
+OUT = "the picture: .png, .svg, .pdf or .jpg (default: DIR/drawn.png)"
+REPLACE = "replace the file of --out"
+
+
+def add_commands(command: Command) -> None:
+    """Add what draws."""
+    text = "draw a run again, without running it: other times, fields, places, views"
+    drawing = command("draw", draw, text)
+    drawing.add_argument("folder", type=Path, metavar="DIR")
+    drawing.add_argument("--times", type=_numbers, default=[], metavar="T,T", help=TIMES)
+    drawing.add_argument("--colour", action="append", default=[], metavar="NAME.FIELD", help=COLOUR)
+    drawing.add_argument(
+        "--range", action="append", default=[], type=_range, metavar="NAME=LOW,HIGH", help=RANGE
+    )
+    drawing.add_argument("--view", choices=("side", "front", "top"), default="side", help=VIEW)
+    drawing.add_argument("--section", type=_number, metavar="M", help=SECTION)
+    drawing.add_argument("--region", type=_number, nargs=6, metavar="M", help=REGION)
+    drawing.add_argument("--displacement-scale", type=_above_zero, metavar="N", help=SCALE)
+    drawing.add_argument("--out", type=Path, metavar="FILE", help=OUT)
+    drawing.add_argument("--force", action="store_true", help=REPLACE)
+
+
+def draw(options: argparse.Namespace) -> int:
+    """Draw a run again."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.report.panels import can_draw
+    from quintet.coupler.report.redraw import Wanted, redraw
+
+    if not can_draw():
+        return BAD
+    wanted = Wanted(
+        options.times,
+        options.colour,
+        dict(options.range),
+        options.view,
+        options.section,
+        _box(options.region),
+        options.displacement_scale,
+    )
+    out = redraw(options.folder, wanted, options.out, options.force)
+    print(f"drawn: {os.path.relpath(out)}")
+    return 0
+
+
+def _box(numbers: list[float] | None) -> "Box | None":
+    """Lowest and highest corner of a region, of two opposite ones."""
+    if numbers is None:
+        return None
+    (x, y, z), (u, v, w) = numbers[:3], numbers[3:]
+    return (min(x, u), min(y, v), min(z, w)), (max(x, u), max(y, v), max(z, w))
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"must be a number; found {text!r}")
+    return value
+
+
+def _above_zero(text: str) -> float:
+    value = _number(text)
+    if value <= 0.0:
+        raise argparse.ArgumentTypeError(f"must be a number above 0; found {text!r}")
+    return value
+
+
+def _numbers(text: str) -> list[float]:
+    return [_number(part) for part in text.split(",")]
+
+
+def _range(text: str) -> tuple[str, tuple[float, float]]:
+    name, equals, ends = text.partition("=")
+    numbers = _numbers(ends) if equals else []
+    if len(numbers) != 2 or not numbers[0] < numbers[1]:
+        raise argparse.ArgumentTypeError(f"must be NAME=LOW,HIGH with LOW < HIGH; found {text!r}")
+    return name, (numbers[0], numbers[1])

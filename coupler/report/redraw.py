@@ -1,0 +1,142 @@
+"""A run drawn again, from what it left: other times, fields, colours, places, views."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.files import vtkhdf_reader
+from quintet.coupler.files.run_files import DRAWN, RESULTS, SCENE
+from quintet.coupler.report.picture import Picture, draw_run
+from quintet.coupler.report.show import results
+from quintet.coupler.report.view_steps import view_files
+from quintet.coupler.report.viewpoint import VIEWPOINTS, Box
+from quintet.coupler.scene.read import parse
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import unknown
+
+FORMATS = (".png", ".svg", ".pdf", ".jpg")
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What differs from the pictures that the scene asks for; nothing where it is empty or None.
+
+    Attributes
+    ----------
+    times : sequence of float, s
+    colours : sequence of str
+        ``component.field``
+    ranges : mapping of str to two numbers
+        Ends of the colours of a component, by its name.
+    view : str
+        One of side, front and top.
+    section : float, m
+    region : two corners, m
+    displacement_scale : float
+    """
+
+    times: Sequence[float] = ()
+    colours: Sequence[str] = ()
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    view: str = "side"
+    section: float | None = None
+    region: Box | None = None
+    displacement_scale: float | None = None
+
+
+def redraw(folder: Path, wanted: Wanted, out: Path | None = None, force: bool = False) -> Path:
+    """Draw a run again, also one that failed or still runs; return the picture.
+
+    Parameters
+    ----------
+    folder : Path
+        Of a run.
+    wanted : Wanted
+    out : Path, optional
+        The picture; ``drawn.png`` in the folder if not given, which may be there.
+    force : bool
+        Replace another file.
+    """
+    files = view_files(folder) if folder.is_dir() else []
+    if not files:
+        raise SceneError(
+            f"run {folder}: it has no view with steps to draw. Name the folder of a run whose "
+            "scene has output.interval or output.pictures."
+        )
+    chosen = _picture(files, _output_of(folder), wanted)
+    out = _free_place(folder, out, force)
+    return draw_run(folder, out, chosen, _title(folder))
+
+
+def _output_of(folder: Path) -> Mapping[str, Any]:
+    """What the scene of a run says of its output; nothing where the run left no scene."""
+    return parse(folder / SCENE).get("output", {}) if (folder / SCENE).is_file() else {}
+
+
+def _title(folder: Path) -> str:
+    """Name of what ran, as far as the run has told."""
+    if not (folder / RESULTS).is_file():
+        return folder.name
+    run = results(folder)
+    preset = f" ({run['preset']})" if run.get("preset") else ""
+    return f"{run.get('scene', folder.name)}{preset}"
+
+
+def _picture(files: Sequence[Path], output: Mapping[str, Any], wanted: Wanted) -> Picture:
+    """Choose the picture: what is wanted, else what the scene asks for."""
+    times = [vtkhdf_reader.times(path) for path in files]
+    last = max(float(steps[-1]) for steps in times)
+    due = [time for time in output.get("pictures", ()) if time <= last]
+    shows = {path.name.partition(".")[0]: tuple(vtkhdf_reader.units(path)) for path in files}
+    mistakes = [*_unknown_fields(shows, wanted.colours), *_unknown_names(shows, wanted.ranges)]
+    if mistakes:
+        raise SceneError(*mistakes)
+    asked = {colour.partition(".")[0] for colour in wanted.colours}
+    kept_from_scene = [c for c in output.get("colours", ()) if c.partition(".")[0] not in asked]
+    scale = wanted.displacement_scale or float(output.get("displacement_scale", 1.0))
+    viewpoint = VIEWPOINTS[wanted.view]
+    from_scene = output.get("region") if wanted.view == "side" and wanted.section is None else None
+    return Picture(
+        times=wanted.times or due or [last],
+        colours=[*kept_from_scene, *wanted.colours],
+        ranges=wanted.ranges,
+        region=wanted.region or from_scene,
+        section=wanted.section,
+        displacement_scale=scale,
+        viewpoint=viewpoint,
+    )
+
+
+def _unknown_fields(shows: Mapping[str, Sequence[str]], colours: Iterable[str]) -> list[str]:
+    """Say which colours are no fields of what components show."""
+    mistakes = []
+    for colour in colours:
+        name, _, shown = colour.partition(".")
+        if name not in shows:
+            mistakes.append(unknown(f"--colour {colour}: component {name}", name, shows))
+        elif shown not in shows[name]:
+            mistakes.append(unknown(f"--colour {colour}: field {shown}", shown, shows[name]))
+    return mistakes
+
+
+def _unknown_names(shows: Mapping[str, Sequence[str]], ranges: Iterable[str]) -> list[str]:
+    return [
+        unknown(f"--range {name}=...: component {name}", name, shows)
+        for name in ranges
+        if name not in shows
+    ]
+
+
+def _free_place(folder: Path, out: Path | None, force: bool) -> Path:
+    """Where the picture goes: a place of ours, or one where nothing is."""
+    if out is None:
+        return folder / DRAWN
+    if out.suffix.lower() not in FORMATS:
+        raise SceneError(
+            f"--out {out}: a picture must end with one of {', '.join(FORMATS)}; found "
+            f"{out.suffix or 'no ending'}. Name another file."
+        )
+    if out.exists() and not force:
+        raise SceneError(f"--out {out}: it exists. Name another file, or use --force.")
+    return out

@@ -1,0 +1,167 @@
+"""A run is drawn again from what it left: times, fields, ranges, views and sections."""
+
+import numpy as np
+import pytest
+
+from quintet.components.shared.geometry.box_faces import CORNERS, FACES
+from quintet.coupler.cli import main
+from quintet.coupler.files.vtkhdf import VtkHdf
+from quintet.coupler.report import picture as drawing
+from quintet.coupler.report.cut import depth_of_bodies
+from quintet.coupler.report.picture import Picture, draw_run
+from quintet.coupler.report.view_steps import read
+from quintet.coupler.report.viewpoint import VIEWPOINTS
+
+UNITS = {"velocity": "m/s", "pressure": "Pa"}
+POINTS = np.random.default_rng(2).random((2000, 3)) * [1.0, 0.5, 0.4]  # m, a block of water
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Folder of a run with water and a ball of 0.1 m in its middle, at 0, 0.1 and 0.2 s."""
+    water, ball = VtkHdf(tmp_path / "water.vtkhdf", UNITS), VtkHdf(tmp_path / "ball.vtkhdf", UNITS)
+    centre = np.array([[0.5, 0.25, 0.2]])
+    for k in range(3):
+        pressure = 1000.0 * POINTS[:, 2]
+        water.append(0.1 * k, {"points": POINTS, "velocity": POINTS, "pressure": pressure})
+        ball.append(0.1 * k, {"points": centre, "velocity": centre, "radius": np.array([0.1])})
+    water.close()
+    ball.close()
+    return tmp_path
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that were drawn, as matplotlib holds them."""
+    figures = []
+    save = drawing.save
+    monkeypatch.setattr(
+        drawing, "save", lambda figure, out: figures.append(figure) or save(figure, out)
+    )
+    return figures
+
+
+def _command(*arguments):
+    with pytest.raises(SystemExit) as ended:
+        main(["draw", *map(str, arguments)])
+    return ended.value.code
+
+
+def _panels(figure):
+    return [panel for panel in figure.axes if panel.get_xlabel()]
+
+
+def _circles(panel):
+    return [part for part in panel.collections if hasattr(part, "get_widths")]
+
+
+def test_a_ball_under_water_is_seen(folder, drawn):
+    draw_run(folder, folder / "a.png", Picture([0.1]))
+    (panel,) = _panels(drawn[0])
+    ball, water = sorted(_circles(panel), key=lambda part: len(part.get_offsets()))
+    order = panel.collections.index
+    assert order(ball) > order(water), "bodies are drawn after particles"
+    assert len(water.get_offsets()) == np.count_nonzero(POINTS[:, 1] >= 0.25)
+    assert "particles in front of y = 0.25 m left out" in drawn[0].get_suptitle()
+
+
+def test_nothing_is_left_out_where_particles_hide_no_body(folder, drawn):
+    (folder / "ball.vtkhdf").unlink()
+    draw_run(folder, folder / "a.png", Picture([0.1]))
+    (panel,) = _panels(drawn[0])
+    assert len(_circles(panel)[0].get_offsets()) == len(POINTS)
+    assert "left out" not in drawn[0].get_suptitle()
+
+
+def test_a_box_hides_nothing_of_particles_in_one_plane(tmp_path):
+    file = VtkHdf(tmp_path / "box.vtkhdf", UNITS)
+    file.append(0.0, {"points": 0.1 * CORNERS, "cells": FACES})
+    file.close()
+    file = VtkHdf(tmp_path / "water.vtkhdf", UNITS)
+    file.append(0.0, {"points": POINTS * [1.0, 0.0, 1.0], "velocity": POINTS})
+    file.close()
+    view = [read(tmp_path / f"{name}.vtkhdf", 0.0, {}) for name in ("box", "water")]
+    assert depth_of_bodies(view) is None
+    deep = [view[0], read(tmp_path / "box.vtkhdf", 0.0, {})]
+    assert depth_of_bodies(deep) is None, "bodies alone hide nothing"
+
+
+@pytest.mark.parametrize(
+    "view, labels, right, into",
+    [
+        ("side", ("x [m]", "z [m]"), [1, 0, 0], [0, 1, 0]),
+        ("front", ("y [m]", "z [m]"), [0, 1, 0], [-1, 0, 0]),
+        ("top", ("x [m]", "y [m]"), [1, 0, 0], [0, 0, -1]),
+    ],
+)
+def test_views_are_not_mirrored(view, labels, right, into):
+    viewpoint = VIEWPOINTS[view]
+    assert viewpoint.labels == labels
+    assert viewpoint.turned(np.array(right, float)).tolist() == [1.0, 0.0, 0.0]
+    assert viewpoint.turned(np.array(into, float)).tolist() == [0.0, 1.0, 0.0]
+    turn = viewpoint.turned(np.eye(3))
+    assert np.linalg.det(turn) == pytest.approx(1.0), "a turn, no mirror"
+
+
+def test_a_section_is_a_coordinate_of_the_scene(folder, drawn):
+    assert _command(folder, "--view", "front", "--section", "0.75", "--times", "0.1") == 0
+    (panel,) = _panels(drawn[0])
+    water = max(_circles(panel), key=lambda part: len(part.get_offsets()))
+    assert len(water.get_offsets()) == np.count_nonzero(POINTS[:, 0] <= 0.75), (
+        "one looks against x: what is in front has a larger x"
+    )
+    assert "front view against x, cut open at x = 0.75 m" in drawn[0].get_suptitle()
+
+
+def test_the_command_chooses_times_colours_and_their_range(folder, drawn):
+    arguments = ("--times", "0,0.2", "--colour", "water.pressure", "--range", "water=100,300")
+    assert _command(folder, *arguments) == 0
+    assert (folder / "drawn.png").stat().st_size > 1000
+    (figure,) = drawn
+    assert [panel.get_title() for panel in _panels(figure)] == ["t = 0 s", "t = 0.2 s"]
+    bars = {bar.get_ylabel(): bar.get_ylim() for bar in figure.axes if not bar.get_xlabel()}
+    ((label, ends),) = [item for item in bars.items() if "pressure" in item[0]]
+    assert ends == (100.0, 300.0)
+    assert label.startswith("pressure [Pa]") and "beyond" in label
+
+
+def test_a_region_may_be_given_by_any_two_opposite_corners(folder, drawn):
+    assert _command(folder, "--region", "0.8", "0.5", "0.3", "0.2", "0.1", "0.0") == 0
+    (panel,) = _panels(drawn[0])
+    assert panel.get_xlim() == (0.2, 0.8) and panel.get_ylim() == (0.0, 0.3)
+    assert panel.get_title() == "t = 0.2 s", "the last state, where the scene names no time"
+
+
+def test_another_file_is_not_replaced_without_force(folder, capsys):
+    mine = folder / "mine.png"
+    mine.write_text("mine")
+    assert _command(folder, "--out", mine) == 2
+    assert "it exists. Name another file, or use --force." in capsys.readouterr().err
+    assert mine.read_text() == "mine"
+    assert _command(folder, "--out", mine, "--force") == 0
+    assert mine.stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    "arguments, told",
+    [
+        (["--colour", "water.presure"], "field presure is not known. Did you mean pressure?"),
+        (["--colour", "sea.pressure"], "component sea is not known. Known here: ball, water."),
+        (["--range", "sea=1,2"], "component sea is not known"),
+        (["--out", "a.txt"], "must end with one of .png, .svg, .pdf, .jpg; found .txt"),
+    ],
+)
+def test_mistakes_are_told(folder, arguments, told, capsys):
+    assert _command(folder, *arguments) == 2
+    assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["water=2,1", "water=1", "water", "water=a,b"])
+def test_a_range_has_two_ends(folder, text, capsys):
+    assert _command(folder, "--range", text) == 2
+    assert "--range" in capsys.readouterr().err
+
+
+def test_a_folder_without_views_is_refused(tmp_path, capsys):
+    assert _command(tmp_path) == 2
+    assert "no view with steps to draw" in capsys.readouterr().err
