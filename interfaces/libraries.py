@@ -4,7 +4,11 @@ from importlib.util import find_spec
 
 from quintet.interfaces.errors import SceneError
 
-EXTRAS = {"zenoh": "zenoh", "matplotlib": "pictures"}  # by the name that is imported
+EXTRAS = {
+    "zenoh": "zenoh",
+    "matplotlib": "pictures",
+    "jinja2": "report",
+}  # by the name that is imported
 
 
 def is_installed(library: str) -> bool:

@@ -1,4 +1,4 @@
-"""Commands that draw what runs left: draw."""
+"""Commands that draw and describe what runs left: draw, report."""
 
 import argparse
 import math
@@ -19,6 +19,7 @@ SECTION = "m, on the axis along which one looks: leave out particles in front of
 REGION = "m, corners of the box that is shown: X Y Z X Y Z (default: that of the scene)"
 SCALE = "draw displacements so many times as large"
 OUT = "the picture: .png, .svg, .pdf or .jpg (default: DIR/drawn.png)"
+PAGE = "the page, one .html file (default: DIR/report.html)"
 REPLACE = "replace the file of --out"
 
 
@@ -38,6 +39,27 @@ def add_commands(command: Command) -> None:
     drawing.add_argument("--displacement-scale", type=_above_zero, metavar="N", help=SCALE)
     drawing.add_argument("--out", type=Path, metavar="FILE", help=OUT)
     drawing.add_argument("--force", action="store_true", help=REPLACE)
+
+    text = "write one page about a run: expectations, pictures, balances, time, how to repeat it"
+    reporting = command("report", report, text)
+    reporting.add_argument("folder", type=Path, metavar="DIR")
+    reporting.add_argument("--out", type=Path, metavar="FILE", help=PAGE)
+    reporting.add_argument("--force", action="store_true", help=REPLACE)
+
+
+def report(options: argparse.Namespace) -> int:
+    """Write the page of a run."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.files.run_files import REPORT
+    from quintet.coupler.report.free_place import free_place
+    from quintet.coupler.report.html_report import write_report
+    from quintet.interfaces.libraries import require
+
+    for library in ("matplotlib", "jinja2"):
+        require(library, "a report")
+    place = free_place(options.folder / REPORT, options.out, [".html"], options.force)
+    print(f"written: {os.path.relpath(write_report(options.folder, place))}")
+    return 0
 
 
 def draw(options: argparse.Namespace) -> int:

@@ -15,8 +15,8 @@ RECORDING = "recording.h5"
 RESULTS, LEDGER, SCENE = "results.json", "ledger.csv", "scene.toml"
 RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")
-DRAWN = "drawn.png"  # by quintet draw, where no other place is asked for
-RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, RESERVE)  # of every run
+DRAWN, REPORT = "drawn.png", "report.html"  # by quintet draw and report, where not elsewhere
+RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, REPORT, RESERVE)  # of every run
 SNAPSHOTS = "snapshot-*.h5"
 VIEWS, WALLS = ".vtkhdf", ".walls.vtkhdf"
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.run_files import DRAWN, RESULTS, SCENE
+from quintet.coupler.report.free_place import free_place
 from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.show import results
 from quintet.coupler.report.view_steps import view_files
@@ -65,8 +66,8 @@ def redraw(folder: Path, wanted: Wanted, out: Path | None = None, force: bool = 
             "scene has output.interval or output.pictures."
         )
     chosen = _picture(files, _output_of(folder), wanted)
-    out = _free_place(folder, out, force)
-    return draw_run(folder, out, chosen, _title(folder))
+    place = free_place(folder / DRAWN, out, FORMATS, force)
+    return draw_run(folder, place, chosen, _title(folder))
 
 
 def _output_of(folder: Path) -> Mapping[str, Any]:
@@ -126,17 +127,3 @@ def _unknown_names(shows: Mapping[str, Sequence[str]], ranges: Iterable[str]) ->
         for name in ranges
         if name not in shows
     ]
-
-
-def _free_place(folder: Path, out: Path | None, force: bool) -> Path:
-    """Where the picture goes: a place of ours, or one where nothing is."""
-    if out is None:
-        return folder / DRAWN
-    if out.suffix.lower() not in FORMATS:
-        raise SceneError(
-            f"--out {out}: a picture must end with one of {', '.join(FORMATS)}; found "
-            f"{out.suffix or 'no ending'}. Name another file."
-        )
-    if out.exists() and not force:
-        raise SceneError(f"--out {out}: it exists. Name another file, or use --force.")
-    return out

@@ -148,7 +148,7 @@ def test_another_file_is_not_replaced_without_force(folder, capsys):
         (["--colour", "water.presure"], "field presure is not known. Did you mean pressure?"),
         (["--colour", "sea.pressure"], "component sea is not known. Known here: ball, water."),
         (["--range", "sea=1,2"], "component sea is not known"),
-        (["--out", "a.txt"], "must end with one of .png, .svg, .pdf, .jpg; found .txt"),
+        (["--out", "a.txt"], "it must end with one of .png, .svg, .pdf, .jpg; found .txt"),
     ],
 )
 def test_mistakes_are_told(folder, arguments, told, capsys):

@@ -1,0 +1,166 @@
+"""What the results of a run say, as tables and sentences, for a screen or a page."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rich.text import Text
+
+MASS_TOLD = 1e-3  # of a component's mass, a change that is told
+START_AND_END = 2  # totals of a run
+ROUNDING = 1e-9  # of the energy that was turned over
+
+
+@dataclass(frozen=True)
+class TableOfRun:
+    """A table; it may have no rows.
+
+    Attributes
+    ----------
+    title : str
+    names : list of str
+        Of the columns.
+    left : int
+        So many columns hold text, the others numbers.
+    rows : list of lists
+        Of cells: texts, which may have a style, and numbers.
+    """
+
+    title: str
+    names: list[str]
+    left: int
+    rows: list[list[Any]]
+
+
+def expectations(run: Mapping[str, Any]) -> TableOfRun:
+    """What was expected, and what came of it."""
+    rows = [
+        [
+            met(outcome),
+            outcome.get("name", "?"),
+            outcome.get("unit", ""),
+            *(number(outcome.get(key)) for key in ("value", "reference", "within")),
+        ]
+        for outcome in run.get("expect") or []
+    ]
+    names = ["", "expectation", "unit", "value", "reference", "within"]
+    return TableOfRun("Expectations", names, 3, rows)
+
+
+def met(outcome: Mapping[str, Any]) -> Text:
+    """Whether an expectation is met."""
+    text = "met" if outcome.get("met") else "not met"
+    if outcome.get("not_reached") is not None:
+        text = f"not reached (t = {number(outcome['not_reached'])} s)"
+    if not outcome.get("required", True):
+        return Text(f"{text}, not required")
+    return Text(text, style="green" if outcome.get("met") else "red")
+
+
+# What of a link shows that it carries what these are of, also where they are 0.
+CARRIED_AS = {
+    "momentum_residual": "impulse",
+    "heat_residual": "heat",
+    "work_given": "turnover",
+    "work_taken": "turnover",
+    "energy_residual": "turnover",
+}
+
+
+def _carries(link: Mapping[str, Any], key: str) -> bool:
+    """Whether a sum of a link is not 0, or is 0 although the link carries what it is of."""
+    values = (link.get(key), link.get(CARRIED_AS.get(key, key)))
+    return any(any(value) if isinstance(value, list) else bool(value) for value in values)
+
+
+def _sum_of(link: Mapping[str, Any], key: str) -> str:
+    return number(link.get(key)) if _carries(link, key) else "-"
+
+
+def ledger(run: Mapping[str, Any]) -> TableOfRun:
+    """One column for each link; a row for what any of them carries."""
+    links = (run.get("ledger") or {}).get("links") or []
+    keys = dict.fromkeys(key for link in links for key in link if key != "link")
+    rows = [
+        [key.replace("_", " "), *(_sum_of(link, key) for link in links)]
+        for key in keys
+        if any(_carries(link, key) for link in links)
+    ]
+    return TableOfRun("Ledger", ["", *(link.get("link", "?") for link in links)], 1, rows)
+
+
+def energy_balance(run: Mapping[str, Any]) -> str:
+    """How the energy of the run changed; nothing where no component tells its energies."""
+    change = (run.get("ledger") or {}).get("energy_change")
+    if not change:
+        return ""
+    gained, lost, turned = (change[key] for key in ("gained", "lost", "turned_over"))
+    if change.get("times") == START_AND_END:  # what was turned over between them is not known
+        return f"Energy: rose by {number(gained)} J, lost {number(lost)} J from start to end"
+    return (
+        f"Energy: rose by at most {_per_cent(gained / turned)} %, lost {_per_cent(lost / turned)} %"
+        f" ({number(lost)} J of {number(turned)} J turned over)"
+    )
+
+
+def mass_changes(run: Mapping[str, Any]) -> str:
+    """Which components' masses changed, by more than what is negligible."""
+    drifts = (run.get("ledger") or {}).get("mass_drift") or {}
+    said = []
+    for name, drift in drifts.items():
+        share = drift["relative"]
+        if share is None:
+            said.append(f"mass of {name} changed by {drift['kg']:+.3g} kg from none")
+        elif abs(share) > MASS_TOLD:
+            said.append(f"mass of {name} changed by {100.0 * share:+.2g} % ({drift['kg']:+.3g} kg)")
+    return "Mass: " + ", ".join(said) if said else ""
+
+
+def _per_cent(share: float) -> str:
+    """A share in per cent; what is rounding is 0."""
+    return f"{float(f'{100.0 * share:.2g}'):g}" if share > ROUNDING else "0"
+
+
+def timing(run: Mapping[str, Any]) -> TableOfRun:
+    """Seconds, steps and items of each component."""
+    components = (run.get("timing") or {}).get("components") or {}
+    rows = [
+        [
+            name,
+            *(number(times.get(key)) for key in ("build", "compute", "cpu", "wait")),
+            times.get("steps", "-"),
+            times.get("items", "-"),
+            number(_rate(times)),
+        ]
+        for name, times in components.items()
+    ]
+    seconds = [f"{name} [s]" for name in ("build", "compute", "CPU", "wait")]
+    names = ["component", *seconds, "steps", "items", "item-steps/s"]
+    return TableOfRun("Timing", names, 1, rows)
+
+
+def _rate(times: Mapping[str, Any]) -> float | None:
+    """Items stepped per second of computing time."""
+    compute = times.get("compute")
+    return times.get("steps", 0) * times.get("items", 0) / compute if compute else None
+
+
+def time_shares(run: Mapping[str, Any]) -> str:
+    """Where the time of the whole run went, its memory, and repeated windows."""
+    timing = run.get("timing") or {}
+    times = {k: v for k, v in timing.items() if k not in ("components", "memory")}
+    text = "Time: " + ", ".join(f"{k} {number(v)} s" for k, v in times.items()) if times else ""
+    text += f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else ""
+    again = run.get("repetitions")
+    text += f"; windows repeated {again} times" if again else ""
+    lacking = run.get("unconverged")
+    return text + (f"; {lacking} windows did not converge" if lacking else "")
+
+
+def number(value: Any) -> str:
+    """Four digits of a number; a dash where there is none."""
+    if value is None:
+        return "-"
+    if isinstance(value, list):
+        return " ".join(f"{part:.3g}" for part in value)
+    return f"{value:.4g}" if isinstance(value, (int, float)) else str(value)
